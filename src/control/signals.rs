@@ -1,0 +1,61 @@
+//! What goes in and comes out of one servo cycle.
+
+use nalgebra::{Matrix3, Vector3, Vector4};
+
+/// What the board measured at one instant, as it measured it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Feedback {
+    /// m_c of eq. 28: motor encoder counts, without wrap.
+    pub motor_counts: [i32; 4],
+    /// Strain gauge counts.
+    pub gauge_counts: [u16; 4],
+}
+
+/// Where a fingertip's spring is anchored and how stiff it is. Taken over whole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetPoint {
+    /// theta_d: desired joint angles, rad.
+    pub joints: Vector3<f64>,
+    /// Kx in the finger's frame, N/cm; symmetric.
+    pub stiffness: Matrix3<f64>,
+}
+
+/// What a finger is doing; decided by its servo thread.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Activity {
+    /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is.
+    TakeUpSlack,
+    /// The fingertip is a spring.
+    Follow(SetPoint),
+    /// Motor torques ramp to zero over so many seconds from the first such cycle.
+    Release {
+        /// Length of the ramp, s.
+        ramp: f64,
+    },
+}
+
+/// What the motors shall do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Command {
+    /// m_tau of eq. 22, N cm; positive pulls.
+    pub motor_torques: Vector4<f64>,
+}
+
+/// What one cycle found and decided.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Measured joint angles, corrected for tendon stretch, rad.
+    pub joints: Vector3<f64>,
+    /// Measured joint rates, rad/s.
+    pub joint_rates: Vector3<f64>,
+    /// Measured tensions, N.
+    pub tensions: Vector4<f64>,
+    /// Commanded tensions, N: never below t_min while the finger is a spring.
+    pub desired_tensions: Vector4<f64>,
+    /// Joint torques that the stiffness law asked for, N cm.
+    pub joint_torques: Vector3<f64>,
+    /// The part of `joint_torques` that the tension limits let through, 0 to 1; its direction is kept.
+    pub torque_scale: f64,
+    /// The command, N cm.
+    pub motor_torques: Vector4<f64>,
+}

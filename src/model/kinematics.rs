@@ -1,0 +1,50 @@
+//! The finger as a chain of three links: tip position and Jacobian, eqs. 7-12.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// The link lengths l0, l1, l2 of a finger, cm (section 5.5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Links(pub [f64; 3]);
+
+impl Links {
+    /// Tip position in the finger's frame (Figure 8), cm, at joint angles `theta`, rad.
+    ///
+    /// x = (l0 + l1 C1 + l2 C12) S0, y = -l1 S1 - l2 S12, z = (l0 + l1 C1 + l2 C12) C0, whose derivative is eq. 8.
+    pub fn tip(&self, theta: &Vector3<f64>) -> Vector3<f64> {
+        let [_, l1, l2] = self.0;
+        let (s0, c0) = theta[0].sin_cos();
+        let (s1, _) = theta[1].sin_cos();
+        let (s12, _) = (theta[1] + theta[2]).sin_cos();
+        let reach = self.reach(theta);
+        Vector3::new(reach * s0, -l1 * s1 - l2 * s12, reach * c0)
+    }
+
+    /// Jacobian of [`Links::tip`], eq. 8, cm/rad: row = x, y, z; column = joint.
+    pub fn jacobian(&self, theta: &Vector3<f64>) -> Matrix3<f64> {
+        let [l0, l1, l2] = self.0;
+        let (s0, c0) = theta[0].sin_cos();
+        let (s1, c1) = theta[1].sin_cos();
+        let (s2, c2) = theta[2].sin_cos();
+        let s12 = c1 * s2 + s1 * c2; // eq. 11
+        let c12 = c1 * c2 - s1 * s2; // eq. 12
+        let reach = l0 + l1 * c1 + l2 * c12;
+        let fall = -l1 * s1 - l2 * s12;
+        Matrix3::new(
+            reach * c0,
+            fall * s0,
+            -l2 * s12 * s0,
+            0.0,
+            -l1 * c1 - l2 * c12,
+            -l2 * c12,
+            -reach * s0,
+            fall * c0,
+            -l2 * s12 * c0,
+        )
+    }
+
+    /// Distance of the tip from the axis of joint 0, cm: l0 + l1 C1 + l2 C12. Zero is a singular pose.
+    pub fn reach(&self, theta: &Vector3<f64>) -> f64 {
+        let [l0, l1, l2] = self.0;
+        l0 + l1 * theta[1].cos() + l2 * (theta[1] + theta[2]).cos()
+    }
+}

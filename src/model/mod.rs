@@ -1,0 +1,11 @@
+//! What a finger is: geometry, kinematics, tendons and the types of its configuration. Lengths in cm, forces in N,
+//! torques in N cm, angles in rad, as in the report, unless a name says otherwise.
+
+pub mod configuration;
+mod kinematics;
+mod simulation;
+mod tendons;
+
+pub use kinematics::Links;
+pub use simulation::{ConfiguredSimulation, Surface};
+pub use tendons::{Tendons, TendonsError};

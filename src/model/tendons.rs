@@ -1,0 +1,69 @@
+//! The tendons of a finger: the matrix R with its ghost row and the inverse Q, eqs. 13-18, and the motor radii M.
+
+use nalgebra::{Matrix3x4, Matrix4, RowVector4, Vector4};
+use thiserror::Error;
+
+/// Why a matrix R cannot carry a finger.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum TendonsError {
+    /// R has rank 2 or less: some joint torque cannot be produced by any tensions.
+    #[error("the tendon matrix R is singular (its smallest singular value is {0:.1e}): no inverse Q (eq. 17)")]
+    Singular(f64),
+    /// The fourth column of Q has an entry that is not positive: tendons that all pull cannot hold the finger.
+    #[error(
+        "the ghost column of Q must be all positive (eq. 20) but is {0:?}: with these signs in R no common pull of the \
+         tendons leaves the joints at rest"
+    )]
+    GhostColumn([f64; 4]),
+}
+
+/// R with its ghost row, its inverse and the motor radii: everything that is fixed about four tendons.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tendons {
+    /// R of eq. 14, cm: tau = R t. Row = joint, column = tendon.
+    pub r: Matrix3x4<f64>,
+    /// Q = R^-1 of eq. 17, with the ghost row in R: row = tendon, column = joint torque (1/cm), last column ghost.
+    pub q: Matrix4<f64>,
+    /// Equivalent shaft radius of each motor, cm: t = m_tau / radius, so that M = diag(1 / radius) (eq. 21).
+    pub radius: Vector4<f64>,
+}
+
+impl Tendons {
+    /// Adds the ghost row to R and inverts. Without a `ghost` row R's own null vector is used, so that a common stretch
+    /// of the tendons does not leak into the joint angles (eq. 29); eq. 20 gives the same tensions with either.
+    pub fn new(r: Matrix3x4<f64>, radius: Vector4<f64>, ghost: Option<RowVector4<f64>>) -> Result<Self, TendonsError> {
+        let singular = r.singular_values();
+        if singular.min() < 1e-6 * singular.max() {
+            return Err(TendonsError::Singular(singular.min()));
+        }
+        let ghost = ghost.unwrap_or_else(|| null_vector(&r));
+        let mut with_ghost = Matrix4::zeros();
+        with_ghost.fixed_rows_mut::<3>(0).copy_from(&r);
+        with_ghost.set_row(3, &ghost);
+        let q = with_ghost.try_inverse().ok_or(TendonsError::Singular(0.0))?;
+        let column: [f64; 4] = q.column(3).into_owned().into();
+        if column.iter().any(|&entry| entry.is_nan() || entry <= 1e-9) {
+            return Err(TendonsError::GhostColumn(column));
+        }
+        Ok(Self { r, q, radius })
+    }
+
+    /// The three rows of R^-T that turn tendon travel (cm) into joint angles (rad), eq. 27: row = joint.
+    pub fn joints_from_travel(&self) -> Matrix3x4<f64> {
+        self.q.fixed_columns::<3>(0).transpose()
+    }
+
+    /// The tensions that leave every joint at rest with the least pulled tendon at `minimum`, N: eq. 20 at tau = 0.
+    pub fn pretension(&self, minimum: f64) -> Vector4<f64> {
+        let column: Vector4<f64> = self.q.column(3).into_owned();
+        column * (minimum / column.min())
+    }
+}
+
+/// The direction in tendon space that R sends to zero, of length 1, with a positive sum.
+fn null_vector(r: &Matrix3x4<f64>) -> RowVector4<f64> {
+    // Cofactors of the 3x4 matrix: exact, and it needs no tolerance.
+    let minor = |skip: usize| r.remove_column(skip).determinant();
+    let vector = RowVector4::new(minor(0), -minor(1), minor(2), -minor(3)).normalize();
+    if vector.sum() < 0.0 { -vector } else { vector }
+}
