@@ -9,3 +9,4 @@ pub mod board;
 pub mod control;
 pub mod model;
 pub mod plant;
+pub mod realtime;

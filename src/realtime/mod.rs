@@ -1,0 +1,3 @@
+//! What the servo threads need of the operating system.
+
+pub mod clock;
