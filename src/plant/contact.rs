@@ -1,0 +1,37 @@
+//! The fingertip against something that does not move: elastic, frictionless.
+
+use crate::model::Surface;
+use nalgebra::Vector3;
+
+/// Force on the tip, N, finger frame. `tip` in cm.
+///
+/// A wall without a normal, and the very centre of a ball, push in no direction: no force.
+pub(super) fn force(surface: &Surface, tip: &Vector3<f64>) -> Vector3<f64> {
+    let (depth, outward, stiffness) = touch(surface, tip);
+    outward * (depth * stiffness)
+}
+
+/// Elastic energy, J.
+pub(super) fn energy(surface: &Surface, tip: &Vector3<f64>) -> f64 {
+    let (depth, _, stiffness) = touch(surface, tip);
+    0.5 * stiffness * depth * depth * 0.01
+}
+
+/// Depth of the tip under the surface, cm, 0 outside; outward unit normal; stiffness, N/cm.
+fn touch(surface: &Surface, tip: &Vector3<f64>) -> (f64, Vector3<f64>, f64) {
+    let (height, outward, stiffness) = match *surface {
+        Surface::Wall { point, normal, stiffness } => {
+            let outward = unit(Vector3::from(normal));
+            (outward.dot(&(tip - Vector3::from(point))), outward, stiffness)
+        }
+        Surface::Ball { centre, radius, stiffness } => {
+            let from_centre = tip - Vector3::from(centre);
+            (from_centre.norm() - radius, unit(from_centre), stiffness)
+        }
+    };
+    ((-height).max(0.0), outward, stiffness)
+}
+
+fn unit(vector: Vector3<f64>) -> Vector3<f64> {
+    vector.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
+}

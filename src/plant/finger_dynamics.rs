@@ -1,0 +1,147 @@
+//! Inertia, Coriolis and gravity torques of the three links, uniform cylinders, and of the tip, a point.
+//!
+//! The angular velocity of links 1 and 2 is the rate of joint 0 about the vertical plus a rate about the normal of the
+//! finger's plane. The two directions are principal for every link, so joint 0 has no inertia in common with the others.
+
+use crate::model::Links;
+use crate::model::configuration::ConfiguredFinger;
+use nalgebra::{Matrix3, Vector3};
+
+/// A link as a rigid body.
+#[derive(Clone, Copy, Debug)]
+struct Cylinder {
+    /// kg.
+    mass: f64,
+    /// About the axis, kg m^2.
+    axial: f64,
+    /// About a transverse axis through the centre, kg m^2.
+    transverse: f64,
+}
+
+impl Cylinder {
+    fn new(mass: f64, radius: f64, length: f64) -> Self {
+        let axial = mass * radius * radius / 2.0;
+        Self { mass, axial, transverse: axial / 2.0 + mass * length * length / 12.0 }
+    }
+}
+
+/// The rigid bodies of a finger, and the gravity that acts on them.
+#[derive(Clone, Debug)]
+pub(super) struct FingerDynamics {
+    length: [f64; 3],
+    link: [Cylinder; 3],
+    tip_mass: f64,
+    /// m/s^2, finger frame.
+    gravity: Vector3<f64>,
+    /// The four centres of mass as chains of their own: mass, kg, and lengths, m.
+    centres: [(f64, Links); 4],
+}
+
+impl FingerDynamics {
+    pub fn new(finger: &ConfiguredFinger, gravity: Vector3<f64>) -> Self {
+        let length = finger.geometry.links.map(|cm| cm * 0.01);
+        let [l0, l1, l2] = length;
+        let simulation = &finger.simulation;
+        let mass = simulation.masses;
+        let link = std::array::from_fn(|i| Cylinder::new(mass[i], simulation.link_radii[i], length[i]));
+        let centres = [
+            (mass[0], Links([l0 / 2.0, 0.0, 0.0])),
+            (mass[1], Links([l0, l1 / 2.0, 0.0])),
+            (mass[2], Links([l0, l1, l2 / 2.0])),
+            (mass[3], Links([l0, l1, l2])),
+        ];
+        Self { length, link, tip_mass: mass[3], gravity, centres }
+    }
+
+    /// H(theta), kg m^2.
+    pub fn inertia(&self, theta: &Vector3<f64>) -> Matrix3<f64> {
+        let pose = Pose::new(self, theta);
+        let [_, l1, l2] = self.length;
+        let [_, link1, link2] = self.link;
+        let proximal = link1.transverse + link1.mass * l1 * l1 / 4.0 + (link2.mass + self.tip_mass) * l1 * l1;
+        let distal = link2.transverse + link2.mass * l2 * l2 / 4.0 + self.tip_mass * l2 * l2;
+        let coupled = self.coupling() * theta[2].cos();
+        let (h11, h12) = (proximal + distal + 2.0 * coupled, distal + coupled);
+        Matrix3::new(self.about_joint_0(&pose), 0.0, 0.0, 0.0, h11, h12, 0.0, h12, distal)
+    }
+
+    /// c(theta, theta_dot): Coriolis and centrifugal torques, N m, on the side of H theta_dd.
+    pub fn coriolis(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
+        let pose = Pose::new(self, theta);
+        let (by_1, by_2) = self.about_joint_0_derivatives(&pose);
+        let bend = self.coupling() * theta[2].sin();
+        Vector3::new(
+            rate[0] * (by_1 * rate[1] + by_2 * rate[2]),
+            -bend * rate[2] * (2.0 * rate[1] + rate[2]) - 0.5 * by_1 * rate[0] * rate[0],
+            bend * rate[1] * rate[1] - 0.5 * by_2 * rate[0] * rate[0],
+        )
+    }
+
+    /// Joint torques of gravity, N m.
+    pub fn gravity_torque(&self, theta: &Vector3<f64>) -> Vector3<f64> {
+        if self.gravity == Vector3::zeros() {
+            return Vector3::zeros();
+        }
+        self.centres.iter().map(|(mass, chain)| chain.jacobian(theta).transpose() * self.gravity * *mass).sum()
+    }
+
+    /// Kinetic energy of the links plus their potential energy in gravity, J.
+    pub fn energy(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> f64 {
+        let kinetic = 0.5 * rate.dot(&(self.inertia(theta) * rate));
+        let potential: f64 = self.centres.iter().map(|(mass, chain)| -mass * self.gravity.dot(&chain.tip(theta))).sum();
+        kinetic + potential
+    }
+
+    /// The coefficient of cos(theta_2) in the inertia of the finger's plane, kg m^2.
+    fn coupling(&self) -> f64 {
+        let [_, l1, l2] = self.length;
+        (self.link[2].mass / 2.0 + self.tip_mass) * l1 * l2
+    }
+
+    /// Inertia about the axis of joint 0, kg m^2.
+    fn about_joint_0(&self, pose: &Pose) -> f64 {
+        let [link0, link1, link2] = self.link;
+        let [centre0, centre1, centre2, tip] = pose.reach;
+        let leaning = |link: Cylinder, sin: f64, cos: f64| link.transverse * cos * cos + link.axial * sin * sin;
+        link0.transverse
+            + link0.mass * centre0 * centre0
+            + leaning(link1, pose.s1, pose.c1)
+            + link1.mass * centre1 * centre1
+            + leaning(link2, pose.s12, pose.c12)
+            + link2.mass * centre2 * centre2
+            + self.tip_mass * tip * tip
+    }
+
+    /// Derivatives of [`Self::about_joint_0`] with respect to theta_1 and theta_2.
+    fn about_joint_0_derivatives(&self, pose: &Pose) -> (f64, f64) {
+        let [_, l1, l2] = self.length;
+        let [_, link1, link2] = self.link;
+        let [_, centre1, centre2, tip] = pose.reach;
+        let leaning = |link: Cylinder, sin: f64, cos: f64| (link.axial - link.transverse) * sin * cos;
+        let by_1_alone = leaning(link1, pose.s1, pose.c1)
+            - pose.s1 * l1 * (link1.mass * centre1 / 2.0 + link2.mass * centre2 + self.tip_mass * tip);
+        let by_sum =
+            leaning(link2, pose.s12, pose.c12) - pose.s12 * l2 * (link2.mass * centre2 / 2.0 + self.tip_mass * tip);
+        (2.0 * (by_1_alone + by_sum), 2.0 * by_sum)
+    }
+}
+
+/// Sines, cosines and distances from the axis of joint 0, m, of the centres of links 0, 1, 2 and of the tip.
+struct Pose {
+    s1: f64,
+    c1: f64,
+    s12: f64,
+    c12: f64,
+    reach: [f64; 4],
+}
+
+impl Pose {
+    fn new(finger: &FingerDynamics, theta: &Vector3<f64>) -> Self {
+        let [l0, l1, l2] = finger.length;
+        let (s1, c1) = theta[1].sin_cos();
+        let (s12, c12) = (theta[1] + theta[2]).sin_cos();
+        let elbow = l0 + l1 * c1;
+        let reach = [l0 / 2.0, l0 + l1 * c1 / 2.0, elbow + l2 * c12 / 2.0, elbow + l2 * c12];
+        Self { s1, c1, s12, c12, reach }
+    }
+}

@@ -1,0 +1,160 @@
+//! One finger as a physical system: joints, tendons, motors, and what the tip meets.
+
+use super::contact;
+use super::finger_dynamics::FingerDynamics;
+use super::joint_friction::stop_by_friction;
+use super::joint_stops::JointStops;
+use super::motors::Motors;
+use super::tendon::ElasticTendons;
+use crate::model::configuration::ConfiguredFinger;
+use crate::model::{Links, Surface, TendonsError};
+use nalgebra::{Matrix3, Vector3, Vector4};
+
+/// Simulated time of one [`Plant::step`], s.
+pub const PLANT_STEP_SECONDS: f64 = 1e-4;
+
+/// One finger. Its state is theta, theta_dot, m, m_dot; it is integrated by semi-implicit Euler.
+///
+/// Until [`Plant::release_brake`] the rotors are locked: a hand stands braked at its homing pretension until its board is
+/// told to drive it.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    links: Links,
+    dynamics: FingerDynamics,
+    stops: JointStops,
+    tendons: ElasticTendons,
+    motors: Motors,
+    joint_viscous: Vector3<f64>,
+    /// Largest friction impulses of one step, N m s.
+    joint_friction_impulse: Vector3<f64>,
+
+    theta: Vector3<f64>,
+    theta_dot: Vector3<f64>,
+    motor: Vector4<f64>,
+    motor_dot: Vector4<f64>,
+    braked: bool,
+    external_force: Vector3<f64>,
+    surface: Option<Surface>,
+}
+
+impl Plant {
+    /// A finger at its start pose, at rest, at homing pretension, braked. Gravity in the finger's frame, m/s^2.
+    pub fn new(finger: &ConfiguredFinger, gravity_in_finger_frame: Vector3<f64>) -> Result<Self, TendonsError> {
+        let tendons = ElasticTendons::new(finger)?;
+        let simulation = &finger.simulation;
+        let theta = Vector3::from(simulation.start_degrees.map(f64::to_radians));
+        Ok(Self {
+            links: finger.links(),
+            dynamics: FingerDynamics::new(finger, gravity_in_finger_frame),
+            stops: JointStops::new(finger),
+            motors: Motors::new(finger),
+            joint_viscous: simulation.joint_viscous_friction.into(),
+            joint_friction_impulse: Vector3::from(simulation.joint_coulomb_friction) * PLANT_STEP_SECONDS,
+            theta,
+            theta_dot: Vector3::zeros(),
+            motor: tendons.motor_angles_at(&theta),
+            motor_dot: Vector4::zeros(),
+            braked: true,
+            external_force: Vector3::zeros(),
+            surface: simulation.surface,
+            tendons,
+        })
+    }
+
+    /// Advances by [`PLANT_STEP_SECONDS`]. `motor_torques`: what the board commands, N m: a positive one pulls where
+    /// `motor.sign` is +1. The motors give at most their torque limit.
+    pub fn step(&mut self, motor_torques: [f64; 4]) {
+        let h = PLANT_STEP_SECONDS;
+        let tensions = self.tensions();
+
+        let force = self.external_force + self.contact_force();
+        let jacobian = self.links.jacobian(&self.theta) * 0.01;
+        let torque = self.tendons.joint_torque(&tensions)
+            + jacobian.tr_mul(&force)
+            + self.dynamics.gravity_torque(&self.theta)
+            + self.stops.torque(&self.theta, &self.theta_dot)
+            - self.joint_viscous.component_mul(&self.theta_dot)
+            - self.dynamics.coriolis(&self.theta, &self.theta_dot);
+        let inverse_inertia = inverse(&self.dynamics.inertia(&self.theta));
+        let rates = self.theta_dot + inverse_inertia * torque * h;
+        self.theta_dot = stop_by_friction(rates, &inverse_inertia, &self.joint_friction_impulse);
+        self.theta += self.theta_dot * h;
+
+        if !self.braked {
+            let pull = self.tendons.radius.component_mul(&tensions);
+            self.motor_dot = self.motors.next_speeds(&self.motor_dot, &motor_torques.into(), &pull, h);
+            self.motor += self.motor_dot * h;
+        }
+    }
+
+    /// Lets the rotors turn from now on.
+    pub fn release_brake(&mut self) {
+        self.braked = false;
+    }
+
+    /// theta, rad.
+    pub fn joints(&self) -> Vector3<f64> {
+        self.theta
+    }
+
+    /// theta_dot, rad/s.
+    pub fn joint_rates(&self) -> Vector3<f64> {
+        self.theta_dot
+    }
+
+    /// Motor angles, rad; rising as the tendon is pulled in; zero at theta = 0 with the homing pretension.
+    pub fn motor_angles(&self) -> Vector4<f64> {
+        self.motor
+    }
+
+    /// Motor speeds, rad/s.
+    pub fn motor_speeds(&self) -> Vector4<f64> {
+        self.motor_dot
+    }
+
+    /// Turns a motor by hand, rad: negative unwinds its tendon.
+    pub fn turn_motor(&mut self, motor: usize, angle: f64) {
+        self.motor[motor] += angle;
+    }
+
+    /// Tendon tensions, N.
+    pub fn tensions(&self) -> Vector4<f64> {
+        self.tendons.tensions(&self.theta, &self.motor)
+    }
+
+    /// Position of the fingertip, finger frame, cm.
+    pub fn tip(&self) -> Vector3<f64> {
+        self.links.tip(&self.theta)
+    }
+
+    /// Pushes the fingertip from now on: N, finger frame.
+    pub fn set_external_force(&mut self, force: Vector3<f64>) {
+        self.external_force = force;
+    }
+
+    /// Puts something in reach of the fingertip, or takes it away.
+    pub fn set_surface(&mut self, surface: Option<Surface>) {
+        self.surface = surface;
+    }
+
+    /// Force of the surface on the fingertip, N, finger frame.
+    pub fn contact_force(&self) -> Vector3<f64> {
+        self.surface.map_or_else(Vector3::zeros, |surface| contact::force(&surface, &self.tip()))
+    }
+
+    /// Energy in the moving parts, tendons, stops, surface and gravity, J.
+    pub fn energy(&self) -> f64 {
+        self.dynamics.energy(&self.theta, &self.theta_dot)
+            + self.motors.energy(&self.motor_dot)
+            + self.tendons.energy(&self.theta, &self.motor)
+            + self.stops.energy(&self.theta)
+            + self.surface.map_or(0.0, |surface| contact::energy(&surface, &self.tip()))
+    }
+}
+
+/// The inverse of an inertia matrix, 1 + 2x2 as joint 0 decouples. Positive masses make it exist.
+fn inverse(h: &Matrix3<f64>) -> Matrix3<f64> {
+    let determinant = h[(1, 1)] * h[(2, 2)] - h[(1, 2)] * h[(1, 2)];
+    let off = -h[(1, 2)] / determinant;
+    Matrix3::new(1.0 / h[(0, 0)], 0.0, 0.0, 0.0, h[(2, 2)] / determinant, off, 0.0, off, h[(1, 1)] / determinant)
+}

@@ -1,0 +1,33 @@
+//! Coulomb friction of the joints as impulses: each as large as it takes to stop its joint, bounded by what the friction
+//! torque delivers in one step. All three together, because stopping one joint moves its neighbour.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// Sweeps of projected Gauss-Seidel. The coupling of joints 1 and 2 shrinks the error at least to three quarters a sweep,
+/// with the default masses; sweeping ends early when nothing changes.
+const SWEEPS: usize = 60;
+
+/// The joint rates after friction. `rates`: without it; `bound`: largest impulses, N m s.
+pub(super) fn stop_by_friction(
+    rates: Vector3<f64>,
+    inverse_inertia: &Matrix3<f64>,
+    bound: &Vector3<f64>,
+) -> Vector3<f64> {
+    let mut rates: Vector3<f64> = rates;
+    let mut impulse: Vector3<f64> = Vector3::zeros();
+    for _ in 0..SWEEPS {
+        let mut largest: f64 = 0.0;
+        for joint in 0..3 {
+            let compliance: f64 = inverse_inertia[(joint, joint)];
+            let wanted: f64 = impulse[joint] - rates[joint] / compliance;
+            let change: f64 = wanted.clamp(-bound[joint], bound[joint]) - impulse[joint];
+            impulse[joint] += change;
+            rates += inverse_inertia.column(joint) * change;
+            largest = largest.max((change * compliance).abs());
+        }
+        if largest < 1e-12 {
+            break;
+        }
+    }
+    rates
+}

@@ -1,0 +1,57 @@
+//! What the board measures: motor encoders and strain gauges.
+
+use super::Plant;
+use crate::model::configuration::ConfiguredFinger;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::SeedableRng;
+use std::f64::consts::TAU;
+
+/// Largest count of the 12-bit converter behind each gauge.
+const GAUGE_FULL_SCALE: f64 = 4095.0;
+
+/// Encoders and gauges of one finger, with the noise of the gauges: the same sequence for the same `simulation.seed`.
+#[derive(Clone, Debug)]
+pub struct Sensors {
+    /// Counts a radian, with sign.
+    counts_per_radian: [f64; 4],
+    encoder_zero: [i32; 4],
+    newton_per_count: [f64; 4],
+    gauge_zero: [f64; 4],
+    gauge_noise: f64,
+    random: Pcg64,
+}
+
+impl Sensors {
+    /// The sensors that `finger` describes.
+    pub fn new(finger: &ConfiguredFinger) -> Self {
+        let encoder = &finger.encoder;
+        Self {
+            counts_per_radian: std::array::from_fn(|motor| {
+                f64::from(encoder.sign[motor]) * f64::from(encoder.counts_per_revolution[motor]) / TAU
+            }),
+            encoder_zero: encoder.zero,
+            newton_per_count: finger.gauge.newton_per_count,
+            gauge_zero: finger.gauge.zero,
+            gauge_noise: finger.simulation.gauge_noise,
+            random: Pcg64::seed_from_u64(finger.simulation.seed),
+        }
+    }
+
+    /// Reads all eight: encoder counts (eq. 28 backwards, rounded down) and gauge counts (0 to 4095, with noise).
+    pub fn read(&mut self, plant: &Plant) -> ([i32; 4], [u16; 4]) {
+        let (angles, tensions) = (plant.motor_angles(), plant.tensions());
+        let motor_counts = std::array::from_fn(|motor| {
+            let counts = (angles[motor] * self.counts_per_radian[motor]).floor();
+            // A counter wraps.
+            self.encoder_zero[motor].wrapping_add(counts as i64 as i32)
+        });
+        let gauge_counts = std::array::from_fn(|tendon| {
+            let noise: f64 = StandardNormal.sample(&mut self.random);
+            let tension = tensions[tendon] + self.gauge_noise * noise;
+            let counts = tension / self.newton_per_count[tendon] + self.gauge_zero[tendon];
+            counts.round().clamp(0.0, GAUGE_FULL_SCALE) as u16
+        });
+        (motor_counts, gauge_counts)
+    }
+}

@@ -1,0 +1,56 @@
+//! The four tendons: one-sided springs between the motors' pulleys and the joints.
+
+use crate::model::TendonsError;
+use crate::model::configuration::ConfiguredFinger;
+use nalgebra::{Matrix3x4, Vector3, Vector4};
+
+/// Springs t = k max(0, r m - R^T theta + t_home / k), so that motor angle zero is theta = 0 with the homing pretension.
+#[derive(Clone, Debug)]
+pub(super) struct ElasticTendons {
+    /// R, m.
+    r: Matrix3x4<f64>,
+    /// Motor pulley radii, m.
+    pub radius: Vector4<f64>,
+    /// N/m.
+    stiffness: Vector4<f64>,
+    /// Stretch at motor angle zero and theta = 0, m.
+    home_stretch: Vector4<f64>,
+}
+
+impl ElasticTendons {
+    pub fn new(finger: &ConfiguredFinger) -> Result<Self, TendonsError> {
+        let tendons = finger.tendons()?;
+        let stiffness = Vector4::from(finger.simulation.tendon_stiffness) * 100.0;
+        Ok(Self {
+            r: tendons.r * 0.01,
+            radius: tendons.radius * 0.01,
+            home_stretch: tendons.pretension(finger.tendon.minimum).component_div(&stiffness),
+            stiffness,
+        })
+    }
+
+    /// Tensions, N, at joint angles and motor angles, rad. A slack tendon has none.
+    pub fn tensions(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> Vector4<f64> {
+        self.stretch(theta, motor).component_mul(&self.stiffness)
+    }
+
+    /// tau = R t, eq. 13, N m.
+    pub fn joint_torque(&self, tensions: &Vector4<f64>) -> Vector3<f64> {
+        self.r * tensions
+    }
+
+    /// The motor angles, rad, that hold `theta` with the homing pretension.
+    pub fn motor_angles_at(&self, theta: &Vector3<f64>) -> Vector4<f64> {
+        self.r.tr_mul(theta).component_div(&self.radius)
+    }
+
+    /// Elastic energy, J.
+    pub fn energy(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> f64 {
+        let stretch = self.stretch(theta, motor);
+        0.5 * self.stiffness.dot(&stretch.component_mul(&stretch))
+    }
+
+    fn stretch(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> Vector4<f64> {
+        (self.radius.component_mul(motor) - self.r.tr_mul(theta) + self.home_stretch).map(|stretch| stretch.max(0.0))
+    }
+}
