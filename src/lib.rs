@@ -7,6 +7,8 @@
 
 pub mod board;
 pub mod control;
+pub mod finger;
+pub mod hand;
 pub mod model;
 pub mod plant;
 pub mod realtime;

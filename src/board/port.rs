@@ -5,7 +5,7 @@
 #![allow(unsafe_code, reason = "the raw descriptor of the port")]
 
 use super::transport::Transport;
-use crate::realtime::clock;
+use crate::realtime;
 use serialport::{ClearBuffer, SerialPort, TTYPort};
 use std::io;
 use std::os::fd::{AsRawFd, RawFd};
@@ -153,7 +153,7 @@ impl Port {
     /// Waits with the signal mask as it is. False at the deadline.
     fn wait_for_input(&self, deadline: u64) -> Result<bool, PortError> {
         loop {
-            let left = deadline.saturating_sub(clock::now());
+            let left = deadline.saturating_sub(realtime::now());
             let timeout = libc::timespec {
                 tv_sec: (left / 1_000_000_000) as libc::time_t,
                 tv_nsec: (left % 1_000_000_000) as libc::c_long,
@@ -213,7 +213,7 @@ impl Transport for Port {
     }
 
     fn now(&self) -> u64 {
-        clock::now()
+        realtime::now()
     }
 }
 

@@ -31,16 +31,6 @@ impl Configuration {
         Ok(())
     }
 
-    /// The servo thread of a finger, 1 to 3.
-    pub fn thread(&self, finger: usize) -> u8 {
-        own_or(self.fingers[finger].thread, finger)
-    }
-
-    /// The address of a finger on its board, 1 to 15.
-    pub fn address(&self, finger: usize) -> u8 {
-        own_or(self.fingers[finger].address, finger)
-    }
-
     fn check_sharing(&self, first: usize, second: usize) -> Result<(), Unusable> {
         let (one, other) = (&self.fingers[first], &self.fingers[second]);
         let same_thread = self.thread(first) == self.thread(second);
@@ -105,8 +95,8 @@ impl ConfiguredFinger {
         within("address", self.address.into(), 0.0, 15.0, "")?;
         within("thread", self.thread.into(), 0.0, 3.0, "")?;
         within("priority", self.priority.into(), 0.0, 99.0, "")?;
-        each("base", &self.base, -100.0, 100.0, "cm")?;
-        within("turn_degrees", self.turn_degrees, -360.0, 360.0, "degrees")?;
+        each("base", &self.base.unwrap_or_default(), -100.0, 100.0, "cm")?;
+        within("turn_degrees", self.turn_degrees.unwrap_or_default(), -360.0, 360.0, "degrees")?;
         self.check_mechanism()?;
         self.check_sensors_and_motors()?;
         self.check_limits()?;
@@ -235,11 +225,6 @@ impl ConfiguredFinger {
             }
         }
     }
-}
-
-fn own_or(configured: u8, finger: usize) -> u8 {
-    // At most three fingers: the conversion cannot fail.
-    if configured == 0 { finger as u8 + 1 } else { configured }
 }
 
 fn unusable<T>(key: &'static str, reason: String) -> Result<T, Unusable> {
