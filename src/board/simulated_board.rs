@@ -39,6 +39,7 @@ pub struct SimulatedBoard {
     time: Option<u64>,
 }
 
+/// ns.
 const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
 
 impl SimulatedBoard {

@@ -7,7 +7,7 @@ use super::protocol::{
 use crate::model::TendonsError;
 use crate::model::configuration::{ConfiguredFinger, EndState};
 use crate::plant::{Plant, Sensors};
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Rotation3, Vector3, Vector4};
 
 /// In [`Identity::board_kind`].
 const SIMULATED_BOARD: u16 = 1;
@@ -98,6 +98,11 @@ impl SimulatedFinger {
         matches!(self.state, State::Enabled { .. })
     }
 
+    /// What the motors are told right now, N cm.
+    pub fn motor_torques(&self) -> Vector4<f64> {
+        Vector4::from(self.torques.map(f64::from)) * (f64::from(self.torque_unit) * 1e-7)
+    }
+
     /// Whether nothing can move, because the motors were never switched on.
     pub fn braked(&self) -> bool {
         self.plant.braked()
@@ -137,8 +142,8 @@ impl SimulatedFinger {
             }
             State::Idle | State::Ready | State::Ended { .. } => {}
         }
-        let newton_metres = f64::from(self.torque_unit) * 1e-9;
-        self.plant.step(self.torques.map(|torque| f64::from(torque) * newton_metres));
+        let newton_metres = self.motor_torques() * 0.01;
+        self.plant.step(newton_metres.into());
     }
 
     pub(super) fn greet(&self, hello: &Hello, addresses: u16) -> Frame {
