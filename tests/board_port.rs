@@ -6,13 +6,13 @@ use std::time::{Duration, Instant};
 use sun2xp::board::protocol::{Command, Status};
 use sun2xp::board::*;
 use sun2xp::model::configuration::{ConfiguredFinger, ConfiguredHand};
-use sun2xp::realtime::clock;
+use sun2xp::realtime::{self, Priority};
 
 const MS: u64 = 1_000_000;
 
 fn board() -> SimulatedPort {
     let fingers = (1..=3).map(|address| (address, ConfiguredFinger::default())).collect();
-    SimulatedPort::start(SimulatedBoard::new(fingers, Vector3::zeros()).unwrap(), 0).unwrap()
+    SimulatedPort::start(SimulatedBoard::new(fingers, Vector3::zeros()).unwrap(), Priority::default()).unwrap()
 }
 
 fn terms() -> Terms {
@@ -30,18 +30,18 @@ fn cycles_over_a_pseudo_terminal() {
     let board = board();
     let mut link = Link::open(board.path(), 1_000_000).unwrap();
     for address in 1..=3 {
-        link.shake_hands(address, &terms(), clock::now() + 2000 * MS).unwrap();
+        link.shake_hands(address, &terms(), realtime::now() + 2000 * MS).unwrap();
     }
     for sequence in 0..200 {
         let commands = [1, 2, 3].map(|address| OutgoingCommand { address, sequence, command: pull() });
         link.send(&commands).unwrap();
         for address in 1..=3 {
-            let received = link.receive(clock::now() + 1000 * MS).unwrap().expect("a reply within a second");
+            let received = link.receive(realtime::now() + 1000 * MS).unwrap().expect("a reply within a second");
             assert_eq!((received.address, received.sequence), (address, sequence));
             assert!(received.reply.status.has(Status::ENABLED));
         }
     }
-    assert!(link.stop(1, clock::now() + 1000 * MS).unwrap());
+    assert!(link.stop(1, realtime::now() + 1000 * MS).unwrap());
     let counters = link.counters();
     assert_eq!((counters.damaged, counters.foreign, counters.unsent), (0, 0, 0));
     assert_eq!(board.with_finger(1, |finger| finger.enabled()), Some(false));
@@ -53,9 +53,9 @@ fn cycles_over_a_pseudo_terminal() {
 fn a_deadline_is_kept_when_nothing_comes() {
     let board = board();
     let mut link = Link::open(board.path(), 1_000_000).unwrap();
-    let deadline = clock::now() + 20 * MS;
+    let deadline = realtime::now() + 20 * MS;
     assert_eq!(link.receive(deadline).unwrap(), None);
-    assert!(clock::now() >= deadline);
+    assert!(realtime::now() >= deadline);
 }
 
 #[test]
@@ -67,23 +67,23 @@ fn a_port_has_one_user_at_a_time_also_after_one_that_left_no_word() {
     assert!(busy.to_string().contains(&*board.path().to_string_lossy()), "{busy}");
     drop(first);
     let mut second = Link::open(board.path(), 1_000_000).unwrap();
-    second.shake_hands(1, &terms(), clock::now() + 2000 * MS).unwrap();
+    second.shake_hands(1, &terms(), realtime::now() + 2000 * MS).unwrap();
 }
 
 #[test]
 fn answers_that_the_last_host_did_not_fetch_do_not_reach_the_next() {
     let board = board();
     let mut link = Link::open(board.path(), 1_000_000).unwrap();
-    link.shake_hands(1, &terms(), clock::now() + 2000 * MS).unwrap();
+    link.shake_hands(1, &terms(), realtime::now() + 2000 * MS).unwrap();
     for sequence in 0..50 {
         link.send(&[OutgoingCommand { address: 1, sequence, command: pull() }]).unwrap();
     }
     drop(link);
     let mut link = Link::open(board.path(), 1_000_000).unwrap();
     // The first host's motors still follow; the handshake waits for the watchdog.
-    link.shake_hands(1, &terms(), clock::now() + 5000 * MS).unwrap();
+    link.shake_hands(1, &terms(), realtime::now() + 5000 * MS).unwrap();
     link.send(&[OutgoingCommand { address: 1, sequence: 99, command: pull() }]).unwrap();
-    let received = link.receive(clock::now() + 1000 * MS).unwrap().expect("a reply");
+    let received = link.receive(realtime::now() + 1000 * MS).unwrap().expect("a reply");
     assert_eq!(received.sequence, 99);
 }
 
@@ -92,7 +92,7 @@ fn the_end_of_the_board_is_an_error_and_not_a_silence() {
     let board = board();
     let mut link = Link::open(board.path(), 1_000_000).unwrap();
     drop(board);
-    let error = link.receive(clock::now() + 5000 * MS).unwrap_err();
+    let error = link.receive(realtime::now() + 5000 * MS).unwrap_err();
     assert!(matches!(error, LinkError::Port(PortError::Vanished)), "{error:?}");
     assert_eq!(error.errno(), libc::EIO);
 }
@@ -111,9 +111,9 @@ fn silence_on_a_real_clock_ends_the_torque() {
     let board = board();
     let mut link = Link::open(board.path(), 1_000_000).unwrap();
     let short = Terms { watchdog_ms: 20, ..terms() };
-    link.shake_hands(1, &short, clock::now() + 2000 * MS).unwrap();
+    link.shake_hands(1, &short, realtime::now() + 2000 * MS).unwrap();
     link.send(&[OutgoingCommand { address: 1, sequence: 0, command: pull() }]).unwrap();
-    assert!(link.receive(clock::now() + 1000 * MS).unwrap().is_some());
+    assert!(link.receive(realtime::now() + 1000 * MS).unwrap().is_some());
     let waiting = Instant::now();
     while board.with_finger(1, |finger| finger.enabled()) == Some(true) {
         assert!(waiting.elapsed() < Duration::from_secs(10), "the watchdog does not trip");

@@ -43,7 +43,7 @@ pub struct SimulatedBoard {
 const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
 
 impl SimulatedBoard {
-    /// A board with these fingers at these addresses, braked at their start poses. Gravity in palm coordinates, m/s^2.
+    /// A board with these fingers at these addresses, braked at their start poses. Gravity in the finger's frame, m/s^2.
     pub fn new(fingers: Vec<(u8, ConfiguredFinger)>, gravity: Vector3<f64>) -> Result<Self, SimulatedBoardError> {
         let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), time: None };
         for (address, configured) in fingers {

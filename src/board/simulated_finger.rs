@@ -7,7 +7,7 @@ use super::protocol::{
 use crate::model::TendonsError;
 use crate::model::configuration::{ConfiguredFinger, EndState};
 use crate::plant::{Plant, Sensors};
-use nalgebra::{Rotation3, Vector3, Vector4};
+use nalgebra::{Vector3, Vector4};
 
 /// In [`Identity::board_kind`].
 const SIMULATED_BOARD: u16 = 1;
@@ -60,16 +60,15 @@ pub struct SimulatedFinger {
 }
 
 impl SimulatedFinger {
-    /// Gravity in palm coordinates, m/s^2.
+    /// Gravity in the finger's frame, m/s^2.
     pub(super) fn new(address: u8, finger: &ConfiguredFinger, gravity: &Vector3<f64>) -> Result<Self, TendonsError> {
-        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), finger.turn_degrees.to_radians());
         let strongest = finger.motor.torque_limit.into_iter().fold(0.0, f64::max);
         // The finest unit, in whole nN m, in which the strongest motor's limit is 30 000 units at most. 1 N cm = 1e7 nN m.
         let torque_unit = (strongest * 1e7 / 30_000.0).ceil().max(1.0);
         let counts = finger.encoder.counts_per_revolution;
         Ok(Self {
             address,
-            plant: Plant::new(finger, turn.inverse_transform_vector(gravity))?,
+            plant: Plant::new(finger, *gravity)?,
             sensors: Sensors::new(finger),
             state: State::Idle,
             terms: Configure::default(),

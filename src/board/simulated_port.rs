@@ -3,11 +3,11 @@
 //! The time of the simulated board does not pass while the machine does not let its thread run: each wake-up counts as 2 ms
 //! at most. Otherwise a virtual machine that is paused for 50 ms, which stops the host's servo just the same, would trip a
 //! watchdog that no real board would trip, and the finger would fall on for 50 ms without its controller.
-#![allow(unsafe_code, reason = "a pseudo-terminal, and the scheduling of its thread")]
+#![allow(unsafe_code, reason = "a pseudo-terminal")]
 
 use super::simulated_board::SimulatedBoard;
 use super::simulated_finger::SimulatedFinger;
-use crate::realtime::clock;
+use crate::realtime::{self, Priority, spawn};
 use parking_lot::Mutex;
 use std::ffi::CStr;
 use std::io;
@@ -29,8 +29,6 @@ const LONGEST_STEP: u64 = 2_000_000;
 /// After such a silence nobody is taken to be at the other end, ns.
 const SILENCE: u64 = 100_000_000;
 
-const STACK_BYTES: usize = 256 * 1024;
-
 /// A simulated board with a port of its own and a thread that runs it. Dropping it ends both.
 #[derive(Debug)]
 pub struct SimulatedPort {
@@ -43,21 +41,16 @@ pub struct SimulatedPort {
 }
 
 impl SimulatedPort {
-    /// Starts the board. Its thread asks for SCHED_FIFO with this priority, 1 to 99, and goes on without where that is not
-    /// permitted; 0 does not ask.
-    pub fn start(board: SimulatedBoard, priority: u8) -> io::Result<Self> {
+    /// Starts the board. Its thread asks for this priority, and goes on without where that is not permitted.
+    pub fn start(board: SimulatedBoard, priority: Priority) -> io::Result<Self> {
         let terminal = PseudoTerminal::open()?;
         let path = terminal.path.clone();
         let board = Arc::new(Mutex::new(board));
         let ended = Arc::new(AtomicBool::new(false));
         let thread = {
             let (board, ended) = (board.clone(), ended.clone());
-            // The new thread inherits this thread's signal mask, so that it never takes a signal, not even at its start.
-            let _blocked = BlockedSignals::all();
-            std::thread::Builder::new().name("simulated board".into()).stack_size(STACK_BYTES).spawn(move || {
-                schedule_first_in_first_out(priority);
-                run(&terminal, &board, &ended);
-            })?
+            // Not real-time is good enough for a simulation.
+            spawn("sun2xp board", priority, move |_| run(&terminal, &board, &ended))?
         };
         Ok(Self { path, board, ended, thread: Some(thread), process: std::process::id() })
     }
@@ -92,12 +85,12 @@ impl Drop for SimulatedPort {
 fn run(terminal: &PseudoTerminal, board: &Mutex<SimulatedBoard>, ended: &AtomicBool) {
     let mut input = [0; 512];
     let mut board_time = 0;
-    let mut last_wake = clock::now();
+    let mut last_wake = realtime::now();
     let mut last_bytes = Some(last_wake);
     let mut tick = BRAKED_TICK_MS;
     while !ended.load(Ordering::Relaxed) {
         let taken = terminal.read(&mut input, tick);
-        let now = clock::now();
+        let now = realtime::now();
         board_time += (now - last_wake).min(LONGEST_STEP);
         last_wake = now;
 
@@ -189,43 +182,6 @@ fn make_raw(descriptor: RawFd) -> io::Result<()> {
     unsafe { libc::cfmakeraw(&mut settings) };
     // SAFETY: as above.
     check(unsafe { libc::tcsetattr(descriptor, libc::TCSANOW, &settings) })
-}
-
-/// Without the permission, or the priority out of range, the thread stays an ordinary one; then at least its timers are
-/// asked to be exact, which by default they are to 50 us only.
-fn schedule_first_in_first_out(priority: u8) {
-    // SAFETY: concerns the calling thread only; integers and a valid sched_param are passed.
-    unsafe {
-        libc::prctl(libc::PR_SET_TIMERSLACK, 1);
-        if priority > 0 {
-            let mut parameters: libc::sched_param = std::mem::zeroed();
-            parameters.sched_priority = i32::from(priority);
-            libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &parameters);
-        }
-    }
-}
-
-/// The calling thread takes no signals while this lives.
-struct BlockedSignals(libc::sigset_t);
-
-impl BlockedSignals {
-    fn all() -> Self {
-        // SAFETY: both sets are valid to write to, and sigfillset fills the first before it is read.
-        unsafe {
-            let mut all: libc::sigset_t = std::mem::zeroed();
-            let mut before: libc::sigset_t = std::mem::zeroed();
-            libc::sigfillset(&mut all);
-            libc::pthread_sigmask(libc::SIG_SETMASK, &all, &mut before);
-            Self(before)
-        }
-    }
-}
-
-impl Drop for BlockedSignals {
-    fn drop(&mut self) {
-        // SAFETY: the set is the one that pthread_sigmask filled in.
-        unsafe { libc::pthread_sigmask(libc::SIG_SETMASK, &self.0, std::ptr::null_mut()) };
-    }
 }
 
 fn owned(descriptor: RawFd) -> io::Result<OwnedFd> {

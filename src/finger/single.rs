@@ -2,7 +2,7 @@
 
 use crate::board::protocol::{Command as BoardCommand, Configured, Identity, Status};
 use crate::board::{OutgoingCommand, Received};
-use crate::control::{Activity, Controller, Feedback, SetPoint, State};
+use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Mailbox, ServoEnd, mailbox};
 use crate::finger::{Fault, FingerReport, Stage};
 use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState, Unusable};
@@ -20,6 +20,7 @@ pub struct FingerServo {
     state: State,
     activity: Activity,
     feedback: Feedback,
+    command: Command,
     mailbox: ServoEnd,
     report: FingerReport,
     address: u8,
@@ -83,6 +84,7 @@ impl FingerServo {
             state,
             activity: Activity::TakeUpSlack,
             feedback,
+            command: Command::default(),
             mailbox: servo,
             report,
             address,
@@ -129,7 +131,7 @@ impl FingerServo {
         self.sequence = self.sequence.wrapping_add(1);
         self.toggle = !self.toggle;
         self.answered = false;
-        let torques = self.report.cycle.motor_torques.map(|torque| self.board.torque_count(torque)).into();
+        let torques = self.command.motor_torques.map(|torque| self.board.torque_count(torque)).into();
         let command = BoardCommand { toggle: self.toggle, enable: true, torques };
         Some(OutgoingCommand { address: self.address, sequence: self.sequence, command })
     }
@@ -177,8 +179,7 @@ impl FingerServo {
         if self.under_control() {
             self.take_commands();
             let feedback = self.answered.then_some(&self.feedback);
-            let (_, cycle) = self.controller.cycle(&mut self.state, feedback, &self.activity);
-            self.report.cycle = cycle;
+            (self.command, self.report.cycle) = self.controller.cycle(&mut self.state, feedback, &self.activity);
             self.move_on();
         }
         self.mailbox.publish(self.report);
@@ -231,7 +232,7 @@ impl FingerServo {
     fn move_on(&mut self) {
         self.stage_cycles += 1;
         match self.report.stage {
-            Stage::Opening if self.controller.under_tension(&self.state) => {
+            Stage::Opening if self.report.cycle.under_tension => {
                 self.settled_cycles += 1;
                 if self.settled_cycles >= self.limits.settled {
                     let joints = self.report.cycle.joints;

@@ -160,10 +160,10 @@ mod tests {
 
     #[test]
     fn a_finger_overrides_what_all_fingers_share() {
-        let text = "[finger]\nbaud = 500000\n[finger.tendon]\nminimum = 4\nmaximum = 50\n\
+        let text = "[finger]\nbaud = 2000000\n[finger.tendon]\nminimum = 4\nmaximum = 50\n\
                     [finger.2]\nport = '/dev/ttyUSB1'\n[finger.2.tendon]\nminimum = 6\n";
         let hand = parse(text).expect("usable");
-        assert_eq!(hand.fingers.each_ref().map(|f| f.baud), [500_000; 3]);
+        assert_eq!(hand.fingers.each_ref().map(|f| f.baud), [2_000_000; 3]);
         assert_eq!(hand.fingers.each_ref().map(|f| f.tendon.minimum), [4.0, 6.0, 4.0]);
         assert_eq!(hand.fingers.each_ref().map(|f| f.tendon.maximum), [50.0; 3]);
         assert_eq!(hand.fingers[1].port, "/dev/ttyUSB1");
@@ -203,8 +203,11 @@ mod tests {
     fn impossible_values_are_named_with_line_and_reason() {
         let printed =
             "[finger.geometry]\nr = [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, 1.09], [0, 0.62, -0.62, 0]]\n";
+        let with_ones = &format!("{printed}ghost_row = [1, 1, 1, 1]\n");
         for (text, line, words) in [
-            (printed, Some(2), "singular"),
+            (printed, Some(2), "positive"),
+            (with_ones, Some(2), "singular"),
+            ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [2, 1, 1, 1]]\n", Some(2), "singular"),
             ("[finger.1.geometry]\nghost_row = [-1, -1, -1, -1]\n", Some(2), "positive"),
             ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [0, 1, 0, 0]]\n", Some(2), "positive"),
             ("[finger.3.tendon]\nmaximum = 8\n", Some(2), "null vector"),

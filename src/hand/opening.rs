@@ -51,7 +51,7 @@ pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<Simulate
         let section = || format!("finger.{}", index + 1);
         let gravity = configuration.gravity(index);
         let board =
-            SimulatedBoard::new(&[(configuration.address(index), finger.clone())], gravity).map_err(|error| {
+            SimulatedBoard::new(vec![(configuration.address(index), finger.clone())], gravity).map_err(|error| {
                 HandError::Unusable {
                     section: section(),
                     unusable: Unusable { key: "geometry.r", reason: error.to_string() },

@@ -1,6 +1,6 @@
 //! Root: opens and closes a hand, owns its threads and ports, reports its status.
 
-use crate::board::{Port, SimulatedPort};
+use crate::board::{Port, SimulatedFinger, SimulatedPort};
 use crate::finger::{FingerReport, Servo, Stage};
 use crate::hand::dispatcher::{Dispatcher, Member};
 use crate::hand::opening::{Line, Reached, check, reach, simulate};
@@ -174,7 +174,9 @@ impl Hand {
         self.dispatcher.member(finger)?.admission.finite("Force", &force)?;
         let index = finger as usize - 1; // the member is there: 1 to 3
         let port = self.simulated[index].as_ref().ok_or(HandError::NotSimulated(finger))?;
-        port.set_external_force(self.configuration.address(index), Vector3::from(force));
+        let push = |finger: &mut SimulatedFinger| finger.plant().set_external_force(Vector3::from(force));
+        // The board was made with this one address.
+        port.with_finger(self.configuration.address(index), push);
         Ok(())
     }
 
