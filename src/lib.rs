@@ -6,6 +6,8 @@
 #![warn(missing_docs)]
 
 pub mod board;
+mod capi;
 pub mod control;
 pub mod model;
 pub mod plant;
+pub mod realtime;
