@@ -8,6 +8,8 @@
 pub mod board;
 mod capi;
 pub mod control;
+pub mod finger;
+pub mod hand;
 pub mod model;
 pub mod plant;
 pub mod realtime;
