@@ -6,6 +6,7 @@
 #![warn(missing_docs)]
 
 pub mod board;
+mod capi;
 pub mod control;
 pub mod finger;
 pub mod hand;
