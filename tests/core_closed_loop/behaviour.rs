@@ -1,8 +1,6 @@
-//! The servo's core drives the simulated finger: quantised and noisy sensors, friction, one cycle of delay.
+//! What a finger does: settles, is a spring, takes up slack, lets go.
 
-mod core_loop;
-
-use core_loop::{Loop, finger_with, poses, spring};
+use super::rig::{Loop, finger_with, poses, spring};
 use nalgebra::{Matrix3, Vector3, Vector4};
 use sun2xp::control::{Activity, SetPoint};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
@@ -70,7 +68,7 @@ fn deflection_ratio(finger: &ConfiguredFinger, belief: &ConfiguredFinger) -> f64
     let mut servo = Loop::with_belief(finger, belief, 1000.0);
     let pose = servo.plant.joints();
     let target = spring(pose, 3.0);
-    let mut at = |force: f64, servo: &mut Loop| {
+    let at = |force: f64, servo: &mut Loop| {
         servo.plant.set_external_force(Vector3::new(0.0, force, 0.0));
         servo.run(1.5, &target);
         let joints = servo.mean_joints(0.2, &target);
