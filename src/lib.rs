@@ -6,6 +6,10 @@
 #![warn(missing_docs)]
 
 pub mod board;
+mod capi;
 pub mod control;
+pub mod finger;
+pub mod hand;
 pub mod model;
 pub mod plant;
+pub mod realtime;

@@ -1,1 +1,23 @@
-//! To be written.
+//! The board at the other end of the cable: the protocol of `docs/board-protocol.md`, the serial link that speaks it, and a
+//! simulated board that answers.
+
+mod capacity;
+mod link;
+mod port;
+pub mod protocol;
+mod simulated_board;
+mod simulated_cable;
+mod simulated_finger;
+mod simulated_port;
+mod terms;
+mod transport;
+
+pub use capacity::{TooFast, USABLE_SHARE, capacity};
+pub use link::{Link, LinkCounters, LinkError, OutgoingCommand, Received};
+pub use port::{Port, PortError};
+pub use simulated_board::{SimulatedBoard, SimulatedBoardError};
+pub use simulated_cable::SimulatedCable;
+pub use simulated_finger::SimulatedFinger;
+pub use simulated_port::SimulatedPort;
+pub use terms::{Terms, TermsError};
+pub use transport::Transport;

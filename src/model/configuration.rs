@@ -2,7 +2,7 @@
 //! what the report leaves out. Reading them from a file is the business of the hand; checking them is done here.
 
 use crate::model::{ConfiguredSimulation, Links, Tendons, TendonsError};
-use nalgebra::{Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
+use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
 use serde::Deserialize;
 
 /// How many fingers a hand has.
@@ -81,10 +81,10 @@ pub struct ConfiguredFinger {
     pub core: Option<usize>,
     /// SCHED_FIFO priority of the thread, 1 to 99; 0: not real-time.
     pub priority: u8,
-    /// Where the base of the finger is in the palm, cm.
-    pub base: [f64; 3],
-    /// Turn of the finger about the palm's z axis, degrees.
-    pub turn_degrees: f64,
+    /// Where the base of the finger is in the palm, cm; none: where the finger with this number is.
+    pub base: Option<[f64; 3]>,
+    /// Turn of the finger's frame about the palm's z axis, degrees; none: that of the finger with this number.
+    pub turn_degrees: Option<f64>,
     /// `[finger.geometry]`
     pub geometry: ConfiguredGeometry,
     /// `[finger.motor]`
@@ -229,6 +229,41 @@ pub struct Configuration {
     pub fingers: [ConfiguredFinger; FINGERS],
 }
 
+impl Configuration {
+    /// The servo thread of a finger, 1 to 3.
+    pub fn thread(&self, finger: usize) -> u8 {
+        own_or(self.fingers[finger].thread, finger)
+    }
+
+    /// The address of a finger on its board, 1 to 15.
+    pub fn address(&self, finger: usize) -> u8 {
+        own_or(self.fingers[finger].address, finger)
+    }
+
+    /// From the finger's frame (Figure 8), cm, to the palm's. Two fingers stand side by side, the thumb faces them.
+    pub fn finger_to_palm(&self, finger: usize) -> Isometry3<f64> {
+        let (base, turn) = match finger {
+            0 => ([3.0, 3.5, 0.0], 0.0),
+            1 => ([-3.0, 3.5, 0.0], 0.0),
+            _ => ([0.0, -3.5, 0.0], 180.0),
+        };
+        let configured = &self.fingers[finger];
+        let base = Vector3::from(configured.base.unwrap_or(base));
+        let turn = configured.turn_degrees.unwrap_or(turn).to_radians();
+        Isometry3::new(base, Vector3::z() * turn)
+    }
+
+    /// Gravity in the finger's frame, m/s^2.
+    pub fn gravity(&self, finger: usize) -> Vector3<f64> {
+        self.finger_to_palm(finger).rotation.inverse() * Vector3::from(self.hand.gravity)
+    }
+}
+
+fn own_or(configured: u8, finger: usize) -> u8 {
+    // At most three fingers: the conversion cannot fail.
+    if configured == 0 { finger as u8 + 1 } else { configured }
+}
+
 impl Default for ConfiguredHand {
     fn default() -> Self {
         Self {
@@ -255,8 +290,8 @@ impl Default for ConfiguredFinger {
             thread: 0,
             core: None,
             priority: 80,
-            base: [0.0; 3],
-            turn_degrees: 0.0,
+            base: None,
+            turn_degrees: None,
             geometry: Default::default(),
             motor: Default::default(),
             encoder: Default::default(),

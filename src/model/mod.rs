@@ -5,7 +5,9 @@ pub mod configuration;
 mod kinematics;
 mod simulation;
 mod tendons;
+mod validation;
 
 pub use kinematics::Links;
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use tendons::{Tendons, TendonsError};
+pub use validation::Refusal;

@@ -6,13 +6,16 @@ use thiserror::Error;
 /// Why a matrix R cannot carry a finger.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TendonsError {
-    /// R has rank 2 or less: some joint torque cannot be produced by any tensions.
-    #[error("the tendon matrix R is singular (its smallest singular value is {0:.1e}): no inverse Q (eq. 17)")]
+    /// R with its ghost row has no inverse.
+    #[error(
+        "the tendon matrix R with its ghost row is singular (its smallest singular value is {0:.1e}): no inverse Q (eq. 17). \
+         Is a sign wrong? The report misprints row 2, column 4: -1.09"
+    )]
     Singular(f64),
     /// The fourth column of Q has an entry that is not positive: tendons that all pull cannot hold the finger.
     #[error(
-        "the ghost column of Q must be all positive (eq. 20) but is {0:?}: with these signs in R no common pull of the \
-         tendons leaves the joints at rest"
+        "the ghost column of Q must be all positive (eq. 20) but is {0:.3?}: no common pull of the tendons leaves the joints \
+         at rest. Is a sign in R wrong? The report misprints row 2, column 4: -1.09"
     )]
     GhostColumn([f64; 4]),
 }
@@ -32,20 +35,13 @@ impl Tendons {
     /// Adds the ghost row to R and inverts. Without a `ghost` row R's own null vector is used, so that a common stretch
     /// of the tendons does not leak into the joint angles (eq. 29); eq. 20 gives the same tensions with either.
     pub fn new(r: Matrix3x4<f64>, radius: Vector4<f64>, ghost: Option<RowVector4<f64>>) -> Result<Self, TendonsError> {
-        let singular = r.singular_values();
-        if singular.min() < 1e-6 * singular.max() {
-            return Err(TendonsError::Singular(singular.min()));
-        }
-        let ghost = ghost.unwrap_or_else(|| null_vector(&r));
+        let ghost = ghost.or_else(|| null_vector(&r)).ok_or(TendonsError::Singular(0.0))?;
         let mut with_ghost = Matrix4::zeros();
         with_ghost.fixed_rows_mut::<3>(0).copy_from(&r);
         with_ghost.set_row(3, &ghost);
-        // A ghost row that is no more than a mixture of R's rows.
         let singular = with_ghost.singular_values();
-        if singular.min() < 1e-6 * singular.max() {
-            return Err(TendonsError::Singular(singular.min()));
-        }
-        let q = with_ghost.try_inverse().ok_or(TendonsError::Singular(0.0))?;
+        let inverse = with_ghost.try_inverse().filter(|_| singular.min() > 1e-6 * singular.max());
+        let q = inverse.ok_or(TendonsError::Singular(singular.min()))?;
         let column: [f64; 4] = q.column(3).into_owned().into();
         if column.iter().any(|&entry| entry.is_nan() || entry <= 1e-9) {
             return Err(TendonsError::GhostColumn(column));
@@ -65,10 +61,10 @@ impl Tendons {
     }
 }
 
-/// The direction in tendon space that R sends to zero, of length 1, with a positive sum.
-fn null_vector(r: &Matrix3x4<f64>) -> RowVector4<f64> {
+/// The direction in tendon space that R sends to zero, of length 1, with a positive sum; none where R has a rank below 3.
+fn null_vector(r: &Matrix3x4<f64>) -> Option<RowVector4<f64>> {
     // Cofactors of the 3x4 matrix: exact, and it needs no tolerance.
     let minor = |skip: usize| r.remove_column(skip).determinant();
-    let vector = RowVector4::new(minor(0), -minor(1), minor(2), -minor(3)).normalize();
-    if vector.sum() < 0.0 { -vector } else { vector }
+    let vector = RowVector4::new(minor(0), -minor(1), minor(2), -minor(3)).try_normalize(1e-12)?;
+    Some(if vector.sum() < 0.0 { -vector } else { vector })
 }

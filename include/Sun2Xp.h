@@ -1,0 +1,580 @@
+/* Sun2Xp.h - a three-finger tendon-driven hand as a set of springs
+
+   GENERATED from src/capi/calls.rs and cbindgen.toml; do not edit. To renew it:
+
+       SUN2XP_WRITE_HEADER=1 cargo test --test header
+
+   This file is the manual of the C interface:
+
+       1. Quick start             6. Threads, signals, fork, exit
+       2. Return values, errno    7. Servo and real time
+       3. Units, frames, order    8. Configuration
+       4. float and double        9. The calls
+       5. Planners of 1990
+
+
+   1. QUICK START
+
+       #include <stdio.h>
+       #include "Sun2Xp.h"
+
+       int main(void)
+       {
+           double Pos[3] = {0.0, 0.5, 0.8};                           rad
+           double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};       N/cm
+
+           if (OpenHand() != 0) {
+               fprintf(stderr, "%s\n", HandError());
+               return 1;
+           }
+           SendKx(1, Kx);
+           SendPos(1, Pos);
+           ...
+           GetPos(1, Pos);
+           return CloseHand();
+       }
+
+       cc planner.c -I include -L lib -lsun2xp -Wl,-rpath,lib
+
+   Without a configuration file this moves a simulated hand, and says so on standard
+   error. Each finger is a spring: its tip is pulled to where SendPos says with the
+   stiffness that SendKx says, until the next command.
+
+
+   2. RETURN VALUES, ERRNO
+
+   Every call but HandError returns an int: 0 is done; -1 is refused. A refused call
+   has changed nothing and has written no output. errno tells the kind, HandError()
+   the cause and the remedy:
+
+       EPERM    the process is a forked child (chapter 6)
+       EFAULT   an argument is a null pointer
+       ENODEV   no hand is open
+       EBUSY    OpenHand while a hand is open, or is being opened or closed
+       EINVAL   no such finger; NaN or infinity; an unusable configuration
+       ERANGE   angles outside the joint limits; Kx stiffer than the bound
+       EDOM     Kx not symmetric, or with a negative eigenvalue
+       EIO      the finger is faulted: it has stopped by itself
+       ENOTSUP  not for a finger on a real port
+       others   a configuration file or a port: what the system said, or the nearest
+
+   Where several hold, the call tells the first of: EPERM, EFAULT, ENODEV, then the
+   others in the order of the entry. A call that succeeds leaves errno and HandError()
+   as they are.
+
+   Planners of 1990 never look at results. So the first refusal of each kind in a
+   process also prints one line on standard error (off: hand.print_refusals = false).
+
+
+   3. UNITS, FRAMES, ORDER
+
+   Angles rad; lengths cm; forces N; stiffness N/cm. Fingers are 1, 2, 3; 3 is the
+   thumb. Joints are 0, 1, 2: 0 turns the finger sideways, 1 and 2 bend it.
+
+   The frame of a finger has its origin at the finger's base. With link lengths
+   l0 = 3.556, l1 = 5.080, l2 = 4.000 cm (configurable) its tip is at
+
+       x = (l0 + l1 cos(j1) + l2 cos(j1 + j2)) sin(j0)
+       y = -l1 sin(j1) - l2 sin(j1 + j2)
+       z = (l0 + l1 cos(j1) + l2 cos(j1 + j2)) cos(j0)
+
+   At 0, 0, 0 the finger is straight along z; bending moves the tip toward -y. Kx,
+   forces and displacements are in this frame. Matrices are rows first, as C keeps
+   them: Kx[row][column].
+
+
+   4. FLOAT AND DOUBLE
+
+   SendPos, SendKx and GetPos take arrays of float and arrays of double. Which one is
+   meant is seen at compile time: in C from the type of the argument (Pos[3], Kx[3][3]
+   and Kx[9], const or not), in C++ by overloading. Other element types do not compile.
+   A null pointer compiles, and is refused with EFAULT.
+
+   In C this is done by function-like macros. They do not serve a planner that declares
+   the functions itself or takes their addresses. For those compile with
+
+       -DSUN2XP_REAL=float     or      -DSUN2XP_REAL=double
+
+   which says what all arrays of the planner are. Then SendPos, SendKx and GetPos are
+   plain functions for that type: double by renaming them to SendPosD, SendKxD and
+   GetPosD. Own declarations may be int SendPos(); or the ones below. Where they
+   differ from those below, add -DSUN2XP_H: it leaves this header out.
+
+   In the library the plain symbols take float, those ending in D take double.
+   Compilers before C11 and without _Generic (gcc before 4.9) choose by the size of the
+   element: there an array of int passes for float, and NULL needs a cast.
+
+
+   5. PLANNERS OF 1990
+
+       #include "Sun2Xp.c"        works, in several files of a program too: it
+                                  includes this header
+       K&R source                 gcc -std=gnu89
+       no include at all          the plain symbols take float; for double compile
+                                  with -DSendPos=SendPosD -DSendKx=SendKxD
+                                  -DGetPos=GetPosD
+       no look at results         see the line on standard error (chapter 2)
+
+
+   6. THREADS, SIGNALS, FORK, EXIT
+
+   Threads: every call may be made from any thread, at the same time as any other.
+   Calls to a finger never wait for its servo, nor the servo for them. Of two threads
+   that command one finger the later call wins; each command takes effect whole.
+
+   Signals: the servo threads block all signals, so the planner's alarms and handlers
+   are served by the planner's own threads. Do not make these calls from a signal
+   handler. One that calls exit, which C does not promise to work, ends the program;
+   where it broke into a call the boards end the motion instead of CloseHand.
+
+   Fork: a child has no servo threads. Once a process has called OpenHand, every call
+   in a child forked from it is refused with EPERM; the parent is undisturbed. A
+   child that calls exec starts afresh.
+
+   Exit: a planner that exits without CloseHand has it called. One that is killed, or
+   calls _exit, leaves the motors to the boards, which hear no more commands and go
+   to the configured end state. dlclose leaves library and hand as they are.
+
+
+   7. SERVO AND REAL TIME
+
+   One servo thread runs each finger, 1000 times a second by default, in SCHED_FIFO
+   where the system permits it. Where it does not, one line on standard error says so,
+   and GetStatus: everything works, but with the jitter of an ordinary process. README
+   tells how to permit it.
+
+
+   8. CONFIGURATION
+
+   OpenHand takes the first of
+
+       1. the file that SUN2XP_CONFIG names (environment); it must exist
+       2. sun2xp.toml in the working directory
+       3. sun2xp/sun2xp.toml in $XDG_CONFIG_HOME, or ~/.config
+       4. sun2xp/sun2xp.toml in the folders of $XDG_CONFIG_DIRS, or /etc/xdg
+       5. no file: the simulated hand, announced in one line on standard error
+
+   The file is TOML: [hand], [finger] for all fingers, [finger.1] to [finger.3] for
+   one. All has defaults; an unknown key is refused, with file, line and reason:
+
+       [hand]
+       rate = 1000.0
+       [finger.1]
+       port = "/dev/ttyUSB0"
+
+
+   9. THE CALLS */
+
+#ifndef SUN2XP_H
+#define SUN2XP_H
+
+#ifdef SUN2XP_REAL
+/* The value of SUN2XP_REAL as a number: 1 float, 2 double, 0 anything else. */
+#define SUN2XP_REAL_IS_float 1
+#define SUN2XP_REAL_IS_double 2
+#define SUN2XP_PASTE_NOW(Left, Right) Left##Right
+#define SUN2XP_PASTE(Left, Right) SUN2XP_PASTE_NOW(Left, Right)
+#if SUN2XP_PASTE(SUN2XP_REAL_IS_, SUN2XP_REAL) == 2
+#define SUN2XP_REAL_DOUBLE
+#elif SUN2XP_PASTE(SUN2XP_REAL_IS_, SUN2XP_REAL) != 1
+#error "SUN2XP_REAL must be float or double: compile with -DSUN2XP_REAL=float or -DSUN2XP_REAL=double"
+#endif
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+
+/*
+ FingerStatus.State: the fingertip is the spring that it was told to be.
+ */
+#define FINGER_RUNNING 1
+
+/*
+ FingerStatus.State: the finger has stopped by itself, its motors are in the
+ configured end state, and its calls are refused with EIO and the reason. CloseHand
+ and OpenHand start again.
+ */
+#define FINGER_FAULTED 2
+
+/*
+ What GetStatus tells of a finger. Set Size = sizeof (struct FingerStatus) before the
+ call: later versions add members at the end, and a program never gets more than it
+ has room for.
+ */
+struct FingerStatus {
+    /*
+     In: bytes of room, sizeof *Status. Out: bytes that were filled, never more.
+     */
+    unsigned int Size;
+    /*
+     FINGER_RUNNING or FINGER_FAULTED.
+     */
+    int State;
+    /*
+     1: the servo thread runs under SCHED_FIFO. 0: it does not, and shares its core with
+     everybody.
+     */
+    int Realtime;
+    /*
+     Configured servo rate, Hz.
+     */
+    double Rate;
+    /*
+     Measured servo rate since OpenHand, Hz.
+     */
+    double MeasuredRate;
+    /*
+     How late cycles began, microseconds: half of them no later than this. The servo's
+     jitter.
+     */
+    double WakeUpMedian;
+    /*
+     The same, microseconds: 99 of 100 cycles no later than this.
+     */
+    double WakeUp99;
+    /*
+     The same, microseconds: the worst since OpenHand.
+     */
+    double WakeUpMaximum;
+    /*
+     The part of the joint torque that the tension limits let through in the last cycle,
+     0 to 1. Its direction is kept.
+     */
+    double TorqueScale;
+    /*
+     Cycles since OpenHand.
+     */
+    unsigned long Cycles;
+    /*
+     Periods that were skipped because the servo was late.
+     */
+    unsigned long LateCycles;
+    /*
+     Cycles without a valid reply from the board.
+     */
+    unsigned long LostReplies;
+    /*
+     Damaged or foreign frames on the finger's port.
+     */
+    unsigned long DamagedFrames;
+};
+
+/*
+ OpenHand - start the hand
+
+     int OpenHand(void);
+
+ Reads the configuration (chapter 8), opens the ports, starts the servos, brings the
+ tendons under tension and returns when every finger has answered and holds the pose
+ it is in, at the configured initial stiffness. So GetPos is valid from then on, and
+ nothing moves until SendPos. Takes about a second at most for the simulated hand.
+
+ Returns 0, or -1 with
+   EBUSY    a hand is open (it goes on), or another thread is just opening or closing one
+   EINVAL   the configuration cannot be used; HandError names file, line and reason
+   ENOENT, EACCES, EBUSY ...  the configuration file or a port cannot be opened; the
+            errno is the system's
+   ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
+   EPERM    forked child
+
+ Threads: any; one hand a process.
+
+     if (OpenHand() != 0) { fprintf(stderr, "%s\n", HandError()); exit(1); }
+ */
+int OpenHand(void);
+
+/*
+ CloseHand - stop the hand
+
+     int CloseHand(void);
+
+ Brings every finger to the configured end state - release: the torque ramps to zero;
+ hold: the board keeps the last torque, bounded, for a bounded time - and ends the
+ servos. With no hand open it does nothing and returns 0. After it OpenHand may be
+ called again. A planner that exits without it has it called for it.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+
+ Threads: any. Waits for an OpenHand or CloseHand that another thread is in, then
+ closes.
+ */
+int CloseHand(void);
+
+/*
+ SendPos - send desired joint angles to a finger
+
+     int SendPos(int i, const float *Pos);      also takes const double *Pos (chapter 4)
+
+   i     finger, 1 to 3
+   Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3). Read during the call only
+
+ The fingertip's spring is anchored there from the next cycle on, with the stiffness
+ sent last. All three angles take effect together. Does not wait for the finger to
+ arrive: ask GetPos. Limits are the configured joint limits; by default joint 0:
+ -1.0472 to 1.0472, joint 1: -0.5236 to 1.7453, joint 2: 0.0873 to 2.0944.
+
+ Returns 0, or -1 with
+   EFAULT   Pos is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an angle is NaN or infinite
+   ERANGE   an angle is outside the joint limits (or it is clamped: hand.out_of_range)
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; about 100 ns.
+
+     float Pos[3] = {0.0, 0.5, 0.8};
+     SendPos(1, Pos);
+ */
+int SendPos(int i,
+            const float *Pos);
+
+/*
+ SendPosD - SendPos for an array of double
+
+     int SendPosD(int i, const double *Pos);
+ */
+int SendPosD(int i, const double *Pos);
+
+/*
+ SendKx - set the stiffness of a fingertip
+
+     int SendKx(int i, const float *Kx);        also takes const double *Kx (chapter 4)
+
+   i     finger, 1 to 3
+   Kx    Kx[3][3] or Kx[9], row by row: entry [row][column] is the force along axis
+         row (x, y, z of the finger's frame, chapter 3) for a displacement of 1 cm
+         along axis column, N/cm. Read during the call only
+
+ Takes effect whole, from the next cycle on. Kx must be symmetric: a difference of up
+ to 1e-3 of the largest entry is averaged away. No eigenvalue may be below -1e-3 of
+ the largest one. Kx of lower rank is fine, and so is zero: the finger is limp along
+ those directions, still damped. The largest eigenvalue may be up to the configured
+ bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
+
+ Returns 0, or -1 with
+   EFAULT   Kx is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an entry is NaN or infinite
+   EDOM     Kx is not symmetric, or has a negative eigenvalue
+   ERANGE   Kx is stiffer than the bound (or it is clamped: hand.out_of_range)
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; about 1 us.
+
+     double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 1}};    soft along z
+     SendKx(1, Kx);
+ */
+int SendKx(int i,
+           const float *Kx);
+
+/*
+ SendKxD - SendKx for an array of double
+
+     int SendKxD(int i, const double *Kx);
+ */
+int SendKxD(int i, const double *Kx);
+
+/*
+ GetPos - read the joint angles of a finger
+
+     int GetPos(int i, float *Pos);             also takes double *Pos (chapter 4)
+
+   i     finger, 1 to 3
+   Pos   Pos[3]: measured angles of joints 0, 1, 2, rad, from the servo's last cycle.
+         Written only if the call returns 0
+
+ Returns 0, or -1 with
+   EFAULT   Pos is null
+   ENODEV   no hand is open
+   EINVAL   no such finger
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; about 100 ns.
+
+     double Pos[3];
+     if (GetPos(2, Pos) == 0) printf("%g %g %g\n", Pos[0], Pos[1], Pos[2]);
+ */
+int GetPos(int i,
+           float *Pos);
+
+/*
+ GetPosD - GetPos for an array of double
+
+     int GetPosD(int i, double *Pos);
+ */
+int GetPosD(int i, double *Pos);
+
+/*
+ HandError - why a call was refused, and what to do about it
+
+     const char *HandError(void);
+
+ The text of the calling thread's last refused call; an empty string if none was. A
+ call that succeeds leaves it, like errno, as it is: look at it after a call has
+ returned -1. Never null. It is the library's: do not free it. It is valid until the
+ next refused call of the same thread.
+
+ Threads: any; each has its own text. Works in a forked child too.
+ */
+const char *HandError(void);
+
+/*
+ GetStatus - rate, jitter and losses of a finger's servo
+
+     int GetStatus(int i, struct FingerStatus *Status);
+
+   i        finger, 1 to 3
+   Status   Status->Size is set by the caller, all else is filled in. Written only if
+            the call returns 0
+
+ Works on a faulted finger too.
+
+ Returns 0, or -1 with
+   EFAULT   Status is null
+   EINVAL   Size is too small; no such finger
+   ENODEV   no hand is open
+   EPERM    forked child
+
+ Threads: any.
+
+     struct FingerStatus Status;
+     Status.Size = sizeof Status;
+     if (GetStatus(1, &Status) == 0) printf("%.1f Hz\n", Status.MeasuredRate);
+ */
+int GetStatus(int i,
+              struct FingerStatus *Status);
+
+/*
+ PushFinger - push the fingertip of a simulated finger
+
+     int PushFinger(int i, const double *Force);
+
+   i       finger, 1 to 3
+   Force   Force[3]: force on the fingertip along x, y, z of the finger's frame, N,
+           from now until the next call; zero lets go. Always double. Read during
+           the call only
+
+ Returns 0, or -1 with
+   EFAULT   Force is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an entry is NaN or infinite
+   ENOTSUP  the finger is on a real port
+   EPERM    forked child
+
+ Threads: any.
+ */
+int PushFinger(int i, const double *Force);
+
+#ifdef __cplusplus
+}
+#endif
+
+
+/* What follows chooses between float and double (chapter 4). */
+
+#if defined(SUN2XP_REAL)
+
+#ifdef SUN2XP_REAL_DOUBLE
+#define SendPos SendPosD
+#define SendKx SendKxD
+#define GetPos GetPosD
+#endif
+
+#elif defined(__cplusplus)
+
+/* Templates, and not overloads of a pointer: NULL and 0 fit none, and so take the plain function, which refuses them.
+   extern "C++", because a planner may include this header inside its own extern "C". */
+extern "C++" {
+
+namespace Sun2Xp {
+inline int SendPosOf(int i, const float *Pos) { return ::SendPos(i, Pos); }
+inline int SendPosOf(int i, const double *Pos) { return ::SendPosD(i, Pos); }
+inline int SendKxOf(int i, const float *Kx) { return ::SendKx(i, Kx); }
+inline int SendKxOf(int i, const double *Kx) { return ::SendKxD(i, Kx); }
+inline int GetPosOf(int i, float *Pos) { return ::GetPos(i, Pos); }
+inline int GetPosOf(int i, double *Pos) { return ::GetPosD(i, Pos); }
+}
+
+template <class Element> inline int SendPos(int i, Element *Pos)
+{
+    return Sun2Xp::SendPosOf(i, Pos);
+}
+
+template <class Element> inline int SendKx(int i, Element *Kx)
+{
+    return Sun2Xp::SendKxOf(i, Kx);
+}
+
+template <class Element> inline int SendKx(int i, Element (*Kx)[3])
+{
+    return Sun2Xp::SendKxOf(i, reinterpret_cast<Element *>(Kx));
+}
+
+template <class Element> inline int GetPos(int i, Element *Pos)
+{
+    return Sun2Xp::GetPosOf(i, Pos);
+}
+
+}
+
+#else
+
+/* SUN2XP_NO_GENERIC turns _Generic off, for compilers that say they have it and do not. */
+#if defined(SUN2XP_NO_GENERIC)
+#elif defined(__clang__)
+#if __has_extension(c_generic_selections)
+#define SUN2XP_GENERIC __extension__ _Generic
+#endif
+#elif defined(__GNUC__)
+#if __GNUC__ > 4 || (__GNUC__ == 4 && __GNUC_MINOR__ >= 9)
+#define SUN2XP_GENERIC __extension__ _Generic
+#endif
+#elif defined(__STDC_VERSION__)
+#if __STDC_VERSION__ >= 201112L
+#define SUN2XP_GENERIC _Generic
+#endif
+#endif
+
+#ifdef SUN2XP_GENERIC
+#define SUN2XP_POINTERS(Element, Call) Element *: Call, Element (*)[3]: Call, Element (*)[9]: Call, Element (*)[3][3]: Call
+/* NULL and 0 compile, and are refused at run time. */
+#define SUN2XP_SEND(Single, Double, i, Array) \
+    (SUN2XP_GENERIC(Array, \
+        SUN2XP_POINTERS(float, Single), SUN2XP_POINTERS(const float, Single), \
+        SUN2XP_POINTERS(volatile float, Single), SUN2XP_POINTERS(const volatile float, Single), \
+        SUN2XP_POINTERS(double, Double), SUN2XP_POINTERS(const double, Double), \
+        SUN2XP_POINTERS(volatile double, Double), SUN2XP_POINTERS(const volatile double, Double), \
+        void *: Single, const void *: Single, int: Single)((i), (const void *)Array))
+#define SUN2XP_GET(Single, Double, i, Array) \
+    (SUN2XP_GENERIC(Array, \
+        SUN2XP_POINTERS(float, Single), SUN2XP_POINTERS(volatile float, Single), \
+        SUN2XP_POINTERS(double, Double), SUN2XP_POINTERS(volatile double, Double), \
+        void *: Single, int: Single)((i), (void *)Array))
+#else
+/* float, float[3], float[9] have 4, 12, 36 bytes; double, double[3], double[9] have 8, 24, 72. */
+#define SUN2XP_SEND(Single, Double, i, Array) \
+    (sizeof *Array % sizeof(double) ? Single((i), (const void *)Array) : Double((i), (const void *)Array))
+#define SUN2XP_GET(Single, Double, i, Array) \
+    (sizeof *Array % sizeof(double) ? Single((i), (void *)Array) : Double((i), (void *)Array))
+#endif
+
+/* From C99 on the array may be a compound literal, whose commas a macro takes for its own. */
+#if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
+#define SendPos(i, ...) SUN2XP_SEND(SendPos, SendPosD, i, (__VA_ARGS__))
+#define SendKx(i, ...) SUN2XP_SEND(SendKx, SendKxD, i, (__VA_ARGS__))
+#define GetPos(i, ...) SUN2XP_GET(GetPos, GetPosD, i, (__VA_ARGS__))
+#else
+#define SendPos(i, Pos) SUN2XP_SEND(SendPos, SendPosD, i, (Pos))
+#define SendKx(i, Kx) SUN2XP_SEND(SendKx, SendKxD, i, (Kx))
+#define GetPos(i, Pos) SUN2XP_GET(GetPos, GetPosD, i, (Pos))
+#endif
+
+#endif
+
+#endif

@@ -1,0 +1,119 @@
+//! Whether a serial line carries the cyclic traffic: arithmetic, done before a port is opened.
+
+use super::protocol::{Kind, TURNAROUND_MICROSECONDS};
+use thiserror::Error;
+
+/// Start bit, eight data bits, stop bit.
+const BITS_PER_BYTE: f64 = 10.0;
+
+/// The part of a period that the line may take. The rest is for waking up, computing, and a UART's or USB bridge's buffers.
+pub const USABLE_SHARE: f64 = 0.8;
+
+/// A rate that the line cannot carry.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error(
+    "{fingers} finger(s) at {rate} Hz do not fit on a port at {baud} baud: a command of {command} bytes takes \
+     {command_us:.0} us, the board {turnaround} us to answer, and {fingers} replies of {reply} bytes {replies_us:.0} us \
+     (10 bits a byte), {needed_us:.0} us in all, but {share:.0} % of a period are {usable_us:.0} us. Use at least \
+     {least_baud} baud, at most {fastest_rate:.0} Hz, or fewer fingers on the port",
+    command = Kind::Command.wire_length(), reply = Kind::Reply.wire_length(), turnaround = TURNAROUND_MICROSECONDS,
+    share = 100.0 * USABLE_SHARE
+)]
+pub struct TooFast {
+    /// Bits a second.
+    pub baud: u32,
+    /// Fingers on the port.
+    pub fingers: usize,
+    /// Cycles a second, Hz.
+    pub rate: f64,
+    /// The first command, us.
+    pub command_us: f64,
+    /// All replies, us.
+    pub replies_us: f64,
+    /// The whole exchange, us.
+    pub needed_us: f64,
+    /// What a period offers, us.
+    pub usable_us: f64,
+    /// The lowest usual rate of a UART that would do; the exact need where none does. Bits a second.
+    pub least_baud: u32,
+    /// The highest rate at which it would fit, Hz.
+    pub fastest_rate: f64,
+}
+
+/// The share of a period that the line is busy, 0 to [`USABLE_SHARE`].
+///
+/// The line is full duplex: the first reply may begin while the second command is still going out, and replies are longer
+/// than commands, so that an exchange takes one command, the board's turnaround and all replies.
+pub fn capacity(baud: u32, fingers: usize, rate: f64) -> Result<f64, TooFast> {
+    const USUAL_BAUDS: [u32; 9] =
+        [115_200, 230_400, 460_800, 500_000, 921_600, 1_000_000, 2_000_000, 3_000_000, 4_000_000];
+    let command_bits = Kind::Command.wire_length() as f64 * BITS_PER_BYTE;
+    let reply_bits = (fingers * Kind::Reply.wire_length()) as f64 * BITS_PER_BYTE;
+    let turnaround_us = f64::from(TURNAROUND_MICROSECONDS);
+    let microseconds = |bits: f64| bits / f64::from(baud) * 1e6;
+
+    let needed_us = microseconds(command_bits + reply_bits) + turnaround_us;
+    let period_us = 1e6 / rate;
+    let usable_us = USABLE_SHARE * period_us;
+    if needed_us <= usable_us {
+        return Ok(needed_us / period_us);
+    }
+    // As it saturates, a period shorter than the turnaround asks for the highest number there is.
+    let line_us = (usable_us - turnaround_us).max(0.0);
+    let exact_baud = ((command_bits + reply_bits) / line_us * 1e6).ceil() as u32;
+    Err(TooFast {
+        baud,
+        fingers,
+        rate,
+        command_us: microseconds(command_bits),
+        replies_us: microseconds(reply_bits),
+        needed_us,
+        usable_us,
+        least_baud: USUAL_BAUDS.into_iter().find(|&usual| usual >= exact_baud).unwrap_or(exact_baud),
+        fastest_rate: (USABLE_SHARE * 1e6 / needed_us).floor(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_finger_at_1_khz_fits_on_1_megabaud() {
+        // 170 us out, 100 us turnaround, 280 us back.
+        assert!((capacity(1_000_000, 1, 1000.0).unwrap() - 0.55).abs() < 1e-12);
+    }
+
+    #[test]
+    fn three_fingers_at_1_khz_need_2_megabaud() {
+        let refusal = capacity(1_000_000, 3, 1000.0).unwrap_err();
+        assert_eq!(refusal.least_baud, 2_000_000);
+        // 170 + 100 + 840 us.
+        assert!((refusal.needed_us - 1110.0).abs() < 1e-9);
+        let text = refusal.to_string();
+        for part in ["1110 us in all", "80 % of a period are 800 us", "2000000 baud", "720 Hz"] {
+            assert!(text.contains(part), "{part:?} is not in: {text}");
+        }
+        assert!(capacity(2_000_000, 3, 1000.0).is_ok());
+        assert!(capacity(1_000_000, 3, refusal.fastest_rate).is_ok());
+    }
+
+    #[test]
+    fn the_named_remedies_work() {
+        for baud in [115_200, 230_400, 1_000_000, 3_000_000] {
+            for fingers in 1..=3 {
+                for rate in [500.0, 1000.0, 2000.0] {
+                    if let Err(refusal) = capacity(baud, fingers, rate) {
+                        assert!(capacity(refusal.least_baud, fingers, rate).is_ok(), "{refusal}");
+                        assert!(capacity(baud, fingers, refusal.fastest_rate).is_ok(), "{refusal}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_period_shorter_than_the_turnaround_is_refused() {
+        assert!(capacity(4_000_000, 1, 20_000.0).is_err());
+    }
+}

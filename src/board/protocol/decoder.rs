@@ -1,0 +1,81 @@
+//! Bytes from the wire into frames.
+
+use super::wire::MAX_FRAME;
+use super::{MAX_WIRE, Packet};
+
+/// What came in, in all.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DecoderCounters {
+    /// Bytes.
+    pub bytes: u64,
+    /// Frames whose check held.
+    pub frames: u64,
+    /// Pieces between two delimiters that were no frame: damaged, cut short or too long.
+    pub damaged: u64,
+}
+
+/// Finds frames in a stream of bytes. A damaged frame costs itself; when its delimiter was the damage, also the next.
+#[derive(Clone, Debug)]
+pub struct Decoder {
+    stuffed: [u8; MAX_WIRE],
+    stuffed_length: usize,
+    frame: [u8; MAX_FRAME],
+    counters: DecoderCounters,
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self { stuffed: [0; MAX_WIRE], stuffed_length: 0, frame: [0; MAX_FRAME], counters: DecoderCounters::default() }
+    }
+}
+
+impl Decoder {
+    /// Takes bytes from the front of `bytes` until a frame is complete; None when they are used up.
+    pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Packet<'_>> {
+        let mut frame_length = None;
+        while let Some((&byte, rest)) = bytes.split_first() {
+            *bytes = rest;
+            frame_length = self.take(byte);
+            if frame_length.is_some() {
+                break;
+            }
+        }
+        frame_length.and_then(|length| Packet::unchecked(&self.frame[..length]))
+    }
+
+    /// What came in so far.
+    pub fn counters(&self) -> DecoderCounters {
+        self.counters
+    }
+
+    /// Length of the frame that this byte completed.
+    fn take(&mut self, byte: u8) -> Option<usize> {
+        self.counters.bytes += 1;
+        if byte != 0 {
+            if let Some(room) = self.stuffed.get_mut(self.stuffed_length) {
+                *room = byte;
+            }
+            // One beyond the buffer means too long; it stays there until the delimiter.
+            self.stuffed_length = (self.stuffed_length + 1).min(MAX_WIRE + 1);
+            return None;
+        }
+        let length = std::mem::take(&mut self.stuffed_length);
+        if length == 0 {
+            // Two delimiters in a row: somebody is resynchronising.
+            return None;
+        }
+        let frame_length = self.unstuff(length);
+        match frame_length {
+            Some(_) => self.counters.frames += 1,
+            None => self.counters.damaged += 1,
+        }
+        frame_length
+    }
+
+    fn unstuff(&mut self, length: usize) -> Option<usize> {
+        let stuffed = self.stuffed.get(..length)?;
+        let length = cobs::decode(stuffed, &mut self.frame).ok()?.frame_size();
+        let frame = self.frame.get(..length)?;
+        Packet::checked(frame).map(|_| length)
+    }
+}

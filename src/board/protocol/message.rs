@@ -1,0 +1,165 @@
+//! What a frame says: its kind, whom it concerns, and its fields.
+
+use super::fields::{FieldReader, FieldWriter};
+use super::{Command, Configure, Configured, Hello, Identity, Packet, Refused, Reply, Stop, Stopped};
+use thiserror::Error;
+
+/// Frame types; the high half of the header. A request has the top bit clear, an answer has it set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+#[allow(missing_docs, reason = "each is the type of the same name")]
+pub enum Kind {
+    Hello = 0x1,
+    Configure = 0x2,
+    Command = 0x3,
+    Stop = 0x4,
+    Identity = 0x9,
+    Configured = 0xA,
+    Reply = 0xB,
+    Stopped = 0xC,
+    Refused = 0xD,
+}
+
+impl Kind {
+    /// Every type in use. 0x5 and 0xE are kept for tactile sensing; 0x0, 0x6, 0x7, 0x8 and 0xF are free.
+    pub const ALL: [Kind; 9] = [
+        Kind::Hello,
+        Kind::Configure,
+        Kind::Command,
+        Kind::Stop,
+        Kind::Identity,
+        Kind::Configured,
+        Kind::Reply,
+        Kind::Stopped,
+        Kind::Refused,
+    ];
+
+    /// None where the number is free or kept.
+    pub fn from_number(number: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|&kind| kind as u8 == number)
+    }
+
+    /// Length of the body, bytes. Each kind has one length only.
+    pub const fn body_length(self) -> usize {
+        match self {
+            Kind::Hello => Hello::LENGTH,
+            Kind::Configure => Configure::LENGTH,
+            Kind::Command => Command::LENGTH,
+            Kind::Stop => Stop::LENGTH,
+            Kind::Identity => Identity::LENGTH,
+            Kind::Configured => Configured::LENGTH,
+            Kind::Reply => Reply::LENGTH,
+            Kind::Stopped => Stopped::LENGTH,
+            Kind::Refused => Refused::LENGTH,
+        }
+    }
+
+    /// Length on the wire, with check, byte stuffing and delimiter.
+    pub const fn wire_length(self) -> usize {
+        super::wire::PREFIX + self.body_length() + super::wire::CHECK + super::WIRE_OVERHEAD
+    }
+}
+
+/// The fields of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "each is the type of the same name")]
+pub enum Frame {
+    Hello(Hello),
+    Configure(Configure),
+    Command(Command),
+    Stop(Stop),
+    Identity(Identity),
+    Configured(Configured),
+    Reply(Reply),
+    Stopped(Stopped),
+    Refused(Refused),
+}
+
+/// A frame with its header.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// The finger that is meant or that answers, 1 to 15; 0 only in a Hello.
+    pub address: u8,
+    /// Chosen by the host, echoed by the board.
+    pub sequence: u8,
+    /// What is said.
+    pub frame: Frame,
+}
+
+/// Why a frame whose check holds cannot be read.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum Malformed {
+    /// Nothing in this version has this number.
+    #[error("unknown frame type {0:#x}")]
+    UnknownKind(u8),
+    /// Another version of the protocol, or not this protocol.
+    #[error("a {kind:?} body has {expected} bytes, not {found}", expected = kind.body_length())]
+    Length {
+        /// The frame's type.
+        kind: Kind,
+        /// Bytes found in its body.
+        found: usize,
+    },
+    /// A field holds a number that means nothing.
+    #[error("the field at byte {offset} of a {kind:?} has no such value")]
+    Value {
+        /// The frame's type.
+        kind: Kind,
+        /// Where the field begins, counted from the header.
+        offset: u8,
+    },
+}
+
+impl Frame {
+    /// Its type.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Frame::Hello(_) => Kind::Hello,
+            Frame::Configure(_) => Kind::Configure,
+            Frame::Command(_) => Kind::Command,
+            Frame::Stop(_) => Kind::Stop,
+            Frame::Identity(_) => Kind::Identity,
+            Frame::Configured(_) => Kind::Configured,
+            Frame::Reply(_) => Kind::Reply,
+            Frame::Stopped(_) => Kind::Stopped,
+            Frame::Refused(_) => Kind::Refused,
+        }
+    }
+
+    pub(super) fn write(&self, fields: &mut FieldWriter) {
+        match self {
+            Frame::Hello(frame) => frame.write(fields),
+            Frame::Configure(frame) => frame.write(fields),
+            Frame::Command(frame) => frame.write(fields),
+            Frame::Stop(_) => {}
+            Frame::Identity(frame) => frame.write(fields),
+            Frame::Configured(frame) => frame.write(fields),
+            Frame::Reply(frame) => frame.write(fields),
+            Frame::Stopped(frame) => frame.write(fields),
+            Frame::Refused(frame) => frame.write(fields),
+        }
+    }
+}
+
+impl Message {
+    /// Reads a frame whose check holds.
+    pub fn read(packet: &Packet) -> Result<Self, Malformed> {
+        let kind = Kind::from_number(packet.kind()).ok_or(Malformed::UnknownKind(packet.kind()))?;
+        if packet.body().len() != kind.body_length() {
+            return Err(Malformed::Length { kind, found: packet.body().len() });
+        }
+        let fields = &mut FieldReader::new(packet.body());
+        let frame = match kind {
+            Kind::Hello => Frame::Hello(Hello::read(fields)),
+            Kind::Configure => Frame::Configure(Configure::read(fields, kind)?),
+            Kind::Command => Frame::Command(Command::read(fields)),
+            Kind::Stop => Frame::Stop(Stop),
+            Kind::Identity => Frame::Identity(Identity::read(fields)),
+            Kind::Configured => Frame::Configured(Configured::read(fields)?),
+            Kind::Reply => Frame::Reply(Reply::read(fields)),
+            Kind::Stopped => Frame::Stopped(Stopped::read(fields)),
+            Kind::Refused => Frame::Refused(Refused::read(fields)),
+        };
+        Ok(Self { address: packet.address(), sequence: packet.sequence(), frame })
+    }
+}

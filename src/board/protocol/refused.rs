@@ -1,0 +1,96 @@
+use super::fields::{FieldReader, FieldWriter};
+use std::fmt;
+
+/// Board to host: a frame arrived whole, but nothing was done.
+///
+/// | byte | field |
+/// |---|---|
+/// | 2 | type of the refused frame |
+/// | 3 | reason |
+/// | 4..6 | detail, see [`Reason`] |
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// Type of the refused frame, 0 to 15.
+    pub request: u8,
+    /// Why.
+    pub reason: Reason,
+    /// More about it; its meaning depends on the reason.
+    pub detail: u16,
+}
+
+/// Why a board refuses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// 1: no common protocol version. Detail: the board's lowest version, and its highest times 256.
+    Version,
+    /// 2: a field that the board cannot carry out. Detail: where the field begins, counted from the header.
+    Value,
+    /// 3: a Command before any Configure. The board was just switched on, or lost its power.
+    NotConfigured,
+    /// 4: a Configure while the motors follow Commands. Stop first, or wait for the watchdog.
+    Running,
+    /// 5: a Configure while a fault is present. Detail: the status bits.
+    Fault,
+    /// 6: a frame type, or a length, that the board does not know. Detail: the body's length.
+    UnknownFrame,
+    /// A number of a later version.
+    Other(u8),
+}
+
+impl Refused {
+    pub(super) const LENGTH: usize = 4;
+
+    pub(super) fn read(fields: &mut FieldReader) -> Self {
+        Self { request: fields.u8(), reason: Reason::from_number(fields.u8()), detail: fields.u16() }
+    }
+
+    pub(super) fn write(&self, fields: &mut FieldWriter) {
+        fields.u8(self.request);
+        fields.u8(self.reason.number());
+        fields.u16(self.detail);
+    }
+}
+
+impl Reason {
+    fn from_number(number: u8) -> Self {
+        match number {
+            1 => Reason::Version,
+            2 => Reason::Value,
+            3 => Reason::NotConfigured,
+            4 => Reason::Running,
+            5 => Reason::Fault,
+            6 => Reason::UnknownFrame,
+            other => Reason::Other(other),
+        }
+    }
+
+    /// The number on the wire.
+    pub fn number(self) -> u8 {
+        match self {
+            Reason::Version => 1,
+            Reason::Value => 2,
+            Reason::NotConfigured => 3,
+            Reason::Running => 4,
+            Reason::Fault => 5,
+            Reason::UnknownFrame => 6,
+            Reason::Other(number) => number,
+        }
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let detail = self.detail;
+        match self.reason {
+            Reason::Version => write!(f, "it speaks protocol versions {} to {}", detail & 0xFF, detail >> 8),
+            Reason::Value => write!(f, "it cannot carry out the field at byte {detail}"),
+            Reason::NotConfigured => write!(f, "it is not configured; it was switched on or lost its power since"),
+            Reason::Running => write!(f, "its motors are following commands; another program may be using it"),
+            Reason::Fault => {
+                write!(f, "a fault is present (status {detail:#06x}); clear the emergency stop or mend it")
+            }
+            Reason::UnknownFrame => write!(f, "it does not know this frame type with {detail} bytes"),
+            Reason::Other(number) => write!(f, "reason {number}, which is of a later protocol version"),
+        }
+    }
+}

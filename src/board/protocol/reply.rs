@@ -1,0 +1,51 @@
+use super::Status;
+use super::fields::{FieldReader, FieldWriter};
+
+/// Board to host, one for each Command: what was measured when the Command's last byte arrived.
+///
+/// | byte | field |
+/// |---|---|
+/// | 2..4 | status |
+/// | 4..12 | low 16 bits of the counts of encoders 1 to 4 |
+/// | 12..20 | counts of gauges 1 to 4, u16 each |
+/// | 20..22 | when it was measured, us modulo 65536 |
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reply {
+    /// How the board is.
+    pub status: Status,
+    /// Encoder counts modulo 65536; [`Configured`](super::Configured) gave the whole ones.
+    pub encoders: [u16; 4],
+    /// Gauge counts.
+    pub gauges: [u16; 4],
+    /// The board's clock at the instant of sampling, us modulo 65536.
+    pub sampled_at: u16,
+}
+
+impl Reply {
+    pub(super) const LENGTH: usize = 20;
+
+    pub(super) fn read(fields: &mut FieldReader) -> Self {
+        Self {
+            status: Status(fields.u16()),
+            encoders: fields.four(FieldReader::u16),
+            gauges: fields.four(FieldReader::u16),
+            sampled_at: fields.u16(),
+        }
+    }
+
+    pub(super) fn write(&self, fields: &mut FieldWriter) {
+        fields.u16(self.status.0);
+        self.encoders.into_iter().for_each(|count| fields.u16(count));
+        self.gauges.into_iter().for_each(|count| fields.u16(count));
+        fields.u16(self.sampled_at);
+    }
+
+    /// The whole encoder counts, from those of the reply before. Right as long as no encoder moved by 32768 counts or more
+    /// between the two.
+    pub fn counts_after(&self, before: [i32; 4]) -> [i32; 4] {
+        std::array::from_fn(|motor| {
+            let moved = self.encoders[motor].wrapping_sub(before[motor] as u16) as i16;
+            before[motor].wrapping_add(i32::from(moved))
+        })
+    }
+}

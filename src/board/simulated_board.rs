@@ -1,0 +1,129 @@
+//! A board without hardware: bytes in, bytes out, and the physics of its fingers in between. It has no clock and no thread;
+//! [`SimulatedPort`](super::SimulatedPort) puts it behind a serial port, [`SimulatedCable`](super::SimulatedCable) runs it
+//! on simulated time.
+
+use super::protocol::{
+    ANY_ADDRESS, Decoder, Frame, HIGHEST_ADDRESS, Malformed, Message, Packet, Reason, Refused, WireFrame,
+};
+use super::simulated_finger::SimulatedFinger;
+use crate::model::TendonsError;
+use crate::model::configuration::ConfiguredFinger;
+use crate::plant::PLANT_STEP_SECONDS;
+use nalgebra::Vector3;
+use thiserror::Error;
+
+/// Why a simulated board cannot be built.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SimulatedBoardError {
+    /// Addresses are 1 to 15, each once.
+    #[error("finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or there twice on one port")]
+    Address(u8),
+    /// A finger's tendons.
+    #[error("finger address {address}: {source}")]
+    Tendons {
+        /// Which finger.
+        address: u8,
+        /// What is wrong.
+        source: TendonsError,
+    },
+}
+
+/// A board with its fingers, as far as its port can tell. A command takes effect when its last byte arrives, and its reply
+/// says what was measured at that instant.
+#[derive(Debug)]
+pub struct SimulatedBoard {
+    decoder: Decoder,
+    /// In the order of their addresses.
+    fingers: Vec<SimulatedFinger>,
+    /// Where the physics has got to, ns; none before the first call.
+    time: Option<u64>,
+}
+
+/// ns.
+const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
+
+impl SimulatedBoard {
+    /// A board with these fingers at these addresses, braked at their start poses. Gravity in the finger's frame, m/s^2.
+    pub fn new(fingers: Vec<(u8, ConfiguredFinger)>, gravity: Vector3<f64>) -> Result<Self, SimulatedBoardError> {
+        let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), time: None };
+        for (address, configured) in fingers {
+            if !(1..=HIGHEST_ADDRESS).contains(&address) || board.finger(address).is_some() {
+                return Err(SimulatedBoardError::Address(address));
+            }
+            let finger = SimulatedFinger::new(address, &configured, &gravity)
+                .map_err(|source| SimulatedBoardError::Tendons { address, source })?;
+            board.fingers.push(finger);
+        }
+        board.fingers.sort_by_key(SimulatedFinger::address);
+        Ok(board)
+    }
+
+    /// The finger at this address.
+    pub fn finger(&mut self, address: u8) -> Option<&mut SimulatedFinger> {
+        self.fingers.iter_mut().find(|finger| finger.address() == address)
+    }
+
+    /// All fingers, in the order of their addresses.
+    pub fn fingers(&mut self) -> &mut [SimulatedFinger] {
+        &mut self.fingers
+    }
+
+    /// Whether every finger is still braked, so that nothing happens until bytes come.
+    pub fn braked(&self) -> bool {
+        self.fingers.iter().all(SimulatedFinger::braked)
+    }
+
+    /// Lets time pass until `now`, ns. The first call sets the board's clock; time does not run backward.
+    pub fn advance(&mut self, now: u64) {
+        let time = self.time.get_or_insert(now);
+        while *time + STEP <= now {
+            *time += STEP;
+            for finger in &mut self.fingers {
+                finger.step(*time);
+            }
+        }
+    }
+
+    /// Takes bytes that arrive at `now`, ns, and gives each answer to `send`, whole.
+    pub fn receive(&mut self, now: u64, mut bytes: &[u8], send: &mut dyn FnMut(&[u8])) {
+        self.advance(now);
+        // A fraction of a step may be left; the physics has not got further than this.
+        let now = self.time.unwrap_or(now);
+        loop {
+            let damaged = self.decoder.counters().damaged;
+            let Some(packet) = self.decoder.next(&mut bytes) else { break };
+            if let Some(answer) = answer(&mut self.fingers, now, &packet, damaged) {
+                send(WireFrame::new(&answer).as_bytes());
+            }
+        }
+    }
+}
+
+/// None: not meant for this board, or no request.
+fn answer(fingers: &mut [SimulatedFinger], now: u64, packet: &Packet, damaged: u64) -> Option<Message> {
+    const ANSWER: u8 = 0x8;
+    if packet.kind() & ANSWER != 0 {
+        return None;
+    }
+    let addresses = fingers.iter().fold(0, |addresses, finger| addresses | 1 << finger.address());
+    let message = Message::read(packet);
+    let greeted_all = packet.address() == ANY_ADDRESS && matches!(message, Ok(Message { frame: Frame::Hello(_), .. }));
+    let finger = match greeted_all {
+        true => fingers.first_mut(),
+        false => fingers.iter_mut().find(|finger| finger.address() == packet.address()),
+    }?;
+    let refuse = |reason, detail| Frame::Refused(Refused { request: packet.kind(), reason, detail });
+    let frame = match message {
+        Ok(Message { frame: Frame::Hello(hello), .. }) => finger.greet(&hello, addresses),
+        Ok(Message { frame: Frame::Configure(terms), .. }) => finger.configure(&terms),
+        Ok(Message { frame: Frame::Command(command), .. }) => finger.command(now, &command, damaged),
+        Ok(Message { frame: Frame::Stop(_), .. }) => finger.stop(now),
+        // Answers were sorted out above.
+        Ok(_) => return None,
+        Err(Malformed::Value { offset, .. }) => refuse(Reason::Value, u16::from(offset)),
+        Err(Malformed::UnknownKind(_) | Malformed::Length { .. }) => {
+            refuse(Reason::UnknownFrame, packet.body().len() as u16)
+        }
+    };
+    Some(Message { address: finger.address(), sequence: packet.sequence(), frame })
+}

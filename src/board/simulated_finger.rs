@@ -1,0 +1,280 @@
+//! One finger of a simulated board: the board's side of the protocol over the physics of a finger.
+
+use super::protocol::{
+    Capabilities, Command, Configure, Configured, FirmwareVersion, Frame, Hello, Identity, Reason, Refused, Reply,
+    Status, Stopped, VERSION,
+};
+use crate::model::TendonsError;
+use crate::model::configuration::{ConfiguredFinger, EndState};
+use crate::plant::{Plant, Sensors};
+use nalgebra::{Vector3, Vector4};
+
+/// In [`Identity::board_kind`].
+const SIMULATED_BOARD: u16 = 1;
+
+/// As of the 12-bit converter in [`Sensors`].
+const GAUGE_BITS: u8 = 12;
+
+const SHORTEST_WATCHDOG_MS: u16 = 2;
+
+const MILLISECOND: u64 = 1_000_000;
+
+/// The state diagram of `docs/board-protocol.md`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// As after power-up.
+    Idle,
+    /// Terms are agreed, motors off.
+    Ready,
+    /// The motors follow.
+    Enabled {
+        /// When the last Command came, ns.
+        commanded_at: u64,
+    },
+    /// Until the next Configure.
+    Ended {
+        /// When *hold* lets go, ns; none: the motors are off.
+        holds_until: Option<u64>,
+    },
+}
+
+/// One finger of a [`SimulatedBoard`](super::SimulatedBoard).
+#[derive(Debug)]
+pub struct SimulatedFinger {
+    address: u8,
+    plant: Plant,
+    sensors: Sensors,
+    state: State,
+    terms: Configure,
+    /// What the motors give, torque units.
+    torques: [i16; 4],
+    /// Faults that are there now.
+    present: Status,
+    /// What is remembered until the next Configure.
+    latched: Status,
+    torque_unit: u32,
+    torque_limit: u16,
+    counts_per_revolution: u32,
+    /// Damaged frames on the port when this finger last replied.
+    damaged_before: u64,
+}
+
+impl SimulatedFinger {
+    /// Gravity in the finger's frame, m/s^2.
+    pub(super) fn new(address: u8, finger: &ConfiguredFinger, gravity: &Vector3<f64>) -> Result<Self, TendonsError> {
+        let strongest = finger.motor.torque_limit.into_iter().fold(0.0, f64::max);
+        // The finest unit, in whole nN m, in which the strongest motor's limit is 30 000 units at most. 1 N cm = 1e7 nN m.
+        let torque_unit = (strongest * 1e7 / 30_000.0).ceil().max(1.0);
+        let counts = finger.encoder.counts_per_revolution;
+        Ok(Self {
+            address,
+            plant: Plant::new(finger, *gravity)?,
+            sensors: Sensors::new(finger),
+            state: State::Idle,
+            terms: Configure::default(),
+            torques: [0; 4],
+            present: Status::default(),
+            latched: Status::default(),
+            torque_unit: torque_unit as u32,
+            torque_limit: (strongest * 1e7 / torque_unit).ceil() as u16,
+            counts_per_revolution: if counts.iter().all(|&count| count == counts[0]) { counts[0] } else { 0 },
+            damaged_before: 0,
+        })
+    }
+
+    /// Its address.
+    pub fn address(&self) -> u8 {
+        self.address
+    }
+
+    /// The truth behind the sensors, and the place to push and to put things in the way.
+    pub fn plant(&mut self) -> &mut Plant {
+        &mut self.plant
+    }
+
+    /// Whether the motors follow Commands.
+    pub fn enabled(&self) -> bool {
+        matches!(self.state, State::Enabled { .. })
+    }
+
+    /// What the motors are told right now, N cm.
+    pub fn motor_torques(&self) -> Vector4<f64> {
+        Vector4::from(self.torques.map(f64::from)) * (f64::from(self.torque_unit) * 1e-7)
+    }
+
+    /// Whether nothing can move, because the motors were never switched on.
+    pub fn braked(&self) -> bool {
+        self.plant.braked()
+    }
+
+    /// Faults that are present from now on: bits of [`Status::FAULTS`]. They take the torque off at once.
+    pub fn set_faults(&mut self, faults: Status) {
+        self.present = Status(faults.0 & Status::FAULTS.0);
+        self.latched |= self.present;
+        if self.present != Status::default() {
+            self.torques = [0; 4];
+            if self.state != State::Idle {
+                self.state = State::Ended { holds_until: None };
+            }
+        }
+    }
+
+    /// As after the loss of power: nothing is remembered, the motors are off. The encoders are absolute.
+    pub fn reset(&mut self) {
+        self.state = State::Idle;
+        self.torques = [0; 4];
+        self.latched = self.present;
+    }
+
+    /// One step of the physics, which ends at `now`, ns.
+    pub(super) fn step(&mut self, now: u64) {
+        match self.state {
+            State::Enabled { commanded_at } => {
+                if now - commanded_at > u64::from(self.terms.watchdog_ms) * MILLISECOND {
+                    self.latched |= Status::WATCHDOG_TRIPPED;
+                    self.end(now);
+                }
+            }
+            State::Ended { holds_until: Some(until) } if now >= until => {
+                self.torques = [0; 4];
+                self.state = State::Ended { holds_until: None };
+            }
+            State::Idle | State::Ready | State::Ended { .. } => {}
+        }
+        let newton_metres = self.motor_torques() * 0.01;
+        self.plant.step(newton_metres.into());
+    }
+
+    pub(super) fn greet(&self, hello: &Hello, addresses: u16) -> Frame {
+        if !(hello.lowest_version..=hello.highest_version).contains(&VERSION) {
+            let detail = u16::from_le_bytes([VERSION, VERSION]);
+            return Frame::Refused(Refused { request: 0x1, reason: Reason::Version, detail });
+        }
+        let mut unique_number = *b"sun2xp\0\0\0\0\0\0";
+        unique_number[11] = self.address;
+        let part = |text: &str| text.parse().unwrap_or(0);
+        Frame::Identity(Identity {
+            version: VERSION,
+            addresses,
+            board_kind: SIMULATED_BOARD,
+            unique_number,
+            firmware: FirmwareVersion([
+                part(env!("CARGO_PKG_VERSION_MAJOR")),
+                part(env!("CARGO_PKG_VERSION_MINOR")),
+                part(env!("CARGO_PKG_VERSION_PATCH")),
+            ]),
+            counts_per_revolution: self.counts_per_revolution,
+            gauge_bits: GAUGE_BITS,
+            torque_unit: self.torque_unit,
+            torque_limit: self.torque_limit,
+            shortest_watchdog_ms: SHORTEST_WATCHDOG_MS,
+            capabilities: Capabilities(
+                Capabilities::HOLD.0 | Capabilities::KEEPS_ZERO.0 | Capabilities::EMERGENCY_STOP.0,
+            ),
+        })
+    }
+
+    pub(super) fn configure(&mut self, terms: &Configure) -> Frame {
+        let refuse = |reason, detail| Frame::Refused(Refused { request: 0x2, reason, detail });
+        if self.enabled() {
+            return refuse(Reason::Running, 0);
+        }
+        if self.present != Status::default() {
+            return refuse(Reason::Fault, self.present.0);
+        }
+        if terms.version != VERSION {
+            return refuse(Reason::Value, 2);
+        }
+        if terms.watchdog_ms < SHORTEST_WATCHDOG_MS {
+            return refuse(Reason::Value, 3);
+        }
+        if let Some(motor) = terms.torque_limits.iter().position(|&limit| limit > self.torque_limit) {
+            return refuse(Reason::Value, 10 + 2 * motor as u16);
+        }
+        self.terms = *terms;
+        self.torques = [0; 4];
+        self.latched = Status::default();
+        self.state = State::Ready;
+        let (encoders, gauges) = self.sensors.read(&self.plant);
+        Frame::Configured(Configured { terms: *terms, encoders, gauges, status: self.status() })
+    }
+
+    /// `damaged`: damaged frames on the port so far.
+    pub(super) fn command(&mut self, now: u64, command: &Command, damaged: u64) -> Frame {
+        let mut clipped = false;
+        match (self.state, command.enable) {
+            (State::Idle, _) => {
+                return Frame::Refused(Refused { request: 0x3, reason: Reason::NotConfigured, detail: 0 });
+            }
+            (State::Ended { .. }, _) => {}
+            (State::Ready | State::Enabled { .. }, true) => {
+                self.plant.release_brake();
+                self.state = State::Enabled { commanded_at: now };
+                self.torques = within(command.torques, self.terms.torque_limits);
+                clipped = self.torques != command.torques;
+            }
+            (State::Ready | State::Enabled { .. }, false) => {
+                self.state = State::Ready;
+                self.torques = [0; 4];
+            }
+        }
+        let (encoders, gauges) = self.sensors.read(&self.plant);
+        let mut status = self.status();
+        if clipped {
+            status |= Status::TORQUE_CLIPPED;
+        }
+        if damaged != self.damaged_before {
+            status |= Status::DAMAGED_INPUT;
+            self.damaged_before = damaged;
+        }
+        Frame::Reply(Reply {
+            status,
+            encoders: encoders.map(|count| count as u16),
+            gauges,
+            sampled_at: (now / 1000) as u16,
+        })
+    }
+
+    pub(super) fn stop(&mut self, now: u64) -> Frame {
+        match self.state {
+            State::Enabled { .. } => self.end(now),
+            State::Ready => self.state = State::Ended { holds_until: None },
+            // Holding goes on for its time: a Stop sent twice does not prolong it.
+            State::Idle | State::Ended { .. } => {}
+        }
+        Frame::Stopped(Stopped { status: self.status() })
+    }
+
+    fn end(&mut self, now: u64) {
+        let holds_until = match self.terms.end_state {
+            EndState::Release => {
+                self.torques = [0; 4];
+                None
+            }
+            EndState::Hold => {
+                self.torques = within(self.torques, [self.terms.hold_torque_limit; 4]);
+                Some(now + u64::from(self.terms.hold_time_ms) * MILLISECOND)
+            }
+        };
+        self.state = State::Ended { holds_until };
+    }
+
+    fn status(&self) -> Status {
+        let state = match self.state {
+            State::Idle => Status::default(),
+            State::Ready => Status::CONFIGURED,
+            State::Enabled { .. } => Status::CONFIGURED | Status::ENABLED,
+            State::Ended { holds_until: None } => Status::CONFIGURED | Status::ENDED,
+            State::Ended { holds_until: Some(_) } => Status::CONFIGURED | Status::ENDED | Status::HOLDING,
+        };
+        state | Status::ZERO_VALID | self.latched
+    }
+}
+
+/// Each torque clipped to plus or minus its limit.
+fn within(torques: [i16; 4], limits: [u16; 4]) -> [i16; 4] {
+    std::array::from_fn(|motor| {
+        let limit = limits[motor].min(i16::MAX as u16) as i16;
+        torques[motor].clamp(-limit, limit)
+    })
+}

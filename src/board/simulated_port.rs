@@ -1,0 +1,195 @@
+//! A simulated board behind a real serial port, as far as its user can tell: a pseudo-terminal and a thread.
+//!
+//! The time of the simulated board does not pass while the machine does not let its thread run: each wake-up counts as 2 ms
+//! at most. Otherwise a virtual machine that is paused for 50 ms, which stops the host's servo just the same, would trip a
+//! watchdog that no real board would trip, and the finger would fall on for 50 ms without its controller.
+#![allow(unsafe_code, reason = "a pseudo-terminal")]
+
+use super::simulated_board::SimulatedBoard;
+use super::simulated_finger::SimulatedFinger;
+use crate::realtime::{self, Priority, spawn};
+use parking_lot::Mutex;
+use std::ffi::CStr;
+use std::io;
+use std::os::fd::{AsRawFd, FromRawFd, OwnedFd, RawFd};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+
+/// How often the physics moves on while no bytes come.
+const TICK_MS: i32 = 1;
+
+/// The same while every finger is braked: nothing can happen, but the end of the thread must be noticed.
+const BRAKED_TICK_MS: i32 = 10;
+
+/// The most that one wake-up counts, ns.
+const LONGEST_STEP: u64 = 2_000_000;
+
+/// After such a silence nobody is taken to be at the other end, ns.
+const SILENCE: u64 = 100_000_000;
+
+/// A simulated board with a port of its own and a thread that runs it. Dropping it ends both.
+#[derive(Debug)]
+pub struct SimulatedPort {
+    path: PathBuf,
+    board: Arc<Mutex<SimulatedBoard>>,
+    ended: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+    /// The process that has the thread. A forked child inherits this value, but not the thread.
+    process: u32,
+}
+
+impl SimulatedPort {
+    /// Starts the board. Its thread asks for this priority, and goes on without where that is not permitted.
+    pub fn start(board: SimulatedBoard, priority: Priority) -> io::Result<Self> {
+        let terminal = PseudoTerminal::open()?;
+        let path = terminal.path.clone();
+        let board = Arc::new(Mutex::new(board));
+        let ended = Arc::new(AtomicBool::new(false));
+        let thread = {
+            let (board, ended) = (board.clone(), ended.clone());
+            // Not real-time is good enough for a simulation.
+            spawn("sun2xp board", priority, move |_| run(&terminal, &board, &ended))?
+        };
+        Ok(Self { path, board, ended, thread: Some(thread), process: std::process::id() })
+    }
+
+    /// The port to open.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Looks at the board or changes it. The board stands still meanwhile, so be brief.
+    pub fn with_board<R>(&self, look: impl FnOnce(&mut SimulatedBoard) -> R) -> R {
+        look(&mut self.board.lock())
+    }
+
+    /// The same with one finger; none where the board has no such address.
+    pub fn with_finger<R>(&self, address: u8, look: impl FnOnce(&mut SimulatedFinger) -> R) -> Option<R> {
+        self.with_board(|board| board.finger(address).map(look))
+    }
+}
+
+impl Drop for SimulatedPort {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Relaxed);
+        let thread = self.thread.take().filter(|_| self.process == std::process::id());
+        if let Some(thread) = thread {
+            // A panic in the board's thread ended it; there is nothing left to end.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn run(terminal: &PseudoTerminal, board: &Mutex<SimulatedBoard>, ended: &AtomicBool) {
+    let mut input = [0; 512];
+    let mut board_time = 0;
+    let mut last_wake = realtime::now();
+    let mut last_bytes = Some(last_wake);
+    let mut tick = BRAKED_TICK_MS;
+    while !ended.load(Ordering::Relaxed) {
+        let taken = terminal.read(&mut input, tick);
+        let now = realtime::now();
+        board_time += (now - last_wake).min(LONGEST_STEP);
+        last_wake = now;
+
+        let mut board = board.lock();
+        if taken > 0 {
+            last_bytes = Some(now);
+            board.receive(board_time, &input[..taken], &mut |answer| terminal.write(answer));
+        } else {
+            board.advance(board_time);
+        }
+        tick = if board.braked() { BRAKED_TICK_MS } else { TICK_MS };
+        drop(board);
+
+        if last_bytes.is_some_and(|last| now - last > SILENCE) {
+            last_bytes = None;
+            terminal.forget_last_host();
+        }
+    }
+}
+
+/// Both ends of a pseudo-terminal. The host's end stays open here too: with it closed, every hang-up of a host would end in
+/// read errors at the board's end.
+struct PseudoTerminal {
+    board_end: OwnedFd,
+    host_end: OwnedFd,
+    path: PathBuf,
+}
+
+impl PseudoTerminal {
+    fn open() -> io::Result<Self> {
+        // SAFETY: only an integer is passed.
+        let board_end = owned(unsafe { libc::posix_openpt(libc::O_RDWR | libc::O_NOCTTY | libc::O_CLOEXEC) })?;
+        // SAFETY: the descriptor is open; both calls take nothing else.
+        check(unsafe { libc::grantpt(board_end.as_raw_fd()) })?;
+        // SAFETY: as above.
+        check(unsafe { libc::unlockpt(board_end.as_raw_fd()) })?;
+        let mut name = [0u8; 64];
+        // SAFETY: `name` is writable for the length that is passed.
+        match unsafe { libc::ptsname_r(board_end.as_raw_fd(), name.as_mut_ptr().cast(), name.len()) } {
+            0 => {}
+            error => return Err(io::Error::from_raw_os_error(error)),
+        }
+        let name = CStr::from_bytes_until_nul(&name).map_err(io::Error::other)?;
+        // SAFETY: `name` is a C string.
+        let host_end = owned(unsafe { libc::open(name.as_ptr(), libc::O_RDWR | libc::O_NOCTTY | libc::O_CLOEXEC) })?;
+        // Raw before anyone learns the path: until then the terminal echoes, and eats some byte values.
+        make_raw(host_end.as_raw_fd())?;
+        // SAFETY: the descriptor is open; the command takes an integer.
+        check(unsafe { libc::fcntl(board_end.as_raw_fd(), libc::F_SETFL, libc::O_RDWR | libc::O_NONBLOCK) })?;
+        let path = PathBuf::from(name.to_string_lossy().into_owned());
+        Ok(Self { board_end, host_end, path })
+    }
+
+    /// Waits for bytes, `timeout` ms at most, and takes what is there.
+    fn read(&self, buffer: &mut [u8], timeout: i32) -> usize {
+        let mut poll = libc::pollfd { fd: self.board_end.as_raw_fd(), events: libc::POLLIN, revents: 0 };
+        // SAFETY: one pollfd, alive during the call.
+        if unsafe { libc::poll(&mut poll, 1, timeout) } != 1 {
+            return 0;
+        }
+        // SAFETY: the descriptor is open and `buffer` is writable for its length.
+        let taken = unsafe { libc::read(self.board_end.as_raw_fd(), buffer.as_mut_ptr().cast(), buffer.len()) };
+        usize::try_from(taken).unwrap_or(0)
+    }
+
+    /// As a UART does, this does not wait: bytes that nobody fetches are lost.
+    fn write(&self, bytes: &[u8]) {
+        // SAFETY: the descriptor is open and `bytes` is readable for its length.
+        unsafe { libc::write(self.board_end.as_raw_fd(), bytes.as_ptr().cast(), bytes.len()) };
+    }
+
+    /// A host that died leaves the port marked as exclusive, and answers that it did not fetch: both outlive it, because the
+    /// host's end is open here too.
+    fn forget_last_host(&self) {
+        // SAFETY: the descriptor is open; neither request takes a pointer.
+        unsafe {
+            libc::ioctl(self.host_end.as_raw_fd(), libc::TIOCNXCL);
+            libc::tcflush(self.host_end.as_raw_fd(), libc::TCIFLUSH);
+        }
+    }
+}
+
+fn make_raw(descriptor: RawFd) -> io::Result<()> {
+    // SAFETY: all zeros is a valid termios; tcgetattr fills it in before it is used.
+    let mut settings: libc::termios = unsafe { std::mem::zeroed() };
+    // SAFETY: the descriptor is open, and `settings` is a termios.
+    check(unsafe { libc::tcgetattr(descriptor, &mut settings) })?;
+    // SAFETY: as above.
+    unsafe { libc::cfmakeraw(&mut settings) };
+    // SAFETY: as above.
+    check(unsafe { libc::tcsetattr(descriptor, libc::TCSANOW, &settings) })
+}
+
+fn owned(descriptor: RawFd) -> io::Result<OwnedFd> {
+    check(descriptor)?;
+    // SAFETY: the call that made the descriptor succeeded, and nobody else has it.
+    Ok(unsafe { OwnedFd::from_raw_fd(descriptor) })
+}
+
+fn check(result: libc::c_int) -> io::Result<()> {
+    if result < 0 { Err(io::Error::last_os_error()) } else { Ok(()) }
+}

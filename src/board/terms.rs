@@ -1,0 +1,101 @@
+//! The terms that a finger's configuration asks of its board.
+
+use super::protocol::{Capabilities, Configure, Identity};
+use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState};
+use nalgebra::Vector4;
+use thiserror::Error;
+
+/// The terms in physical units; a board's [`Identity`] turns them into a [`Configure`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Terms {
+    /// Silence after which the board goes to its end state, ms.
+    pub watchdog_ms: u16,
+    /// What the board does when commands stop.
+    pub end_state: EndState,
+    /// How long *hold* holds, ms.
+    pub hold_time_ms: u16,
+    /// The largest torque that *hold* keeps, N cm.
+    pub hold_torque_limit: f64,
+    /// The largest torque of each motor, N cm.
+    pub torque_limits: Vector4<f64>,
+    /// Torque constant of each motor, N cm/A.
+    pub torque_constants: Vector4<f64>,
+}
+
+/// Terms that a board cannot keep.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum TermsError {
+    /// The watchdog is shorter than the board's.
+    #[error("its shortest watchdog is {shortest} ms, but {wanted} ms are configured: raise hand.watchdog_ms")]
+    Watchdog {
+        /// The board's, ms.
+        shortest: u16,
+        /// The configured one, ms.
+        wanted: u16,
+    },
+    /// *hold* is not there.
+    #[error("it cannot hold its last torques: configure hand.end_state = \"release\"")]
+    Hold,
+    /// A limit beyond the board's.
+    #[error(
+        "it drives no motor beyond {strongest:.3} N cm, but motor {motor} is configured for {wanted:.3} N cm: lower \
+         finger.motor.torque_limit"
+    )]
+    TorqueLimit {
+        /// The board's, N cm.
+        strongest: f64,
+        /// Which motor, 1 to 4.
+        motor: usize,
+        /// The configured one, N cm.
+        wanted: f64,
+    },
+    /// The board's torque unit is zero.
+    #[error("it names 0 as its torque unit: its firmware is wrong")]
+    TorqueUnit,
+}
+
+impl Terms {
+    /// What the configuration says.
+    pub fn new(hand: &ConfiguredHand, finger: &ConfiguredFinger) -> Self {
+        Self {
+            watchdog_ms: hand.watchdog_ms,
+            end_state: hand.end_state,
+            hold_time_ms: hand.hold_time_ms,
+            hold_torque_limit: hand.hold_torque_limit,
+            torque_limits: Vector4::from(finger.motor.torque_limit),
+            torque_constants: Vector4::from(finger.motor.torque_constant),
+        }
+    }
+
+    /// In the board's units.
+    pub fn configure(&self, board: &Identity) -> Result<Configure, TermsError> {
+        if board.torque_unit == 0 {
+            return Err(TermsError::TorqueUnit);
+        }
+        if self.watchdog_ms < board.shortest_watchdog_ms {
+            return Err(TermsError::Watchdog { shortest: board.shortest_watchdog_ms, wanted: self.watchdog_ms });
+        }
+        if self.end_state == EndState::Hold && !board.capabilities.has(Capabilities::HOLD) {
+            return Err(TermsError::Hold);
+        }
+        // Never negative: a limit below zero reads as zero.
+        let count = |torque: f64| board.torque_count(torque).max(0) as u16;
+        let strongest = board.torque(board.torque_limit.min(i16::MAX as u16) as i16);
+        for (index, &wanted) in self.torque_limits.iter().enumerate() {
+            // Compared in N cm, because counts saturate; half a unit for rounding.
+            if wanted > strongest + 0.5 * board.torque(1) {
+                return Err(TermsError::TorqueLimit { strongest, motor: index + 1, wanted });
+            }
+        }
+        Ok(Configure {
+            version: board.version,
+            watchdog_ms: self.watchdog_ms,
+            end_state: self.end_state,
+            hold_time_ms: self.hold_time_ms,
+            hold_torque_limit: count(self.hold_torque_limit),
+            torque_limits: self.torque_limits.map(count).into(),
+            // 1 N cm = 10 000 uN m.
+            torque_constants: self.torque_constants.map(|constant| (constant * 1e4).round() as u32).into(),
+        })
+    }
+}

@@ -1,0 +1,17 @@
+use super::port::PortError;
+
+/// What carries bytes to a board and back, on a clock. A serial port is one; tests have others, on simulated time.
+pub trait Transport {
+    /// Sends bytes without waiting; what does not fit now is lost. How many were sent.
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError>;
+
+    /// Waits for bytes, at most until `deadline` (ns on this transport's clock), and takes what is there: at least one byte,
+    /// or none at the deadline. Bytes that are there already are taken even after the deadline.
+    fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError>;
+
+    /// Throws away bytes that came in and were not read.
+    fn discard_input(&mut self) -> Result<(), PortError>;
+
+    /// The time, ns.
+    fn now(&self) -> u64;
+}

@@ -1,0 +1,49 @@
+//! The one hand that the C calls work on.
+
+use crate::capi::process;
+use crate::capi::refusal::{self, Refusal};
+use crate::hand::{Hand, HandError};
+use parking_lot::{Mutex, RwLock};
+use std::time::Duration;
+
+/// Locked while a hand is being opened or closed, which takes long; the calls to a finger never wait for it.
+static LIFE: Mutex<()> = Mutex::new(());
+
+/// Locked for writing only for as long as it takes to put a hand in or to take it out.
+static HAND: RwLock<Option<Hand>> = RwLock::new(None);
+
+/// How long exit waits for a call in progress. That call may be on the exiting thread itself, which has left it by a
+/// signal handler that calls exit: then it would wait for ever.
+const PATIENCE_AT_EXIT: Duration = Duration::from_millis(100);
+
+pub(super) fn open() -> Result<(), Refusal> {
+    let Some(_opening) = LIFE.try_lock() else { return Err(Refusal::Busy) };
+    if HAND.read().is_some() {
+        return Err(Refusal::AlreadyOpen);
+    }
+    process::watch();
+    let hand = Hand::open_configured()?;
+    refusal::set_printing(hand.print_refusals());
+    *HAND.write() = Some(hand);
+    Ok(())
+}
+
+pub(super) fn close() -> Result<(), Refusal> {
+    let _closing = LIFE.lock();
+    let hand = HAND.write().take();
+    // Closing takes long; by now the calls to a finger are refused and do not wait for it.
+    drop(hand);
+    Ok(())
+}
+
+pub(super) fn close_at_exit() {
+    let Some(_closing) = LIFE.try_lock_for(PATIENCE_AT_EXIT) else { return };
+    drop(HAND.try_write_for(PATIENCE_AT_EXIT).and_then(|mut hand| hand.take()));
+}
+
+/// Runs `call` on the open hand.
+pub(super) fn with<T>(call: impl FnOnce(&Hand) -> Result<T, HandError>) -> Result<T, Refusal> {
+    let hand = HAND.read();
+    let hand = hand.as_ref().ok_or(Refusal::NoHand)?;
+    Ok(call(hand)?)
+}

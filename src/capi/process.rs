@@ -1,0 +1,53 @@
+//! What the process around the hand does: fork, exit, errno and standard error.
+
+use crate::capi::default_hand;
+use std::ffi::c_int;
+use std::panic::catch_unwind;
+use std::sync::Once;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static FORKED: AtomicBool = AtomicBool::new(false);
+
+/// Whether this process was forked from one that has called OpenHand. An atomic, because asking for the process number
+/// costs 200 ns a call.
+pub(super) fn is_forked_child() -> bool {
+    FORKED.load(Ordering::Relaxed)
+}
+
+/// Watches for fork and exit from now on. Once is enough: neither can be taken back.
+pub(super) fn watch() {
+    static WATCH: Once = Once::new();
+    WATCH.call_once(|| {
+        // SAFETY: both handlers are functions of this library, which stays loaded (`-z nodelete`), and no panic leaves
+        // them. Out of memory is the only failure; then a planner's exit is what its death is: the boards' watchdogs act.
+        unsafe {
+            libc::pthread_atfork(None, None, Some(in_forked_child));
+            libc::atexit(at_exit);
+        }
+    });
+}
+
+extern "C" fn in_forked_child() {
+    FORKED.store(true, Ordering::Relaxed);
+}
+
+extern "C" fn at_exit() {
+    if !is_forked_child() {
+        // Whatever goes wrong here, the process ends, and the boards' watchdogs see to the motors.
+        let _ = catch_unwind(default_hand::close_at_exit);
+    }
+}
+
+/// Sets the calling thread's errno.
+pub(super) fn set_errno(errno: c_int) {
+    // SAFETY: the address of the calling thread's own errno is always valid.
+    unsafe { *libc::__errno_location() = errno }
+}
+
+/// Writes one line on standard error. Not with `eprintln!`, whose lock a forked child may find taken for ever, and which
+/// panics when standard error is closed.
+pub(super) fn print_line(text: &str) {
+    let line = format!("sun2xp: {text}\n");
+    // SAFETY: the pointer and the length are those of a live string. A short or failed write has no remedy.
+    unsafe { libc::write(libc::STDERR_FILENO, line.as_ptr().cast(), line.len()) };
+}

@@ -1,0 +1,121 @@
+//! What a refused call leaves behind: errno, a text for the calling thread, and at the first of its kind a line on
+//! standard error.
+
+use crate::capi::process;
+use crate::hand;
+use parking_lot::Mutex;
+use std::cell::RefCell;
+use std::ffi::{CStr, CString, c_char, c_int};
+use std::mem::{Discriminant, discriminant};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use thiserror::Error;
+
+/// Why a call is refused: by the boundary, or by the hand behind it.
+#[derive(Debug, Error)]
+pub(super) enum Refusal {
+    #[error(
+        "this process was forked from one that has called OpenHand: only that one has the servo threads. Call from there, or exec"
+    )]
+    Forked,
+    #[error("{0} is a null pointer: pass an array")]
+    Null(&'static str),
+    #[error("Status->Size is {size}: set it to sizeof *Status, at least {least}, before the call")]
+    SmallStatus { size: usize, least: usize },
+    #[error("no hand is open: call OpenHand first, and look at its result")]
+    NoHand,
+    #[error("the hand is open already, and goes on: CloseHand comes before another OpenHand")]
+    AlreadyOpen,
+    #[error("another thread is opening or closing the hand: wait for it")]
+    Busy,
+    #[error("the library failed ({0}): a defect of this library, please report it")]
+    Panicked(String),
+    #[error(transparent)]
+    Hand(#[from] hand::HandError),
+}
+
+type Kind = (Discriminant<Refusal>, Option<Discriminant<hand::HandError>>);
+
+impl Refusal {
+    fn errno(&self) -> c_int {
+        match self {
+            Self::Forked => libc::EPERM,
+            Self::Null(_) => libc::EFAULT,
+            Self::SmallStatus { .. } => libc::EINVAL,
+            Self::NoHand => libc::ENODEV,
+            Self::AlreadyOpen | Self::Busy => libc::EBUSY,
+            Self::Panicked(_) => libc::EIO,
+            Self::Hand(error) => error.errno(),
+        }
+    }
+
+    fn kind(&self) -> Kind {
+        let hand = match self {
+            Self::Hand(error) => Some(discriminant(error)),
+            _ => None,
+        };
+        (discriminant(self), hand)
+    }
+}
+
+thread_local! {
+    static TEXT: RefCell<Option<CString>> = const { RefCell::new(None) };
+}
+
+static PRINT: AtomicBool = AtomicBool::new(true);
+static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
+
+/// Runs one call: 0 where it is done, -1 where it is refused. No panic leaves it.
+pub(super) fn guarded(name: &'static str, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
+    let outcome = match process::is_forked_child() {
+        true => Err(Refusal::Forked),
+        false => catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| Err(Refusal::Panicked(message(&*panic)))),
+    };
+    match outcome {
+        Ok(()) => 0,
+        Err(refusal) => {
+            refuse(name, &refusal);
+            -1
+        }
+    }
+}
+
+fn refuse(name: &str, refusal: &Refusal) {
+    let text = format!("{name}: {refusal}");
+    if PRINT.load(Ordering::Relaxed) && is_first_of_its_kind(refusal.kind()) {
+        process::print_line(&text);
+    }
+    // A thread that is ending may have no text any more: errno still tells.
+    let _ = TEXT.try_with(|slot| {
+        if let Ok(mut slot) = slot.try_borrow_mut() {
+            *slot = CString::new(text.replace('\0', " ")).ok();
+        }
+    });
+    process::set_errno(refusal.errno());
+}
+
+fn is_first_of_its_kind(kind: Kind) -> bool {
+    // Never waits: in a forked child the lock may have been held by a thread that was not forked with it.
+    let Some(mut printed) = PRINTED.try_lock() else { return false };
+    let first = !printed.contains(&kind);
+    if first {
+        printed.push(kind);
+    }
+    first
+}
+
+/// Whether refusals are printed from now on: the configuration of the hand that was opened last.
+pub(super) fn set_printing(on: bool) {
+    PRINT.store(on, Ordering::Relaxed);
+}
+
+/// The text of the calling thread's last refused call; empty when none was refused.
+pub(super) fn text() -> *const c_char {
+    let text = TEXT.try_with(|slot| slot.try_borrow().ok().and_then(|slot| slot.as_deref().map(CStr::as_ptr)));
+    text.ok().flatten().unwrap_or(c"".as_ptr())
+}
+
+fn message(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("no message").to_string()
+}

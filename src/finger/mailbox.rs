@@ -1,0 +1,130 @@
+//! Between planners and one finger's servo: set points down, reports up, neither side waiting for the other.
+//!
+//! Both ways go through a triple buffer: whole values, wait-free. A lock would let a planner stop a servo (no priority
+//! inheritance), and a channel is not lock-free when a real-time thread shares a core with a preempted sender. The planners'
+//! own side is locked among themselves only.
+
+use crate::control::{Report, SetPoint};
+use crate::finger::Fault;
+use parking_lot::Mutex;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use triple_buffer::{Input, Output, triple_buffer};
+
+/// Where a finger is between open and close.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stage {
+    /// Tendons are brought under tension.
+    #[default]
+    Opening,
+    /// The fingertip is a spring.
+    Running,
+    /// On the way to the configured end state.
+    Closing,
+    /// The board is in its end state.
+    Closed,
+    /// Stopped by itself.
+    Faulted(Fault),
+}
+
+/// What a servo tells of its finger, each cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FingerReport {
+    /// Where the finger is between open and close.
+    pub stage: Stage,
+    /// The set point in force.
+    pub set_point: SetPoint,
+    /// What the last cycle found and decided.
+    pub cycle: Report,
+    /// Cycles since open.
+    pub cycles: u64,
+    /// Cycles without a valid reply.
+    pub lost_replies: u64,
+    /// Periods skipped because the servo was late.
+    pub skipped_periods: u64,
+    /// Damaged or foreign frames on the finger's port.
+    pub damaged_frames: u64,
+    /// When the first cycle began, ns of the monotonic clock.
+    pub first: u64,
+    /// When the last cycle began, ns of the monotonic clock.
+    pub last: u64,
+}
+
+/// The planners' end.
+pub struct Mailbox {
+    planners: Mutex<PlannersEnd>,
+    closing: Arc<AtomicBool>,
+}
+
+struct PlannersEnd {
+    sent: SetPoint,
+    set_points: Input<SetPoint>,
+    reports: Output<FingerReport>,
+}
+
+/// The servo's end. Nothing here waits or allocates.
+pub(super) struct ServoEnd {
+    set_points: Output<SetPoint>,
+    reports: Input<FingerReport>,
+    closing: Arc<AtomicBool>,
+}
+
+/// A mailbox whose both ends hold `report`, with its set point.
+pub(super) fn mailbox(report: FingerReport) -> (Mailbox, ServoEnd) {
+    let (set_points_in, set_points_out) = triple_buffer(&report.set_point);
+    let (reports_in, reports_out) = triple_buffer(&report);
+    let closing = Arc::new(AtomicBool::new(false));
+    let planners = PlannersEnd { sent: report.set_point, set_points: set_points_in, reports: reports_out };
+    let servo = ServoEnd { set_points: set_points_out, reports: reports_in, closing: closing.clone() };
+    (Mailbox { planners: Mutex::new(planners), closing }, servo)
+}
+
+impl Mailbox {
+    /// The newest report.
+    pub fn report(&self) -> FingerReport {
+        *self.planners.lock().reports.read()
+    }
+
+    /// Changes the set point that was sent last and sends it whole, unless the finger is faulted.
+    ///
+    /// # Errors
+    /// The fault; nothing is sent then.
+    pub fn send(&self, change: impl FnOnce(&mut SetPoint)) -> Result<(), Fault> {
+        let mut planners = self.planners.lock();
+        if let Stage::Faulted(fault) = planners.reports.read().stage {
+            return Err(fault);
+        }
+        change(&mut planners.sent);
+        let whole = planners.sent;
+        planners.set_points.write(whole);
+        Ok(())
+    }
+
+    /// Takes over the set point that the servo has found for itself at open, as what the next change starts from.
+    pub fn adopt(&self) {
+        let mut planners = self.planners.lock();
+        planners.sent = planners.reports.read().set_point;
+    }
+
+    /// Asks the servo to bring the finger to its end state.
+    pub fn close(&self) {
+        self.closing.store(true, Ordering::Release);
+    }
+}
+
+impl ServoEnd {
+    /// The set point, if a planner has sent one since the last call.
+    pub fn new_set_point(&mut self) -> Option<SetPoint> {
+        self.set_points.update().then(|| *self.set_points.output_buffer())
+    }
+
+    /// Whether the finger shall be brought to its end state.
+    pub fn closing(&self) -> bool {
+        self.closing.load(Ordering::Acquire)
+    }
+
+    /// Replaces the report.
+    pub fn publish(&mut self, report: FingerReport) {
+        self.reports.write(report);
+    }
+}

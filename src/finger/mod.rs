@@ -1,0 +1,11 @@
+//! One finger's servo thread and its mailboxes: the shell around the pure core.
+
+mod fault;
+mod mailbox;
+mod servo;
+mod single;
+
+pub use fault::Fault;
+pub use mailbox::{FingerReport, Mailbox, Stage};
+pub use servo::{ServedPort, Servo};
+pub use single::FingerServo;

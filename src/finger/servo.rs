@@ -1,0 +1,141 @@
+//! A servo thread: periods by absolute deadlines, one transaction a finger and period.
+
+use crate::board::{Link, LinkError, OutgoingCommand, Transport};
+use crate::finger::{Fault, FingerServo};
+use crate::model::configuration::FINGERS;
+use crate::realtime::{Clock, CycleTiming, Schedule};
+use rtrb::Producer;
+
+/// The part of a period, from the thread's awakening, in which replies are awaited; the rest is for computing.
+const REPLY_WINDOW: f64 = 0.85;
+
+/// A port with the fingers behind it.
+pub struct ServedPort<T> {
+    link: Link<T>,
+    fingers: Vec<FingerServo>,
+}
+
+impl<T: Transport> ServedPort<T> {
+    /// `fingers` have shaken hands over `link`.
+    pub fn new(link: Link<T>, fingers: Vec<FingerServo>) -> Self {
+        Self { link, fingers }
+    }
+}
+
+/// One to three fingers on one to three ports, run by one thread.
+pub struct Servo<T, C> {
+    clock: C,
+    schedule: Schedule,
+    reply_window: u64,
+    ports: Vec<ServedPort<T>>,
+    timings: Producer<CycleTiming>,
+}
+
+impl<T: Transport, C: Clock> Servo<T, C> {
+    /// A servo whose first cycle begins at the start of `schedule`. Timings that nobody collects are dropped.
+    pub fn new(clock: C, schedule: Schedule, ports: Vec<ServedPort<T>>, timings: Producer<CycleTiming>) -> Self {
+        let reply_window = (schedule.period() as f64 * REPLY_WINDOW) as u64;
+        Self { clock, schedule, reply_window, ports, timings }
+    }
+
+    /// Runs until every finger is closed, or faulted and asked to close.
+    pub fn run(&mut self) {
+        while !self.finished() {
+            self.cycle();
+        }
+        // What a finger that was closed or faulted in the last cycle has still to say.
+        self.send_stops();
+    }
+
+    /// Whether every finger is closed, or faulted and asked to close.
+    pub fn finished(&self) -> bool {
+        self.ports.iter().flat_map(|port| &port.fingers).all(FingerServo::finished)
+    }
+
+    /// One period: wait, commands out, replies in, compute, report. Nothing here allocates, locks or blocks beyond the
+    /// deadline.
+    pub fn cycle(&mut self) {
+        let beginning = self.schedule.next();
+        self.clock.sleep_until(beginning);
+        let began = self.clock.now();
+        self.send_stops();
+        for port in &mut self.ports {
+            port.send();
+        }
+        for port in &mut self.ports {
+            port.receive(began + self.reply_window);
+        }
+        let replied = self.clock.now();
+        let skipped = self.schedule.advance(replied);
+        for port in &mut self.ports {
+            let damaged = port.link.counters().damaged;
+            for finger in &mut port.fingers {
+                finger.end(began, skipped, damaged);
+            }
+        }
+        let nanoseconds = |from: u64, to: u64| u32::try_from(to.saturating_sub(from)).unwrap_or(u32::MAX);
+        let timing = CycleTiming {
+            wake_up: nanoseconds(beginning, began),
+            exchange: nanoseconds(began, replied),
+            compute: nanoseconds(replied, self.clock.now()),
+        };
+        // A full ring means that nobody collects: the cycle is worth more than its figure.
+        let _ = self.timings.push(timing);
+    }
+
+    /// The last thing to do when a cycle panicked: every finger faulted, every board told to stop.
+    pub fn fail(&mut self) {
+        for finger in self.ports.iter_mut().flat_map(|port| &mut port.fingers) {
+            finger.fault(Fault::Internal);
+            finger.end(0, 0, 0);
+        }
+        self.send_stops();
+    }
+
+    fn send_stops(&mut self) {
+        for port in &mut self.ports {
+            for finger in &mut port.fingers {
+                if finger.stopping() {
+                    // Nobody is left to tell: the board's watchdog does the rest.
+                    let _ = port.link.stop(finger.address(), 0);
+                }
+            }
+        }
+    }
+}
+
+impl<T: Transport> ServedPort<T> {
+    /// All commands of the port back to back, so that replies overlap the commands that follow.
+    fn send(&mut self) {
+        let mut commands = [OutgoingCommand::default(); FINGERS];
+        let mut count = 0;
+        for (command, place) in self.fingers.iter_mut().filter_map(FingerServo::begin).zip(&mut commands) {
+            *place = command;
+            count += 1;
+        }
+        if let Err(error) = self.link.send(&commands[..count]) {
+            self.fail(&error);
+        }
+    }
+
+    fn receive(&mut self, deadline: u64) {
+        while self.fingers.iter().any(FingerServo::waiting) {
+            match self.link.receive(deadline) {
+                Ok(Some(received)) => {
+                    let addressed = self.fingers.iter_mut().filter(|finger| finger.address() == received.address);
+                    addressed.for_each(|finger| finger.take(&received));
+                }
+                Ok(None) => break,
+                Err(error) => {
+                    self.fail(&error);
+                    break;
+                }
+            }
+        }
+    }
+
+    fn fail(&mut self, error: &LinkError) {
+        let errno = error.errno();
+        self.fingers.iter_mut().for_each(|finger| finger.fault(Fault::PortFailed { errno }));
+    }
+}

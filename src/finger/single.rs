@@ -1,0 +1,261 @@
+//! One finger in its servo thread: from reply to command, and from open to close.
+
+use crate::board::protocol::{Command as BoardCommand, Configured, Identity, Status};
+use crate::board::{OutgoingCommand, Received};
+use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
+use crate::finger::mailbox::{Mailbox, ServoEnd, mailbox};
+use crate::finger::{Fault, FingerReport, Stage};
+use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState, Unusable};
+use nalgebra::Matrix3;
+
+/// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
+const TENSION_SETTLED: f64 = 0.02;
+
+/// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
+const STOPS_AFTER_FAULT: u8 = 3;
+
+/// One finger: its controller, its place in the protocol, its mailbox.
+pub struct FingerServo {
+    controller: Controller,
+    state: State,
+    activity: Activity,
+    feedback: Feedback,
+    command: Command,
+    mailbox: ServoEnd,
+    report: FingerReport,
+    address: u8,
+    /// Knows the torque of one count of a command.
+    board: Identity,
+    sequence: u8,
+    toggle: bool,
+    answered: bool,
+    lost_in_a_row: u32,
+    limits: Limits,
+    settled_cycles: u32,
+    /// Cycles since the stage began.
+    stage_cycles: u32,
+    stops_left: u8,
+    initial_stiffness: Matrix3<f64>,
+    end_state: EndState,
+}
+
+/// Times of the configuration, in cycles.
+struct Limits {
+    period_ms: f64,
+    lost: u32,
+    tension: u32,
+    settled: u32,
+    ramp: u32,
+}
+
+impl FingerServo {
+    /// A finger that stands where its board says, limp, with the planners' end of its mailbox.
+    ///
+    /// `stiffness` is the Kx that it will hold its pose with, already admitted.
+    ///
+    /// # Errors
+    /// A configuration that no controller can be made from.
+    pub fn new(
+        hand: &ConfiguredHand,
+        finger: &ConfiguredFinger,
+        address: u8,
+        stiffness: Matrix3<f64>,
+        identity: &Identity,
+        configured: &Configured,
+    ) -> Result<(Self, Mailbox), Unusable> {
+        let controller = Controller::new(finger, hand.rate)?;
+        let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
+        let state = controller.start(&feedback);
+        let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
+        let report = FingerReport {
+            stage: Stage::Opening,
+            set_point: SetPoint { joints: nalgebra::Vector3::zeros(), stiffness },
+            cycle: Default::default(),
+            cycles: 0,
+            lost_replies: 0,
+            skipped_periods: 0,
+            damaged_frames: 0,
+            first: 0,
+            last: 0,
+        };
+        let (planners, servo) = mailbox(report);
+        let this = Self {
+            controller,
+            state,
+            activity: Activity::TakeUpSlack,
+            feedback,
+            command: Command::default(),
+            mailbox: servo,
+            report,
+            address,
+            board: *identity,
+            sequence: 0,
+            toggle: false,
+            answered: false,
+            lost_in_a_row: 0,
+            limits: Limits {
+                period_ms: 1000.0 / hand.rate,
+                lost: cycles(hand.watchdog_ms.into()),
+                tension: cycles(hand.open_timeout_ms.into()),
+                settled: cycles(TENSION_SETTLED * 1e3),
+                ramp: cycles(hand.release_ramp_ms.into()),
+            },
+            settled_cycles: 0,
+            stage_cycles: 0,
+            stops_left: STOPS_AFTER_FAULT,
+            initial_stiffness: stiffness,
+            end_state: hand.end_state,
+        };
+        Ok((this, planners))
+    }
+
+    /// The address of the finger on its port.
+    pub fn address(&self) -> u8 {
+        self.address
+    }
+
+    /// Whether the finger has nothing more to tell its board.
+    pub fn finished(&self) -> bool {
+        match self.report.stage {
+            Stage::Closed => true,
+            Stage::Faulted(_) => self.mailbox.closing(),
+            _ => false,
+        }
+    }
+
+    /// Begins a cycle: the command that the last one found, if the finger is under control.
+    pub fn begin(&mut self) -> Option<OutgoingCommand> {
+        if !self.under_control() {
+            return None;
+        }
+        self.sequence = self.sequence.wrapping_add(1);
+        self.toggle = !self.toggle;
+        self.answered = false;
+        let torques = self.command.motor_torques.map(|torque| self.board.torque_count(torque)).into();
+        let command = BoardCommand { toggle: self.toggle, enable: true, torques };
+        Some(OutgoingCommand { address: self.address, sequence: self.sequence, command })
+    }
+
+    /// Whether the board shall be told to stop, after a fault or at the end.
+    pub fn stopping(&mut self) -> bool {
+        let stopping = !self.under_control() && self.stops_left > 0;
+        self.stops_left -= u8::from(stopping);
+        stopping
+    }
+
+    /// Whether this cycle's reply is still awaited.
+    pub fn waiting(&self) -> bool {
+        !self.answered && self.under_control()
+    }
+
+    /// Takes a reply in, if it answers this cycle's command: a late one would be an old measurement.
+    pub fn take(&mut self, received: &Received) {
+        if received.sequence != self.sequence || !self.waiting() {
+            return;
+        }
+        self.answered = true;
+        let reply = &received.reply;
+        self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
+        self.feedback.gauge_counts = reply.gauges;
+        if reply.status.has(Status::WATCHDOG_TRIPPED) {
+            self.fault(Fault::WatchdogTripped);
+        } else if reply.status.has(Status::FAULTS | Status::ENDED) {
+            self.fault(Fault::BoardStopped { status: reply.status.0 });
+        }
+    }
+
+    /// Ends a cycle: computes the next command and reports.
+    pub fn end(&mut self, began: u64, skipped: u64, damaged_frames: u64) {
+        self.report.cycles += 1;
+        self.report.skipped_periods += skipped;
+        self.report.damaged_frames = damaged_frames;
+        self.report.last = began;
+        if self.report.cycles == 1 {
+            self.report.first = began;
+        }
+        if self.under_control() {
+            self.count_replies();
+        }
+        if self.under_control() {
+            self.take_commands();
+            let feedback = self.answered.then_some(&self.feedback);
+            (self.command, self.report.cycle) = self.controller.cycle(&mut self.state, feedback, &self.activity);
+            self.move_on();
+        }
+        self.mailbox.publish(self.report);
+    }
+
+    /// Stops the finger for a reason.
+    pub fn fault(&mut self, fault: Fault) {
+        if self.under_control() {
+            self.enter(Stage::Faulted(fault));
+        }
+    }
+
+    fn under_control(&self) -> bool {
+        !matches!(self.report.stage, Stage::Closed | Stage::Faulted(_))
+    }
+
+    fn count_replies(&mut self) {
+        if self.answered {
+            self.lost_in_a_row = 0;
+            return;
+        }
+        self.report.lost_replies += 1;
+        self.lost_in_a_row += 1;
+        // Counted in attempts, not in time: a machine that pauses everything has lost no reply.
+        if self.lost_in_a_row >= self.limits.lost {
+            let milliseconds = (f64::from(self.lost_in_a_row) * self.limits.period_ms).round() as u32;
+            self.fault(Fault::LinkLost { milliseconds });
+        }
+    }
+
+    fn take_commands(&mut self) {
+        if let Some(set_point) = self.mailbox.new_set_point()
+            && let Activity::Follow(_) = self.activity
+        {
+            self.report.set_point = set_point;
+            self.activity = Activity::Follow(set_point);
+        }
+        if self.mailbox.closing() && self.report.stage != Stage::Closing {
+            self.enter(Stage::Closing);
+            if self.end_state == EndState::Hold {
+                self.enter(Stage::Closed);
+            } else {
+                let ramp = f64::from(self.limits.ramp) * self.limits.period_ms * 1e-3;
+                self.activity = Activity::Release { ramp };
+            }
+        }
+    }
+
+    /// Decides what the finger does next by what the cycle has found.
+    fn move_on(&mut self) {
+        self.stage_cycles += 1;
+        match self.report.stage {
+            Stage::Opening if self.report.cycle.under_tension => {
+                self.settled_cycles += 1;
+                if self.settled_cycles >= self.limits.settled {
+                    let joints = self.report.cycle.joints;
+                    self.report.set_point = SetPoint { joints, stiffness: self.initial_stiffness };
+                    self.activity = Activity::Follow(self.report.set_point);
+                    self.enter(Stage::Running);
+                }
+            }
+            Stage::Opening => {
+                self.settled_cycles = 0;
+                if self.stage_cycles >= self.limits.tension {
+                    let tendon = self.report.cycle.tensions.imin() as u8 + 1;
+                    let milliseconds = (f64::from(self.stage_cycles) * self.limits.period_ms).round() as u32;
+                    self.fault(Fault::SlackTendon { tendon, milliseconds });
+                }
+            }
+            Stage::Closing if self.stage_cycles > self.limits.ramp => self.enter(Stage::Closed),
+            _ => {}
+        }
+    }
+
+    fn enter(&mut self, stage: Stage) {
+        self.report.stage = stage;
+        self.stage_cycles = 0;
+    }
+}

@@ -1,0 +1,147 @@
+//! What a planner may ask of a finger: the checks between a call and the servo. Nothing that fails one reaches it.
+
+use crate::hand::HandError;
+use crate::model::configuration::OutOfRange;
+use nalgebra::{Matrix3, Vector3};
+
+/// Kx may be asymmetric, or have a negative eigenvalue, by so much of its largest entry or eigenvalue: the rounding of a
+/// planner that works in `float`.
+const ROUNDING: f64 = 1e-3;
+
+/// The limits of one finger.
+#[derive(Clone, Debug)]
+pub(super) struct Admission {
+    /// 1 to 3.
+    pub finger: i32,
+    /// Lower and upper joint limits, rad.
+    pub joint_limits: (Vector3<f64>, Vector3<f64>),
+    /// Bound on the largest eigenvalue of Kx, N/cm.
+    pub stiffness_bound: f64,
+    /// Refuse or clamp.
+    pub out_of_range: OutOfRange,
+}
+
+impl Admission {
+    /// Desired joint angles, rad, as they may be sent to the servo.
+    pub fn joints(&self, joints: [f64; 3]) -> Result<Vector3<f64>, HandError> {
+        self.finite("Pos", &joints)?;
+        let mut admitted = Vector3::from(joints);
+        for joint in 0..3 {
+            let (low, high) = (self.joint_limits.0[joint], self.joint_limits.1[joint]);
+            // A limit sent as `float` is a limit: it may be rounded beyond it.
+            let rounding = f64::from(f32::EPSILON) * low.abs().max(high.abs());
+            let value = joints[joint];
+            if (value < low - rounding || value > high + rounding) && self.out_of_range == OutOfRange::Refuse {
+                return Err(HandError::BeyondJointLimit { finger: self.finger, joint, value, low, high });
+            }
+            admitted[joint] = value.clamp(low, high);
+        }
+        Ok(admitted)
+    }
+
+    /// Kx, N/cm, symmetric, positive semi-definite and within the bound. `rows[row][column]`.
+    pub fn stiffness(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, HandError> {
+        self.finite("Kx", rows.as_flattened())?;
+        // nalgebra is column-major: this is the one place where the order of C is turned.
+        let asked = Matrix3::from_fn(|row, column| rows[row][column]);
+        let tolerance = ROUNDING * asked.amax();
+        for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+            let difference = (asked[(row, column)] - asked[(column, row)]).abs();
+            if difference > tolerance {
+                return Err(HandError::NotSymmetric { finger: self.finger, row, column, difference });
+            }
+        }
+        let symmetric = (asked + asked.transpose()) * 0.5;
+        let mut eigen = symmetric.symmetric_eigen();
+        let (smallest, largest) = (eigen.eigenvalues.min(), eigen.eigenvalues.max());
+        if smallest < -ROUNDING * largest.abs().max(smallest.abs()) {
+            return Err(HandError::Negative { finger: self.finger, smallest });
+        }
+        let bound = self.stiffness_bound;
+        // A bound sent as `float` is a bound.
+        let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
+        if too_stiff && self.out_of_range == OutOfRange::Refuse {
+            return Err(HandError::TooStiff { finger: self.finger, largest, bound });
+        }
+        if !too_stiff && smallest >= 0.0 {
+            return Ok(symmetric);
+        }
+        // The nearest admissible spring keeps its principal directions.
+        eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
+        let recomposed = eigen.recompose();
+        Ok((recomposed + recomposed.transpose()) * 0.5)
+    }
+
+    /// Refuses NaN and infinity: they must never reach the servo.
+    pub fn finite(&self, what: &'static str, values: &[f64]) -> Result<(), HandError> {
+        match values.iter().find(|value| !value.is_finite()) {
+            None => Ok(()),
+            Some(&value) => Err(HandError::NotFinite { what, finger: self.finger, value }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn admission(out_of_range: OutOfRange) -> Admission {
+        Admission {
+            finger: 2,
+            joint_limits: (Vector3::new(-1.0, -0.5, 0.1), Vector3::new(1.0, 1.7, 2.0)),
+            stiffness_bound: 6.0,
+            out_of_range,
+        }
+    }
+
+    #[test]
+    fn kx_is_taken_row_by_row() {
+        let rows = [[3.0, 0.5, 0.001], [0.5, 2.0, 0.25], [0.0, 0.25, 1.0]];
+        let kx = admission(OutOfRange::Refuse).stiffness(rows).expect("admissible");
+        assert_eq!(kx[(0, 1)], 0.5);
+        assert_eq!(kx[(1, 2)], 0.25);
+        // Less than a thousandth of the largest entry: symmetrised.
+        assert_eq!(kx[(0, 2)], 0.0005);
+        assert_eq!(kx, kx.transpose());
+        let skewed = [[3.0, 0.5, 0.004], [0.5, 2.0, 0.25], [0.0, 0.25, 1.0]];
+        let refused = admission(OutOfRange::Refuse).stiffness(skewed);
+        assert!(matches!(refused, Err(HandError::NotSymmetric { row: 0, column: 2, .. })), "{refused:?}");
+    }
+
+    #[test]
+    fn springs_of_any_rank_are_admitted_and_others_refused() {
+        let diagonal = |a, b, c| [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]];
+        let refuse = admission(OutOfRange::Refuse);
+        for rows in [diagonal(0.0, 0.0, 0.0), diagonal(6.0, 0.0, 1.0), diagonal(6.0, 6.0, 6.0)] {
+            assert!(refuse.stiffness(rows).is_ok(), "{rows:?}");
+        }
+        assert!(matches!(refuse.stiffness(diagonal(6.1, 0.0, 0.0)), Err(HandError::TooStiff { .. })));
+        assert!(matches!(refuse.stiffness(diagonal(1.0, -0.1, 0.0)), Err(HandError::Negative { .. })));
+        assert!(matches!(refuse.stiffness(diagonal(-1.0, 0.0, 0.0)), Err(HandError::Negative { .. })));
+        assert!(matches!(refuse.stiffness(diagonal(f64::NAN, 0.0, 0.0)), Err(HandError::NotFinite { .. })));
+        // Within rounding of zero: taken as zero.
+        let kx = refuse.stiffness(diagonal(1.0, -0.0005, 0.0)).expect("admissible");
+        assert!(kx.symmetric_eigenvalues().min() > -1e-12);
+    }
+
+    #[test]
+    fn clamping_takes_the_nearest_admissible_value() {
+        let clamp = admission(OutOfRange::Clamp);
+        assert_eq!(clamp.joints([2.0, -3.0, 1.0]).expect("clamped"), Vector3::new(1.0, -0.5, 1.0));
+        let kx = clamp.stiffness([[5.0, 4.0, 0.0], [4.0, 5.0, 0.0], [0.0, 0.0, 2.0]]).expect("clamped");
+        // Eigenvalues 9 and 1 along the diagonals become 6 and 1.
+        let expected = Matrix3::new(3.5, 2.5, 0.0, 2.5, 3.5, 0.0, 0.0, 0.0, 2.0);
+        assert!((kx - expected).amax() < 1e-12, "{kx}");
+        assert!(matches!(clamp.joints([f64::INFINITY, 0.0, 1.0]), Err(HandError::NotFinite { .. })));
+    }
+
+    #[test]
+    fn a_limit_rounded_to_float_is_within_the_limit() {
+        let mut refuse = admission(OutOfRange::Refuse);
+        refuse.joint_limits.1[2] = 120f64.to_radians();
+        let sent = f64::from(120f32.to_radians());
+        assert!(sent > refuse.joint_limits.1[2], "the case must be one of rounding up");
+        assert_eq!(refuse.joints([0.0, 0.0, sent]).expect("admitted")[2], refuse.joint_limits.1[2]);
+        assert!(matches!(refuse.joints([0.0, 0.0, sent + 1e-3]), Err(HandError::BeyondJointLimit { joint: 2, .. })));
+    }
+}

@@ -1,0 +1,163 @@
+//! Why a call was refused, and what to do about it.
+
+use crate::board::LinkError;
+use crate::finger::Fault;
+use crate::model::Refusal;
+use crate::model::configuration::Unusable;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// A refused call: nothing was changed. The text names the cause and the remedy.
+#[derive(Debug, Error)]
+pub enum HandError {
+    /// Fingers are 1, 2 and 3.
+    #[error("there is no finger {0}: fingers are 1, 2 and 3")]
+    NoSuchFinger(i32),
+    /// NaN or infinity in an argument.
+    #[error("{what} of finger {finger} contains {value}: every entry must be a finite number")]
+    NotFinite {
+        /// Pos, Kx or Force.
+        what: &'static str,
+        /// 1 to 3.
+        finger: i32,
+        /// The first such entry.
+        value: f64,
+    },
+    /// Pos outside the joint limits.
+    #[error(
+        "Pos[{joint}] = {value:.4} rad is outside the limits of finger {finger}, {low:.4} to {high:.4} rad: stay inside, \
+         change `finger.joints`, or set `hand.out_of_range = \"clamp\"`"
+    )]
+    BeyondJointLimit {
+        /// 1 to 3.
+        finger: i32,
+        /// 0 to 2.
+        joint: usize,
+        /// What was asked, rad.
+        value: f64,
+        /// Lower limit, rad.
+        low: f64,
+        /// Upper limit, rad.
+        high: f64,
+    },
+    /// Kx stiffer than the bound.
+    #[error(
+        "Kx of finger {finger} has the eigenvalue {largest:.3} N/cm, above the bound of {bound:.3}: ask for less, or set \
+         `hand.out_of_range = \"clamp\"`"
+    )]
+    TooStiff {
+        /// 1 to 3.
+        finger: i32,
+        /// Largest eigenvalue, N/cm.
+        largest: f64,
+        /// The bound, N/cm.
+        bound: f64,
+    },
+    /// Kx not symmetric.
+    #[error(
+        "Kx of finger {finger} is not symmetric: Kx[{row}][{column}] and Kx[{column}][{row}] differ by {difference:.3e} N/cm, \
+         more than a thousandth of its largest entry. A spring has a symmetric Kx"
+    )]
+    NotSymmetric {
+        /// 1 to 3.
+        finger: i32,
+        /// Row of the worst pair.
+        row: usize,
+        /// Column of the worst pair.
+        column: usize,
+        /// Their difference, N/cm.
+        difference: f64,
+    },
+    /// Kx with a negative eigenvalue.
+    #[error(
+        "Kx of finger {finger} has the negative eigenvalue {smallest:.3e} N/cm: a finger that pushes itself away from its \
+         set point is no spring"
+    )]
+    Negative {
+        /// 1 to 3.
+        finger: i32,
+        /// Smallest eigenvalue, N/cm.
+        smallest: f64,
+    },
+    /// A finger has stopped by itself.
+    #[error("finger {finger} is faulted: {fault}")]
+    Faulted {
+        /// 1 to 3.
+        finger: i32,
+        /// What happened.
+        fault: Fault,
+    },
+    /// A configuration file cannot be read.
+    #[error(
+        "cannot read the configuration file {}: {source}. SUN2XP_CONFIG names a file that must exist; unset it for the \
+         file in the working directory or the simulated hand", path.display()
+    )]
+    ConfigurationFile {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A configuration that cannot be used.
+    #[error("{}{}: {reason}", file.display(), line.map(|line| format!(":{line}")).unwrap_or_default())]
+    Configuration {
+        /// The file.
+        file: PathBuf,
+        /// The line, counted from 1, where the key stands in the file.
+        line: Option<usize>,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A configuration made in a program that cannot be used.
+    #[error("{section}.{}: {}", unusable.key, unusable.reason)]
+    Unusable {
+        /// `hand`, or `finger.1` to `finger.3`.
+        section: String,
+        /// The key and the reason.
+        unusable: Unusable,
+    },
+    /// A port or board that does not serve.
+    #[error("finger {finger}: {source}")]
+    Link {
+        /// 1 to 3.
+        finger: usize,
+        /// What is wrong with it.
+        source: LinkError,
+    },
+    /// The system refuses a thread or a pseudo terminal.
+    #[error("cannot {doing}: {source}")]
+    System {
+        /// What was being done.
+        doing: &'static str,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Pushing a finger that is not simulated.
+    #[error("finger {0} is on a real port: only a finger with `port = \"simulated\"` can be pushed by a call")]
+    NotSimulated(i32),
+}
+
+impl HandError {
+    /// The nearest errno.
+    pub fn errno(&self) -> i32 {
+        match self {
+            Self::NoSuchFinger(_) | Self::NotFinite { .. } => libc::EINVAL,
+            Self::Configuration { .. } | Self::Unusable { .. } => libc::EINVAL,
+            Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
+            Self::NotSymmetric { .. } | Self::Negative { .. } => libc::EDOM,
+            Self::Faulted { .. } => libc::EIO,
+            Self::ConfigurationFile { source, .. } | Self::System { source, .. } => {
+                source.raw_os_error().unwrap_or(libc::EIO)
+            }
+            Self::Link { source, .. } => source.errno(),
+            Self::NotSimulated(_) => libc::ENOTSUP,
+        }
+    }
+}
+
+impl From<Refusal> for HandError {
+    fn from(refusal: Refusal) -> Self {
+        let section = refusal.finger.map_or("hand".into(), |index| format!("finger.{}", index + 1));
+        Self::Unusable { section, unusable: refusal.unusable }
+    }
+}

@@ -1,0 +1,13 @@
+//! Root and Dispatcher: opens and closes a hand, reads its configuration, routes commands to the fingers and collects
+//! their reports (section 3 of the report).
+
+mod admission;
+mod configuration_file;
+mod dispatcher;
+mod error;
+mod opening;
+mod root;
+
+pub use configuration_file::{configured, read};
+pub use error::HandError;
+pub use root::{FingerStatus, Hand};

@@ -1,0 +1,139 @@
+//! From a configuration to ports with fingers behind them: everything that happens before a servo thread runs.
+
+use crate::board::{Link, Port, SimulatedBoard, SimulatedPort, Terms, capacity};
+use crate::finger::{FingerServo, Mailbox, ServedPort};
+use crate::hand::HandError;
+use crate::hand::admission::Admission;
+use crate::model::Refusal;
+use crate::model::configuration::{Configuration, ConfiguredFinger, FINGERS, Unusable};
+use crate::realtime::{Priority, now};
+use nalgebra::Matrix3;
+use std::path::PathBuf;
+
+/// Simulated boards run below every servo: they stand for something outside the machine.
+const SIMULATED_BOARD_PRIORITY: u8 = 20;
+
+/// A finger that has been reached: its servo side is in a [`ServedPort`].
+pub(super) struct Reached {
+    /// 0 to 2.
+    pub index: usize,
+    /// The planners' end.
+    pub mailbox: Mailbox,
+    /// What may be asked of it.
+    pub admission: Admission,
+}
+
+/// A port with its fingers, and the thread that shall serve it.
+pub(super) struct Line {
+    /// 1 to 3.
+    pub thread: u8,
+    pub port: ServedPort<Port>,
+}
+
+/// Everything about a configuration that can be refused without a port: values, the initial stiffness, what the lines carry.
+pub(super) fn check(configuration: &Configuration) -> Result<(), Refusal> {
+    configuration.check()?;
+    for index in 0..FINGERS {
+        let refused = |unusable| Refusal { finger: Some(index), unusable };
+        initial_stiffness(configuration, index).map_err(refused)?;
+        carries(configuration, index).map_err(refused)?;
+    }
+    Ok(())
+}
+
+/// A simulated board behind a pseudo terminal, for each finger whose port is `simulated`.
+pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<SimulatedPort>; FINGERS], HandError> {
+    let mut ports = [const { None }; FINGERS];
+    for (index, finger) in configuration.fingers.iter().enumerate() {
+        if finger.port != "simulated" {
+            continue;
+        }
+        let section = || format!("finger.{}", index + 1);
+        let gravity = configuration.gravity(index);
+        let board =
+            SimulatedBoard::new(vec![(configuration.address(index), finger.clone())], gravity).map_err(|error| {
+                HandError::Unusable {
+                    section: section(),
+                    unusable: Unusable { key: "geometry.r", reason: error.to_string() },
+                }
+            })?;
+        let priority = Priority { fifo: finger.priority.min(SIMULATED_BOARD_PRIORITY), core: None };
+        let port = SimulatedPort::start(board, priority)
+            .map_err(|source| HandError::System { doing: "start the simulated board on a pseudo terminal", source })?;
+        ports[index] = Some(port);
+    }
+    Ok(ports)
+}
+
+/// Opens every port and shakes hands with every finger on it.
+pub(super) fn reach(
+    configuration: &Configuration,
+    simulated: &[Option<SimulatedPort>; FINGERS],
+) -> Result<(Vec<Line>, Vec<Reached>), HandError> {
+    let path = |index: usize| match &simulated[index] {
+        Some(port) => port.path().to_path_buf(),
+        None => PathBuf::from(&configuration.fingers[index].port),
+    };
+    let (mut lines, mut reached) = (Vec::new(), Vec::new());
+    for first in 0..FINGERS {
+        let sharing: Vec<usize> = (0..FINGERS).filter(|&index| path(index) == path(first)).collect();
+        if sharing.first() < Some(&first) {
+            continue;
+        }
+        let failed = |index| move |source| HandError::Link { finger: index + 1, source };
+        let mut link = Link::open(&path(first), configuration.fingers[first].baud).map_err(failed(first))?;
+        let mut fingers = Vec::new();
+        for index in sharing {
+            let (servo, finger) = shake_hands(configuration, index, &mut link)?;
+            fingers.push(servo);
+            reached.push(finger);
+        }
+        lines.push(Line { thread: configuration.thread(first), port: ServedPort::new(link, fingers) });
+    }
+    reached.sort_by_key(|finger| finger.index);
+    Ok((lines, reached))
+}
+
+fn shake_hands(
+    configuration: &Configuration,
+    index: usize,
+    link: &mut Link<Port>,
+) -> Result<(FingerServo, Reached), HandError> {
+    let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
+    let unusable = |unusable| HandError::Unusable { section: format!("finger.{}", index + 1), unusable };
+    let address = configuration.address(index);
+    let deadline = now() + u64::from(hand.open_timeout_ms) * 1_000_000;
+    let (identity, configured) = link
+        .shake_hands(address, &Terms::new(hand, finger), deadline)
+        .map_err(|source| HandError::Link { finger: index + 1, source })?;
+    let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;
+    let (servo, mailbox) =
+        FingerServo::new(hand, finger, address, stiffness, &identity, &configured).map_err(unusable)?;
+    Ok((servo, Reached { index, mailbox, admission: admission(configuration, index) }))
+}
+
+fn admission(configuration: &Configuration, index: usize) -> Admission {
+    let finger = &configuration.fingers[index];
+    Admission {
+        finger: index as i32 + 1, // 1 to 3
+        joint_limits: finger.joint_limits(),
+        stiffness_bound: finger.stiffness_bound(configuration.hand.rate),
+        out_of_range: configuration.hand.out_of_range,
+    }
+}
+
+fn initial_stiffness(configuration: &Configuration, index: usize) -> Result<Matrix3<f64>, Unusable> {
+    let refused = |error: HandError| Unusable { key: "stiffness.initial", reason: error.to_string() };
+    admission(configuration, index).stiffness(configuration.fingers[index].stiffness.initial).map_err(refused)
+}
+
+/// Whether the line of a finger carries the rate, with everything that shares it.
+fn carries(configuration: &Configuration, index: usize) -> Result<(), Unusable> {
+    let finger: &ConfiguredFinger = &configuration.fingers[index];
+    let alike = |other: &&ConfiguredFinger| finger.port != "simulated" && other.port == finger.port;
+    let sharing = configuration.fingers.iter().filter(alike).count().max(1);
+    match capacity(finger.baud, sharing, configuration.hand.rate) {
+        Ok(_) => Ok(()),
+        Err(too_fast) => Err(Unusable { key: "baud", reason: too_fast.to_string() }),
+    }
+}

@@ -1,0 +1,279 @@
+//! Root: opens and closes a hand, owns its threads and ports, reports its status.
+
+use crate::board::{Port, SimulatedFinger, SimulatedPort};
+use crate::finger::{FingerReport, Servo, Stage};
+use crate::hand::dispatcher::{Dispatcher, Member};
+use crate::hand::opening::{Line, Reached, check, reach, simulate};
+use crate::hand::{HandError, configured};
+use crate::model::configuration::{Configuration, FINGERS};
+use crate::realtime::{CycleTiming, Latency, MonotonicClock, Priority, Realtime, Schedule, now, spawn};
+use crossbeam_channel::bounded;
+use nalgebra::Vector3;
+use rtrb::{Producer, RingBuffer};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::thread::{JoinHandle, sleep};
+use std::time::Duration;
+
+type PortServo = Servo<Port, MonotonicClock>;
+
+/// Cycles whose timings a servo can leave before they are collected: almost a second at the highest rate.
+const TIMINGS: usize = 4096;
+
+/// The first cycle begins so long after the threads are started, ns: they have their priorities and cores by then.
+const HEAD_START: u64 = 10_000_000;
+
+/// How often OpenHand looks whether every finger holds its pose.
+const LOOKING: Duration = Duration::from_millis(1);
+
+/// An open hand: three fingers, their servo threads and their ports. A value: a process can have several.
+///
+/// Every call may come from several threads. Dropping it closes it.
+pub struct Hand {
+    dispatcher: Dispatcher,
+    servos: Vec<JoinHandle<PortServo>>,
+    simulated: [Option<SimulatedPort>; FINGERS],
+    configuration: Configuration,
+    realtime: bool,
+}
+
+/// What is known of a finger and of the thread that serves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FingerStatus {
+    /// Where the finger is between open and close.
+    pub stage: Stage,
+    /// Whether every servo thread has the real-time priority and the core that the configuration asks for.
+    pub realtime: bool,
+    /// Configured cycles in a second, Hz.
+    pub rate: f64,
+    /// Measured cycles in a second since open, Hz.
+    pub measured_rate: f64,
+    /// From the scheduled beginning of a cycle to its first instruction, microseconds.
+    pub wake_up: Latency,
+    /// From the command to the reply, microseconds.
+    pub exchange: Latency,
+    /// Computation of one cycle, all fingers of the thread, microseconds.
+    pub compute: Latency,
+    /// Cycles since open.
+    pub cycles: u64,
+    /// Cycles without a valid reply.
+    pub lost_replies: u64,
+    /// Periods skipped because the servo was late.
+    pub skipped_periods: u64,
+    /// Damaged or foreign frames on the finger's port.
+    pub damaged_frames: u64,
+    /// The part of the wanted joint torque that the tension limits let through in the last cycle, 0 to 1.
+    pub torque_scale: f64,
+}
+
+impl Hand {
+    /// Opens the hand that the configuration file describes; where there is no such file the simulated one, and says so in
+    /// one line on standard error.
+    ///
+    /// # Errors
+    /// As [`Hand::open`], and a configuration file that cannot be read or used.
+    pub fn open_configured() -> Result<Self, HandError> {
+        let (configuration, file) = configured()?;
+        if file.is_none() {
+            eprintln!(
+                "sun2xp: no configuration file: this is the simulated hand (SUN2XP_CONFIG or sun2xp.toml names a real one)"
+            );
+        }
+        Self::open(configuration)
+    }
+
+    /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons and returns when every finger holds the
+    /// pose it is in at its initial stiffness.
+    ///
+    /// # Errors
+    /// A configuration that cannot be used, a port or board that does not serve, a finger that faults. Everything that was
+    /// opened is closed again then, and every motor is in its end state.
+    pub fn open(configuration: Configuration) -> Result<Self, HandError> {
+        check(&configuration)?;
+        let simulated = simulate(&configuration)?;
+        let (lines, reached) = reach(&configuration, &simulated)?;
+        let mut threads: Vec<u8> = lines.iter().map(|line| line.thread).collect();
+        threads.sort_unstable();
+        threads.dedup();
+
+        let (producers, consumers): (Vec<_>, Vec<_>) = threads.iter().map(|_| RingBuffer::new(TIMINGS)).unzip();
+        let member = |finger: Reached| {
+            let servo = threads.partition_point(|&thread| thread < configuration.thread(finger.index));
+            Member { admission: finger.admission, mailbox: finger.mailbox, servo }
+        };
+        let members = reached.into_iter().map(member).collect();
+        let dispatcher = Dispatcher::new(members, consumers);
+        let mut hand = Self { dispatcher, servos: Vec::new(), simulated, configuration, realtime: true };
+        // From here on, dropping the hand closes it.
+        hand.start(&threads, lines, producers)?;
+        hand.wait_for_every_finger()?;
+        Ok(hand)
+    }
+
+    /// theta_d of finger 1, 2 or 3: joints 0, 1, 2, rad. Takes effect within a cycle.
+    ///
+    /// # Errors
+    /// No such finger, NaN or infinity, beyond a joint limit, finger faulted.
+    pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
+        self.dispatcher.send_position(finger, joints)
+    }
+
+    /// Kx of finger 1, 2 or 3 in the finger's frame, N/cm: `rows[row][column]`. Takes effect whole, within a cycle.
+    ///
+    /// # Errors
+    /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, finger faulted.
+    pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
+        self.dispatcher.send_stiffness(finger, rows)
+    }
+
+    /// Measured joint angles of finger 1, 2 or 3, rad, not older than a cycle.
+    ///
+    /// # Errors
+    /// No such finger, finger faulted.
+    pub fn position(&self, finger: i32) -> Result<[f64; 3], HandError> {
+        self.dispatcher.report(finger).map(|report| report.cycle.joints.into())
+    }
+
+    /// The newest report of finger 1, 2 or 3, faulted or not.
+    ///
+    /// # Errors
+    /// No such finger.
+    pub fn report(&self, finger: i32) -> Result<FingerReport, HandError> {
+        self.dispatcher.last_report(finger)
+    }
+
+    /// How finger 1, 2 or 3 and its thread are doing.
+    ///
+    /// # Errors
+    /// No such finger.
+    pub fn status(&self, finger: i32) -> Result<FingerStatus, HandError> {
+        let report = self.dispatcher.last_report(finger)?;
+        let timings = self.dispatcher.timings(finger)?;
+        let seconds = report.last.saturating_sub(report.first) as f64 * 1e-9;
+        let intervals = report.cycles.saturating_sub(1) as f64;
+        Ok(FingerStatus {
+            stage: report.stage,
+            realtime: self.realtime,
+            rate: self.configuration.hand.rate,
+            measured_rate: if seconds > 0.0 { intervals / seconds } else { 0.0 },
+            wake_up: timings.wake_up(),
+            exchange: timings.exchange(),
+            compute: timings.compute(),
+            cycles: report.cycles,
+            lost_replies: report.lost_replies,
+            skipped_periods: report.skipped_periods,
+            damaged_frames: report.damaged_frames,
+            torque_scale: report.cycle.torque_scale,
+        })
+    }
+
+    /// Pushes the fingertip of a simulated finger with a force in the finger's frame, N, until the next such call.
+    ///
+    /// # Errors
+    /// No such finger, NaN or infinity, a finger on a real port.
+    pub fn push_simulated(&self, finger: i32, force: [f64; 3]) -> Result<(), HandError> {
+        self.dispatcher.member(finger)?.admission.finite("Force", &force)?;
+        let index = finger as usize - 1; // the member is there: 1 to 3
+        let port = self.simulated[index].as_ref().ok_or(HandError::NotSimulated(finger))?;
+        let push = |finger: &mut SimulatedFinger| finger.plant().set_external_force(Vector3::from(force));
+        // The board was made with this one address.
+        port.with_finger(self.configuration.address(index), push);
+        Ok(())
+    }
+
+    /// Whether the first refusal of each kind is to be printed on standard error.
+    pub fn print_refusals(&self) -> bool {
+        self.configuration.hand.print_refusals
+    }
+
+    /// Brings every finger to its end state, as configured, and ends the threads. The same as dropping the hand.
+    pub fn close(self) {}
+
+    fn start(
+        &mut self,
+        threads: &[u8],
+        lines: Vec<Line>,
+        producers: Vec<Producer<CycleTiming>>,
+    ) -> Result<(), HandError> {
+        let system = |doing| move |source| HandError::System { doing, source };
+        self.dispatcher.start_collecting().map_err(system("start the thread that collects reports"))?;
+        let period = (1e9 / self.configuration.hand.rate).round() as u64;
+        let first = now() + HEAD_START;
+        let mut lines: Vec<Option<Line>> = lines.into_iter().map(Some).collect();
+        let (told, hear) = bounded(threads.len());
+        for (place, (&thread, timings)) in threads.iter().zip(producers).enumerate() {
+            let own = lines.iter_mut().filter(|line| line.as_ref().is_some_and(|line| line.thread == thread));
+            let ports = own.filter_map(Option::take).map(|line| line.port).collect();
+            // Staggered, so that the fingers do not ask for one core at one instant.
+            let phase = period * place as u64 / threads.len() as u64;
+            let servo = Servo::new(MonotonicClock, Schedule::new(first + phase, period), ports, timings);
+            let told = told.clone();
+            let handle = spawn(&format!("sun2xp servo {thread}"), self.priority(thread), move |realtime| {
+                // The receiver waits for this; if OpenHand has given up meanwhile, nobody needs it.
+                let _ = told.send(realtime);
+                run(servo)
+            });
+            self.servos.push(handle.map_err(system("start a servo thread"))?);
+        }
+        let had: Vec<Realtime> = hear.iter().take(threads.len()).collect();
+        self.realtime = had.iter().all(|had| had.scheduling.is_none() && had.core.is_none());
+        announce(&had);
+        Ok(())
+    }
+
+    fn priority(&self, thread: u8) -> Priority {
+        let own = (0..FINGERS).find(|&index| self.configuration.thread(index) == thread);
+        // Fingers that share a thread have the same priority and core: the configuration was checked.
+        let finger = own.map(|index| &self.configuration.fingers[index]);
+        finger.map_or_else(Priority::default, |finger| Priority { fifo: finger.priority, core: finger.core })
+    }
+
+    /// Until every finger is a spring that holds its pose. Each decides by itself within the open time-out.
+    fn wait_for_every_finger(&self) -> Result<(), HandError> {
+        loop {
+            let mut opening = false;
+            for member in self.dispatcher.members() {
+                match member.mailbox.report().stage {
+                    Stage::Faulted(fault) => return Err(HandError::Faulted { finger: member.admission.finger, fault }),
+                    stage => opening |= stage == Stage::Opening,
+                }
+            }
+            if !opening {
+                self.dispatcher.members().iter().for_each(|member| member.mailbox.adopt());
+                return Ok(());
+            }
+            sleep(LOOKING);
+        }
+    }
+}
+
+impl Drop for Hand {
+    fn drop(&mut self) {
+        self.dispatcher.members().iter().for_each(|member| member.mailbox.close());
+        for servo in self.servos.drain(..) {
+            // A servo thread catches its own panics. Its ports are closed here, not in the servo: it may take long.
+            let _ = servo.join();
+        }
+    }
+}
+
+/// The body of a servo thread. A panic is a defect, but it must not leave the last torque on the motors.
+fn run(mut servo: PortServo) -> PortServo {
+    if catch_unwind(AssertUnwindSafe(|| servo.run())).is_err() {
+        // If even this panics, the board's watchdog is left.
+        let _ = catch_unwind(AssertUnwindSafe(|| servo.fail()));
+    }
+    servo
+}
+
+/// One line on standard error where servo threads are not what they should be.
+fn announce(had: &[Realtime]) {
+    if let Some(error) = had.iter().find_map(|had| had.scheduling.as_ref()) {
+        eprintln!(
+            "sun2xp: the servo is not real-time ({error}): allow it with CAP_SYS_NICE or an rtprio limit, or set \
+             `finger.priority = 0`; until then its cycles may be late"
+        );
+    }
+    if let Some(error) = had.iter().find_map(|had| had.core.as_ref()) {
+        eprintln!("sun2xp: a servo thread is not bound to its core ({error}): see `finger.core`");
+    }
+}

@@ -1,0 +1,245 @@
+//! What a configuration must satisfy before a motor may move.
+
+use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, FINGERS, Unusable};
+use crate::model::{Surface, TendonsError};
+
+/// A configuration that cannot be used: which finger's, or the hand's, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// 0 to 2, or none for `[hand]`.
+    pub finger: Option<usize>,
+    /// The key and the reason.
+    pub unusable: Unusable,
+}
+
+impl Configuration {
+    /// Checks every value and every relation between values that does not need a port.
+    ///
+    /// # Errors
+    /// The first unusable value found.
+    pub fn check(&self) -> Result<(), Refusal> {
+        self.hand.check().map_err(|unusable| Refusal { finger: None, unusable })?;
+        for (index, finger) in self.fingers.iter().enumerate() {
+            finger.check().map_err(|unusable| Refusal { finger: Some(index), unusable })?;
+        }
+        for second in 0..FINGERS {
+            for first in 0..second {
+                let between = self.check_sharing(first, second);
+                between.map_err(|unusable| Refusal { finger: Some(second), unusable })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_sharing(&self, first: usize, second: usize) -> Result<(), Unusable> {
+        let (one, other) = (&self.fingers[first], &self.fingers[second]);
+        let same_thread = self.thread(first) == self.thread(second);
+        if same_thread && (one.core != other.core || one.priority != other.priority) {
+            return unusable(
+                "thread",
+                format!(
+                    "fingers {} and {} share thread {} but name different cores or priorities",
+                    first + 1,
+                    second + 1,
+                    self.thread(first)
+                ),
+            );
+        }
+        if one.port == "simulated" || one.port != other.port {
+            return Ok(());
+        }
+        if !same_thread {
+            let (thread, finger) = (self.thread(first), first + 1);
+            let reason =
+                format!("shares the port {} with finger {finger}, so it needs the same thread: {thread}", one.port);
+            return unusable("thread", reason);
+        }
+        if self.address(first) == self.address(second) {
+            let reason = format!("fingers {} and {} have the same address on {}", first + 1, second + 1, one.port);
+            return unusable("address", reason);
+        }
+        if one.baud != other.baud {
+            let reason = format!("{} and {} on the one port {}", one.baud, other.baud, one.port);
+            return unusable("baud", reason);
+        }
+        Ok(())
+    }
+}
+
+impl ConfiguredHand {
+    fn check(&self) -> Result<(), Unusable> {
+        within("rate", self.rate, 100.0, 5000.0, "Hz")?;
+        within("hold_time_ms", self.hold_time_ms.into(), 1.0, 60_000.0, "ms")?;
+        within("hold_torque_limit", self.hold_torque_limit, 0.0, 1000.0, "N cm")?;
+        within("release_ramp_ms", self.release_ramp_ms.into(), 0.0, 5000.0, "ms")?;
+        within("open_timeout_ms", self.open_timeout_ms.into(), 10.0, 60_000.0, "ms")?;
+        within("watchdog_ms", self.watchdog_ms.into(), 2.0, 1000.0, "ms")?;
+        let period_ms = 1000.0 / self.rate;
+        if f64::from(self.watchdog_ms) < 2.0 * period_ms {
+            let reason = format!(
+                "{} ms is less than two periods of {period_ms} ms: one lost command would stop the motors",
+                self.watchdog_ms
+            );
+            return unusable("watchdog_ms", reason);
+        }
+        each("gravity", &self.gravity, -100.0, 100.0, "m/s^2")
+    }
+}
+
+impl ConfiguredFinger {
+    fn check(&self) -> Result<(), Unusable> {
+        if self.port.is_empty() {
+            return unusable("port", "is empty: the path of a serial port, or \"simulated\"".into());
+        }
+        within("baud", self.baud.into(), 9600.0, 12_000_000.0, "baud")?;
+        within("address", self.address.into(), 0.0, 15.0, "")?;
+        within("thread", self.thread.into(), 0.0, 3.0, "")?;
+        within("priority", self.priority.into(), 0.0, 99.0, "")?;
+        each("base", &self.base.unwrap_or_default(), -100.0, 100.0, "cm")?;
+        within("turn_degrees", self.turn_degrees.unwrap_or_default(), -360.0, 360.0, "degrees")?;
+        self.check_mechanism()?;
+        self.check_sensors_and_motors()?;
+        self.check_limits()?;
+        self.check_controller()?;
+        self.check_simulation()
+    }
+
+    fn check_mechanism(&self) -> Result<(), Unusable> {
+        each("geometry.links", &self.geometry.links, 0.1, 100.0, "cm")?;
+        self.geometry.r.iter().try_for_each(|row| each("geometry.r", row, -20.0, 20.0, "cm"))?;
+        each("geometry.motor_radius", &self.geometry.motor_radius, 1e-3, 20.0, "cm")?;
+        within("tendon.minimum", self.tendon.minimum, 0.1, 1000.0, "N")?;
+        within("tendon.maximum", self.tendon.maximum, 0.1, 1000.0, "N")?;
+        each("tendon.stiffness", &self.tendon.stiffness, 1.0, 1e6, "N/cm")?;
+        if let Some(ghost) = &self.geometry.ghost_row {
+            each("geometry.ghost_row", ghost, -100.0, 100.0, "")?;
+        }
+        let tendons = self.tendons().or_else(|error| {
+            let key = match error {
+                TendonsError::Singular(_) => "geometry.r",
+                TendonsError::GhostColumn(_) if self.geometry.ghost_row.is_some() => "geometry.ghost_row",
+                TendonsError::GhostColumn(_) => "geometry.r",
+            };
+            unusable(key, error.to_string())
+        })?;
+        let largest = tendons.pretension(self.tendon.minimum).max();
+        if self.tendon.maximum <= largest {
+            let reason = format!(
+                "{} N leaves no room: with t_min = {} N the null vector of R alone asks {largest:.3} N of one tendon",
+                self.tendon.maximum, self.tendon.minimum
+            );
+            return unusable("tendon.maximum", reason);
+        }
+        Ok(())
+    }
+
+    fn check_sensors_and_motors(&self) -> Result<(), Unusable> {
+        let signs = |key, signs: &[i8; 4]| match signs.iter().all(|sign| sign.abs() == 1) {
+            true => Ok(()),
+            false => unusable(key, format!("{signs:?}: each must be 1 or -1")),
+        };
+        signs("motor.sign", &self.motor.sign)?;
+        signs("encoder.sign", &self.encoder.sign)?;
+        each("motor.torque_limit", &self.motor.torque_limit, 1e-3, 6000.0, "N cm")?;
+        each("motor.torque_constant", &self.motor.torque_constant, 1e-3, 1e4, "N cm/A")?;
+        each("encoder.counts_per_revolution", &self.encoder.counts_per_revolution.map(f64::from), 4.0, 1e7, "")?;
+        each("gauge.newton_per_count", &self.gauge.newton_per_count.map(f64::abs), 1e-6, 10.0, "N")?;
+        each("gauge.zero", &self.gauge.zero, -65_536.0, 65_536.0, "counts")?;
+        let pretension =
+            self.tendons().map(|tendons| tendons.pretension(self.tendon.minimum).component_mul(&tendons.radius));
+        for (tendon, torque) in pretension.iter().flat_map(|torques| torques.iter().enumerate()) {
+            if *torque >= self.motor.torque_limit[tendon] {
+                let reason =
+                    format!("motor {} cannot hold its tendon's pretension, which takes {torque:.3} N cm", tendon + 1);
+                return unusable("motor.torque_limit", reason);
+            }
+        }
+        Ok(())
+    }
+
+    fn check_limits(&self) -> Result<(), Unusable> {
+        each("joints.minimum_degrees", &self.joints.minimum_degrees, -180.0, 180.0, "degrees")?;
+        each("joints.maximum_degrees", &self.joints.maximum_degrees, -180.0, 180.0, "degrees")?;
+        for joint in 0..3 {
+            let (low, high) = (self.joints.minimum_degrees[joint], self.joints.maximum_degrees[joint]);
+            if low >= high {
+                let reason = format!("joint {joint}: its lower limit {low} is not below its upper limit {high}");
+                return unusable("joints.minimum_degrees", reason);
+            }
+        }
+        if self.joints.minimum_degrees[2] <= 0.0 {
+            let reason = format!(
+                "{} degrees for joint 2 lets the finger straighten, where it is singular: above 0",
+                self.joints.minimum_degrees[2]
+            );
+            return unusable("joints.minimum_degrees", reason);
+        }
+        if let Some(bound) = self.stiffness.bound {
+            within("stiffness.bound", bound, 1e-3, 1000.0, "N/cm")?;
+        }
+        self.stiffness.initial.iter().try_for_each(|row| each("stiffness.initial", row, -1000.0, 1000.0, "N/cm"))
+    }
+
+    fn check_controller(&self) -> Result<(), Unusable> {
+        let optional = |key, value: Option<f64>, low, high, unit| {
+            value.map_or(Ok(()), |value| within(key, value, low, high, unit))
+        };
+        let controller = &self.controller;
+        optional("controller.tension_gain", controller.tension_gain, 0.0, 100.0, "")?;
+        optional("controller.tension_integral", controller.tension_integral, 0.0, 1e4, "1/s")?;
+        optional("controller.motor_damping", controller.motor_damping, 0.0, 1e4, "N s/m")?;
+        optional("controller.rate_time", controller.rate_time, 0.0, 1.0, "s")?;
+        optional("controller.speed_filter", controller.speed_filter, 1.0, 1e4, "Hz")?;
+        optional("controller.stretch_filter", controller.stretch_filter, 0.1, 1e4, "Hz")?;
+        optional("controller.set_point_speed", controller.set_point_speed, 1e-3, 1e3, "rad/s")
+    }
+
+    fn check_simulation(&self) -> Result<(), Unusable> {
+        let simulation = &self.simulation;
+        each("simulation.masses", &simulation.masses, 1e-6, 10.0, "kg")?;
+        each("simulation.link_radii", &simulation.link_radii, 1e-4, 1.0, "m")?;
+        each("simulation.joint_viscous_friction", &simulation.joint_viscous_friction, 0.0, 1.0, "N m s/rad")?;
+        each("simulation.joint_coulomb_friction", &simulation.joint_coulomb_friction, 0.0, 1.0, "N m")?;
+        each("simulation.tendon_stiffness", &simulation.tendon_stiffness, 1.0, 3000.0, "N/cm")?;
+        each("simulation.rotor_inertia", &simulation.rotor_inertia, 1e-8, 1.0, "kg m^2")?;
+        each("simulation.motor_viscous_friction", &simulation.motor_viscous_friction, 0.0, 1.0, "N m s/rad")?;
+        each("simulation.motor_coulomb_friction", &simulation.motor_coulomb_friction, 0.0, 1.0, "N m")?;
+        within("simulation.conduit_friction", simulation.conduit_friction, 0.0, 1.0, "")?;
+        each("simulation.motor_constant_ratio", &simulation.motor_constant_ratio, 0.0, 10.0, "")?;
+        within("simulation.gauge_noise", simulation.gauge_noise, 0.0, 100.0, "N")?;
+        within("simulation.stop_margin_degrees", simulation.stop_margin_degrees, 0.0, 90.0, "degrees")?;
+        each("simulation.start_degrees", &simulation.start_degrees, -180.0, 180.0, "degrees")?;
+        match simulation.surface {
+            None => Ok(()),
+            Some(Surface::Wall { point, normal, stiffness }) => {
+                each("simulation.surface", &point, -1000.0, 1000.0, "cm")?;
+                each("simulation.surface", &normal, -1e6, 1e6, "")?;
+                if normal.iter().all(|&part| part == 0.0) {
+                    return unusable("simulation.surface", "the wall's normal is zero".into());
+                }
+                within("simulation.surface", stiffness, 0.0, 1e4, "N/cm")
+            }
+            Some(Surface::Ball { centre, radius, stiffness }) => {
+                each("simulation.surface", &centre, -1000.0, 1000.0, "cm")?;
+                within("simulation.surface", radius, 1e-3, 1000.0, "cm")?;
+                within("simulation.surface", stiffness, 0.0, 1e4, "N/cm")
+            }
+        }
+    }
+}
+
+fn unusable<T>(key: &'static str, reason: String) -> Result<T, Unusable> {
+    Err(Unusable { key, reason })
+}
+
+fn within(key: &'static str, value: f64, low: f64, high: f64, unit: &str) -> Result<(), Unusable> {
+    // Written so that NaN is outside.
+    if value >= low && value <= high {
+        return Ok(());
+    }
+    unusable(key, format!("{value} is outside {low} to {high} {unit}").trim_end().into())
+}
+
+fn each(key: &'static str, values: &[f64], low: f64, high: f64, unit: &str) -> Result<(), Unusable> {
+    values.iter().try_for_each(|&value| within(key, value, low, high, unit))
+}

@@ -1,0 +1,11 @@
+//! Clock, periods, priorities and timing figures of the servo threads.
+
+mod clock;
+mod period;
+mod threads;
+mod timing;
+
+pub use clock::{Clock, MonotonicClock, now};
+pub use period::Schedule;
+pub use threads::{Priority, Realtime, spawn};
+pub use timing::{CycleTiming, Histograms, Latency};

@@ -1,0 +1,67 @@
+//! Periods by absolute deadlines.
+
+/// When the cycles of a servo begin: every `period` ns from a first one. Errors do not add up, because each beginning is
+/// counted from the first and not from the cycle before.
+#[derive(Clone, Copy, Debug)]
+pub struct Schedule {
+    next: u64,
+    period: u64,
+}
+
+impl Schedule {
+    /// Cycles at `first`, `first + period` and so on, ns.
+    pub fn new(first: u64, period: u64) -> Self {
+        Self { next: first, period }
+    }
+
+    /// When the next cycle begins, ns.
+    pub fn next(&self) -> u64 {
+        self.next
+    }
+
+    /// Length of a period, ns.
+    pub fn period(&self) -> u64 {
+        self.period
+    }
+
+    /// Moves to the next cycle after one that ended at `now`. Whole periods that have passed meanwhile are skipped, never
+    /// made up in a burst; returns how many.
+    pub fn advance(&mut self, now: u64) -> u64 {
+        self.next += self.period;
+        let skipped = now.saturating_sub(self.next) / self.period;
+        self.next += skipped * self.period;
+        skipped
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_cycle_in_time_moves_one_period() {
+        let mut schedule = Schedule::new(1000, 100);
+        assert_eq!((schedule.advance(1050), schedule.next()), (0, 1100));
+        // Ended after the next one should have begun: that one begins late, but it is not lost.
+        assert_eq!((schedule.advance(1250), schedule.next()), (0, 1200));
+        // More than a whole period late: skipped.
+        assert_eq!((schedule.advance(1617), schedule.next()), (3, 1600));
+    }
+
+    proptest! {
+        #[test]
+        fn beginnings_stay_on_the_grid_and_periods_are_accounted_for(
+            ends in proptest::collection::vec(0u64..5_000, 1..50), period in 1u64..1000,
+        ) {
+            let mut schedule = Schedule::new(0, period);
+            let (mut now, mut periods) = (0, 0);
+            for (cycle, lasted) in ends.iter().enumerate() {
+                now = now.max(schedule.next()) + lasted;
+                periods += 1 + schedule.advance(now);
+                prop_assert_eq!(schedule.next(), periods * period);
+                prop_assert!(schedule.next() + period > now, "cycle {} would be made up", cycle);
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Threads that leave the planner's signals alone and run real-time where the system permits it.
+#![allow(unsafe_code)]
+
+use std::io;
+use std::mem::MaybeUninit;
+use std::thread::{Builder, JoinHandle};
+
+/// Small, because what a thread may touch is locked in memory; many times what a servo cycle uses.
+const STACK_BYTES: usize = 256 * 1024;
+
+/// How a thread is scheduled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Priority {
+    /// SCHED_FIFO priority, 1 to 99; 0: an ordinary thread.
+    pub fifo: u8,
+    /// Core that the thread is bound to.
+    pub core: Option<usize>,
+}
+
+/// What of a [`Priority`] was had.
+#[derive(Debug, Default)]
+pub struct Realtime {
+    /// Why the thread is not real-time, though it was asked to be.
+    pub scheduling: Option<io::Error>,
+    /// Why the thread is not bound to its core, though it was asked to be.
+    pub core: Option<io::Error>,
+}
+
+/// Starts a thread with all signals blocked, so that it takes none of the planner's: not one that the process receives, nor
+/// one that its own system calls let in. `body` runs after the thread has the priority it could get, and is told.
+///
+/// # Errors
+/// The system refuses a thread.
+pub fn spawn<T: Send + 'static>(
+    name: &str,
+    priority: Priority,
+    body: impl FnOnce(Realtime) -> T + Send + 'static,
+) -> io::Result<JoinHandle<T>> {
+    let restored = block_all_signals();
+    let handle = Builder::new().name(name.into()).stack_size(STACK_BYTES).spawn(move || body(apply(priority)));
+    // SAFETY: `restored` is the mask that this thread had.
+    unsafe { libc::pthread_sigmask(libc::SIG_SETMASK, &restored, std::ptr::null_mut()) };
+    handle
+}
+
+/// Blocks every signal in the calling thread, whose new threads inherit that; returns the mask to restore.
+fn block_all_signals() -> libc::sigset_t {
+    let (mut all, mut before) = (MaybeUninit::uninit(), MaybeUninit::uninit());
+    // SAFETY: sigfillset and pthread_sigmask initialise what they are given; SIG_SETMASK with two valid pointers cannot fail.
+    unsafe {
+        libc::sigfillset(all.as_mut_ptr());
+        libc::pthread_sigmask(libc::SIG_SETMASK, all.as_ptr(), before.as_mut_ptr());
+        before.assume_init()
+    }
+}
+
+fn apply(priority: Priority) -> Realtime {
+    let mut had = Realtime::default();
+    // An ordinary thread's timers are 50 us late by default; real-time threads have no slack.
+    // SAFETY: PR_SET_TIMERSLACK takes ns as a number and changes the calling thread only.
+    unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1 as libc::c_ulong) };
+    if priority.fifo > 0 {
+        let parameters = libc::sched_param { sched_priority: priority.fifo.into() };
+        // SAFETY: the calling thread, a valid parameter block.
+        let refused = unsafe { libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &parameters) };
+        had.scheduling = (refused != 0).then(|| io::Error::from_raw_os_error(refused));
+    }
+    if let Some(core) = priority.core {
+        had.core = bind(core).err();
+    }
+    had
+}
+
+fn bind(core: usize) -> io::Result<()> {
+    if core >= libc::CPU_SETSIZE as usize {
+        return Err(io::Error::from_raw_os_error(libc::EINVAL));
+    }
+    // SAFETY: a cpu_set_t is plain bits, all zero is the empty set; `core` is within it.
+    let refused = unsafe {
+        let mut set: libc::cpu_set_t = std::mem::zeroed();
+        libc::CPU_SET(core, &mut set);
+        libc::sched_setaffinity(0, size_of::<libc::cpu_set_t>(), &set)
+    };
+    if refused == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thread_has_every_signal_blocked_and_its_starter_has_not() {
+        let blocked = |signal| {
+            let mut mask = MaybeUninit::uninit();
+            // SAFETY: a null new mask only reads the old one into `mask`.
+            unsafe {
+                libc::pthread_sigmask(libc::SIG_BLOCK, std::ptr::null(), mask.as_mut_ptr());
+                libc::sigismember(&mask.assume_init(), signal) == 1
+            }
+        };
+        let signals = [libc::SIGALRM, libc::SIGINT, libc::SIGCHLD, libc::SIGUSR1, libc::SIGTERM];
+        let inside = spawn("quiet", Priority::default(), move |_| signals.map(blocked)).expect("a thread").join();
+        assert_eq!(inside.expect("no panic"), [true; 5]);
+        assert_eq!(signals.map(blocked), [false; 5]);
+    }
+
+    #[test]
+    fn a_core_that_is_not_there_is_told_and_survived() {
+        let priority = Priority { fifo: 0, core: Some(1023) };
+        let had = spawn("lost", priority, |had| had).expect("a thread").join().expect("no panic");
+        assert!(had.core.is_some() && had.scheduling.is_none());
+    }
+}

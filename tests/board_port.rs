@@ -1,0 +1,122 @@
+//! The serial port and the simulated board over a real pseudo-terminal, in real time.
+
+use nalgebra::Vector3;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use sun2xp::board::protocol::{Command, Status};
+use sun2xp::board::*;
+use sun2xp::model::configuration::{ConfiguredFinger, ConfiguredHand};
+use sun2xp::realtime::{self, Priority};
+
+const MS: u64 = 1_000_000;
+
+fn board() -> SimulatedPort {
+    let fingers = (1..=3).map(|address| (address, ConfiguredFinger::default())).collect();
+    SimulatedPort::start(SimulatedBoard::new(fingers, Vector3::zeros()).unwrap(), Priority::default()).unwrap()
+}
+
+fn terms() -> Terms {
+    // Long, because this machine may be busy; the watchdog itself is tested on simulated time.
+    let hand = ConfiguredHand { watchdog_ms: 500, ..Default::default() };
+    Terms::new(&hand, &ConfiguredFinger::default())
+}
+
+fn pull() -> Command {
+    Command { toggle: true, enable: true, torques: [3000; 4] }
+}
+
+#[test]
+fn cycles_over_a_pseudo_terminal() {
+    let board = board();
+    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    for address in 1..=3 {
+        link.shake_hands(address, &terms(), realtime::now() + 2000 * MS).unwrap();
+    }
+    for sequence in 0..200 {
+        let commands = [1, 2, 3].map(|address| OutgoingCommand { address, sequence, command: pull() });
+        link.send(&commands).unwrap();
+        for address in 1..=3 {
+            let received = link.receive(realtime::now() + 1000 * MS).unwrap().expect("a reply within a second");
+            assert_eq!((received.address, received.sequence), (address, sequence));
+            assert!(received.reply.status.has(Status::ENABLED));
+        }
+    }
+    assert!(link.stop(1, realtime::now() + 1000 * MS).unwrap());
+    let counters = link.counters();
+    assert_eq!((counters.damaged, counters.foreign, counters.unsent), (0, 0, 0));
+    assert_eq!(board.with_finger(1, |finger| finger.enabled()), Some(false));
+    assert_eq!(board.with_finger(2, |finger| finger.enabled()), Some(true));
+    assert_eq!(board.with_finger(4, |finger| finger.enabled()), None);
+}
+
+#[test]
+fn a_deadline_is_kept_when_nothing_comes() {
+    let board = board();
+    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    let deadline = realtime::now() + 20 * MS;
+    assert_eq!(link.receive(deadline).unwrap(), None);
+    assert!(realtime::now() >= deadline);
+}
+
+#[test]
+fn a_port_has_one_user_at_a_time_also_after_one_that_left_no_word() {
+    let board = board();
+    let first = Link::open(board.path(), 1_000_000).unwrap();
+    let busy = Link::open(board.path(), 1_000_000).unwrap_err();
+    assert_eq!(busy.errno(), libc::EBUSY);
+    assert!(busy.to_string().contains(&*board.path().to_string_lossy()), "{busy}");
+    drop(first);
+    let mut second = Link::open(board.path(), 1_000_000).unwrap();
+    second.shake_hands(1, &terms(), realtime::now() + 2000 * MS).unwrap();
+}
+
+#[test]
+fn answers_that_the_last_host_did_not_fetch_do_not_reach_the_next() {
+    let board = board();
+    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    link.shake_hands(1, &terms(), realtime::now() + 2000 * MS).unwrap();
+    for sequence in 0..50 {
+        link.send(&[OutgoingCommand { address: 1, sequence, command: pull() }]).unwrap();
+    }
+    drop(link);
+    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    // The first host's motors still follow; the handshake waits for the watchdog.
+    link.shake_hands(1, &terms(), realtime::now() + 5000 * MS).unwrap();
+    link.send(&[OutgoingCommand { address: 1, sequence: 99, command: pull() }]).unwrap();
+    let received = link.receive(realtime::now() + 1000 * MS).unwrap().expect("a reply");
+    assert_eq!(received.sequence, 99);
+}
+
+#[test]
+fn the_end_of_the_board_is_an_error_and_not_a_silence() {
+    let board = board();
+    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    drop(board);
+    let error = link.receive(realtime::now() + 5000 * MS).unwrap_err();
+    assert!(matches!(error, LinkError::Port(PortError::Vanished)), "{error:?}");
+    assert_eq!(error.errno(), libc::EIO);
+}
+
+#[test]
+fn opening_what_cannot_be_opened_says_why() {
+    let errno = |path: &str| Port::open(Path::new(path), 1_000_000).unwrap_err().errno();
+    assert_eq!(errno("/nonexistent/port"), libc::ENOENT);
+    assert_eq!(errno("/dev/null"), libc::ENOTTY);
+    let file = tempfile::NamedTempFile::new().unwrap();
+    assert_eq!(errno(&file.path().to_string_lossy()), libc::ENOTTY);
+}
+
+#[test]
+fn silence_on_a_real_clock_ends_the_torque() {
+    let board = board();
+    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    let short = Terms { watchdog_ms: 20, ..terms() };
+    link.shake_hands(1, &short, realtime::now() + 2000 * MS).unwrap();
+    link.send(&[OutgoingCommand { address: 1, sequence: 0, command: pull() }]).unwrap();
+    assert!(link.receive(realtime::now() + 1000 * MS).unwrap().is_some());
+    let waiting = Instant::now();
+    while board.with_finger(1, |finger| finger.enabled()) == Some(true) {
+        assert!(waiting.elapsed() < Duration::from_secs(10), "the watchdog does not trip");
+        std::thread::yield_now();
+    }
+}

@@ -1,0 +1,23 @@
+/* check.h - what the test programs share. C89. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+/* Ends the program with the place and the library's reason where a condition does not hold. */
+#define CHECK(Condition) \
+    do { \
+        if (!(Condition)) { \
+            fprintf(stderr, "%s:%d: not so: %s (HandError: %s)\n", __FILE__, __LINE__, #Condition, HandError()); \
+            exit(1); \
+        } \
+    } while (0)
+
+#define PAUSE_MS(Milliseconds) \
+    do { \
+        struct timespec span; \
+        span.tv_sec = (Milliseconds) / 1000; \
+        span.tv_nsec = (Milliseconds) % 1000 * 1000000L; \
+        nanosleep(&span, NULL); \
+    } while (0)
+
+#define APART(A, B) ((A) > (B) ? (A) - (B) : (B) - (A))

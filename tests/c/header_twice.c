@@ -1,0 +1,5 @@
+/* The header, twice, in C. */
+#include "Sun2Xp.h"
+#include "Sun2Xp.h"
+
+extern int nothing_else;

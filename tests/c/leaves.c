@@ -1,0 +1,47 @@
+/* Ends with the hand open: "return" from main, "exit" in a thread's midst, "handler" by exit in a signal handler, or "thread"
+   with other threads in the calls. The status is 3 in each case. */
+#include <pthread.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/time.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+static void leave(int number)
+{
+    (void)number;
+    exit(3);
+}
+
+static void *hammer(void *unused)
+{
+    float Pos[3];
+    for (;;)
+        if (GetPos(1, Pos) == 0)
+            SendPos(1, Pos);
+    return unused;
+}
+
+int main(int count, char **arguments)
+{
+    pthread_t thread;
+
+    CHECK(count == 2);
+    CHECK(OpenHand() == 0);
+    if (strcmp(arguments[1], "exit") == 0)
+        exit(3);
+    if (strcmp(arguments[1], "handler") == 0) {
+        struct itimerval soon;
+        memset(&soon, 0, sizeof soon);
+        soon.it_value.tv_usec = 20000;
+        signal(SIGALRM, leave);
+        CHECK(setitimer(ITIMER_REAL, &soon, NULL) == 0);
+        hammer(NULL);
+    }
+    if (strcmp(arguments[1], "thread") == 0) {
+        CHECK(pthread_create(&thread, NULL, hammer, NULL) == 0);
+        CHECK(pthread_create(&thread, NULL, hammer, NULL) == 0);
+        PAUSE_MS(50);
+    }
+    return 3;
+}

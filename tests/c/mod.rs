@@ -1,0 +1,119 @@
+//! Compiles the C programs of this folder against the header and the library that the same `cargo test` has built, and runs
+//! them where no configuration of the machine can be found.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::{Mutex, PoisonError};
+use tempfile::TempDir;
+
+/// Flags that every C program must pass without a warning.
+pub const STRICT: &[&str] = &["-pedantic", "-Wall", "-Wextra", "-Werror"];
+
+/// The C compilers that are here; gcc, or whatever `cc` is, must be.
+pub fn c_compilers() -> Vec<&'static str> {
+    here(&["gcc", "clang"]).unwrap_or_else(|| vec!["cc"])
+}
+
+/// The C++ compilers that are here.
+pub fn cpp_compilers() -> Vec<&'static str> {
+    here(&["g++", "clang++"]).unwrap_or_else(|| vec!["c++"])
+}
+
+fn here(compilers: &[&'static str]) -> Option<Vec<&'static str>> {
+    let answers =
+        |compiler: &&str| Command::new(compiler).arg("--version").output().is_ok_and(|run| run.status.success());
+    let found: Vec<_> = compilers.iter().copied().filter(answers).collect();
+    (!found.is_empty()).then_some(found)
+}
+
+/// A scratch folder with the library under the names that programs look for.
+pub struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    pub fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        for name in ["libsun2xp.so", "libsun2xp.so.0"] {
+            std::os::unix::fs::symlink(library(), folder.path().join(name)).expect("a link to the library");
+        }
+        Self { folder }
+    }
+
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Compiles without linking; the compiler's messages where it refuses.
+    pub fn check(&self, compiler: &str, flags: &[&str], source: &str) -> Result<(), String> {
+        let mut command = self.compiler(compiler, flags);
+        outcome(command.arg("-c").args(["-o", "/dev/null"]).arg(source_file(source)))
+    }
+
+    /// Compiles and links; the path of the program.
+    pub fn build(&self, compiler: &str, flags: &[&str], sources: &[&str]) -> PathBuf {
+        let program = self.path().join(sources[0].replace('.', "_"));
+        let mut command = self.compiler(compiler, flags);
+        command.args(sources.iter().map(|source| source_file(source))).arg("-o").arg(&program);
+        command.arg("-L").arg(self.path()).arg(format!("-Wl,-rpath,{}", self.path().display()));
+        let built = outcome(command.args(["-lsun2xp", "-lpthread", "-ldl", "-lm"]));
+        built.unwrap_or_else(|messages| panic!("{messages}"));
+        program
+    }
+
+    fn compiler(&self, compiler: &str, flags: &[&str]) -> Command {
+        let mut command = Command::new(compiler);
+        // POSIX names stay visible under -ansi.
+        command.args(flags).args(["-O1", "-g", "-D_DEFAULT_SOURCE", "-I"]).arg(root().join("include"));
+        command
+    }
+
+    /// Compiles, links and runs one program that must exit with 0, under gcc.
+    pub fn succeed(&self, flags: &[&str], sources: &[&str]) {
+        let compiler = if sources[0].ends_with("cpp") { cpp_compilers()[0] } else { c_compilers()[0] };
+        let program = self.build(compiler, flags, sources);
+        let run = self.run(Command::new(&program));
+        assert!(run.status.success(), "{sources:?} {flags:?}: {}\n{}", run.status, said(&run));
+    }
+
+    /// Runs a program in the scratch folder, with the configuration `named.toml` if that is there. One at a time: three servo threads and their boards want the machine.
+    pub fn run(&self, mut command: Command) -> Output {
+        static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+        let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+        let nowhere = self.path().join("nowhere");
+        command.current_dir(self.path()).env_remove("SUN2XP_CONFIG");
+        command.env("HOME", &nowhere).env("XDG_CONFIG_HOME", &nowhere).env("XDG_CONFIG_DIRS", &nowhere);
+        let named = self.path().join("named.toml");
+        if named.exists() {
+            command.env("SUN2XP_CONFIG", named);
+        }
+        command.output().expect("the program can be started")
+    }
+}
+
+/// What a program printed.
+pub fn said(run: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&run.stdout), String::from_utf8_lossy(&run.stderr))
+}
+
+/// The shared library of this very build, beside the test's executable.
+pub fn library() -> PathBuf {
+    let executable = env::current_exe().expect("the test has a path");
+    let library = executable.with_file_name("libsun2xp.so");
+    assert!(library.exists(), "{} is missing: cargo test builds it", library.display());
+    library
+}
+
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn source_file(source: &str) -> PathBuf {
+    root().join("tests/c").join(source)
+}
+
+fn outcome(command: &mut Command) -> Result<(), String> {
+    let run = command.output().expect("the compiler can be started");
+    if run.status.success() { Ok(()) } else { Err(format!("{command:?}\n{}", said(&run))) }
+}

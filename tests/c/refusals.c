@@ -1,0 +1,90 @@
+/* Every refusal of an open hand: its errno, its text, outputs left alone, and the hand goes on. */
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+#define REFUSED(Call, Errno, Word) \
+    do { \
+        errno = 0; \
+        CHECK((Call) == -1); \
+        CHECK(errno == (Errno)); \
+        CHECK(strstr(HandError(), (Word)) != NULL); \
+    } while (0)
+
+int main(void)
+{
+    const float Fine[3] = {0.0f, 0.5f, 0.9f};
+    float Pos[3] = {0.0f, 0.5f, 0.9f};
+    double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
+    double Force[3] = {0, 0, 0};
+    float Output[3] = {7.0f, 8.0f, 9.0f};
+    double OutputD[3] = {7.0, 8.0, 9.0};
+    struct FingerStatus Status, Untouched;
+    int finger;
+
+    CHECK(strcmp(HandError(), "") == 0);
+    CHECK(OpenHand() == 0);
+    CHECK(strcmp(HandError(), "") == 0);
+
+    for (finger = -1; finger <= 4; finger += finger == 0 ? 4 : 1) {
+        REFUSED(SendPos(finger, Pos), EINVAL, "1, 2 and 3");
+        REFUSED(SendKx(finger, Kx), EINVAL, "1, 2 and 3");
+        REFUSED(GetPos(finger, Output), EINVAL, "1, 2 and 3");
+        REFUSED(GetPos(finger, OutputD), EINVAL, "1, 2 and 3");
+        REFUSED(PushFinger(finger, Force), EINVAL, "1, 2 and 3");
+    }
+    CHECK(Output[0] == 7.0f && Output[1] == 8.0f && Output[2] == 9.0f);
+    CHECK(OutputD[0] == 7.0 && OutputD[1] == 8.0 && OutputD[2] == 9.0);
+
+    Pos[1] = NAN;
+    REFUSED(SendPos(1, Pos), EINVAL, "SendPos");
+    Pos[1] = -INFINITY;
+    REFUSED(SendPos(1, Pos), EINVAL, "Pos");
+    Kx[2][1] = NAN;
+    REFUSED(SendKx(1, Kx), EINVAL, "Kx");
+    Kx[2][1] = 0;
+    Force[2] = INFINITY;
+    REFUSED(PushFinger(1, Force), EINVAL, "Force");
+
+    Pos[1] = 0.5f;
+    Pos[2] = 0.0f;
+    REFUSED(SendPos(1, Pos), ERANGE, "Pos[2]");
+    Pos[2] = 2.2f;
+    REFUSED(SendPos(1, Pos), ERANGE, "Pos[2]");
+    Kx[0][0] = 6.1;
+    REFUSED(SendKx(1, Kx), ERANGE, "Kx");
+    Kx[0][0] = 6.0;
+    CHECK(SendKx(1, Kx) == 0);
+
+    Kx[0][1] = 0.01;
+    REFUSED(SendKx(1, Kx), EDOM, "symmetric");
+    Kx[0][1] = 0.005;
+    CHECK(SendKx(1, Kx) == 0);
+    Kx[0][1] = 0;
+    Kx[2][2] = -0.1;
+    REFUSED(SendKx(1, Kx), EDOM, "eigenvalue");
+    Kx[2][2] = -0.005;
+    CHECK(SendKx(1, Kx) == 0);
+    Kx[2][2] = 0;
+    CHECK(SendKx(1, Kx) == 0);
+    memset(Kx, 0, sizeof Kx);
+    CHECK(SendKx(1, Kx) == 0);
+
+    memset(&Status, 7, sizeof Status);
+    Status.Size = 8;
+    Untouched = Status;
+    REFUSED(GetStatus(1, &Status), EINVAL, "Size");
+    Status.Size = Untouched.Size = sizeof Status;
+    REFUSED(GetStatus(0, &Status), EINVAL, "1, 2 and 3");
+    CHECK(memcmp(&Status, &Untouched, sizeof Status) == 0);
+
+    errno = 0;
+    REFUSED(OpenHand(), EBUSY, "open already");
+    CHECK(SendPos(1, Fine) == 0);
+    CHECK(GetPos(1, Output) == 0);
+    CHECK(Output[0] != 7.0f);
+    CHECK(CloseHand() == 0);
+    return 0;
+}

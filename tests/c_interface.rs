@@ -1,0 +1,232 @@
+//! The C interface as C programs see it: they are compiled, linked against the shared library, and move the simulated hand.
+
+#[allow(dead_code)]
+mod c;
+
+use c::{Bench, STRICT, c_compilers, library, said};
+use std::fs;
+use std::process::Command;
+
+fn succeed(flags: &[&str], sources: &[&str]) {
+    Bench::new().succeed(flags, sources);
+}
+
+fn strict<'a>(flags: &[&'a str]) -> Vec<&'a str> {
+    [STRICT, flags].concat()
+}
+
+#[test]
+fn a_planner_with_float_arrays_arrives() {
+    succeed(&strict(&["-ansi", "-DREAL=float"]), &["reach.c"]);
+}
+
+#[test]
+fn a_planner_with_double_arrays_arrives() {
+    succeed(&strict(&["-std=c17", "-DREAL=double"]), &["reach.c"]);
+}
+
+#[test]
+fn a_planner_arrives_where_the_compiler_has_no_generic() {
+    succeed(&strict(&["-ansi", "-DREAL=double", "-DSUN2XP_NO_GENERIC"]), &["reach.c"]);
+}
+
+#[test]
+fn a_planner_in_k_and_r_c_without_include_arrives_with_float_and_with_double() {
+    succeed(&["-std=gnu89", "-DREAL=float"], &["old.c"]);
+    let double = ["-std=gnu89", "-DREAL=double", "-DSendPos=SendPosD", "-DSendKx=SendKxD", "-DGetPos=GetPosD"];
+    succeed(&double, &["old.c"]);
+}
+
+#[test]
+fn a_planner_in_cpp_arrives() {
+    for standard in ["-std=c++98", "-std=c++17"] {
+        succeed(&strict(&[standard]), &["reach.cpp"]);
+    }
+}
+
+#[test]
+fn a_header_inside_extern_c_serves() {
+    succeed(&strict(&[]), &["inside_extern_c.cpp"]);
+}
+
+#[test]
+fn own_declarations_and_addresses_are_served() {
+    succeed(&strict(&["-DSUN2XP_REAL=float", "-DREAL=float"]), &["own.c"]);
+    succeed(&strict(&["-DSUN2XP_REAL=double", "-DREAL=double"]), &["own.c"]);
+    succeed(&strict(&["-DSUN2XP_H", "-DANSI_DECLARATIONS", "-DREAL=float"]), &["own.c"]);
+}
+
+#[test]
+fn two_files_may_include_the_c_file_of_1990() {
+    succeed(&strict(&[]), &["two_files.c", "two_files_other.c"]);
+}
+
+#[test]
+fn arguments_are_evaluated_once() {
+    succeed(&strict(&["-std=c99"]), &["once.c"]);
+    succeed(&strict(&["-std=c99", "-DSUN2XP_NO_GENERIC"]), &["once.c"]);
+}
+
+#[test]
+fn null_pointers_are_refused() {
+    succeed(&strict(&["-ansi"]), &["null.c"]);
+}
+
+#[test]
+fn refusals_have_their_errno_and_text_and_change_nothing() {
+    succeed(&strict(&["-std=c99"]), &["refusals.c"]);
+}
+
+#[test]
+fn without_a_hand_calls_are_refused_and_close_is_done() {
+    succeed(&strict(&["-std=c99"]), &["closed.c"]);
+}
+
+#[test]
+fn a_forked_child_is_refused() {
+    succeed(&strict(&[]), &["forked.c"]);
+}
+
+#[test]
+fn the_alarms_of_a_planner_are_its_own() {
+    succeed(&strict(&[]), &["signals.c"]);
+}
+
+#[test]
+fn threads_may_call_at_once() {
+    succeed(&strict(&[]), &["threads.c"]);
+}
+
+#[test]
+fn dlclose_leaves_the_hand() {
+    succeed(&strict(&[]), &["loaded.c"]);
+}
+
+#[test]
+fn the_status_tells_of_the_servo() {
+    succeed(&strict(&[]), &["status.c"]);
+}
+
+#[test]
+fn a_planner_may_leave_without_closing() {
+    let bench = Bench::new();
+    let program = bench.build(c_compilers()[0], STRICT, &["leaves.c"]);
+    for way in ["return", "exit", "handler", "thread"] {
+        let mut command = Command::new(&program);
+        command.arg(way);
+        let run = bench.run(command);
+        assert_eq!(run.status.code(), Some(3), "{way}: {}", said(&run));
+    }
+}
+
+/// Runs `opens.c` with a configuration file.
+fn opened_with(configuration: &str) -> (Option<i32>, String, String) {
+    let bench = Bench::new();
+    fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
+    let program = bench.build(c_compilers()[0], STRICT, &["opens.c"]);
+    let run = bench.run(Command::new(&program));
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (run.status.code(), text(&run.stdout), text(&run.stderr))
+}
+
+#[test]
+fn the_first_refusal_of_each_kind_prints_one_line() {
+    let (status, _, printed) = opened_with("");
+    assert_eq!(status, Some(0), "{printed}");
+    let refusals: Vec<_> = printed.lines().filter(|line| line.contains("SendPos")).collect();
+    // Out of limits, no such finger, no hand: each was refused several times.
+    assert_eq!(refusals.len(), 3, "{printed}");
+    assert!(refusals.iter().all(|line| line.starts_with("sun2xp: SendPos: ")), "{printed}");
+}
+
+#[test]
+fn refusals_can_be_silent() {
+    let (status, _, printed) = opened_with("[hand]\nprint_refusals = false\n");
+    assert_eq!(status, Some(0), "{printed}");
+    assert!(!printed.contains("SendPos"), "{printed}");
+}
+
+#[test]
+fn clamping_is_not_refusing() {
+    let (status, _, printed) = opened_with("[hand]\nout_of_range = \"clamp\"\n");
+    assert_eq!(status, Some(0), "{printed}");
+    assert!(!printed.contains("SendPos: Pos["), "{printed}");
+}
+
+#[test]
+fn a_configuration_that_cannot_be_used_is_told_with_its_line() {
+    for (configuration, line, word) in [
+        ("[hand]\nrat = 1000.0\n", 2, "rat"),
+        ("[finger.2]\n\nbaud = \"fast\"\n", 3, "baud"),
+        ("[hand]\nrate = 1.0\n", 2, "rate"),
+        (
+            "[finger.geometry]\nr = [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, 1.09], [0.0, 0.62, -0.62, 0.0]]\n",
+            2,
+            "singular",
+        ),
+    ] {
+        let (status, told, printed) = opened_with(configuration);
+        assert_eq!(status, Some(2), "{configuration}: {told}{printed}");
+        assert!(told.starts_with("Invalid argument: OpenHand: "), "{told}");
+        assert!(told.contains(&format!("named.toml:{line}: ")), "{configuration}: {told}");
+        assert!(told.contains(word), "{configuration}: {told}");
+    }
+}
+
+#[test]
+fn a_named_configuration_must_exist() {
+    let bench = Bench::new();
+    let program = bench.build(c_compilers()[0], STRICT, &["opens.c"]);
+    let mut command = Command::new("env");
+    command.arg("SUN2XP_CONFIG=missing.toml").arg(&program);
+    let run = bench.run(command);
+    assert_eq!(run.status.code(), Some(2), "{}", said(&run));
+    assert!(said(&run).contains("No such file or directory: OpenHand: "), "{}", said(&run));
+    assert!(said(&run).contains("missing.toml"), "{}", said(&run));
+}
+
+#[test]
+fn a_port_that_does_not_exist_is_told() {
+    let (status, told, _) = opened_with("[finger.1]\nport = \"no/such/port\"\n");
+    assert_eq!(status, Some(2), "{told}");
+    assert!(told.starts_with("No such file or directory: OpenHand: ") && told.contains("no/such/port"), "{told}");
+}
+
+#[test]
+fn the_simulated_hand_is_announced_in_one_line() {
+    let bench = Bench::new();
+    let program = bench.build(c_compilers()[0], STRICT, &["opens.c"]);
+    let run = bench.run(Command::new(&program));
+    let announced = said(&run).lines().filter(|line| line.contains("simulated")).count();
+    assert_eq!(announced, 1, "{}", said(&run));
+}
+
+#[test]
+fn the_library_exports_the_calls_and_nothing_else() {
+    let run = Command::new("nm").args(["-D", "--defined-only"]).arg(library()).output().expect("nm can be started");
+    let listing = said(&run);
+    let mut exported: Vec<_> = listing.lines().filter_map(|line| line.split_whitespace().nth(2)).collect();
+    exported.sort_unstable();
+    let calls = [
+        "CloseHand",
+        "GetPos",
+        "GetPosD",
+        "GetStatus",
+        "HandError",
+        "OpenHand",
+        "PushFinger",
+        "SendKx",
+        "SendKxD",
+        "SendPos",
+        "SendPosD",
+    ];
+    assert_eq!(exported, calls);
+}
+
+#[test]
+fn the_library_has_its_name_and_stays_loaded() {
+    let run = Command::new("readelf").args(["-d", "-W"]).arg(library()).output().expect("readelf can be started");
+    let dynamic = said(&run);
+    assert!(dynamic.contains("[libsun2xp.so.0]"), "{dynamic}");
+    assert!(dynamic.contains("NODELETE"), "{dynamic}");
+}

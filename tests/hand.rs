@@ -1,0 +1,138 @@
+//! A hand on simulated boards: real threads, real pseudo terminals, real time.
+
+use std::time::{Duration, Instant};
+use sun2xp::finger::Stage;
+use sun2xp::hand::{Hand, HandError};
+use sun2xp::model::configuration::{Configuration, EndState};
+
+const TARGET: [f64; 3] = [0.2, 0.6, 1.1];
+
+fn open(configuration: Configuration) -> Hand {
+    Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"))
+}
+
+fn farthest(hand: &Hand, finger: i32, target: [f64; 3]) -> f64 {
+    let position = hand.position(finger).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
+    position.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max)
+}
+
+/// Until the finger has been within `tolerance` of `target` for 100 ms.
+fn settles(hand: &Hand, finger: i32, target: [f64; 3], tolerance: f64) -> bool {
+    let limit = Instant::now() + Duration::from_secs(10);
+    let mut since = Instant::now();
+    while Instant::now() < limit {
+        if farthest(hand, finger, target) > tolerance {
+            since = Instant::now();
+        } else if since.elapsed() > Duration::from_millis(100) {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    false
+}
+
+#[test]
+fn every_finger_holds_its_pose_after_open_and_goes_where_it_is_sent() {
+    let hand = open(Configuration::default());
+    let start = [0.0, 30f64.to_radians(), 60f64.to_radians()];
+    for finger in 1..=3 {
+        assert!(farthest(&hand, finger, start) < 0.02, "finger {finger}: {:?}", hand.position(finger));
+    }
+    for finger in 1..=3 {
+        hand.send_position(finger, TARGET.map(|angle| angle + 0.05 * f64::from(finger))).expect("sent");
+    }
+    for finger in 1..=3 {
+        let target = TARGET.map(|angle| angle + 0.05 * f64::from(finger));
+        assert!(settles(&hand, finger, target, 0.02), "finger {finger}: {:?}", hand.position(finger));
+        let report = hand.report(finger).expect("a report");
+        assert_eq!(report.stage, Stage::Running);
+        assert!(report.cycle.desired_tensions.min() > 5.0 - 1e-9, "{}", report.cycle.desired_tensions);
+        assert!(report.cycle.tensions.min() > 4.8 - 0.15, "{}", report.cycle.tensions);
+    }
+    let status = hand.status(1).expect("status");
+    assert!(status.cycles > 100);
+    hand.close();
+}
+
+#[test]
+fn two_hands_live_in_one_process() {
+    let (one, other) = (open(Configuration::default()), open(Configuration::default()));
+    one.send_position(2, TARGET).expect("sent");
+    assert!(settles(&one, 2, TARGET, 0.02));
+    assert!(farthest(&other, 2, TARGET) > 0.1, "the other hand must not have moved");
+    drop(one);
+    other.send_position(2, TARGET).expect("sent");
+    assert!(settles(&other, 2, TARGET, 0.02));
+}
+
+#[test]
+fn all_fingers_on_one_thread_and_hold_as_end_state() {
+    let mut configuration = Configuration::default();
+    configuration.fingers.iter_mut().for_each(|finger| finger.thread = 2);
+    configuration.hand.end_state = EndState::Hold;
+    let hand = open(configuration);
+    for finger in 1..=3 {
+        hand.send_position(finger, TARGET).expect("sent");
+    }
+    for finger in 1..=3 {
+        assert!(settles(&hand, finger, TARGET, 0.02), "finger {finger}: {:?}", hand.position(finger));
+    }
+}
+
+#[test]
+fn a_pushed_finger_gives_way_like_its_spring() {
+    let hand = open(Configuration::default());
+    let before = hand.position(1).expect("position");
+    hand.push_simulated(1, [0.0, 0.0, -1.0]).expect("pushed");
+    let limit = Instant::now() + Duration::from_secs(5);
+    while farthest(&hand, 1, before) < 0.02 {
+        assert!(Instant::now() < limit, "the finger does not give way: {:?}", hand.position(1));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    hand.push_simulated(1, [0.0; 3]).expect("released");
+    assert!(settles(&hand, 1, before, 0.02));
+}
+
+#[test]
+fn refusals_change_nothing() {
+    let hand = open(Configuration::default());
+    let before = hand.report(3).expect("report").set_point;
+    let refused = [
+        hand.send_position(0, TARGET),
+        hand.send_position(4, TARGET),
+        hand.send_position(3, [0.0, f64::NAN, 1.0]),
+        hand.send_position(3, [0.0, 0.5, 3.0]),
+        hand.send_stiffness(3, [[7.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+        hand.send_stiffness(3, [[1.0, 0.5, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+    ];
+    let errnos = refused.map(|result| result.expect_err("refused").errno());
+    use libc::{EDOM, EINVAL, ERANGE};
+    assert_eq!(errnos, [EINVAL, EINVAL, EINVAL, ERANGE, ERANGE, EDOM]);
+    // A cycle that would have taken a set point is long over.
+    let cycles = hand.report(3).expect("report").cycles;
+    while hand.report(3).expect("report").cycles < cycles + 5 {
+        std::thread::yield_now();
+    }
+    assert_eq!(hand.report(3).expect("report").set_point, before);
+}
+
+#[test]
+fn a_rate_the_line_cannot_carry_is_refused_with_the_arithmetic() {
+    let mut configuration = Configuration::default();
+    configuration.fingers[1].baud = 115_200;
+    let Err(HandError::Unusable { section, unusable }) = Hand::open(configuration) else {
+        panic!("115 200 baud carry no 1000 cycles a second")
+    };
+    assert_eq!((section.as_str(), unusable.key), ("finger.2", "baud"));
+    assert!(unusable.reason.contains("us"), "{}", unusable.reason);
+}
+
+#[test]
+fn a_port_that_is_not_there_is_named() {
+    let mut configuration = Configuration::default();
+    configuration.fingers[2].port = "/dev/there-is-no-such-port".into();
+    let error = Hand::open(configuration).err().expect("refused");
+    assert_eq!(error.errno(), libc::ENOENT);
+    let text = error.to_string();
+    assert!(text.contains("finger 3") && text.contains("/dev/there-is-no-such-port"), "{text}");
+}

@@ -1,0 +1,65 @@
+//! No allocation in the servo loop: an allocator that counts what the servo threads ask for.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use sun2xp::hand::Hand;
+use sun2xp::model::configuration::Configuration;
+
+static BY_SERVOS: AtomicU64 = AtomicU64::new(0);
+static BY_OTHERS: AtomicU64 = AtomicU64::new(0);
+
+struct Counting;
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn count() {
+    let mut name = [0u8; 16];
+    // SAFETY: PR_GET_NAME writes at most 16 bytes.
+    unsafe { libc::prctl(libc::PR_GET_NAME, name.as_mut_ptr()) };
+    if name.starts_with(b"sun2xp servo") { &BY_SERVOS } else { &BY_OTHERS }.fetch_add(1, Relaxed);
+}
+
+// SAFETY: everything is passed on to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(block, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        // Giving back may take the allocator's lock: as bad as taking.
+        count();
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[test]
+fn a_servo_thread_allocates_nothing_while_it_runs() {
+    let hand = Hand::open(Configuration::default()).expect("the simulated hand");
+    assert!(BY_SERVOS.load(Relaxed) > 0, "starting a thread allocates: the counter must see it");
+    let before = BY_SERVOS.load(Relaxed);
+    let cycles = |finger| hand.report(finger).expect("a report").cycles;
+    let end = cycles(1) + 1000;
+    let mut others = BY_OTHERS.load(Relaxed);
+    for step in 0u32.. {
+        // Commands and reports all the while, moving the finger and its stiffness.
+        let angle = 1.0 + 0.1 * f64::from(step % 7);
+        hand.send_position(1, [0.1, 0.5, angle]).expect("sent");
+        hand.send_stiffness(1, [[angle, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 2.0]]).expect("sent");
+        hand.position(1).expect("position");
+        if cycles(1) >= end {
+            break;
+        }
+        std::thread::yield_now();
+    }
+    assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads");
+    others = BY_OTHERS.load(Relaxed) - others;
+    assert!(others < 100, "the planner's calls allocate: {others}");
+    assert!(cycles(2) > 500 && cycles(3) > 500, "all fingers ran");
+}
