@@ -284,6 +284,29 @@ fn a_board_refuses_what_it_cannot_carry_out() {
     assert_eq!(refusal(Configure { torque_limits: [0, 0, 40_000, 0], ..good }), Some((Reason::Value, 14)));
 }
 
+#[test]
+fn a_board_refuses_what_it_does_not_understand() {
+    let mut board = board(&[1]);
+    let mut refusal = |content: &[u8]| {
+        let mut answer = None;
+        let check = check(content).to_le_bytes();
+        let mut wire = [0; MAX_WIRE];
+        let length = cobs::encode(&[content, &check].concat(), &mut wire) + 1;
+        board.receive(0, &wire[..length], &mut |bytes| answer = Some(read(bytes)));
+        match answer {
+            Some(Message { address: 1, sequence: 77, frame: Frame::Refused(refused) }) => refused,
+            other => panic!("{other:?}"),
+        }
+    };
+    // Versions 2 to 9; a type that is free; a Stop with a body; a third end state.
+    assert_eq!(refusal(&[0x11, 77, 2, 9]), Refused { request: 1, reason: Reason::Version, detail: 0x0101 });
+    assert_eq!(refusal(&[0x71, 77, 1, 2, 3]), Refused { request: 7, reason: Reason::UnknownFrame, detail: 3 });
+    assert_eq!(refusal(&[0x41, 77, 0]), Refused { request: 4, reason: Reason::UnknownFrame, detail: 1 });
+    let mut configure = vec![0x21, 77, 1, 20, 0, 2];
+    configure.resize(34, 0);
+    assert_eq!(refusal(&configure), Refused { request: 2, reason: Reason::Value, detail: 5 });
+}
+
 fn read(wire: &[u8]) -> Message {
     Message::read(&Decoder::default().next(&mut &wire[..]).expect("whole")).expect("known")
 }

@@ -1,6 +1,7 @@
 //! The serial port and the simulated board over a real pseudo-terminal, in real time.
 
 use nalgebra::Vector3;
+use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::{Command, Status};
@@ -68,6 +69,37 @@ fn a_port_has_one_user_at_a_time_also_after_one_that_left_no_word() {
     drop(first);
     let mut second = Link::open(board.path(), 1_000_000).unwrap();
     second.shake_hands(1, &terms(), clock::now() + 2000 * MS).unwrap();
+}
+
+/// Whether the port is marked for exclusive use, which keeps out everyone but root.
+fn exclusive(path: &Path) -> bool {
+    let Ok(file) = std::fs::OpenOptions::new().read(true).write(true).open(path) else { return true };
+    let mut exclusive: libc::c_int = -1;
+    // SAFETY: the descriptor is open, and the request writes one int.
+    assert_eq!(unsafe { libc::ioctl(file.as_raw_fd(), libc::TIOCGEXCL, &mut exclusive) }, 0);
+    exclusive != 0
+}
+
+#[test]
+fn exclusive_use_ends_with_its_user() {
+    let board = board();
+    let link = Link::open(board.path(), 1_000_000).unwrap();
+    drop(link);
+    assert!(!exclusive(board.path()));
+}
+
+#[test]
+fn exclusive_use_does_not_outlive_a_user_that_was_killed() {
+    let board = board();
+    let port = std::fs::OpenOptions::new().read(true).write(true).open(board.path()).unwrap();
+    // SAFETY: the descriptor is open; the request takes no pointer.
+    assert_eq!(unsafe { libc::ioctl(port.as_raw_fd(), libc::TIOCEXCL) }, 0);
+    drop(port);
+    let waiting = Instant::now();
+    while exclusive(board.path()) {
+        assert!(waiting.elapsed() < Duration::from_secs(10), "still marked");
+        std::thread::yield_now();
+    }
 }
 
 #[test]

@@ -39,8 +39,9 @@ pub struct SimulatedBoard {
     time: Option<u64>,
 }
 
-/// ns.
+/// One step of the physics, ns.
 const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
+const _: () = assert!(STEP == 100_000, "the conversion to whole nanoseconds lost something");
 
 impl SimulatedBoard {
     /// A board with these fingers at these addresses, braked at their start poses. Gravity in palm coordinates, m/s^2.
@@ -66,11 +67,6 @@ impl SimulatedBoard {
     /// All fingers, in the order of their addresses.
     pub fn fingers(&mut self) -> &mut [SimulatedFinger] {
         &mut self.fingers
-    }
-
-    /// Whether every finger is still braked, so that nothing happens until bytes come.
-    pub fn braked(&self) -> bool {
-        self.fingers.iter().all(SimulatedFinger::braked)
     }
 
     /// Lets time pass until `now`, ns. The first call sets the board's clock; time does not run backward.

@@ -103,11 +103,6 @@ impl SimulatedFinger {
         Vector4::from(self.torques.map(f64::from)) * (f64::from(self.torque_unit) * 1e-7)
     }
 
-    /// Whether nothing can move, because the motors were never switched on.
-    pub fn braked(&self) -> bool {
-        self.plant.braked()
-    }
-
     /// Faults that are present from now on: bits of [`Status::FAULTS`]. They take the torque off at once.
     pub fn set_faults(&mut self, faults: Status) {
         self.present = Status(faults.0 & Status::FAULTS.0);

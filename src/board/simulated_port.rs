@@ -20,13 +20,11 @@ use std::thread::JoinHandle;
 /// How often the physics moves on while no bytes come.
 const TICK_MS: i32 = 1;
 
-/// The same while every finger is braked: nothing can happen, but the end of the thread must be noticed.
-const BRAKED_TICK_MS: i32 = 10;
-
 /// The most that one wake-up counts, ns.
 const LONGEST_STEP: u64 = 2_000_000;
 
-/// After such a silence nobody is taken to be at the other end, ns.
+/// After such a silence nobody is taken to be at the other end, ns. A host that is there all the same loses its mark of
+/// exclusive use, but not its lock.
 const SILENCE: u64 = 100_000_000;
 
 const STACK_BYTES: usize = 256 * 1024;
@@ -93,26 +91,24 @@ fn run(terminal: &PseudoTerminal, board: &Mutex<SimulatedBoard>, ended: &AtomicB
     let mut input = [0; 512];
     let mut board_time = 0;
     let mut last_wake = clock::now();
-    let mut last_bytes = Some(last_wake);
-    let mut tick = BRAKED_TICK_MS;
+    let mut silent_since = last_wake;
     while !ended.load(Ordering::Relaxed) {
-        let taken = terminal.read(&mut input, tick);
+        let taken = terminal.read(&mut input, TICK_MS);
         let now = clock::now();
         board_time += (now - last_wake).min(LONGEST_STEP);
         last_wake = now;
 
         let mut board = board.lock();
         if taken > 0 {
-            last_bytes = Some(now);
+            silent_since = now;
             board.receive(board_time, &input[..taken], &mut |answer| terminal.write(answer));
         } else {
             board.advance(board_time);
         }
-        tick = if board.braked() { BRAKED_TICK_MS } else { TICK_MS };
         drop(board);
 
-        if last_bytes.is_some_and(|last| now - last > SILENCE) {
-            last_bytes = None;
+        if now - silent_since > SILENCE {
+            silent_since = now;
             terminal.forget_last_host();
         }
     }
