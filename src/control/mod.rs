@@ -1,6 +1,28 @@
 //! The pure core: one servo cycle is a function of feedback, set point and controller state. It knows neither threads nor
 //! ports nor clocks, and allocates nothing.
+//!
+//! One file is one box of Figure 9 (or of Figure 10); [`Controller::cycle`] connects them.
 
+mod cycle;
+mod figure10;
+mod figure9;
+mod gains;
+mod joint_positions;
+mod joint_stiffness;
+mod low_pass;
+mod motor_torque;
+mod release;
+mod sensors;
 mod signals;
+mod slew;
+mod stillness;
+mod tendon_controller;
+mod tension_distribution;
+mod tension_integral;
+mod transition;
+mod usable;
 
+pub use cycle::{Controller, State};
+pub use joint_stiffness::JointStiffness;
 pub use signals::{Activity, Command, Feedback, Report, SetPoint};
+pub use tension_distribution::{Distribution, TensionDistribution};

@@ -37,7 +37,7 @@ pub enum Activity {
 /// What the motors shall do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
-    /// m_tau of eq. 22, N cm; positive pulls.
+    /// m_tau of eq. 22, N cm, as the board takes it: a positive one pulls where `motor.sign` is +1.
     pub motor_torques: Vector4<f64>,
 }
 
@@ -50,12 +50,14 @@ pub struct Report {
     pub joint_rates: Vector3<f64>,
     /// Measured tensions, N.
     pub tensions: Vector4<f64>,
-    /// Commanded tensions, N: never below t_min while the finger is a spring.
+    /// Commanded tensions, N: never below t_min but during a release.
     pub desired_tensions: Vector4<f64>,
     /// Joint torques that the stiffness law asked for, N cm.
     pub joint_torques: Vector3<f64>,
     /// The part of `joint_torques` that the tension limits let through, 0 to 1; its direction is kept.
     pub torque_scale: f64,
+    /// Every tendon has at least 0.8 t_min, and the motors are at rest: slack is taken up.
+    pub under_tension: bool,
     /// The command, N cm.
     pub motor_torques: Vector4<f64>,
 }

@@ -209,12 +209,15 @@ pub struct ConfiguredController {
     pub tension_integral: Option<f64>,
     /// K_delta at the tendon, N s/m.
     pub motor_damping: Option<f64>,
-    /// beta at 3 N/cm, s: joint rate against joint angle in the stiffness law; scaled with 1/sqrt(Kx).
+    /// beta at 3 N/cm and a bent finger, s: joint rate against joint angle in the stiffness law; scaled with
+    /// 1/sqrt(K_theta).
     pub rate_time: Option<f64>,
     /// Low-pass of the motor speeds, Hz.
     pub speed_filter: Option<f64>,
     /// Low-pass of the tensions that the tendon stretch is computed from, Hz.
     pub stretch_filter: Option<f64>,
+    /// Bound on the speed of every joint of the set point, rad/s: a step becomes a straight line in joint space.
+    pub set_point_speed: Option<f64>,
 }
 
 /// A whole hand.

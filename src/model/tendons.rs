@@ -40,6 +40,11 @@ impl Tendons {
         let mut with_ghost = Matrix4::zeros();
         with_ghost.fixed_rows_mut::<3>(0).copy_from(&r);
         with_ghost.set_row(3, &ghost);
+        // A ghost row that is no more than a mixture of R's rows.
+        let singular = with_ghost.singular_values();
+        if singular.min() < 1e-6 * singular.max() {
+            return Err(TendonsError::Singular(singular.min()));
+        }
         let q = with_ghost.try_inverse().ok_or(TendonsError::Singular(0.0))?;
         let column: [f64; 4] = q.column(3).into_owned().into();
         if column.iter().any(|&entry| entry.is_nan() || entry <= 1e-9) {

@@ -1,0 +1,217 @@
+//! One servo cycle: the boxes of Figure 9 connected.
+
+use super::gains::Gains;
+use super::joint_positions::JointPositions;
+use super::joint_stiffness::JointStiffness;
+use super::low_pass::LowPass;
+use super::motor_torque::MotorTorque;
+use super::release::Release;
+use super::sensors::Sensors;
+use super::signals::{Activity, Command, Feedback, Report, SetPoint};
+use super::slew::Slew;
+use super::stillness::Stillness;
+use super::tendon_controller::TendonController;
+use super::tension_distribution::{Distribution, TensionDistribution};
+use super::tension_integral::{TendonInput, TendonState};
+use super::transition::Transition;
+use super::usable::positive;
+use crate::model::configuration::{ConfiguredFinger, Unusable};
+use nalgebra::{Vector3, Vector4};
+
+/// A tendon counts as tight from this part of t_min on.
+const TIGHT: f64 = 0.8;
+
+/// Below this part of its desired tension a tendon counts as slack while slack is taken up: well under what a motor with
+/// the friction and the error of its torque constant reaches without the integral.
+const SLACK: f64 = 0.2;
+
+/// Everything about a finger's servo that does not change from cycle to cycle.
+#[derive(Clone, Debug)]
+pub struct Controller {
+    period: f64,
+    sensors: Sensors,
+    speed_filter: LowPass,
+    stretch_filter: LowPass,
+    joint_positions: JointPositions,
+    slew: Slew,
+    joint_stiffness: JointStiffness,
+    distribution: TensionDistribution,
+    tendons: TendonController,
+    motor_torque: MotorTorque,
+    /// Motor radii, m.
+    radius: Vector4<f64>,
+    /// N.
+    tight: f64,
+}
+
+/// What a cycle leaves behind for the next one.
+#[derive(Clone, Copy, Debug)]
+pub struct State {
+    doing: Doing,
+    motor_angles: Vector4<f64>,
+    /// Cycles since `motor_angles` were measured.
+    age: u32,
+    /// Low-passed, rad/s.
+    motor_speeds: Vector4<f64>,
+    /// Low-passed, N, for the tendon stretch.
+    tensions: Vector4<f64>,
+    tendons: TendonState,
+    transition: Transition,
+    stillness: Stillness,
+    /// N at the tendon.
+    pulls: Vector4<f64>,
+    report: Report,
+}
+
+/// The activity of the last cycle, with what belongs to it.
+#[derive(Clone, Copy, Debug)]
+enum Doing {
+    Nothing,
+    TakingUpSlack,
+    /// With the spring's anchor on its way to the set point, rad.
+    Following(Vector3<f64>),
+    Releasing(Release),
+}
+
+impl Controller {
+    /// The controller of `finger` at `rate` cycles a second. Gains that are not configured come from the nearest of 500,
+    /// 1000 and 2000 Hz. Refused with the key that cannot be used, where the numbers make no controller.
+    pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
+        positive("rate", &[rate])?;
+        let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
+        let gains = Gains::new(&finger.controller, rate)?;
+        let motor_torque = MotorTorque::new(finger, &tendons)?;
+        Ok(Self {
+            period: 1.0 / rate,
+            sensors: Sensors::new(finger)?,
+            speed_filter: LowPass::new(gains.speed_filter, rate),
+            stretch_filter: LowPass::new(gains.stretch_filter, rate),
+            joint_positions: JointPositions::new(finger, &tendons)?,
+            slew: Slew::new(gains.set_point_speed, rate),
+            joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
+            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, finger.tendon.maximum)?,
+            tendons: TendonController::new(finger.controller.scheme, &gains, rate, motor_torque.limit),
+            motor_torque,
+            radius: tendons.radius * 0.01,
+            tight: TIGHT * finger.tendon.minimum,
+        })
+    }
+
+    /// The state before the first cycle of a finger at rest. Its first command will pull as much as the tendons do.
+    pub fn start(&self, feedback: &Feedback) -> State {
+        let motor_angles = self.sensors.motor_angles(feedback);
+        let tensions = self.sensors.tensions(feedback);
+        let limit = &self.motor_torque.limit;
+        let pulls = tensions.zip_map(limit, |tension, limit| tension.clamp(0.0, limit));
+        let report = Report {
+            joints: self.joint_positions.joints(&motor_angles, &tensions),
+            tensions,
+            torque_scale: 1.0,
+            ..Report::default()
+        };
+        State {
+            doing: Doing::Nothing,
+            motor_angles,
+            age: 0,
+            motor_speeds: Vector4::zeros(),
+            tensions,
+            tendons: TendonState::default(),
+            transition: Transition::default(),
+            stillness: Stillness::new(motor_angles),
+            pulls,
+            report,
+        }
+    }
+
+    /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates rests,
+    /// but a release goes on.
+    pub fn cycle(&self, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) -> (Command, Report) {
+        state.age = state.age.saturating_add(1);
+        if let Some(feedback) = feedback {
+            self.measure(state, feedback);
+        }
+        match *activity {
+            Activity::Release { ramp } => self.let_go(state, ramp),
+            Activity::TakeUpSlack if feedback.is_some() => self.take_up_slack(state),
+            Activity::Follow(set_point) if feedback.is_some() => self.follow(state, set_point),
+            Activity::TakeUpSlack | Activity::Follow(_) => {}
+        }
+        let motor_torques = self.motor_torque.torques(&state.pulls);
+        state.report.motor_torques = motor_torques;
+        (Command { motor_torques }, state.report)
+    }
+
+    /// Sensor counts to tensions, joint angles and rates.
+    fn measure(&self, state: &mut State, feedback: &Feedback) {
+        let motor_angles = self.sensors.motor_angles(feedback);
+        let tensions = self.sensors.tensions(feedback);
+        let elapsed = self.period * f64::from(state.age);
+        let speeds = (motor_angles - state.motor_angles) / elapsed;
+        self.speed_filter.advance(&mut state.motor_speeds, &speeds);
+        self.stretch_filter.advance(&mut state.tensions, &tensions);
+        state.stillness.note(&motor_angles, elapsed);
+        state.motor_angles = motor_angles;
+        state.age = 0;
+
+        let report = &mut state.report;
+        report.joints = self.joint_positions.joints(&motor_angles, &state.tensions);
+        report.joint_rates = self.joint_positions.joint_rates(&state.motor_speeds);
+        report.tensions = tensions;
+        report.under_tension = tensions.min() >= self.tight && state.stillness.at_rest();
+    }
+
+    /// Pretension without joint torque. A slack tendon is wound in by feed-forward against the motor damper, so at a
+    /// speed that does no harm when it comes taut.
+    fn take_up_slack(&self, state: &mut State) {
+        let Distribution { tensions: desired, .. } = self.distribution.distribute(&Vector3::zeros());
+        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
+        let begins = !matches!(state.doing, Doing::TakingUpSlack);
+        state.doing = Doing::TakingUpSlack;
+        self.pull(state, Vector3::zeros(), slack, begins);
+    }
+
+    /// The spring, from its anchor to the joints. It begins without deflection.
+    fn follow(&self, state: &mut State, set_point: SetPoint) {
+        let (mut anchor, begins) = match state.doing {
+            Doing::Following(anchor) => (anchor, false),
+            _ => (state.report.joints, true),
+        };
+        self.slew.advance(&mut anchor, &set_point.joints);
+        state.doing = Doing::Following(anchor);
+        let spring = SetPoint { joints: anchor, ..set_point };
+        let torques = self.joint_stiffness.torques(&spring, &state.report.joints, &state.report.joint_rates);
+        self.pull(state, torques, [false; 4], begins);
+    }
+
+    /// Joint torques to pulls: R^-1 and the tendon controller.
+    fn pull(&self, state: &mut State, joint_torques: Vector3<f64>, slack: [bool; 4], begins: bool) {
+        let Distribution { tensions: desired, scale } = self.distribution.distribute(&joint_torques);
+        let measured = state.report.tensions;
+        let speed = state.motor_speeds.component_mul(&self.radius);
+        let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
+        if begins {
+            state.transition.begin(&state.pulls, &asked);
+        }
+        let limit = &self.motor_torque.limit;
+        let pulls = asked + state.transition.advance(self.period);
+        state.pulls = pulls.zip_map(limit, |pull, limit| pull.clamp(-limit, limit));
+        state.report.joint_torques = joint_torques;
+        state.report.desired_tensions = desired;
+        state.report.torque_scale = scale;
+    }
+
+    /// Motor torques in a ramp to zero.
+    fn let_go(&self, state: &mut State, ramp: f64) {
+        let mut release = match state.doing {
+            Doing::Releasing(release) => release,
+            _ => Release::new(state.pulls),
+        };
+        state.pulls = release.advance(self.period, ramp);
+        state.doing = Doing::Releasing(release);
+        // Whatever follows begins anew.
+        state.tendons = TendonState::default();
+        state.report.joint_torques = Vector3::zeros();
+        state.report.desired_tensions = state.pulls;
+        state.report.torque_scale = 1.0;
+    }
+}

@@ -1,0 +1,97 @@
+//! The numbers of the tendon controllers for a rate.
+
+use super::usable::{not_negative, positive};
+use crate::model::configuration::{ConfiguredController, Scheme, Unusable};
+
+/// Gains of one scheme; see [`ConfiguredController`] for their meaning and units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gains {
+    pub tension_gain: f64,
+    pub tension_integral: f64,
+    pub motor_damping: f64,
+    pub rate_time: f64,
+    pub speed_filter: f64,
+    pub stretch_filter: f64,
+    pub set_point_speed: f64,
+}
+
+/// rad/s. A finger led to 200 random poses ends at each; from twice this speed on some throw joint 2 straight and stay there.
+const SET_POINT_SPEED: f64 = 2.0;
+
+/// Rate, Hz, then the fields of [`Gains`] in their order but the last. Found by experiment with the finger of the default configuration.
+type Row = (f64, [f64; 6]);
+
+const FIGURE_9: [Row; 3] = [
+    (500.0, [0.0, 50.0, 250.0, 0.020, 160.0, 3.0]),
+    (1000.0, [0.0, 75.0, 310.0, 0.050, 180.0, 2.0]),
+    (2000.0, [0.0, 100.0, 440.0, 0.060, 160.0, 5.0]),
+];
+
+const FIGURE_10: [Row; 3] = [
+    (500.0, [0.1, 55.0, 265.0, 0.020, 190.0, 3.0]),
+    (1000.0, [2.0, 250.0, 450.0, 0.015, 400.0, 6.0]),
+    (2000.0, [5.0, 550.0, 460.0, 0.020, 400.0, 6.0]),
+];
+
+impl Gains {
+    /// What is configured; the rest from the tabulated rate nearest to `rate` (by ratio).
+    pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
+        let table = match configured.scheme {
+            Scheme::Figure9 => &FIGURE_9,
+            Scheme::Figure10 => &FIGURE_10,
+        };
+        let apart = |row: &Row| (row.0 / rate).ln().abs();
+        let nearest = table.iter().fold(&table[0], |best, row| if apart(row) < apart(best) { row } else { best });
+        let [tension_gain, tension_integral, motor_damping, rate_time, speed_filter, stretch_filter] = nearest.1;
+        if configured.scheme == Scheme::Figure9 && configured.tension_gain.is_some() {
+            let reason =
+                "is given, but Figure 9 has no proportional term: leave it out, or choose \"figure 10\"".into();
+            return Err(Unusable { key: "controller.tension_gain", reason });
+        }
+        let gains = Self {
+            tension_gain: configured.tension_gain.unwrap_or(tension_gain),
+            tension_integral: configured.tension_integral.unwrap_or(tension_integral),
+            motor_damping: configured.motor_damping.unwrap_or(motor_damping),
+            rate_time: configured.rate_time.unwrap_or(rate_time),
+            speed_filter: configured.speed_filter.unwrap_or(speed_filter),
+            stretch_filter: configured.stretch_filter.unwrap_or(stretch_filter),
+            set_point_speed: configured.set_point_speed.unwrap_or(SET_POINT_SPEED),
+        };
+        not_negative("controller.tension_gain", gains.tension_gain)?;
+        not_negative("controller.tension_integral", gains.tension_integral)?;
+        not_negative("controller.motor_damping", gains.motor_damping)?;
+        not_negative("controller.rate_time", gains.rate_time)?;
+        positive("controller.speed_filter", &[gains.speed_filter])?;
+        positive("controller.stretch_filter", &[gains.stretch_filter])?;
+        positive("controller.set_point_speed", &[gains.set_point_speed])?;
+        Ok(gains)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_rate_lends_what_is_not_configured() {
+        let mut configured = ConfiguredController::default();
+        for (rate, expected) in [(100.0, 0.1), (700.0, 0.1), (720.0, 2.0), (1000.0, 2.0), (1500.0, 5.0), (9e3, 5.0)] {
+            assert_eq!(Gains::new(&configured, rate).unwrap().tension_gain, expected, "{rate} Hz");
+        }
+        configured.motor_damping = Some(77.0);
+        let gains = Gains::new(&configured, 1000.0).unwrap();
+        assert_eq!((gains.motor_damping, gains.tension_integral), (77.0, 250.0));
+        configured.scheme = Scheme::Figure9;
+        assert_eq!(Gains::new(&configured, 1000.0).unwrap().tension_integral, 75.0);
+    }
+
+    #[test]
+    fn what_cannot_work_is_refused_by_name() {
+        let refused = |configured: ConfiguredController| Gains::new(&configured, 1000.0).unwrap_err().key;
+        let base = ConfiguredController::default();
+        let proportional = ConfiguredController { scheme: Scheme::Figure9, tension_gain: Some(1.0), ..base.clone() };
+        assert_eq!(refused(proportional), "controller.tension_gain");
+        assert_eq!(refused(ConfiguredController { rate_time: Some(f64::NAN), ..base.clone() }), "controller.rate_time");
+        assert_eq!(refused(ConfiguredController { stretch_filter: Some(0.0), ..base }), "controller.stretch_filter");
+    }
+}

@@ -1,0 +1,35 @@
+//! The tendon controller: which of the report's figures turns desired tensions into pulls of the motors.
+
+use super::figure9::Figure9;
+use super::figure10::Figure10;
+use super::gains::Gains;
+use super::tension_integral::{TendonInput, TendonState, TensionIntegral};
+use crate::model::configuration::Scheme;
+use nalgebra::Vector4;
+
+/// One of the schemes. All share input, memory and result: pulls at the tendon, N, within the limit of the motors.
+#[derive(Clone, Debug)]
+pub(super) enum TendonController {
+    Figure9(Figure9),
+    Figure10(Figure10),
+}
+
+impl TendonController {
+    /// `limit`: largest pull of each motor, N.
+    pub fn new(scheme: Scheme, gains: &Gains, rate: f64, limit: Vector4<f64>) -> Self {
+        let integral = TensionIntegral::new(gains.tension_integral, rate, limit);
+        let motor_damping = gains.motor_damping;
+        match scheme {
+            Scheme::Figure9 => Self::Figure9(Figure9 { integral, motor_damping }),
+            Scheme::Figure10 => Self::Figure10(Figure10 { integral, tension_gain: gains.tension_gain, motor_damping }),
+        }
+    }
+
+    /// Pulls, N.
+    pub fn pulls(&self, state: &mut TendonState, input: &TendonInput) -> Vector4<f64> {
+        match self {
+            Self::Figure9(scheme) => scheme.pulls(state, input),
+            Self::Figure10(scheme) => scheme.pulls(state, input),
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! The box R^-1: tensions that give the joint torque, eqs. 18-20, within a lower and an upper bound.
+
+use crate::model::Tendons;
+use crate::model::configuration::Unusable;
+use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
+
+/// Tensions for a joint torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distribution {
+    /// N, each within the bounds: R `tensions` = `scale` tau.
+    pub tensions: Vector4<f64>,
+    /// The part of the torque that the bounds let through, 0 to 1: the largest possible.
+    pub scale: f64,
+}
+
+/// t = Q (tau, tau_g) with the least tau_g that keeps t >= t_min, and a tau scaled down where t would exceed t_max.
+#[derive(Clone, Debug)]
+pub struct TensionDistribution {
+    /// Q_i of eq. 17: joint torque, N cm, to tension, N.
+    from_torque: Matrix4x3<f64>,
+    /// q_i4 of eq. 17, positive.
+    ghost: Vector4<f64>,
+    /// 1 / q_i4.
+    inverse_ghost: Vector4<f64>,
+    /// q_i4 / q_j4.
+    ratio: Matrix4<f64>,
+    /// t_max - t_min q_i4 / q_j4, N: what the torque may add to tendon i while tendon j stays at t_min.
+    headroom: Matrix4<f64>,
+    minimum: f64,
+}
+
+impl TensionDistribution {
+    /// Bounds in N. Refused unless there are tensions within them that leave the joints without torque.
+    pub fn new(tendons: &Tendons, minimum: f64, maximum: f64) -> Result<Self, Unusable> {
+        super::usable::positive("tendon.minimum", &[minimum])?;
+        super::usable::positive("tendon.maximum", &[maximum])?;
+        let largest = tendons.pretension(minimum).max();
+        if maximum <= largest {
+            let reason = format!(
+                "is {maximum} N, but with no tendon under {minimum} N a finger without joint torque already has one at \
+                 {largest:.2} N: raise tendon.maximum or lower tendon.minimum"
+            );
+            return Err(Unusable { key: "tendon.maximum", reason });
+        }
+        let ghost: Vector4<f64> = tendons.q.column(3).into_owned();
+        let ratio = Matrix4::from_fn(|i, j| ghost[i] / ghost[j]);
+        Ok(Self {
+            from_torque: tendons.q.fixed_columns::<3>(0).into_owned(),
+            ghost,
+            inverse_ghost: ghost.map(f64::recip),
+            ratio,
+            headroom: ratio.map(|ratio| maximum - minimum * ratio),
+            minimum,
+        })
+    }
+
+    /// The least tensions for tau, N cm, in eq. 20's sense.
+    ///
+    /// With the tau_g of eq. 20 some tendon j is at t_min, and tendon i then has s (A_i - A_j q_i/q_j) + t_min q_i/q_j,
+    /// A = Q tau. That tau_g is the largest over j, so t_i <= t_max for all j is what bounds the scale s.
+    pub fn distribute(&self, torques: &Vector3<f64>) -> Distribution {
+        let wanted = self.from_torque * torques;
+        let mut scale: f64 = 1.0;
+        for i in 0..4 {
+            for j in 0..4 {
+                let added = wanted[i] - self.ratio[(i, j)] * wanted[j];
+                if added * scale > self.headroom[(i, j)] {
+                    scale = self.headroom[(i, j)] / added;
+                }
+            }
+        }
+        let wanted = wanted * scale;
+        let ghost_torque = (Vector4::repeat(self.minimum) - wanted).component_mul(&self.inverse_ghost).max();
+        // Eq. 20 leaves one tendon at t_min but for rounding, which must not put it below.
+        let tensions = (wanted + self.ghost * ghost_torque).map(|tension| tension.max(self.minimum));
+        Distribution { tensions, scale }
+    }
+}

@@ -1,0 +1,59 @@
+//! The integral on the tension error that Figures 9 and 10 share, with its anti-windup.
+
+use nalgebra::Vector4;
+
+/// What a tendon controller sees in one cycle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TendonInput {
+    /// N.
+    pub desired: Vector4<f64>,
+    /// N.
+    pub measured: Vector4<f64>,
+    /// Low-passed speed of the motor side of each tendon, m/s; positive pulls in.
+    pub speed: Vector4<f64>,
+    /// Where the integral must not grow: a slack tendon's tension says nothing about the motor.
+    pub slack: [bool; 4],
+}
+
+/// The memory of a tendon controller.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct TendonState {
+    /// N.
+    pub integral: Vector4<f64>,
+}
+
+/// K_TI / s, and the limit of the motors.
+#[derive(Clone, Debug)]
+pub(super) struct TensionIntegral {
+    /// K_TI over the rate: 1 a cycle.
+    gain: f64,
+    /// Largest pull of each motor, N.
+    limit: Vector4<f64>,
+}
+
+impl TensionIntegral {
+    pub fn new(gain: f64, rate: f64, limit: Vector4<f64>) -> Self {
+        Self { gain: gain / rate, limit }
+    }
+
+    /// Adds the integral to `rest`, the pull without it, N. Where the motor is at its limit the integral does not grow
+    /// further into it.
+    pub fn complete(&self, state: &mut TendonState, input: &TendonInput, rest: &Vector4<f64>) -> Vector4<f64> {
+        Vector4::from_fn(|tendon, _| {
+            let limit = self.limit[tendon];
+            let error = input.desired[tendon] - input.measured[tendon];
+            let before = state.integral[tendon];
+            let mut integral = before + self.gain * error;
+            if input.slack[tendon] {
+                // What it had learnt to give way may be forgotten.
+                integral = integral.min(before.max(0.0));
+            }
+            let pull = rest[tendon] + integral;
+            let winding_up = pull.abs() > limit && pull * error > 0.0;
+            if !winding_up {
+                state.integral[tendon] = integral;
+            }
+            (rest[tendon] + state.integral[tendon]).clamp(-limit, limit)
+        })
+    }
+}

@@ -1,0 +1,27 @@
+//! The checks of single numbers that several boxes need.
+
+use crate::model::configuration::Unusable;
+
+/// Refuses what is not finite and above zero.
+pub(super) fn positive(key: &'static str, values: &[f64]) -> Result<(), Unusable> {
+    match values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
+        Some(value) => Err(Unusable { key, reason: format!("is {value}; it must be a number above 0") }),
+        None => Ok(()),
+    }
+}
+
+/// Refuses what is not finite or below zero.
+pub(super) fn not_negative(key: &'static str, value: f64) -> Result<(), Unusable> {
+    if value.is_finite() && value >= 0.0 {
+        return Ok(());
+    }
+    Err(Unusable { key, reason: format!("is {value}; it must be 0 or a number above") })
+}
+
+/// Refuses what is neither +1 nor -1.
+pub(super) fn signs(key: &'static str, values: &[i8]) -> Result<(), Unusable> {
+    match values.iter().find(|value| value.abs() != 1) {
+        Some(value) => Err(Unusable { key, reason: format!("is {value}; a sign is 1 or -1") }),
+        None => Ok(()),
+    }
+}
