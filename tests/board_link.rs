@@ -476,6 +476,19 @@ fn a_frame_that_did_not_fit_costs_itself_only() {
 }
 
 #[test]
+fn a_refused_handshake_frame_that_comes_late_is_no_fault() {
+    let refusal = |request| {
+        let frame = Frame::Refused(Refused { request, reason: Reason::Running, detail: 0 });
+        WireFrame::new(&Message { address: 1, sequence: 3, frame }).as_bytes().to_vec()
+    };
+    for (request, fault) in [(Kind::Configure as u8, false), (Kind::Command as u8, true)] {
+        let mut link = Link::new(Other(|_| Vec::new(), refusal(request), 0));
+        assert_eq!(link.receive(MS).is_err(), fault);
+        assert_eq!(link.counters().foreign, u64::from(!fault));
+    }
+}
+
+#[test]
 fn endless_rubbish_holds_up_nobody() {
     /// Always has bytes; each read takes 10 us.
     struct Babbler(u64);
