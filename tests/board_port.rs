@@ -1,10 +1,11 @@
 //! The serial port and the simulated board over a real pseudo-terminal, in real time.
 
 use nalgebra::Vector3;
+use std::io::{Read, Write};
 use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use sun2xp::board::protocol::{Command, Status};
+use sun2xp::board::protocol::*;
 use sun2xp::board::*;
 use sun2xp::model::configuration::{ConfiguredFinger, ConfiguredHand};
 use sun2xp::realtime::clock;
@@ -69,6 +70,22 @@ fn a_port_has_one_user_at_a_time_also_after_one_that_left_no_word() {
     drop(first);
     let mut second = Link::open(board.path(), 1_000_000).unwrap();
     second.shake_hands(1, &terms(), clock::now() + 2000 * MS).unwrap();
+}
+
+#[test]
+fn a_host_that_configures_nothing_gets_every_byte() {
+    let board = board();
+    let mut host = std::fs::OpenOptions::new().read(true).write(true).open(board.path()).unwrap();
+    // A Hello with a sequence number that a terminal would take for an interrupt, and one for a line end.
+    for sequence in [0x03, 0x0D] {
+        let frame = Frame::Hello(Hello { lowest_version: 1, highest_version: 1 });
+        let hello = WireFrame::new(&Message { address: 1, sequence, frame });
+        host.write_all(hello.as_bytes()).unwrap();
+        let mut wire = vec![0; Kind::Identity.wire_length()];
+        host.read_exact(&mut wire).unwrap();
+        let identity = Message::read(&Decoder::default().next(&mut &wire[..]).expect("whole")).unwrap();
+        assert_eq!((identity.sequence, identity.frame.kind()), (sequence, Kind::Identity));
+    }
 }
 
 /// Whether the port is marked for exclusive use, which keeps out everyone but root.

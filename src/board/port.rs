@@ -219,13 +219,9 @@ impl Transport for Port {
 
 impl Drop for Port {
     fn drop(&mut self) {
-        // Closing a UART waits up to 30 s for bytes that cannot leave. What mattered was answered long ago. And where
-        // somebody else has the port open too, the mark of exclusive use would outlive this user.
-        // SAFETY: the descriptor is open until `tty` is dropped, after this; neither request takes a pointer.
-        unsafe {
-            libc::tcflush(self.descriptor(), libc::TCOFLUSH);
-            libc::ioctl(self.descriptor(), libc::TIOCNXCL);
-        }
+        // Closing a UART waits up to 30 s for bytes that cannot leave. What mattered was answered long ago.
+        // SAFETY: the descriptor is open until `tty` is dropped, after this.
+        unsafe { libc::tcflush(self.descriptor(), libc::TCOFLUSH) };
     }
 }
 
