@@ -20,9 +20,6 @@ use std::thread::JoinHandle;
 /// How often the physics moves on while no bytes come.
 const TICK_MS: i32 = 1;
 
-/// The same while every finger is braked: nothing can happen, but the end of the thread must be noticed.
-const BRAKED_TICK_MS: i32 = 10;
-
 /// The most that one wake-up counts, ns.
 const LONGEST_STEP: u64 = 2_000_000;
 
@@ -32,7 +29,8 @@ const PATIENT_STEP: u64 = 10_000_000;
 /// For so long, ns, a [`Pace::Patient`] board takes silence for a pause of the machine.
 const PATIENCE: u64 = 500_000_000;
 
-/// After such a silence nobody is taken to be at the other end, ns.
+/// After such a silence nobody is taken to be at the other end, ns. A host that is there all the same loses its mark of
+/// exclusive use, but not its lock.
 const SILENCE: u64 = 100_000_000;
 
 /// How the time of a simulated board passes.
@@ -104,28 +102,29 @@ fn run(terminal: &PseudoTerminal, board: &Mutex<SimulatedBoard>, pace: Pace, end
     let mut input = [0; 512];
     let mut board_time = 0;
     let mut last_wake = realtime::now();
-    let mut last_bytes = Some(last_wake);
-    let mut tick = BRAKED_TICK_MS;
+    // The last bytes, on the wall and on the board's clock.
+    let mut heard = last_wake;
+    let mut heard_at = board_time;
+    let mut forgotten = false;
     while !ended.load(Ordering::Relaxed) {
-        let taken = terminal.read(&mut input, tick);
+        let taken = terminal.read(&mut input, TICK_MS);
         let now = realtime::now();
-        let passed = (now - last_wake).min(LONGEST_STEP);
-        let waiting = pace == Pace::Patient && taken == 0 && now - last_bytes < PATIENCE;
-        board_time = if waiting { (board_time + passed).min(heard_at + PATIENT_STEP).max(board_time) } else { board_time + passed };
+        let next_time = board_time + (now - last_wake).min(LONGEST_STEP);
         last_wake = now;
+        let patient = pace == Pace::Patient && now - heard < PATIENCE;
+        board_time = if patient { next_time.min(board_time.max(heard_at + PATIENT_STEP)) } else { next_time };
 
         let mut board = board.lock();
         if taken > 0 {
-            last_bytes = Some(now);
+            (heard, heard_at, forgotten) = (now, board_time, false);
             board.receive(board_time, &input[..taken], &mut |answer| terminal.write(answer));
         } else {
             board.advance(board_time);
         }
-        tick = if board.braked() { BRAKED_TICK_MS } else { TICK_MS };
         drop(board);
 
-        if last_bytes.is_some_and(|last| now - last > SILENCE) {
-            last_bytes = None;
+        if !forgotten && now - heard > SILENCE {
+            forgotten = true;
             terminal.forget_last_host();
         }
     }

@@ -45,7 +45,7 @@ impl Configuration {
                 ),
             );
         }
-        if one.port == "simulated" || one.port != other.port {
+        if one.simulated() || one.port != other.port {
             return Ok(());
         }
         if !same_thread {
