@@ -60,7 +60,12 @@ fn parse(text: &str) -> Result<Configuration, Wrong> {
         let span = root.key(key).and_then(|key| key.span());
         return Err((line_of(span), format!("unknown key `{key}`, expected `hand` or `finger`")));
     }
-    let failed = |error: toml_edit::de::Error| (line_of(error.span()), error.message().to_string());
+    // serde names what it found and not where: the line says the rest.
+    let failed = |error: toml_edit::de::Error| {
+        let line = line_of(error.span());
+        let written = line.and_then(|line| text.lines().nth(line - 1)).map(|written| format!("`{}`: ", written.trim()));
+        (line, format!("{}{}", written.unwrap_or_default(), error.message()))
+    };
 
     let hand: ConfiguredHand = deserialize(table(root, "hand").map_err(failed_plainly(&line_of))?).map_err(failed)?;
     let all = table(root, "finger").map_err(failed_plainly(&line_of))?;
