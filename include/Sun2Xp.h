@@ -124,7 +124,8 @@
 
    Signals: the servo threads block all signals, so the planner's alarms and handlers
    are served by the planner's own threads. Do not make these calls from a signal
-   handler; calling exit from one is fine.
+   handler. One that calls exit, which C does not promise to work, ends the program;
+   where it broke into a call the boards end the motion instead of CloseHand.
 
    Fork: a child has no servo threads. Once a process has called OpenHand, every call
    in a child forked from it is refused with EPERM; the parent is undisturbed. A
@@ -295,8 +296,6 @@ int OpenHand(void);
  called again. A planner that exits without it has it called for it.
 
  Returns 0, or -1 with
-   EIO      a servo could not bring its finger to the end state, and left that to the
-            board's watchdog; the hand is closed
    EPERM    forked child
 
  Threads: any. Waits for an OpenHand or CloseHand that another thread is in, then

@@ -157,10 +157,15 @@ fn clamping_is_not_refusing() {
 fn a_configuration_that_cannot_be_used_is_told_with_its_line() {
     for (configuration, line, word) in [
         ("[hand]\nrat = 1000.0\n", 2, "rat"),
-        ("[finger.2]\n\nbaud = \"fast\"\n", 3, "baud"),
+        ("[finger.2]\n\nbaud = \"fast\"\n", 3, "fast"),
         ("[hand]\nrate = 1.0\n", 2, "rate"),
         (
             "[finger.geometry]\nr = [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, 1.09], [0.0, 0.62, -0.62, 0.0]]\n",
+            2,
+            "-1.09",
+        ),
+        (
+            "[finger.geometry]\nr = [[0.0, 0.0, 0.0, 0.0], [1.09, 0.62, -0.62, -1.09], [0.0, 0.62, -0.62, 0.0]]\n",
             2,
             "singular",
         ),
