@@ -92,8 +92,6 @@ pub extern "C" fn OpenHand() -> c_int {
 /// called again. A planner that exits without it has it called for it.
 ///
 /// Returns 0, or -1 with
-///   EIO      a servo could not bring its finger to the end state, and left that to the
-///            board's watchdog; the hand is closed
 ///   EPERM    forked child
 ///
 /// Threads: any. Waits for an OpenHand or CloseHand that another thread is in, then

@@ -31,14 +31,14 @@ pub(super) fn open() -> Result<(), Refusal> {
 pub(super) fn close() -> Result<(), Refusal> {
     let _closing = LIFE.lock();
     let hand = HAND.write().take();
-    hand.map_or(Ok(()), Hand::close).map_err(Refusal::from)
+    // Closing takes long; by now the calls to a finger are refused and do not wait for it.
+    drop(hand);
+    Ok(())
 }
 
 pub(super) fn close_at_exit() {
     let Some(_closing) = LIFE.try_lock_for(PATIENCE_AT_EXIT) else { return };
-    let hand = HAND.try_write_for(PATIENCE_AT_EXIT).and_then(|mut hand| hand.take());
-    // Nobody is left to be told.
-    let _ = hand.map(Hand::close);
+    drop(HAND.try_write_for(PATIENCE_AT_EXIT).and_then(|mut hand| hand.take()));
 }
 
 /// Runs `call` on the open hand.

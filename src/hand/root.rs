@@ -180,9 +180,9 @@ impl Hand {
         Ok(())
     }
 
-    /// The configuration that the hand was opened with.
-    pub fn configuration(&self) -> &Configuration {
-        &self.configuration
+    /// Whether the first refusal of each kind is to be printed on standard error.
+    pub fn print_refusals(&self) -> bool {
+        self.configuration.hand.print_refusals
     }
 
     /// Brings every finger to its end state, as configured, and ends the threads. The same as dropping the hand.
