@@ -3,9 +3,10 @@
 #[allow(dead_code)]
 mod c;
 
-use c::{Bench, STRICT, c_compilers, library, said};
+use c::{Bench, STRICT, c_compilers, library, root, said};
 use std::fs;
-use std::process::Command;
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
 
 fn succeed(flags: &[&str], sources: &[&str]) {
     Bench::new().succeed(flags, sources);
@@ -117,6 +118,58 @@ fn a_planner_may_leave_without_closing() {
         let run = bench.run(command);
         assert_eq!(run.status.code(), Some(3), "{way}: {}", said(&run));
     }
+}
+
+/// The `sun2xp board` program behind a port of its own, ended when dropped.
+struct Board {
+    process: Child,
+    port: String,
+}
+
+impl Board {
+    fn start(arguments: &[&str]) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+        command.arg("board").args(arguments).stdin(Stdio::null()).stdout(Stdio::piped());
+        let mut process = command.spawn().expect("the board can be started");
+        let mut port = String::new();
+        let output = process.stdout.take().expect("standard output is a pipe");
+        BufReader::new(output).read_line(&mut port).expect("the board names its port");
+        Self { process, port: port.trim().to_string() }
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        // It may have been ended by the test.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+#[test]
+fn a_finger_whose_board_dies_is_faulted() {
+    let bench = Bench::new();
+    let program = bench.build(c_compilers()[0], &strict(&["-std=c99"]), &["faulted.c"]);
+    let board = Board::start(&["--finger", "1"]);
+    fs::write(bench.path().join("named.toml"), format!("[finger.1]\nport = \"{}\"\n", board.port)).expect("a file");
+    let mut command = Command::new(&program);
+    command.arg(board.process.id().to_string());
+    let run = bench.run(command);
+    assert!(run.status.success(), "{}", said(&run));
+}
+
+#[test]
+fn the_static_library_serves_too() {
+    let bench = Bench::new();
+    let archive = library().with_extension("a");
+    let program = bench.path().join("static");
+    let mut compiler = Command::new(c_compilers()[0]);
+    compiler.arg("-I").arg(root().join("include")).args(["-D_DEFAULT_SOURCE", "-o"]).arg(&program);
+    compiler.arg(root().join("tests/c/closed.c")).arg(&archive).args(["-lpthread", "-ldl", "-lm"]);
+    let built = compiler.output().expect("the compiler can be started");
+    assert!(built.status.success(), "{}", said(&built));
+    let run = bench.run(Command::new(&program));
+    assert!(run.status.success(), "{}", said(&run));
 }
 
 /// Runs `opens.c` with a configuration file.
