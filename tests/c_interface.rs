@@ -5,8 +5,9 @@ mod c;
 
 use c::{Bench, STRICT, c_compilers, library, root, said};
 use std::fs;
-use std::io::{BufRead, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::{Duration, Instant};
 
 fn succeed(flags: &[&str], sources: &[&str]) {
     Bench::new().succeed(flags, sources);
@@ -108,33 +109,39 @@ fn the_status_tells_of_the_servo() {
     succeed(&strict(&[]), &["status.c"]);
 }
 
-#[test]
-fn a_planner_may_leave_without_closing() {
-    let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], STRICT, &["leaves.c"]);
-    for way in ["return", "exit", "handler", "thread"] {
-        let mut command = Command::new(&program);
-        command.arg(way);
-        let run = bench.run(command);
-        assert_eq!(run.status.code(), Some(3), "{way}: {}", said(&run));
-    }
-}
-
 /// The `sun2xp board` program behind a port of its own, ended when dropped.
 struct Board {
     process: Child,
-    port: String,
+    orders: ChildStdin,
+    answers: BufReader<ChildStdout>,
 }
 
 impl Board {
-    fn start(arguments: &[&str]) -> Self {
+    /// Starts a board that carries finger 1, and configures the bench for it.
+    fn start(bench: &Bench) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
-        command.arg("board").args(arguments).stdin(Stdio::null()).stdout(Stdio::piped());
+        command.args(["board", "--finger", "1"]).stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = command.spawn().expect("the board can be started");
-        let mut port = String::new();
-        let output = process.stdout.take().expect("standard output is a pipe");
-        BufReader::new(output).read_line(&mut port).expect("the board names its port");
-        Self { process, port: port.trim().to_string() }
+        let orders = process.stdin.take().expect("standard input is a pipe");
+        let answers = BufReader::new(process.stdout.take().expect("standard output is a pipe"));
+        let mut board = Self { process, orders, answers };
+        let configuration = format!("[finger.1]\nport = \"{}\"\n", board.answer());
+        fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
+        board
+    }
+
+    fn answer(&mut self) -> String {
+        let mut line = String::new();
+        self.answers.read_line(&mut line).expect("the board answers");
+        line.trim().to_string()
+    }
+
+    /// The largest true tension, N.
+    fn tension(&mut self) -> f64 {
+        writeln!(self.orders, "state 1").expect("the board listens");
+        let state = self.answer();
+        let (_, tensions) = state.split_once("tensions ").unwrap_or_else(|| panic!("{state}"));
+        tensions.split(' ').map(|tension| tension.parse::<f64>().expect("a number")).fold(0.0, f64::max)
     }
 }
 
@@ -150,12 +157,31 @@ impl Drop for Board {
 fn a_finger_whose_board_dies_is_faulted() {
     let bench = Bench::new();
     let program = bench.build(c_compilers()[0], &strict(&["-std=c99"]), &["faulted.c"]);
-    let board = Board::start(&["--finger", "1"]);
-    fs::write(bench.path().join("named.toml"), format!("[finger.1]\nport = \"{}\"\n", board.port)).expect("a file");
+    let board = Board::start(&bench);
     let mut command = Command::new(&program);
     command.arg(board.process.id().to_string());
     let run = bench.run(command);
     assert!(run.status.success(), "{}", said(&run));
+}
+
+/// `release`: however the planner ends, the tendons go slack but for the friction of the motors.
+#[test]
+fn a_planner_that_leaves_without_closing_lets_the_tendons_go() {
+    let bench = Bench::new();
+    let program = bench.build(c_compilers()[0], STRICT, &["leaves.c"]);
+    for (way, status) in
+        [("return", Some(3)), ("exit", Some(3)), ("handler", Some(3)), ("thread", Some(3)), ("killed", None)]
+    {
+        let mut board = Board::start(&bench);
+        let mut command = Command::new(&program);
+        command.arg(way);
+        let run = bench.run(command);
+        assert_eq!(run.status.code(), status, "{way}: {}", said(&run));
+        let end = Instant::now() + Duration::from_secs(1);
+        while board.tension() > 3.0 {
+            assert!(Instant::now() < end, "{way}: {} N one second later", board.tension());
+        }
+    }
 }
 
 #[test]
