@@ -1,9 +1,9 @@
 //! The link and the simulated board, in memory and on simulated time.
 
-use nalgebra::{Vector3, Vector4};
+use nalgebra::Vector4;
 use sun2xp::board::protocol::*;
 use sun2xp::board::*;
-use sun2xp::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState};
+use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, EndState};
 
 const MS: u64 = 1_000_000;
 
@@ -12,7 +12,9 @@ fn finger() -> ConfiguredFinger {
 }
 
 fn board(addresses: &[u8]) -> SimulatedBoard {
-    SimulatedBoard::new(addresses.iter().map(|&address| (address, finger())).collect(), Vector3::zeros()).unwrap()
+    let mut hand = Configuration::default();
+    hand.fingers.iter_mut().zip(addresses).for_each(|(finger, &address)| finger.address = address);
+    SimulatedBoard::new(&hand, &[0, 1, 2][..addresses.len()]).unwrap()
 }
 
 fn link(addresses: &[u8]) -> Link<SimulatedCable> {
@@ -54,9 +56,9 @@ fn assert_all(torques: Vector4<f64>, expected: f64) {
 
 #[test]
 fn handshake_agrees_on_terms_and_tells_whole_counts() {
-    let mut configured_finger = finger();
-    configured_finger.encoder.zero = [1_000_000, -5, 0, 70_000];
-    let board = SimulatedBoard::new(vec![(3, configured_finger)], Vector3::zeros()).unwrap();
+    let mut hand = Configuration::default();
+    hand.fingers[2].encoder.zero = [1_000_000, -5, 0, 70_000];
+    let board = SimulatedBoard::new(&hand, &[2]).unwrap();
     let mut link = Link::new(SimulatedCable::new(board));
     let deadline = in_time(&mut link, 500);
     let (identity, configured) = link.shake_hands(3, &terms(EndState::Hold), deadline).unwrap();
@@ -284,6 +286,29 @@ fn a_board_refuses_what_it_cannot_carry_out() {
     assert_eq!(refusal(Configure { torque_limits: [0, 0, 40_000, 0], ..good }), Some((Reason::Value, 14)));
 }
 
+#[test]
+fn a_board_refuses_what_it_does_not_understand() {
+    let mut board = board(&[1]);
+    let mut refusal = |content: &[u8]| {
+        let mut answer = None;
+        let check = check(content).to_le_bytes();
+        let mut wire = [0; MAX_WIRE];
+        let length = cobs::encode(&[content, &check].concat(), &mut wire) + 1;
+        board.receive(0, &wire[..length], &mut |bytes| answer = Some(read(bytes)));
+        match answer {
+            Some(Message { address: 1, sequence: 77, frame: Frame::Refused(refused) }) => refused,
+            other => panic!("{other:?}"),
+        }
+    };
+    // Versions 2 to 9; a type that is free; a Stop with a body; a third end state.
+    assert_eq!(refusal(&[0x11, 77, 2, 9]), Refused { request: 1, reason: Reason::Version, detail: 0x0101 });
+    assert_eq!(refusal(&[0x71, 77, 1, 2, 3]), Refused { request: 7, reason: Reason::UnknownFrame, detail: 3 });
+    assert_eq!(refusal(&[0x41, 77, 0]), Refused { request: 4, reason: Reason::UnknownFrame, detail: 1 });
+    let mut configure = vec![0x21, 77, 1, 20, 0, 2];
+    configure.resize(34, 0);
+    assert_eq!(refusal(&configure), Refused { request: 2, reason: Reason::Value, detail: 5 });
+}
+
 fn read(wire: &[u8]) -> Message {
     Message::read(&Decoder::default().next(&mut &wire[..]).expect("whole")).expect("known")
 }
@@ -450,6 +475,19 @@ fn a_frame_that_did_not_fit_costs_itself_only() {
     // Writes: Hello, Configure, three whole commands and one cut short, the second.
     assert_eq!(answered, [0, 2, 3]);
     assert_eq!(link.counters().unsent, 1);
+}
+
+#[test]
+fn a_refused_handshake_frame_that_comes_late_is_no_fault() {
+    let refusal = |request| {
+        let frame = Frame::Refused(Refused { request, reason: Reason::Running, detail: 0 });
+        WireFrame::new(&Message { address: 1, sequence: 3, frame }).as_bytes().to_vec()
+    };
+    for (request, fault) in [(Kind::Configure as u8, false), (Kind::Command as u8, true)] {
+        let mut link = Link::new(Other(|_| Vec::new(), refusal(request), 0));
+        assert_eq!(link.receive(MS).is_err(), fault);
+        assert_eq!(link.counters().foreign, u64::from(!fault));
+    }
 }
 
 #[test]

@@ -1,18 +1,19 @@
 //! The serial port and the simulated board over a real pseudo-terminal, in real time.
 
-use nalgebra::Vector3;
+use std::io::{Read, Write};
+use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use sun2xp::board::protocol::{Command, Status};
+use sun2xp::board::protocol::*;
 use sun2xp::board::*;
-use sun2xp::model::configuration::{ConfiguredFinger, ConfiguredHand};
+use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
 use sun2xp::realtime::{self, Priority};
 
 const MS: u64 = 1_000_000;
 
 fn board() -> SimulatedPort {
-    let fingers = (1..=3).map(|address| (address, ConfiguredFinger::default())).collect();
-    SimulatedPort::start(SimulatedBoard::new(fingers, Vector3::zeros()).unwrap(), Priority::default()).unwrap()
+    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).unwrap();
+    SimulatedPort::start(board, Pace::RealTime, Priority::default()).unwrap()
 }
 
 fn terms() -> Terms {
@@ -68,6 +69,53 @@ fn a_port_has_one_user_at_a_time_also_after_one_that_left_no_word() {
     drop(first);
     let mut second = Link::open(board.path(), 1_000_000).unwrap();
     second.shake_hands(1, &terms(), realtime::now() + 2000 * MS).unwrap();
+}
+
+#[test]
+fn a_host_that_configures_nothing_gets_every_byte() {
+    let board = board();
+    let mut host = std::fs::OpenOptions::new().read(true).write(true).open(board.path()).unwrap();
+    // A Hello with a sequence number that a terminal would take for an interrupt, and one for a line end.
+    for sequence in [0x03, 0x0D] {
+        let frame = Frame::Hello(Hello { lowest_version: 1, highest_version: 1 });
+        let hello = WireFrame::new(&Message { address: 1, sequence, frame });
+        host.write_all(hello.as_bytes()).unwrap();
+        let mut wire = vec![0; Kind::Identity.wire_length()];
+        host.read_exact(&mut wire).unwrap();
+        let identity = Message::read(&Decoder::default().next(&mut &wire[..]).expect("whole")).unwrap();
+        assert_eq!((identity.sequence, identity.frame.kind()), (sequence, Kind::Identity));
+    }
+}
+
+/// Whether the port is marked for exclusive use, which keeps out everyone but root.
+fn exclusive(path: &Path) -> bool {
+    let Ok(file) = std::fs::OpenOptions::new().read(true).write(true).open(path) else { return true };
+    let mut exclusive: libc::c_int = -1;
+    // SAFETY: the descriptor is open, and the request writes one int.
+    assert_eq!(unsafe { libc::ioctl(file.as_raw_fd(), libc::TIOCGEXCL, &mut exclusive) }, 0);
+    exclusive != 0
+}
+
+#[test]
+fn exclusive_use_ends_with_its_user() {
+    let board = board();
+    let link = Link::open(board.path(), 1_000_000).unwrap();
+    drop(link);
+    assert!(!exclusive(board.path()));
+}
+
+#[test]
+fn exclusive_use_does_not_outlive_a_user_that_was_killed() {
+    let board = board();
+    let port = std::fs::OpenOptions::new().read(true).write(true).open(board.path()).unwrap();
+    // SAFETY: the descriptor is open; the request takes no pointer.
+    assert_eq!(unsafe { libc::ioctl(port.as_raw_fd(), libc::TIOCEXCL) }, 0);
+    drop(port);
+    let waiting = Instant::now();
+    while exclusive(board.path()) {
+        assert!(waiting.elapsed() < Duration::from_secs(10), "still marked");
+        std::thread::yield_now();
+    }
 }
 
 #[test]

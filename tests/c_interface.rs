@@ -241,7 +241,7 @@ fn a_configuration_that_cannot_be_used_is_told_with_its_line() {
         (
             "[finger.geometry]\nr = [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, 1.09], [0.0, 0.62, -0.62, 0.0]]\n",
             2,
-            "-1.09",
+            "misprints",
         ),
         (
             "[finger.geometry]\nr = [[0.0, 0.0, 0.0, 0.0], [1.09, 0.62, -0.62, -1.09], [0.0, 0.62, -0.62, 0.0]]\n",

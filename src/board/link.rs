@@ -1,112 +1,14 @@
 //! The host's end of the cable: handshake, one exchange of frames a period, and what went wrong.
 
-use super::port::{Port, PortError};
+use super::link_error::LinkError;
+use super::port::Port;
 use super::protocol::{
     ANY_ADDRESS, Command, Configure, Configured, Decoder, Frame, HIGHEST_ADDRESS, Hello, Identity, Kind, MAX_WIRE,
     Message, Reason, Refused, Reply, Stop, VERSION, WireFrame,
 };
-use super::terms::{Terms, TermsError};
+use super::terms::Terms;
 use super::transport::Transport;
 use std::path::Path;
-use thiserror::Error;
-
-/// Why a board cannot be worked with. The texts name the cause and the remedy.
-#[derive(Debug, Error)]
-pub enum LinkError {
-    /// The port itself.
-    #[error(transparent)]
-    Port(#[from] PortError),
-    /// Not one byte came.
-    #[error(
-        "the board does not answer: not one byte came in {milliseconds} ms. Is it switched on, is the cable in, is this \
-         its port, are transmit and receive crossed?"
-    )]
-    Silent {
-        /// How long it was tried, ms.
-        milliseconds: u64,
-    },
-    /// Bytes came, but no frame.
-    #[error(
-        "{bytes} bytes came, but no valid frame ({damaged} damaged): the baud rate differs from the board's, or what is \
-         at this port is no board of this protocol"
-    )]
-    Unintelligible {
-        /// Bytes that came.
-        bytes: u64,
-        /// Pieces that were no frame.
-        damaged: u64,
-    },
-    /// Valid frames came, but not the one that was asked for.
-    #[error("finger address {address} does not answer a {request:?} frame, though the board sends valid frames")]
-    Unanswered {
-        /// The finger.
-        address: u8,
-        /// The request.
-        request: Kind,
-    },
-    /// The board has other fingers.
-    #[error("the board at this port has no finger address {address}, but {}: configure finger.address", listed(*addresses))]
-    WrongAddress {
-        /// The address asked for.
-        address: u8,
-        /// Those it has, bit n for address n.
-        addresses: u16,
-    },
-    /// No common protocol version.
-    #[error(
-        "the board speaks protocol versions {lowest} to {highest}, this library speaks {VERSION}: update the older of the \
-         two"
-    )]
-    WrongVersion {
-        /// The board's lowest.
-        lowest: u8,
-        /// The board's highest.
-        highest: u8,
-    },
-    /// The board cannot keep what is configured.
-    #[error("the board cannot keep what is configured: {0}")]
-    Terms(#[from] TermsError),
-    /// The board said no.
-    #[error("finger address {address} refuses: {refused}")]
-    Refused {
-        /// The finger.
-        address: u8,
-        /// What it said.
-        refused: Refused,
-    },
-    /// The board confirmed other terms than it was sent.
-    #[error("finger address {address} confirms other terms than it was sent: its firmware is wrong")]
-    OtherTerms {
-        /// The finger.
-        address: u8,
-    },
-}
-
-impl LinkError {
-    /// The nearest errno.
-    pub fn errno(&self) -> i32 {
-        match self {
-            LinkError::Port(error) => error.errno(),
-            LinkError::Silent { .. } | LinkError::Unanswered { .. } => libc::ETIMEDOUT,
-            LinkError::Unintelligible { .. } | LinkError::OtherTerms { .. } => libc::EPROTO,
-            LinkError::WrongAddress { .. } => libc::ENXIO,
-            LinkError::WrongVersion { .. } => libc::EPROTONOSUPPORT,
-            LinkError::Terms(_) => libc::EINVAL,
-            LinkError::Refused { refused, .. } => match refused.reason {
-                Reason::Running => libc::EBUSY,
-                _ => libc::EIO,
-            },
-        }
-    }
-}
-
-fn listed(addresses: u16) -> String {
-    let names: Vec<String> = (1..=HIGHEST_ADDRESS)
-        .filter(|address| addresses & 1 << address != 0)
-        .map(|address| address.to_string())
-        .collect();
-    if names.is_empty() { "none".into() } else { names.join(", ") }
-}
 
 /// A Command on its way to one finger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -300,12 +202,15 @@ impl<T: Transport> Link<T> {
     }
 
     /// The next Reply, or none at `deadline` (ns on the transport's clock). With a deadline in the past: a Reply that is
-    /// there already. A refusal is an error: the board lost its configuration, or is no longer the board it was.
+    /// there already. A refused Command is an error: the board lost its configuration, or is no longer the board it was.
     pub fn receive(&mut self, deadline: u64) -> Result<Option<Received>, LinkError> {
         while let Some(Message { address, sequence, frame }) = self.next_message(deadline)? {
             match frame {
                 Frame::Reply(reply) => return Ok(Some(Received { address, sequence, reply })),
-                Frame::Refused(refused) => return Err(LinkError::Refused { address, refused }),
+                // A refused handshake frame has missed its time.
+                Frame::Refused(refused) if refused.request == Kind::Command as u8 => {
+                    return Err(LinkError::Refused { address, refused });
+                }
                 _ => self.foreign += 1,
             }
         }
@@ -314,6 +219,7 @@ impl<T: Transport> Link<T> {
 
     /// Tells the finger to go to its end state now, as well as that can be done: whether it confirmed by `deadline` (ns on
     /// the transport's clock). Without an answer its watchdog does the same a little later.
+    /// Replies that come meanwhile are thrown away.
     pub fn stop(&mut self, address: u8, deadline: u64) -> Result<bool, LinkError> {
         let answer = self.ask(address, Frame::Stop(Stop), deadline)?;
         Ok(matches!(answer, Some(Message { frame: Frame::Stopped(_), .. })))

@@ -3,6 +3,7 @@
 
 mod capacity;
 mod link;
+mod link_error;
 mod port;
 pub mod protocol;
 mod simulated_board;
@@ -13,11 +14,12 @@ mod terms;
 mod transport;
 
 pub use capacity::{TooFast, USABLE_SHARE, capacity};
-pub use link::{Link, LinkCounters, LinkError, OutgoingCommand, Received};
+pub use link::{Link, LinkCounters, OutgoingCommand, Received};
+pub use link_error::LinkError;
 pub use port::{Port, PortError};
 pub use simulated_board::{SimulatedBoard, SimulatedBoardError};
 pub use simulated_cable::SimulatedCable;
 pub use simulated_finger::SimulatedFinger;
-pub use simulated_port::SimulatedPort;
+pub use simulated_port::{Pace, SimulatedPort};
 pub use terms::{Terms, TermsError};
 pub use transport::Transport;

@@ -7,9 +7,8 @@ use super::protocol::{
 };
 use super::simulated_finger::SimulatedFinger;
 use crate::model::TendonsError;
-use crate::model::configuration::ConfiguredFinger;
+use crate::model::configuration::Configuration;
 use crate::plant::PLANT_STEP_SECONDS;
-use nalgebra::Vector3;
 use thiserror::Error;
 
 /// Why a simulated board cannot be built.
@@ -39,18 +38,23 @@ pub struct SimulatedBoard {
     time: Option<u64>,
 }
 
-/// ns.
+/// One step of the physics, ns.
 const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
+const _: () = assert!(STEP == 100_000, "the conversion to whole nanoseconds lost something");
 
 impl SimulatedBoard {
-    /// A board with these fingers at these addresses, braked at their start poses. Gravity in the finger's frame, m/s^2.
-    pub fn new(fingers: Vec<(u8, ConfiguredFinger)>, gravity: Vector3<f64>) -> Result<Self, SimulatedBoardError> {
+    /// A board with these `fingers` (0 to 2) of a hand at their configured addresses, braked at their start poses. Every finger
+    /// has noise of its own.
+    pub fn new(hand: &Configuration, fingers: &[usize]) -> Result<Self, SimulatedBoardError> {
         let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), time: None };
-        for (address, configured) in fingers {
+        for &index in fingers {
+            let address = hand.address(index);
+            let mut configured = hand.fingers[index].clone();
+            configured.simulation.seed = configured.simulation.seed.wrapping_add(index as u64);
             if !(1..=HIGHEST_ADDRESS).contains(&address) || board.finger(address).is_some() {
                 return Err(SimulatedBoardError::Address(address));
             }
-            let finger = SimulatedFinger::new(address, &configured, &gravity)
+            let finger = SimulatedFinger::new(address, &configured, hand.gravity(index))
                 .map_err(|source| SimulatedBoardError::Tendons { address, source })?;
             board.fingers.push(finger);
         }
@@ -66,11 +70,6 @@ impl SimulatedBoard {
     /// All fingers, in the order of their addresses.
     pub fn fingers(&mut self) -> &mut [SimulatedFinger] {
         &mut self.fingers
-    }
-
-    /// Whether every finger is still braked, so that nothing happens until bytes come.
-    pub fn braked(&self) -> bool {
-        self.fingers.iter().all(SimulatedFinger::braked)
     }
 
     /// Lets time pass until `now`, ns. The first call sets the board's clock; time does not run backward.

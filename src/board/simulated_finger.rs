@@ -61,14 +61,14 @@ pub struct SimulatedFinger {
 
 impl SimulatedFinger {
     /// Gravity in the finger's frame, m/s^2.
-    pub(super) fn new(address: u8, finger: &ConfiguredFinger, gravity: &Vector3<f64>) -> Result<Self, TendonsError> {
+    pub(super) fn new(address: u8, finger: &ConfiguredFinger, gravity: Vector3<f64>) -> Result<Self, TendonsError> {
         let strongest = finger.motor.torque_limit.into_iter().fold(0.0, f64::max);
         // The finest unit, in whole nN m, in which the strongest motor's limit is 30 000 units at most. 1 N cm = 1e7 nN m.
         let torque_unit = (strongest * 1e7 / 30_000.0).ceil().max(1.0);
         let counts = finger.encoder.counts_per_revolution;
         Ok(Self {
             address,
-            plant: Plant::new(finger, *gravity)?,
+            plant: Plant::new(finger, gravity)?,
             sensors: Sensors::new(finger),
             state: State::Idle,
             terms: Configure::default(),
@@ -100,11 +100,6 @@ impl SimulatedFinger {
     /// What the motors are told right now, N cm.
     pub fn motor_torques(&self) -> Vector4<f64> {
         Vector4::from(self.torques.map(f64::from)) * (f64::from(self.torque_unit) * 1e-7)
-    }
-
-    /// Whether nothing can move, because the motors were never switched on.
-    pub fn braked(&self) -> bool {
-        self.plant.braked()
     }
 
     /// Faults that are present from now on: bits of [`Status::FAULTS`]. They take the torque off at once.

@@ -20,14 +20,30 @@ use std::thread::JoinHandle;
 /// How often the physics moves on while no bytes come.
 const TICK_MS: i32 = 1;
 
-/// The same while every finger is braked: nothing can happen, but the end of the thread must be noticed.
-const BRAKED_TICK_MS: i32 = 10;
-
 /// The most that one wake-up counts, ns.
 const LONGEST_STEP: u64 = 2_000_000;
 
-/// After such a silence nobody is taken to be at the other end, ns.
+/// How far a [`Pace::Patient`] board goes on after the last bytes, ns: less than any watchdog waits by default.
+const PATIENT_STEP: u64 = 10_000_000;
+
+/// For so long, ns, a [`Pace::Patient`] board takes silence for a pause of the machine.
+const PATIENCE: u64 = 500_000_000;
+
+/// After such a silence nobody is taken to be at the other end, ns. A host that is there all the same loses its mark of
+/// exclusive use, but not its lock.
 const SILENCE: u64 = 100_000_000;
+
+/// How the time of a simulated board passes.
+///
+/// Either way it does not pass while the machine does not let the board's thread run: a wake-up counts 2 ms at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// As on the wall: a host that falls silent meets the watchdog in time.
+    RealTime,
+    /// It also stands still, for up to half a second, while commands stay away. Bytes in a pseudo-terminal are carried by an
+    /// ordinary kernel thread, which a busy machine keeps waiting for tens of ms: no reason to stop a simulated hand.
+    Patient,
+}
 
 /// A simulated board with a port of its own and a thread that runs it. Dropping it ends both.
 #[derive(Debug)]
@@ -42,7 +58,7 @@ pub struct SimulatedPort {
 
 impl SimulatedPort {
     /// Starts the board. Its thread asks for this priority, and goes on without where that is not permitted.
-    pub fn start(board: SimulatedBoard, priority: Priority) -> io::Result<Self> {
+    pub fn start(board: SimulatedBoard, pace: Pace, priority: Priority) -> io::Result<Self> {
         let terminal = PseudoTerminal::open()?;
         let path = terminal.path.clone();
         let board = Arc::new(Mutex::new(board));
@@ -50,7 +66,7 @@ impl SimulatedPort {
         let thread = {
             let (board, ended) = (board.clone(), ended.clone());
             // Not real-time is good enough for a simulation.
-            spawn("sun2xp board", priority, move |_| run(&terminal, &board, &ended))?
+            spawn("sun2xp board", priority, move |_| run(&terminal, &board, pace, &ended))?
         };
         Ok(Self { path, board, ended, thread: Some(thread), process: std::process::id() })
     }
@@ -82,30 +98,33 @@ impl Drop for SimulatedPort {
     }
 }
 
-fn run(terminal: &PseudoTerminal, board: &Mutex<SimulatedBoard>, ended: &AtomicBool) {
+fn run(terminal: &PseudoTerminal, board: &Mutex<SimulatedBoard>, pace: Pace, ended: &AtomicBool) {
     let mut input = [0; 512];
     let mut board_time = 0;
     let mut last_wake = realtime::now();
-    let mut last_bytes = Some(last_wake);
-    let mut tick = BRAKED_TICK_MS;
+    // The last bytes, on the wall and on the board's clock.
+    let mut heard = last_wake;
+    let mut heard_at = board_time;
+    let mut forgotten = false;
     while !ended.load(Ordering::Relaxed) {
-        let taken = terminal.read(&mut input, tick);
+        let taken = terminal.read(&mut input, TICK_MS);
         let now = realtime::now();
-        board_time += (now - last_wake).min(LONGEST_STEP);
+        let next_time = board_time + (now - last_wake).min(LONGEST_STEP);
         last_wake = now;
+        let patient = pace == Pace::Patient && now - heard < PATIENCE;
+        board_time = if patient { next_time.min(board_time.max(heard_at + PATIENT_STEP)) } else { next_time };
 
         let mut board = board.lock();
         if taken > 0 {
-            last_bytes = Some(now);
+            (heard, heard_at, forgotten) = (now, board_time, false);
             board.receive(board_time, &input[..taken], &mut |answer| terminal.write(answer));
         } else {
             board.advance(board_time);
         }
-        tick = if board.braked() { BRAKED_TICK_MS } else { TICK_MS };
         drop(board);
 
-        if last_bytes.is_some_and(|last| now - last > SILENCE) {
-            last_bytes = None;
+        if !forgotten && now - heard > SILENCE {
+            forgotten = true;
             terminal.forget_last_host();
         }
     }

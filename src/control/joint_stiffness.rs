@@ -7,7 +7,10 @@ use nalgebra::Vector3;
 /// Kx at which `rate_time` holds, N/cm.
 const REFERENCE_STIFFNESS: f64 = 3.0;
 
-/// tau = K_theta (theta_d - theta) - B K_theta B theta_dot, with K_theta = J^T Kx J and a diagonal B.
+/// Damping of a finger without stiffness, N cm s/rad: a few times what its joints have, a fifth of what a spring needs.
+const LIMP_DAMPING: f64 = 0.2;
+
+/// tau = K_theta (theta_d - theta) - (B K_theta B + d) theta_dot, with K_theta = J^T Kx J, a diagonal B and a small d.
 ///
 /// B^2 is beta where K_theta has its reference value, and is scaled with 1/sqrt(K_theta), joint by joint: the damping ratio
 /// stays where Kx or the lever of a joint changes. A tip near the axis of joint 0, which then is soft, needs it.
@@ -33,6 +36,7 @@ impl JointStiffness {
         // beta^2 K_ref / K_jj to the power 1/4; without stiffness in a joint there is nothing to damp it with.
         let root = k_theta.diagonal().zip_map(&self.damping, |k, damping| (damping / k.max(1e-6)).sqrt().sqrt());
         let damped = root.component_mul(rates);
-        k_theta * (set_point.joints - joints) - root.component_mul(&(k_theta * damped))
+        let damping = root.component_mul(&(k_theta * damped)) + rates * LIMP_DAMPING;
+        k_theta * (set_point.joints - joints) - damping
     }
 }

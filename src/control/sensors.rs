@@ -22,7 +22,8 @@ impl Sensors {
         let encoder = &finger.encoder;
         signs("encoder.sign", &encoder.sign)?;
         positive("encoder.counts_per_revolution", &encoder.counts_per_revolution.map(f64::from))?;
-        positive("gauge.newton_per_count", &finger.gauge.newton_per_count)?;
+        // A negative scale is a gauge whose count falls as the tendon tightens.
+        positive("gauge.newton_per_count", &finger.gauge.newton_per_count.map(f64::abs))?;
         let radians_per_count = std::array::from_fn(|motor| {
             f64::from(encoder.sign[motor]) * TAU / f64::from(encoder.counts_per_revolution[motor])
         });

@@ -11,8 +11,8 @@ pub(super) struct TendonInput {
     pub measured: Vector4<f64>,
     /// Low-passed speed of the motor side of each tendon, m/s; positive pulls in.
     pub speed: Vector4<f64>,
-    /// False where the integral must rest: a slack tendon's tension says nothing about the motor.
-    pub integrating: [bool; 4],
+    /// Where the integral must not grow: a slack tendon's tension says nothing about the motor.
+    pub slack: [bool; 4],
 }
 
 /// The memory of a tendon controller.
@@ -42,10 +42,15 @@ impl TensionIntegral {
         Vector4::from_fn(|tendon, _| {
             let limit = self.limit[tendon];
             let error = input.desired[tendon] - input.measured[tendon];
-            let integral = state.integral[tendon] + self.gain * error;
+            let before = state.integral[tendon];
+            let mut integral = before + self.gain * error;
+            if input.slack[tendon] {
+                // What it had learnt to give way may be forgotten.
+                integral = integral.min(before.max(0.0));
+            }
             let pull = rest[tendon] + integral;
             let winding_up = pull.abs() > limit && pull * error > 0.0;
-            if input.integrating[tendon] && !winding_up {
+            if !winding_up {
                 state.integral[tendon] = integral;
             }
             (rest[tendon] + state.integral[tendon]).clamp(-limit, limit)

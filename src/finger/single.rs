@@ -11,6 +11,9 @@ use nalgebra::Matrix3;
 /// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
 const TENSION_SETTLED: f64 = 0.02;
 
+/// A simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to stop the hand.
+const SIMULATION_PATIENCE_MS: f64 = 1000.0;
+
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
 
@@ -95,7 +98,7 @@ impl FingerServo {
             lost_in_a_row: 0,
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
-                lost: cycles(hand.watchdog_ms.into()),
+                lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),

@@ -1,11 +1,11 @@
 //! From a configuration to ports with fingers behind them: everything that happens before a servo thread runs.
 
-use crate::board::{Link, Port, SimulatedBoard, SimulatedPort, Terms, capacity};
+use crate::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms, capacity};
 use crate::finger::{FingerServo, Mailbox, ServedPort};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::model::Refusal;
-use crate::model::configuration::{Configuration, ConfiguredFinger, FINGERS, Unusable};
+use crate::model::configuration::{Configuration, FINGERS, Unusable};
 use crate::realtime::{Priority, now};
 use nalgebra::Matrix3;
 use std::path::PathBuf;
@@ -41,25 +41,20 @@ pub(super) fn check(configuration: &Configuration) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// A simulated board behind a pseudo terminal, for each finger whose port is `simulated`.
+/// A simulated board behind a pseudo-terminal, for each finger whose port is `simulated`.
 pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<SimulatedPort>; FINGERS], HandError> {
     let mut ports = [const { None }; FINGERS];
     for (index, finger) in configuration.fingers.iter().enumerate() {
-        if finger.port != "simulated" {
+        if !finger.simulated() {
             continue;
         }
-        let section = || format!("finger.{}", index + 1);
-        let gravity = configuration.gravity(index);
-        let board =
-            SimulatedBoard::new(vec![(configuration.address(index), finger.clone())], gravity).map_err(|error| {
-                HandError::Unusable {
-                    section: section(),
-                    unusable: Unusable { key: "geometry.r", reason: error.to_string() },
-                }
-            })?;
+        let board = SimulatedBoard::new(configuration, &[index]).map_err(|error| {
+            let unusable = Unusable { key: "simulation", reason: error.to_string() };
+            Refusal { finger: Some(index), unusable }
+        })?;
         let priority = Priority { fifo: finger.priority.min(SIMULATED_BOARD_PRIORITY), core: None };
-        let port = SimulatedPort::start(board, priority)
-            .map_err(|source| HandError::System { doing: "start the simulated board on a pseudo terminal", source })?;
+        let port = SimulatedPort::start(board, Pace::Patient, priority)
+            .map_err(|source| HandError::System { doing: "start the simulated board on a pseudo-terminal", source })?;
         ports[index] = Some(port);
     }
     Ok(ports)
@@ -129,9 +124,12 @@ fn initial_stiffness(configuration: &Configuration, index: usize) -> Result<Matr
 
 /// Whether the line of a finger carries the rate, with everything that shares it.
 fn carries(configuration: &Configuration, index: usize) -> Result<(), Unusable> {
-    let finger: &ConfiguredFinger = &configuration.fingers[index];
-    let alike = |other: &&ConfiguredFinger| finger.port != "simulated" && other.port == finger.port;
-    let sharing = configuration.fingers.iter().filter(alike).count().max(1);
+    let finger = &configuration.fingers[index];
+    if finger.simulated() {
+        // A pseudo-terminal has no bits a second.
+        return Ok(());
+    }
+    let sharing = configuration.fingers.iter().filter(|other| other.port == finger.port).count();
     match capacity(finger.baud, sharing, configuration.hand.rate) {
         Ok(_) => Ok(()),
         Err(too_fast) => Err(Unusable { key: "baud", reason: too_fast.to_string() }),

@@ -354,6 +354,11 @@ impl Default for ConfiguredStiffness {
 }
 
 impl ConfiguredFinger {
+    /// Whether the finger has a simulated board instead of a port.
+    pub fn simulated(&self) -> bool {
+        self.port == "simulated"
+    }
+
     /// The links.
     pub fn links(&self) -> Links {
         Links(self.geometry.links)

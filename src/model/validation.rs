@@ -45,7 +45,7 @@ impl Configuration {
                 ),
             );
         }
-        if one.port == "simulated" || one.port != other.port {
+        if one.simulated() || one.port != other.port {
             return Ok(());
         }
         if !same_thread {
@@ -190,7 +190,8 @@ impl ConfiguredFinger {
         optional("controller.motor_damping", controller.motor_damping, 0.0, 1e4, "N s/m")?;
         optional("controller.rate_time", controller.rate_time, 0.0, 1.0, "s")?;
         optional("controller.speed_filter", controller.speed_filter, 1.0, 1e4, "Hz")?;
-        optional("controller.stretch_filter", controller.stretch_filter, 0.1, 1e4, "Hz")
+        optional("controller.stretch_filter", controller.stretch_filter, 0.1, 1e4, "Hz")?;
+        optional("controller.set_point_speed", controller.set_point_speed, 1e-3, 1e3, "rad/s")
     }
 
     fn check_simulation(&self) -> Result<(), Unusable> {

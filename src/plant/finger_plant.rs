@@ -92,11 +92,6 @@ impl Plant {
         self.braked = false;
     }
 
-    /// Whether the rotors are still locked.
-    pub fn braked(&self) -> bool {
-        self.braked
-    }
-
     /// theta, rad.
     pub fn joints(&self) -> Vector3<f64> {
         self.theta

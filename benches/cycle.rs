@@ -1,0 +1,47 @@
+//! Time of one servo cycle: the whole of Figure 9 or 10, from counts to motor torques. The report needed 1430 us.
+
+use divan::{Bencher, black_box};
+use nalgebra::{Matrix3, Vector3};
+use sun2xp::control::{Activity, Controller, Feedback, SetPoint};
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+use sun2xp::plant::{Plant, Sensors};
+
+fn main() {
+    divan::main();
+}
+
+#[divan::bench(args = [Scheme::Figure9, Scheme::Figure10])]
+fn follow(bencher: Bencher, scheme: Scheme) {
+    cycle(bencher, scheme, 1.0);
+}
+
+/// A torque beyond the tension limits: the scale has to be found.
+#[divan::bench(args = [Scheme::Figure10])]
+fn follow_over_limit(bencher: Bencher, scheme: Scheme) {
+    cycle(bencher, scheme, 40.0);
+}
+
+fn cycle(bencher: Bencher, scheme: Scheme, stiffness: f64) {
+    let mut finger = ConfiguredFinger::default();
+    finger.controller.scheme = scheme;
+    let controller = Controller::new(&finger, 1000.0).expect("the default finger");
+    let mut plant = Plant::new(&finger, Vector3::zeros()).expect("the default finger");
+    let mut sensors = Sensors::new(&finger);
+    // Feedback of a finger in motion, so that no branch is always the same.
+    plant.release_brake();
+    let feedback: [Feedback; 64] = std::array::from_fn(|_| {
+        for _ in 0..10 {
+            plant.step([0.003; 4]);
+        }
+        let (motor_counts, gauge_counts) = sensors.read(&plant);
+        Feedback { motor_counts, gauge_counts }
+    });
+    let mut state = controller.start(&feedback[0]);
+    let stiffness = Matrix3::new(3.0, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0) * stiffness;
+    let activity = Activity::Follow(SetPoint { joints: Vector3::new(0.3, 0.6, 1.2), stiffness });
+    let mut turn = 0;
+    bencher.bench_local(|| {
+        turn = (turn + 1) % feedback.len();
+        controller.cycle(black_box(&mut state), black_box(Some(&feedback[turn])), black_box(&activity))
+    });
+}

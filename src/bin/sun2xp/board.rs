@@ -1,0 +1,254 @@
+//! `sun2xp board`: a simulated board as a program of its own.
+
+use nalgebra::Vector3;
+use std::error::Error;
+use std::io::{self, BufRead, Write};
+use std::path::{Path, PathBuf};
+use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
+use sun2xp::hand;
+use sun2xp::model::Surface;
+use sun2xp::model::configuration::{Configuration, FINGERS};
+use sun2xp::realtime::Priority;
+
+/// Runs a simulated board behind a serial port of its own.
+///
+/// The first line of standard output is the port's path. Then each line of standard input is an order, and each is answered with one
+/// line: `ok`, `state ...` or `error ...`.
+///
+///     force FINGER X Y Z                     push the fingertip, N
+///     wall FINGER PX PY PZ NX NY NZ K        a wall through P with normal N, stiffness K N/cm
+///     ball FINGER X Y Z RADIUS K             a ball
+///     free FINGER                            no force, no wall, no ball
+///     state FINGER                           true joints (rad), tip (cm) and tensions (N)
+///     quit
+///
+/// Positions and forces are in the finger's frame, lengths in cm. The end of standard input does not end the program, so that it
+/// can run detached; `quit` or a signal does.
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// The configuration whose fingers are simulated; without it the default ones. Ports in it do not matter.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// A finger of the board, 1 to 3; may be repeated. Unless configured, its address is its number.
+    #[arg(long = "finger", value_name = "N", default_values_t = [1, 2, 3], value_parser = clap::value_parser!(u8).range(1..=FINGERS as i64))]
+    fingers: Vec<u8>,
+    /// Push every fingertip from the start, N.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = |list: &str| Action::from_list("force", list))]
+    force: Option<Action>,
+    /// A wall before every finger from the start, cm and N/cm.
+    #[arg(
+        long,
+        value_name = "PX,PY,PZ,NX,NY,NZ,K",
+        allow_hyphen_values = true,
+        value_parser = |list: &str| Action::from_list("wall", list)
+    )]
+    wall: Option<Action>,
+    /// A ball before every finger from the start, cm and N/cm.
+    #[arg(
+        long,
+        value_name = "X,Y,Z,RADIUS,K",
+        allow_hyphen_values = true,
+        value_parser = |list: &str| Action::from_list("ball", list)
+    )]
+    ball: Option<Action>,
+    /// Seed of the gauge noise; each finger's own follows from it.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// A symbolic link to the port, made now and removed by `quit`. A symbolic link that is there is replaced.
+    #[arg(long, value_name = "PATH")]
+    link: Option<PathBuf>,
+    /// SCHED_FIFO priority of the board, where permitted; 0: not real-time.
+    #[arg(long, value_name = "P", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=99))]
+    priority: u8,
+}
+
+type Failure = Box<dyn Error>;
+
+/// Starts the board, and carries out orders until `quit`.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut configuration = match &arguments.config {
+        Some(file) => hand::read(file)?,
+        None => Configuration::default(),
+    };
+    if let Some(seed) = arguments.seed {
+        configuration.fingers.iter_mut().for_each(|finger| finger.simulation.seed = seed);
+    }
+    let fingers: Vec<usize> = arguments.fingers.iter().map(|&number| usize::from(number) - 1).collect();
+    let mut board = SimulatedBoard::new(&configuration, &fingers)?;
+    for action in [&arguments.force, &arguments.wall, &arguments.ball].into_iter().flatten() {
+        for finger in board.fingers() {
+            action.apply(finger.plant());
+        }
+    }
+    let port = SimulatedPort::start(board, Pace::RealTime, Priority { fifo: arguments.priority, core: None })?;
+    if let Some(link) = &arguments.link {
+        make_link(port.path(), link)?;
+    }
+    say(&port.path().display().to_string())?;
+
+    for line in io::stdin().lock().lines() {
+        let line = line?;
+        match Order::read(&line) {
+            Ok(Some(Order::Quit)) => {
+                if let Some(link) = &arguments.link {
+                    std::fs::remove_file(link)?;
+                }
+                return Ok(());
+            }
+            Ok(Some(Order::For(number, action))) => say(&carry_out(&port, &configuration, number, &action))?,
+            Ok(None) => {}
+            Err(error) => say(&format!("error {error}"))?,
+        }
+    }
+    loop {
+        std::thread::park();
+    }
+}
+
+/// One line, at once, also into a pipe.
+fn say(line: &str) -> io::Result<()> {
+    let mut output = io::stdout().lock();
+    writeln!(output, "{line}")?;
+    output.flush()
+}
+
+fn make_link(port: &Path, link: &Path) -> Result<(), Failure> {
+    match std::fs::symlink_metadata(link) {
+        Ok(there) if there.is_symlink() => std::fs::remove_file(link)?,
+        Ok(_) => return Err(format!("{} exists and is no symbolic link: choose another --link", link.display()).into()),
+        Err(_) => {}
+    }
+    std::os::unix::fs::symlink(port, link)
+        .map_err(|error| format!("cannot make the symbolic link {}: {error}", link.display()).into())
+}
+
+fn carry_out(port: &SimulatedPort, configuration: &Configuration, number: u8, action: &Action) -> String {
+    let index = usize::from(number).wrapping_sub(1);
+    let address = (index < FINGERS).then(|| configuration.address(index));
+    address
+        .and_then(|address| port.with_finger(address, |finger| action.apply(finger.plant())))
+        .unwrap_or_else(|| format!("error this board has no finger {number}"))
+}
+
+#[derive(Debug, PartialEq)]
+enum Order {
+    For(u8, Action),
+    Quit,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Action {
+    Force([f64; 3]),
+    Touch(Surface),
+    Free,
+    State,
+}
+
+impl Order {
+    /// None: an empty line.
+    fn read(line: &str) -> Result<Option<Self>, String> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let (name, finger, numbers) = match words[..] {
+            [] => return Ok(None),
+            ["quit"] => return Ok(Some(Order::Quit)),
+            [name] => return Err(format!("{name}: of which finger?")),
+            [name, finger, ref numbers @ ..] => (name, finger, numbers),
+        };
+        let finger = finger.parse().map_err(|_| format!("{finger} is no finger's number"))?;
+        Ok(Some(Order::For(finger, Action::new(name, &numbers_in(numbers)?)?)))
+    }
+}
+
+fn numbers_in(words: &[&str]) -> Result<Vec<f64>, String> {
+    words.iter().map(|word| word.trim().parse().map_err(|_| format!("{word} is no number"))).collect()
+}
+
+impl Action {
+    /// From an option's value: numbers with commas between them.
+    fn from_list(name: &str, list: &str) -> Result<Self, String> {
+        let words: Vec<&str> = list.split(',').collect();
+        Self::new(name, &numbers_in(&words)?)
+    }
+
+    fn new(name: &str, numbers: &[f64]) -> Result<Self, String> {
+        if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
+            return Err(format!("{number} is not finite"));
+        }
+        match (name, numbers) {
+            ("force", &[x, y, z]) => Ok(Action::Force([x, y, z])),
+            ("wall" | "ball", &[_, _, .., stiffness]) if stiffness < 0.0 => Err("the stiffness is negative".into()),
+            ("wall", &[px, py, pz, nx, ny, nz, stiffness]) => {
+                if [nx, ny, nz] == [0.0; 3] {
+                    return Err("the normal has no direction".into());
+                }
+                Ok(Action::Touch(Surface::Wall { point: [px, py, pz], normal: [nx, ny, nz], stiffness }))
+            }
+            ("ball", &[x, y, z, radius, stiffness]) => {
+                Ok(Action::Touch(Surface::Ball { centre: [x, y, z], radius, stiffness }))
+            }
+            ("free", []) => Ok(Action::Free),
+            ("state", []) => Ok(Action::State),
+            ("force" | "wall" | "ball" | "free" | "state", _) => {
+                Err(format!("{name} does not take {} numbers; see sun2xp board --help", numbers.len()))
+            }
+            _ => Err(format!("no order {name}: force, wall, ball, free, state or quit")),
+        }
+    }
+
+    /// The answer.
+    fn apply(&self, plant: &mut sun2xp::plant::Plant) -> String {
+        match *self {
+            Action::Force(force) => plant.set_external_force(force.into()),
+            Action::Touch(surface) => plant.set_surface(Some(surface)),
+            Action::Free => {
+                plant.set_external_force(Vector3::zeros());
+                plant.set_surface(None);
+            }
+            Action::State => {
+                let listed =
+                    |numbers: &[f64]| numbers.iter().map(|number| format!("{number:.5}")).collect::<Vec<_>>().join(" ");
+                return format!(
+                    "state joints {} tip {} tensions {}",
+                    listed(plant.joints().as_slice()),
+                    listed(plant.tip().as_slice()),
+                    listed(plant.tensions().as_slice())
+                );
+            }
+        }
+        "ok".into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orders_are_read() {
+        let force = Order::For(2, Action::Force([1.0, -0.5, 0.0]));
+        assert_eq!(Order::read("force 2 1 -0.5 0"), Ok(Some(force)));
+        let ball = Surface::Ball { centre: [1.0, 2.0, 3.0], radius: 4.0, stiffness: 5.0 };
+        assert_eq!(Order::read(" ball 1  1 2 3 4 5 "), Ok(Some(Order::For(1, Action::Touch(ball)))));
+        assert_eq!(Order::read(""), Ok(None));
+        assert_eq!(Order::read("quit"), Ok(Some(Order::Quit)));
+    }
+
+    #[test]
+    fn wrong_orders_are_named() {
+        for (line, part) in [
+            ("force 1 1 2", "does not take 2 numbers"),
+            ("force one 1 2 3", "no finger's number"),
+            ("force 1 1 2 x", "x is no number"),
+            ("force 1 1 2 NaN", "not finite"),
+            ("wall 1 0 0 0 0 0 0 10", "no direction"),
+            ("wall 1 0 0 0 1 0 0 -10", "negative"),
+            ("ball 1 0 0 0 1 -10", "negative"),
+            ("shove 1", "no order shove"),
+            ("state", "of which finger"),
+        ] {
+            let error = Order::read(line).unwrap_err();
+            assert!(error.contains(part), "{line}: {error}");
+        }
+    }
+}

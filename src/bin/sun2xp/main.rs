@@ -1,0 +1,34 @@
+//! The tool beside the library.
+
+#![deny(unsafe_code)]
+
+mod board;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Tools for a hand that the sun2xp library drives.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    tool: Tool,
+}
+
+#[derive(Subcommand)]
+enum Tool {
+    Board(board::Arguments),
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().tool {
+        Tool::Board(arguments) => board::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("sun2xp: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! `sun2xp board`: a board as a program of its own, found through the port that it names.
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command as Program, Stdio};
+use sun2xp::board::*;
+use sun2xp::model::configuration::{ConfiguredFinger, ConfiguredHand};
+use sun2xp::realtime;
+
+const MS: u64 = 1_000_000;
+
+struct Board {
+    process: Child,
+    orders: Option<ChildStdin>,
+    answers: BufReader<ChildStdout>,
+}
+
+impl Board {
+    fn start(arguments: &[&str]) -> Self {
+        let mut process = Program::new(env!("CARGO_BIN_EXE_sun2xp"))
+            .arg("board")
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let answers = BufReader::new(process.stdout.take().unwrap());
+        Self { orders: process.stdin.take(), answers, process }
+    }
+
+    fn line(&mut self) -> String {
+        let mut line = String::new();
+        self.answers.read_line(&mut line).unwrap();
+        line.trim_end().to_owned()
+    }
+
+    fn order(&mut self, order: &str) -> String {
+        writeln!(self.orders.as_mut().unwrap(), "{order}").unwrap();
+        self.line()
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn shake_hands(port: &Path, address: u8) -> Result<(), LinkError> {
+    let terms = Terms::new(&ConfiguredHand::default(), &ConfiguredFinger::default());
+    let mut link = Link::open(port, 1_000_000)?;
+    link.shake_hands(address, &terms, realtime::now() + 1000 * MS).map(|_| ())
+}
+
+/// The numbers after `name` in the answer to `state`.
+fn numbers(state: &str, name: &str, count: usize) -> Vec<f64> {
+    let words = state.split_whitespace().skip_while(|&word| word != name).skip(1);
+    words.take(count).map(|word| word.parse().unwrap()).collect()
+}
+
+#[test]
+fn port_orders_and_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("board");
+    let mut board = Board::start(&["--finger", "2", "--link", &link.to_string_lossy()]);
+    let port = board.line();
+    assert_eq!(std::fs::read_link(&link).unwrap(), Path::new(&port));
+    shake_hands(&link, 2).unwrap();
+    let error = shake_hands(Path::new(&port), 1).unwrap_err();
+    assert!(matches!(error, LinkError::WrongAddress { address: 1, .. }), "{error}");
+
+    let before = board.order("state 2");
+    assert_eq!(numbers(&before, "joints", 3).len(), 3);
+    assert!(numbers(&before, "tensions", 4).iter().all(|&tension| tension > 4.9), "{before}");
+    // Along x only joint 0 can give way.
+    assert_eq!(board.order("force 2 1 0 0"), "ok");
+    while numbers(&board.order("state 2"), "tip", 3)[0] < 0.05 {
+        assert!(board.process.try_wait().unwrap().is_none());
+    }
+    assert!(board.order("force 1 1 0 0").starts_with("error"));
+
+    writeln!(board.orders.as_mut().unwrap(), "quit").unwrap();
+    assert!(board.process.wait().unwrap().success());
+    assert!(!link.is_symlink());
+}
+
+#[test]
+fn the_end_of_its_input_does_not_end_it() {
+    let mut board = Board::start(&[]);
+    let port = board.line();
+    drop(board.orders.take());
+    for address in 1..=3 {
+        shake_hands(Path::new(&port), address).unwrap();
+    }
+    assert!(board.process.try_wait().unwrap().is_none());
+}

@@ -1,0 +1,136 @@
+//! The controller and the simulated finger in one loop, with the one cycle of delay that input and output cost.
+
+use nalgebra::{Vector3, Vector4};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+use sun2xp::control::{Activity, Command, Controller, Feedback, Report, SetPoint, State};
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
+
+pub struct Loop {
+    pub plant: Plant,
+    pub rate: f64,
+    sensors: Sensors,
+    controller: Controller,
+    state: State,
+    command: Command,
+    /// Part of the replies that are lost, and their source of chance.
+    loss: f64,
+    random: Pcg64,
+    /// Smallest commanded and true tensions since the last [`Loop::forget`], N.
+    pub least_commanded: f64,
+    pub least_true: f64,
+    /// Largest change of a motor's command from one cycle to the next, N at the tendon.
+    pub largest_jump: f64,
+    pub report: Report,
+}
+
+impl Loop {
+    pub fn new(finger: &ConfiguredFinger, rate: f64) -> Self {
+        Self::with_belief(finger, finger, rate)
+    }
+
+    /// A finger whose controller believes something else of it.
+    pub fn with_belief(finger: &ConfiguredFinger, belief: &ConfiguredFinger, rate: f64) -> Self {
+        let plant = Plant::new(finger, Vector3::zeros()).unwrap();
+        let mut sensors = Sensors::new(finger);
+        let controller = Controller::new(belief, rate).unwrap();
+        let state = controller.start(&read(&mut sensors, &plant));
+        let signs = Vector4::from(finger.motor.sign.map(f64::from));
+        let motor_torques = plant.tensions().component_mul(&signs) * 0.0475;
+        let mut it = Self {
+            plant,
+            rate,
+            sensors,
+            controller,
+            state,
+            command: Command { motor_torques },
+            loss: 0.0,
+            random: Pcg64::seed_from_u64(5),
+            least_commanded: 0.0,
+            least_true: 0.0,
+            largest_jump: 0.0,
+            report: Report::default(),
+        };
+        it.forget();
+        it.plant.release_brake();
+        it
+    }
+
+    /// The controller starts anew with the finger as it is now.
+    pub fn restart(mut self) -> Self {
+        self.state = self.controller.start(&read(&mut self.sensors, &self.plant));
+        self.command = Command { motor_torques: self.plant.tensions() * 0.0475 };
+        self.forget();
+        self
+    }
+
+    /// From now on this part of the replies is lost.
+    pub fn lose(&mut self, loss: f64) {
+        self.loss = loss;
+    }
+
+    /// Starts the minima and maxima anew.
+    pub fn forget(&mut self) {
+        (self.least_commanded, self.least_true, self.largest_jump) = (f64::INFINITY, f64::INFINITY, 0.0);
+    }
+
+    pub fn cycle(&mut self, activity: &Activity) {
+        let feedback = read(&mut self.sensors, &self.plant);
+        // The command of the last cycle acts during this one.
+        let steps = (1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize;
+        for _ in 0..steps {
+            self.plant.step((self.command.motor_torques * 0.01).into());
+            self.least_true = self.least_true.min(self.plant.tensions().min());
+        }
+        let lost = (self.random.next_u32() as f64) < self.loss * 4294967296.0;
+        let feedback = if lost { None } else { Some(&feedback) };
+        let (command, report) = self.controller.cycle(&mut self.state, feedback, activity);
+        let jump = (command.motor_torques - self.command.motor_torques).amax() / 0.0475;
+        self.largest_jump = self.largest_jump.max(jump);
+        self.least_commanded = self.least_commanded.min(report.desired_tensions.min());
+        self.command = command;
+        self.report = report;
+    }
+
+    pub fn run(&mut self, seconds: f64, activity: &Activity) {
+        for _ in 0..(seconds * self.rate) as usize {
+            self.cycle(activity);
+        }
+    }
+
+    /// Mean joints over so many seconds.
+    pub fn mean_joints(&mut self, seconds: f64, activity: &Activity) -> Vector3<f64> {
+        let cycles = (seconds * self.rate) as usize;
+        let mut sum = Vector3::zeros();
+        for _ in 0..cycles {
+            self.cycle(activity);
+            sum += self.plant.joints();
+        }
+        sum / cycles as f64
+    }
+}
+
+fn read(sensors: &mut Sensors, plant: &Plant) -> Feedback {
+    let (motor_counts, gauge_counts) = sensors.read(plant);
+    Feedback { motor_counts, gauge_counts }
+}
+
+/// The fingertip as an isotropic spring, N/cm.
+pub fn spring(joints: Vector3<f64>, stiffness: f64) -> Activity {
+    Activity::Follow(SetPoint { joints, stiffness: nalgebra::Matrix3::identity() * stiffness })
+}
+
+/// 24 poses, rad: joint 0 within +-30, joint 1 -10 to 70, joint 2 30 to 100 degrees.
+pub fn poses() -> Vec<Vector3<f64>> {
+    let mut random = Pcg64::seed_from_u64(24);
+    let mut within =
+        |low: f64, high: f64| (low + (high - low) * f64::from(random.next_u32()) / 4294967296.0).to_radians();
+    (0..24).map(|_| Vector3::new(within(-30.0, 30.0), within(-10.0, 70.0), within(30.0, 100.0))).collect()
+}
+
+pub fn finger_with(scheme: Scheme) -> ConfiguredFinger {
+    let mut finger = ConfiguredFinger::default();
+    finger.controller.scheme = scheme;
+    finger
+}
