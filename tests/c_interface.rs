@@ -3,9 +3,11 @@
 #[allow(dead_code)]
 mod c;
 
-use c::{Bench, STRICT, c_compilers, library, said};
+use c::{Bench, STRICT, c_compilers, library, root, said};
 use std::fs;
-use std::process::Command;
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::{Duration, Instant};
 
 fn succeed(flags: &[&str], sources: &[&str]) {
     Bench::new().succeed(flags, sources);
@@ -107,16 +109,93 @@ fn the_status_tells_of_the_servo() {
     succeed(&strict(&[]), &["status.c"]);
 }
 
+/// The `sun2xp board` program behind a port of its own, ended when dropped.
+struct Board {
+    process: Child,
+    orders: ChildStdin,
+    answers: BufReader<ChildStdout>,
+}
+
+impl Board {
+    /// Starts a board that carries finger 1, and configures the bench for it.
+    fn start(bench: &Bench) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+        command.args(["board", "--finger", "1"]).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut process = command.spawn().expect("the board can be started");
+        let orders = process.stdin.take().expect("standard input is a pipe");
+        let answers = BufReader::new(process.stdout.take().expect("standard output is a pipe"));
+        let mut board = Self { process, orders, answers };
+        let configuration = format!("[finger.1]\nport = \"{}\"\n", board.answer());
+        fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
+        board
+    }
+
+    fn answer(&mut self) -> String {
+        let mut line = String::new();
+        self.answers.read_line(&mut line).expect("the board answers");
+        line.trim().to_string()
+    }
+
+    /// The largest true tension, N.
+    fn tension(&mut self) -> f64 {
+        writeln!(self.orders, "state 1").expect("the board listens");
+        let state = self.answer();
+        let (_, tensions) = state.split_once("tensions ").unwrap_or_else(|| panic!("{state}"));
+        tensions.split(' ').map(|tension| tension.parse::<f64>().expect("a number")).fold(0.0, f64::max)
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        // It may have been ended by the test.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
 #[test]
-fn a_planner_may_leave_without_closing() {
+fn a_finger_whose_board_dies_is_faulted() {
+    let bench = Bench::new();
+    let program = bench.build(c_compilers()[0], &strict(&["-std=c99"]), &["faulted.c"]);
+    let board = Board::start(&bench);
+    let mut command = Command::new(&program);
+    command.arg(board.process.id().to_string());
+    let run = bench.run(command);
+    assert!(run.status.success(), "{}", said(&run));
+}
+
+/// `release`: however the planner ends, the tendons go slack but for the friction of the motors.
+#[test]
+fn a_planner_that_leaves_without_closing_lets_the_tendons_go() {
     let bench = Bench::new();
     let program = bench.build(c_compilers()[0], STRICT, &["leaves.c"]);
-    for way in ["return", "exit", "handler", "thread"] {
+    for (way, status) in
+        [("return", Some(3)), ("exit", Some(3)), ("handler", Some(3)), ("thread", Some(3)), ("killed", None)]
+    {
+        let mut board = Board::start(&bench);
         let mut command = Command::new(&program);
         command.arg(way);
         let run = bench.run(command);
-        assert_eq!(run.status.code(), Some(3), "{way}: {}", said(&run));
+        assert_eq!(run.status.code(), status, "{way}: {}", said(&run));
+        let end = Instant::now() + Duration::from_secs(1);
+        while board.tension() > 3.0 {
+            assert!(Instant::now() < end, "{way}: {} N one second later", board.tension());
+        }
     }
+}
+
+#[test]
+fn the_static_library_serves_too() {
+    let bench = Bench::new();
+    let archive = library().with_extension("a");
+    let program = bench.path().join("static");
+    let mut compiler = Command::new(c_compilers()[0]);
+    compiler.arg("-I").arg(root().join("include")).args(["-D_DEFAULT_SOURCE", "-o"]).arg(&program);
+    compiler.arg(root().join("tests/c/closed.c")).arg(&archive).args(["-lpthread", "-ldl", "-lm"]);
+    let built = compiler.output().expect("the compiler can be started");
+    assert!(built.status.success(), "{}", said(&built));
+    let run = bench.run(Command::new(&program));
+    assert!(run.status.success(), "{}", said(&run));
 }
 
 /// Runs `opens.c` with a configuration file.
@@ -157,12 +236,17 @@ fn clamping_is_not_refusing() {
 fn a_configuration_that_cannot_be_used_is_told_with_its_line() {
     for (configuration, line, word) in [
         ("[hand]\nrat = 1000.0\n", 2, "rat"),
-        ("[finger.2]\n\nbaud = \"fast\"\n", 3, "baud"),
+        ("[finger.2]\n\nbaud = \"fast\"\n", 3, "fast"),
         ("[hand]\nrate = 1.0\n", 2, "rate"),
         (
             "[finger.geometry]\nr = [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, 1.09], [0.0, 0.62, -0.62, 0.0]]\n",
             2,
             "report misprints",
+        ),
+        (
+            "[finger.geometry]\nr = [[0.0, 0.0, 0.0, 0.0], [1.09, 0.62, -0.62, -1.09], [0.0, 0.62, -0.62, 0.0]]\n",
+            2,
+            "singular",
         ),
     ] {
         let (status, told, printed) = opened_with(configuration);

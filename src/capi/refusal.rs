@@ -119,3 +119,39 @@ fn message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
     text.unwrap_or("no message").to_string()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::thread;
+
+    fn told() -> String {
+        // SAFETY: the text of this thread, which refuses nothing meanwhile.
+        unsafe { CStr::from_ptr(text()) }.to_string_lossy().into_owned()
+    }
+
+    #[test]
+    fn a_panic_does_not_leave_the_boundary() {
+        let result = guarded("SendPos", || panic!("a defect"));
+        let errno = std::io::Error::last_os_error().raw_os_error();
+        assert_eq!((result, errno), (-1, Some(libc::EIO)));
+        assert_eq!(told(), "SendPos: the library failed (a defect): a defect of this library, please report it");
+    }
+
+    #[test]
+    fn every_thread_has_its_own_text_which_success_leaves_alone() {
+        assert_eq!(told(), "");
+        assert_eq!(guarded("GetPos", || Err(Refusal::NoHand)), -1);
+        assert_eq!(guarded("SendPos", || Ok(())), 0);
+        assert!(told().starts_with("GetPos: no hand is open"));
+        thread::scope(|scope| scope.spawn(|| assert_eq!(told(), "")).join()).expect("another thread has no text yet");
+    }
+
+    #[test]
+    fn kinds_are_told_apart_by_the_refusal_of_the_hand() {
+        let no_finger = Refusal::Hand(hand::HandError::NoSuchFinger(7));
+        let not_simulated = Refusal::Hand(hand::HandError::NotSimulated(1));
+        assert_ne!(no_finger.kind(), not_simulated.kind());
+        assert_eq!(no_finger.kind(), Refusal::Hand(hand::HandError::NoSuchFinger(8)).kind());
+    }
+}

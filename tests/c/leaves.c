@@ -1,5 +1,5 @@
-/* Ends with the hand open: "return" from main, "exit" in a thread's midst, "handler" by exit in a signal handler, or "thread"
-   with other threads in the calls. The status is 3 in each case. */
+/* Ends with the hand open: "return" from main, "exit", "handler" by exit in a signal handler, "thread" with other threads in
+   the calls, each with the status 3; or "killed". */
 #include <pthread.h>
 #include <signal.h>
 #include <string.h>
@@ -43,5 +43,7 @@ int main(int count, char **arguments)
         CHECK(pthread_create(&thread, NULL, hammer, NULL) == 0);
         PAUSE_MS(50);
     }
+    if (strcmp(arguments[1], "killed") == 0)
+        raise(SIGKILL);
     return 3;
 }

@@ -4,7 +4,7 @@
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempDir;
 
 /// Flags that every C program must pass without a warning.
@@ -27,18 +27,22 @@ fn here(compilers: &[&'static str]) -> Option<Vec<&'static str>> {
     (!found.is_empty()).then_some(found)
 }
 
-/// A scratch folder with the library under the names that programs look for.
+/// A scratch folder with the library under the names that programs look for. There is one at a time: three servo threads and
+/// their boards want the machine, and no compiler beside them.
 pub struct Bench {
     folder: TempDir,
+    _turn: MutexGuard<'static, ()>,
 }
 
 impl Bench {
     pub fn new() -> Self {
+        static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+        let turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = tempfile::tempdir().expect("a scratch folder");
         for name in ["libsun2xp.so", "libsun2xp.so.0"] {
             std::os::unix::fs::symlink(library(), folder.path().join(name)).expect("a link to the library");
         }
-        Self { folder }
+        Self { folder, _turn: turn }
     }
 
     pub fn path(&self) -> &Path {
@@ -77,10 +81,8 @@ impl Bench {
         assert!(run.status.success(), "{sources:?} {flags:?}: {}\n{}", run.status, said(&run));
     }
 
-    /// Runs a program in the scratch folder, with the configuration `named.toml` if that is there. One at a time: three servo threads and their boards want the machine.
+    /// Runs a program in the scratch folder, with the configuration `named.toml` if that is there.
     pub fn run(&self, mut command: Command) -> Output {
-        static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-        let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
         let nowhere = self.path().join("nowhere");
         command.current_dir(self.path()).env_remove("SUN2XP_CONFIG");
         command.env("HOME", &nowhere).env("XDG_CONFIG_HOME", &nowhere).env("XDG_CONFIG_DIRS", &nowhere);
