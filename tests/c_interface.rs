@@ -100,6 +100,11 @@ fn threads_may_call_at_once() {
 }
 
 #[test]
+fn a_planner_without_standard_descriptors_keeps_its_ports_to_itself() {
+    succeed(STRICT, &["bare.c"]);
+}
+
+#[test]
 fn dlclose_leaves_the_hand() {
     succeed(&strict(&[]), &["loaded.c"]);
 }

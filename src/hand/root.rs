@@ -10,6 +10,7 @@ use crate::realtime::{CycleTiming, Latency, MonotonicClock, Priority, Realtime, 
 use crossbeam_channel::bounded;
 use nalgebra::Vector3;
 use rtrb::{Producer, RingBuffer};
+use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread::{JoinHandle, sleep};
 use std::time::Duration;
@@ -74,9 +75,7 @@ impl Hand {
     pub fn open_configured() -> Result<Self, HandError> {
         let (configuration, file) = configured()?;
         if file.is_none() {
-            eprintln!(
-                "sun2xp: no configuration file: this is the simulated hand (SUN2XP_CONFIG or sun2xp.toml names a real one)"
-            );
+            say("no configuration file: this is the simulated hand (SUN2XP_CONFIG or sun2xp.toml names a real one)");
         }
         Self::open(configuration)
     }
@@ -265,15 +264,20 @@ fn run(mut servo: PortServo) -> PortServo {
     servo
 }
 
-/// One line on standard error where servo threads are not what they should be.
+/// Tells on standard error where servo threads are not what they should be.
 fn announce(had: &[Realtime]) {
     if let Some(error) = had.iter().find_map(|had| had.scheduling.as_ref()) {
-        eprintln!(
-            "sun2xp: the servo is not real-time ({error}): allow it with CAP_SYS_NICE or an rtprio limit, or set \
+        say(&format!(
+            "the servo is not real-time ({error}): allow it with CAP_SYS_NICE or an rtprio limit, or set \
              `finger.priority = 0`; until then its cycles may be late"
-        );
+        ));
     }
     if let Some(error) = had.iter().find_map(|had| had.core.as_ref()) {
-        eprintln!("sun2xp: a servo thread is not bound to its core ({error}): see `finger.core`");
+        say(&format!("a servo thread is not bound to its core ({error}): see `finger.core`"));
     }
+}
+
+/// One line on standard error. Not with `eprintln!`, which panics where nobody reads it.
+fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "sun2xp: {text}");
 }
