@@ -24,5 +24,5 @@ mod usable;
 
 pub use cycle::{Controller, State};
 pub use joint_stiffness::JointStiffness;
-pub use signals::{Activity, Command, Feedback, Report, SetPoint};
+pub use signals::{Activity, Command, Feedback, Law, Report, SetPoint, spatial};
 pub use tension_distribution::{Distribution, TensionDistribution};

@@ -6,7 +6,7 @@ use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Mailbox, ServoEnd, mailbox};
 use crate::finger::{Fault, FingerReport, Stage};
 use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState, Unusable};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 /// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
 const TENSION_SETTLED: f64 = 0.02;
@@ -38,7 +38,8 @@ pub struct FingerServo {
     /// Cycles since the stage began.
     stage_cycles: u32,
     stops_left: u8,
-    initial_stiffness: Matrix3<f64>,
+    /// How the finger holds the pose that it finds at open.
+    initial: SetPoint,
     end_state: EndState,
 }
 
@@ -70,9 +71,11 @@ impl FingerServo {
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
+        let law = finger.controller.law;
+        let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
         let report = FingerReport {
             stage: Stage::Opening,
-            set_point: SetPoint { joints: nalgebra::Vector3::zeros(), stiffness },
+            set_point: initial,
             cycle: Default::default(),
             cycles: 0,
             lost_replies: 0,
@@ -106,7 +109,7 @@ impl FingerServo {
             settled_cycles: 0,
             stage_cycles: 0,
             stops_left: STOPS_AFTER_FAULT,
-            initial_stiffness: stiffness,
+            initial,
             end_state: hand.end_state,
         };
         Ok((this, planners))
@@ -239,7 +242,7 @@ impl FingerServo {
                 self.settled_cycles += 1;
                 if self.settled_cycles >= self.limits.settled {
                     let joints = self.report.cycle.joints;
-                    self.report.set_point = SetPoint { joints, stiffness: self.initial_stiffness };
+                    self.report.set_point = SetPoint { joints, ..self.initial };
                     self.activity = Activity::Follow(self.report.set_point);
                     self.enter(Stage::Running);
                 }

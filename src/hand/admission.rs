@@ -1,7 +1,7 @@
 //! What a planner may ask of a finger: the checks between a call and the servo. Nothing that fails one reaches it.
 
 use crate::hand::HandError;
-use crate::model::configuration::OutOfRange;
+use crate::model::configuration::{Law, OutOfRange};
 use nalgebra::{Matrix3, Vector3};
 
 /// Kx may be asymmetric, or have a negative eigenvalue, by so much of its largest entry or eigenvalue: the rounding of a
@@ -17,6 +17,8 @@ pub(super) struct Admission {
     pub joint_limits: (Vector3<f64>, Vector3<f64>),
     /// Bound on the largest eigenvalue of Kx, N/cm.
     pub stiffness_bound: f64,
+    /// What SendPos makes of deflections.
+    pub law: Law,
     /// Refuse or clamp.
     pub out_of_range: OutOfRange,
 }
@@ -90,6 +92,7 @@ mod tests {
             finger: 2,
             joint_limits: (Vector3::new(-1.0, -0.5, 0.1), Vector3::new(1.0, 1.7, 2.0)),
             stiffness_bound: 6.0,
+            law: Law::Report,
             out_of_range,
         }
     }

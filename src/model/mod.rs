@@ -2,11 +2,13 @@
 //! torques in N cm, angles in rad, as in the report, unless a name says otherwise.
 
 pub mod configuration;
+mod contact;
 mod kinematics;
 mod simulation;
 mod tendons;
 mod validation;
 
+pub use contact::{Contact, ContactError, spring};
 pub use kinematics::Links;
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use tendons::{Tendons, TendonsError};
