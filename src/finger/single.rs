@@ -6,7 +6,9 @@ use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Mailbox, ServoEnd, mailbox};
 use crate::finger::{Fault, FingerReport, Stage};
 use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState, Unusable};
+use crate::realtime::{self, CycleTiming};
 use nalgebra::Matrix3;
+use rtrb::Producer;
 
 /// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
 const TENSION_SETTLED: f64 = 0.02;
@@ -25,6 +27,8 @@ pub struct FingerServo {
     feedback: Feedback,
     command: Command,
     mailbox: ServoEnd,
+    timing: CycleTiming,
+    timings: Producer<CycleTiming>,
     report: FingerReport,
     address: u8,
     /// Knows the torque of one count of a command.
@@ -52,7 +56,8 @@ struct Limits {
 }
 
 impl FingerServo {
-    /// A finger that stands where its board says, limp, with the planners' end of its mailbox.
+    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`; those that
+    /// nobody collects are dropped.
     ///
     /// `stiffness` is the Kx that it will hold its pose with, already admitted.
     ///
@@ -65,6 +70,7 @@ impl FingerServo {
         stiffness: Matrix3<f64>,
         identity: &Identity,
         configured: &Configured,
+        timings: Producer<CycleTiming>,
     ) -> Result<(Self, Mailbox), Unusable> {
         let controller = Controller::new(finger, hand.rate)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
@@ -89,6 +95,8 @@ impl FingerServo {
             feedback,
             command: Command::default(),
             mailbox: servo,
+            timing: CycleTiming::default(),
+            timings,
             report,
             address,
             board: *identity,
@@ -151,11 +159,13 @@ impl FingerServo {
         !self.answered && self.under_control()
     }
 
-    /// Takes a reply in, if it answers this cycle's command: a late one would be an old measurement.
+    /// Whether a reply answers this cycle's command: a late one would be an old measurement.
+    pub fn awaits(&self, received: &Received) -> bool {
+        received.sequence == self.sequence && self.waiting()
+    }
+
+    /// Takes in the reply that answers this cycle's command.
     pub fn take(&mut self, received: &Received) {
-        if received.sequence != self.sequence || !self.waiting() {
-            return;
-        }
         self.answered = true;
         let reply = &received.reply;
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
@@ -186,6 +196,17 @@ impl FingerServo {
             self.move_on();
         }
         self.mailbox.publish(self.report);
+    }
+
+    /// Notes when a stage of this cycle began and ended, ns.
+    pub fn note(&mut self, stage: realtime::Stage, from: u64, to: u64) {
+        self.timing.note(stage, from, to);
+    }
+
+    /// Leaves the timing of this cycle to whoever collects it.
+    pub fn tell_timing(&mut self) {
+        // A full ring means that nobody collects: the cycle is worth more than its figure.
+        let _ = self.timings.push(std::mem::take(&mut self.timing));
     }
 
     /// Stops the finger for a reason.
