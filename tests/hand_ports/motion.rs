@@ -76,10 +76,10 @@ fn slack_tendons_are_taken_up_when_the_hand_is_opened_again() {
 
     // Nothing winds the tendons now: a finger that is pushed by hand loosens those on its other side.
     boards[1].order("force 2 2 0 0");
-    boards[1].wait_for(2, "slack", |state| state.tensions.iter().any(|&tension| tension == 0.0));
+    boards[1].wait_for(2, "slack", |state| state.tensions.contains(&0.0));
     boards[1].order("free 2");
     let slack = boards[1].state(2);
-    assert!(slack.tensions.iter().any(|&tension| tension == 0.0), "{slack:?}");
+    assert!(slack.tensions.contains(&0.0), "{slack:?}");
 
     let hand = open(on_boards(&boards));
     let tight = boards[1].state(2);
