@@ -1,7 +1,7 @@
 //! Planners that end without CloseHand: their boards go to the configured end state.
 
 use crate::c::{Bench, STRICT, c_compilers};
-use crate::rig::{Board, State, TARGET, goes, on_boards, open, three_boards, write_configuration};
+use crate::rig::{Board, State, TARGET, goes, on_boards, open, three_boards, turn, write_configuration};
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -64,6 +64,7 @@ fn assert_held_within_the_limit(state: &State) {
 
 #[test]
 fn a_killed_planner_leaves_its_motors_released() {
+    let _turn = turn();
     let mut boards = three_boards();
     let planner = Planner::start(&boards, "", "wait");
     for (index, board) in boards.iter_mut().enumerate() {
@@ -81,6 +82,7 @@ fn a_killed_planner_leaves_its_motors_released() {
 
 #[test]
 fn a_killed_planner_leaves_its_motors_holding_for_a_while() {
+    let _turn = turn();
     let mut boards = three_boards();
     let planner = Planner::start(&boards, HOLD, "wait");
     let strongest = boards[0].state(1).torques.into_iter().fold(0.0, f64::max);
@@ -99,6 +101,7 @@ fn a_killed_planner_leaves_its_motors_holding_for_a_while() {
 
 #[test]
 fn a_planner_that_returns_or_exits_releases_by_itself() {
+    let _turn = turn();
     for ending in ["return", "exit"] {
         let mut boards = three_boards();
         Planner::start(&boards, "", ending).ends();
@@ -112,6 +115,7 @@ fn a_planner_that_returns_or_exits_releases_by_itself() {
 
 #[test]
 fn a_planner_that_returns_leaves_its_motors_holding_for_a_while() {
+    let _turn = turn();
     let mut boards = three_boards();
     let planner = Planner::start(&boards, HOLD, "return");
     planner.ends();
@@ -124,6 +128,7 @@ fn a_planner_that_returns_leaves_its_motors_holding_for_a_while() {
 
 #[test]
 fn a_planner_that_leaves_past_every_handler_is_left_to_the_watchdogs() {
+    let _turn = turn();
     let mut boards = three_boards();
     Planner::start(&boards, "", "_exit").ends();
     for (index, board) in boards.iter_mut().enumerate() {

@@ -1,6 +1,6 @@
 //! Boards that fail while the hand is open: the finger faults and says why, the others go on.
 
-use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three_boards, wait_until};
+use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three_boards, turn, wait_until};
 use sun2xp::board::protocol::Status;
 use sun2xp::board::{Pace, SimulatedBoard, SimulatedFinger, SimulatedPort};
 use sun2xp::finger::{Fault, Stage};
@@ -27,6 +27,7 @@ fn fault_text(hand: &Hand, finger: i32) -> String {
 
 #[test]
 fn a_board_that_dies_faults_its_finger_only() {
+    let _turn = turn();
     for one_thread in [false, true] {
         let mut boards = three_boards();
         let mut configuration = on_boards(&boards);
@@ -48,6 +49,7 @@ fn a_board_that_dies_faults_its_finger_only() {
 
 #[test]
 fn a_board_that_falls_silent_faults_its_finger_and_its_watchdog_ends_it() {
+    let _turn = turn();
     let mut boards = three_boards();
     let hand = open(on_boards(&boards));
     goes(&hand, 1, TARGET);
@@ -66,7 +68,7 @@ fn a_board_that_falls_silent_faults_its_finger_and_its_watchdog_ends_it() {
 fn own_board() -> (SimulatedPort, Hand) {
     let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
     let port =
-        SimulatedPort::start(board, Pace::RealTime, Priority { fifo: 20, core: None }).expect("a pseudo-terminal");
+        SimulatedPort::start(board, Pace::Patient, Priority { fifo: 20, core: None }).expect("a pseudo-terminal");
     let hand = open(on_one_port(&port.path().to_string_lossy(), 2_000_000));
     (port, hand)
 }
@@ -77,6 +79,7 @@ fn with_finger<R>(board: &SimulatedPort, finger: u8, act: impl FnOnce(&mut Simul
 
 #[test]
 fn a_finger_that_lost_its_configuration_faults_and_its_neighbours_go_on() {
+    let _turn = turn();
     let (board, hand) = own_board();
     goes(&hand, 2, TARGET);
     with_finger(&board, 2, SimulatedFinger::reset);
@@ -92,6 +95,7 @@ fn a_finger_that_lost_its_configuration_faults_and_its_neighbours_go_on() {
 
 #[test]
 fn an_emergency_stop_faults_the_finger_with_its_status_bits() {
+    let _turn = turn();
     let (board, hand) = own_board();
     with_finger(&board, 3, |finger| finger.set_faults(Status::EMERGENCY_STOP));
     let text = fault_text(&hand, 3);

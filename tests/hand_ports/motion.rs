@@ -1,6 +1,8 @@
 //! Fingers on ports move as springs.
 
-use crate::rig::{Board, START, TARGET, close, farthest, goes, on_boards, on_one_port, open, three_boards, wait_until};
+use crate::rig::{
+    Board, START, TARGET, close, farthest, goes, on_boards, on_one_port, open, three_boards, turn, wait_until,
+};
 use nalgebra::Vector3;
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
@@ -38,6 +40,7 @@ fn resting_tip(hand: &Hand, finger: i32) -> Vector3<f64> {
 
 #[test]
 fn three_boards_on_three_ports() {
+    let _turn = turn();
     let mut boards = three_boards();
     let hand = open(on_boards(&boards));
     move_all(&hand);
@@ -57,6 +60,7 @@ fn three_boards_on_three_ports() {
 
 #[test]
 fn one_board_with_three_fingers_on_one_port() {
+    let _turn = turn();
     let mut board = Board::start(&["1", "2", "3"]);
     let hand = open(on_one_port(&board.port, 2_000_000));
     move_all(&hand);
@@ -69,6 +73,7 @@ fn one_board_with_three_fingers_on_one_port() {
 
 #[test]
 fn slack_tendons_are_taken_up_when_the_hand_is_opened_again() {
+    let _turn = turn();
     let mut boards = three_boards();
     let hand = open(on_boards(&boards));
     goes(&hand, 2, TARGET);
@@ -94,6 +99,7 @@ fn slack_tendons_are_taken_up_when_the_hand_is_opened_again() {
 
 #[test]
 fn a_pushed_fingertip_gives_way_by_its_stiffness() {
+    let _turn = turn();
     let mut boards = three_boards();
     let hand = open(on_boards(&boards));
     let stiffness = 2.0;
@@ -111,6 +117,7 @@ fn a_pushed_fingertip_gives_way_by_its_stiffness() {
 
 #[test]
 fn a_wall_stops_a_fingertip() {
+    let _turn = turn();
     let mut boards = three_boards();
     let hand = open(on_boards(&boards));
     let links = ConfiguredFinger::default().links();

@@ -1,6 +1,6 @@
 //! What is refused when a hand is opened, and what the refusal says.
 
-use crate::rig::{Board, TARGET, close, goes, on_boards, on_one_port, on_ports, open, three_boards};
+use crate::rig::{Board, TARGET, close, goes, on_boards, on_one_port, on_ports, open, three_boards, turn};
 use serialport::{SerialPort, TTYPort};
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,6 +34,7 @@ fn assert_names(error: &HandError, errno: i32, parts: &[&str]) {
 
 #[test]
 fn a_rate_that_one_port_cannot_carry_for_three_fingers() {
+    let _turn = turn();
     let board = Board::start(&["1", "2", "3"]);
     let mut configuration = on_one_port(&board.port, 1_000_000);
     let error = refusal(configuration.clone());
@@ -45,6 +46,7 @@ fn a_rate_that_one_port_cannot_carry_for_three_fingers() {
 
 #[test]
 fn a_port_in_use() {
+    let _turn = turn();
     let mut boards = three_boards();
     let first = open(on_boards(&boards));
     goes(&first, 1, TARGET);
@@ -61,6 +63,7 @@ fn a_port_in_use() {
 
 #[test]
 fn a_wrong_address() {
+    let _turn = turn();
     let other = Board::start(&["3"]);
     let error = refusal_of_finger_2(&other.port);
     assert_names(&error, libc::ENXIO, &["finger 2", "no finger address 2, but 3", "finger.address"]);
@@ -68,6 +71,7 @@ fn a_wrong_address() {
 
 #[test]
 fn a_silent_device() {
+    let _turn = turn();
     let (_silent, port) = TTYPort::pair().expect("a pseudo-terminal");
     let name = port.name().expect("its name");
     drop(port);
@@ -77,6 +81,7 @@ fn a_silent_device() {
 
 #[test]
 fn a_device_that_speaks_something_else() {
+    let _turn = turn();
     let (mut device, port) = TTYPort::pair().expect("a pseudo-terminal");
     let name = port.name().expect("its name");
     drop(port);
@@ -98,6 +103,7 @@ fn a_device_that_speaks_something_else() {
 
 #[test]
 fn what_is_no_port() {
+    let _turn = turn();
     let file = tempfile::NamedTempFile::new().expect("a file");
     for path in ["/dev/null", &file.path().to_string_lossy()] {
         assert_names(&refusal_of_finger_2(path), libc::ENOTTY, &["finger 2", path, "not a serial port"]);
@@ -107,6 +113,7 @@ fn what_is_no_port() {
 
 #[test]
 fn a_tendon_that_stays_slack_closes_the_whole_hand_again() {
+    let _turn = turn();
     let mut boards = three_boards();
     let mut configuration = on_boards(&boards);
     configuration.hand.open_timeout_ms = 600;

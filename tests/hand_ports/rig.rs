@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command as Program, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
 use sun2xp::hand::Hand;
@@ -16,6 +17,13 @@ pub const START: [f64; 3] = [0.0, 30.0 * std::f64::consts::PI / 180.0, 60.0 * st
 
 /// Longer than any wait of a test should be on a busy machine.
 const LIMIT: Duration = Duration::from_secs(20);
+
+/// One hand at a time: its servos and boards want the machine. To be kept for the length of a test.
+pub fn turn() -> MutexGuard<'static, ()> {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    // A test that failed has left nothing behind.
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// `sun2xp board` with its orders.
 pub struct Board {
@@ -36,10 +44,12 @@ pub struct State {
 }
 
 impl Board {
-    /// A board with these fingers. It asks for the priority that simulated boards have in the library.
+    /// A board with these fingers. It asks for the priority that simulated boards have in the library, and is as patient.
     pub fn start(fingers: &[&str]) -> Self {
         let mut program = Program::new(env!("CARGO_BIN_EXE_sun2xp"));
-        program.args(["board", "--priority", "20"]).args(fingers.iter().flat_map(|finger| ["--finger", finger]));
+        program
+            .args(["board", "--patient", "--priority", "20"])
+            .args(fingers.iter().flat_map(|finger| ["--finger", finger]));
         let mut process = program.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("a board");
         let orders = process.stdin.take().expect("its input");
         let mut answers = BufReader::new(process.stdout.take().expect("its output"));

@@ -62,6 +62,10 @@ pub struct Arguments {
     /// SCHED_FIFO priority of the board, where permitted; 0: not real-time.
     #[arg(long, value_name = "P", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=99))]
     priority: u8,
+    /// Stand still, for up to half a second, while commands stay away: for a busy machine, which carries the bytes of a
+    /// pseudo-terminal late. The watchdog waits so much longer.
+    #[arg(long)]
+    patient: bool,
 }
 
 type Failure = Box<dyn Error>;
@@ -82,7 +86,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             action.apply(finger);
         }
     }
-    let port = SimulatedPort::start(board, Pace::RealTime, Priority { fifo: arguments.priority, core: None })?;
+    let pace = if arguments.patient { Pace::Patient } else { Pace::RealTime };
+    let port = SimulatedPort::start(board, pace, Priority { fifo: arguments.priority, core: None })?;
     if let Some(link) = &arguments.link {
         make_link(port.path(), link)?;
     }
