@@ -1,5 +1,6 @@
 //! Why a finger stopped by itself.
 
+use crate::board::protocol::Refused;
 use thiserror::Error;
 
 /// What made a finger fault. Its motors are then in the configured end state.
@@ -29,6 +30,12 @@ pub enum Fault {
     BoardStopped {
         /// Status bits of the reply.
         status: u16,
+    },
+    /// The board refuses the commands of this finger.
+    #[error("the board refuses commands: {refused}. Mend that, CloseHand, OpenHand")]
+    CommandRefused {
+        /// What it said.
+        refused: Refused,
     },
     /// A tendon did not come under tension at open.
     #[error(

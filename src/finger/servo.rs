@@ -21,6 +21,9 @@ impl<T: Transport> ServedPort<T> {
     }
 }
 
+/// How long a board may take to confirm its end state, ns: two attempts. Without it the watchdog does the same.
+const CONFIRMATION: u64 = 100_000_000;
+
 /// One to three fingers on one to three ports, run by one thread.
 pub struct Servo<T, C> {
     clock: C,
@@ -41,8 +44,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         while !self.finished() {
             self.cycle();
         }
-        // What a finger that was closed or faulted in the last cycle has still to say.
-        self.send_stops();
+        self.confirm_stops();
     }
 
     /// Whether every finger is closed, or faulted and asked to close.
@@ -89,7 +91,19 @@ impl<T: Transport, C: Clock> Servo<T, C> {
             finger.fault(Fault::Internal);
             finger.end(0, 0, 0);
         }
+        self.confirm_stops();
+    }
+
+    /// Tells every board to stop, until it confirms that or the line fails: closing a port throws away what has not left it
+    /// yet. Nothing else is left to do in time, so this waits.
+    fn confirm_stops(&mut self) {
         self.send_stops();
+        for port in &mut self.ports {
+            for finger in &port.fingers {
+                let deadline = self.clock.now() + CONFIRMATION;
+                while self.clock.now() < deadline && matches!(port.link.stop(finger.address(), deadline), Ok(false)) {}
+            }
+        }
     }
 
     fn send_stops(&mut self) {
@@ -131,6 +145,11 @@ impl<T: Transport> ServedPort<T> {
                     finger.note(Stage::Decode, read, clock.now());
                 }
                 Ok(None) => break,
+                // The other fingers of the board may be as they were.
+                Err(LinkError::Refused { address, refused }) => {
+                    let addressed = self.fingers.iter_mut().filter(|finger| finger.address() == address);
+                    addressed.for_each(|finger| finger.fault(Fault::CommandRefused { refused }));
+                }
                 Err(error) => {
                     self.fail(&error);
                     break;
