@@ -7,7 +7,7 @@ use crate::finger::mailbox::{Mailbox, ServoEnd, mailbox};
 use crate::finger::{Fault, FingerReport, Stage};
 use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState, Unusable};
 use crate::realtime::{self, CycleTiming};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use rtrb::Producer;
 
 /// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
@@ -15,6 +15,9 @@ const TENSION_SETTLED: f64 = 0.02;
 
 /// A simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to stop the hand.
 const SIMULATION_PATIENCE_MS: f64 = 1000.0;
+
+/// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
+const BEYOND_LIMITS: f64 = 0.5;
 
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
@@ -53,6 +56,8 @@ struct Limits {
     tension: u32,
     settled: u32,
     ramp: u32,
+    /// Joint angles that a finger under tension can have, rad: lowest and highest.
+    pose: (Vector3<f64>, Vector3<f64>),
 }
 
 impl FingerServo {
@@ -78,7 +83,7 @@ impl FingerServo {
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
         let report = FingerReport {
             stage: Stage::Opening,
-            set_point: SetPoint { joints: nalgebra::Vector3::zeros(), stiffness },
+            set_point: SetPoint { joints: Vector3::zeros(), stiffness },
             cycle: Default::default(),
             cycles: 0,
             lost_replies: 0,
@@ -110,6 +115,10 @@ impl FingerServo {
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
+                pose: {
+                    let (low, high) = finger.joint_limits();
+                    (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS))
+                },
             },
             settled_cycles: 0,
             stage_cycles: 0,
@@ -220,6 +229,16 @@ impl FingerServo {
         !matches!(self.report.stage, Stage::Closed | Stage::Faulted(_))
     }
 
+    /// A spring pulls a finger that is believed to be where it cannot be with all it has.
+    fn check_pose(&mut self) {
+        let (low, high) = self.limits.pose;
+        let joints = self.report.cycle.joints;
+        if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
+            let degrees = joints[joint].to_degrees() as i32;
+            self.fault(Fault::ImpossiblePose { joint: joint as u8, degrees });
+        }
+    }
+
     fn count_replies(&mut self) {
         if self.answered {
             self.lost_in_a_row = 0;
@@ -259,6 +278,10 @@ impl FingerServo {
             Stage::Opening if self.report.cycle.under_tension => {
                 self.settled_cycles += 1;
                 if self.settled_cycles >= self.limits.settled {
+                    self.check_pose();
+                    if !self.under_control() {
+                        return;
+                    }
                     let joints = self.report.cycle.joints;
                     self.report.set_point = SetPoint { joints, stiffness: self.initial_stiffness };
                     self.activity = Activity::Follow(self.report.set_point);
@@ -273,6 +296,7 @@ impl FingerServo {
                     self.fault(Fault::SlackTendon { tendon, milliseconds });
                 }
             }
+            Stage::Running => self.check_pose(),
             Stage::Closing if self.stage_cycles > self.limits.ramp => self.enter(Stage::Closed),
             _ => {}
         }

@@ -639,7 +639,7 @@ static void build_example(int which, struct frame *frame)
         put32(frame, 2000);
         put16(frame, 23750);
         put16(frame, 2);
-        put32(frame, 1 << 0 | 1 << 2 | 1 << 3);
+        put32(frame, 1 << 0 | 1 << 1 | 1 << 2 | 1 << 3);
         break;
     case 2:
         begin(frame, CONFIGURE, 1, 2);
