@@ -44,6 +44,7 @@ pub fn spatial(kx: &Matrix3<f64>) -> Matrix6<f64> {
 
 /// What a finger is doing; decided by its servo thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a set point in a box would be allocated and freed in the servo")]
 pub enum Activity {
     /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is.
     TakeUpSlack,
