@@ -45,10 +45,11 @@ fn three_boards_on_three_ports() {
     let hand = open(on_boards(&boards));
     move_all(&hand);
     for (index, board) in boards.iter_mut().enumerate() {
-        let state = board.state(index + 1);
-        let far = state.joints.iter().zip(target(index as i32 + 1)).map(|(is, sent)| (is - sent).abs());
-        assert!(far.fold(0.0, f64::max) < 0.03, "the true joints: {state:?}");
-        assert!(state.has(Status::ENABLED) && !state.limp(), "{state:?}");
+        let sent = target(index as i32 + 1);
+        // The true joints.
+        let there = |state: &State| state.joints.iter().zip(sent).all(|(is, sent)| (is - sent).abs() < 0.03);
+        let state = board.wait_for(index + 1, "there", |state| there(state) && !state.limp());
+        assert!(state.has(Status::ENABLED), "{state:?}");
     }
     close(hand);
     for (index, board) in boards.iter_mut().enumerate() {
