@@ -18,6 +18,7 @@ pub(super) fn is_forked_child() -> bool {
 pub(super) fn watch() {
     static WATCH: Once = Once::new();
     WATCH.call_once(|| {
+        keep_standard_descriptors();
         // SAFETY: both handlers are functions of this library, which stays loaded (`-z nodelete`), and no panic leaves
         // them. Out of memory is the only failure; then a planner's exit is what its death is: the boards' watchdogs act.
         unsafe {
@@ -25,6 +26,23 @@ pub(super) fn watch() {
             libc::atexit(at_exit);
         }
     });
+}
+
+/// Opens /dev/null as those of descriptors 0 to 2 that the planner has closed: a board's port must not become its standard
+/// error, or every text would go to the board.
+fn keep_standard_descriptors() {
+    loop {
+        // SAFETY: a constant path; the descriptor that comes back is closed here or meant to stay.
+        unsafe {
+            let descriptor = libc::open(c"/dev/null".as_ptr(), libc::O_RDWR);
+            if descriptor > libc::STDERR_FILENO {
+                libc::close(descriptor);
+            }
+            if !(0..=libc::STDERR_FILENO).contains(&descriptor) {
+                return;
+            }
+        }
+    }
 }
 
 extern "C" fn in_forked_child() {

@@ -48,6 +48,17 @@ pub enum Fault {
         /// How long it was tried, ms.
         milliseconds: u32,
     },
+    /// The encoders tell joint angles that the finger cannot have.
+    #[error(
+        "joint {joint} reads {degrees} degrees, which it cannot reach: a tendon is broken or off its pulley, an encoder jumped or lost \
+         its zero, or an encoder sign is wrong"
+    )]
+    ImpossiblePose {
+        /// 0 to 2.
+        joint: u8,
+        /// What the encoders say, degrees.
+        degrees: i32,
+    },
     /// The servo thread panicked: a defect of this library.
     #[error("the servo thread failed: a defect of this library, please report it")]
     Internal,

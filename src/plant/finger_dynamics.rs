@@ -87,9 +87,13 @@ impl FingerDynamics {
 
     /// Kinetic energy of the links plus their potential energy in gravity, J.
     pub fn energy(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> f64 {
-        let kinetic = 0.5 * rate.dot(&(self.inertia(theta) * rate));
         let potential: f64 = self.centres.iter().map(|(mass, chain)| -mass * self.gravity.dot(&chain.tip(theta))).sum();
-        kinetic + potential
+        self.kinetic_energy(theta, rate) + potential
+    }
+
+    /// Energy of motion, J.
+    pub fn kinetic_energy(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> f64 {
+        0.5 * rate.dot(&(self.inertia(theta) * rate))
     }
 
     /// The coefficient of cos(theta_2) in the inertia of the finger's plane, kg m^2.

@@ -150,6 +150,11 @@ impl Plant {
             + self.stops.energy(&self.theta)
             + self.surface.map_or(0.0, |surface| contact::energy(&surface, &self.tip()))
     }
+
+    /// The part of [`Plant::energy`] that is motion, J.
+    pub fn kinetic_energy(&self) -> f64 {
+        self.dynamics.kinetic_energy(&self.theta, &self.theta_dot) + self.motors.energy(&self.motor_dot)
+    }
 }
 
 /// The inverse of an inertia matrix, 1 + 2x2 as joint 0 decouples. Positive masses make it exist.
