@@ -211,6 +211,10 @@ impl FingerServo {
             self.take_commands();
             let feedback = self.answered.then_some(&self.feedback);
             (self.command, self.report.cycle) = self.controller.cycle(&mut self.state, feedback, &self.activity);
+            // Periods that will be skipped are periods without a reply: what differentiates and predicts must know of them.
+            for _ in 0..skipped.min(self.limits.lost.into()) {
+                (self.command, self.report.cycle) = self.controller.cycle(&mut self.state, None, &self.activity);
+            }
             if self.lost_in_a_row >= self.limits.blind {
                 self.command = Command::default();
             }
