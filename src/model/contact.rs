@@ -98,8 +98,10 @@ impl Contact {
         finite(selection.as_slice())?;
         let checked = spring(stiffness)?;
         let spatial = selection.transpose() * checked * selection;
+        // Finite factors may have an infinite product.
+        finite(spatial.as_slice())?;
         // Symmetric but for rounding; the servo takes symmetry for granted.
-        Ok(Self((spatial + spatial.transpose()) * 0.5))
+        Ok(Self(spatial * 0.5 + spatial.transpose() * 0.5))
     }
 
     /// The 6 x 6 stiffness.
@@ -140,10 +142,12 @@ where
             }
         }
     }
-    let symmetric = (asked + asked.transpose()) * 0.5;
+    // Halved before they are added: the sum of two finite entries may be infinite, and its eigenvalues NaN.
+    let symmetric = asked * 0.5 + asked.transpose() * 0.5;
     let eigenvalues = symmetric.symmetric_eigenvalues();
     let (smallest, largest) = (eigenvalues.min(), eigenvalues.max());
-    if smallest < -ROUNDING * largest.abs().max(smallest.abs()) {
+    // An eigenvalue may be infinite where no entry is.
+    if smallest < -ROUNDING * largest.abs().max(smallest.abs()).min(f64::MAX) {
         return Err(ContactError::Negative { smallest });
     }
     Ok(symmetric)
@@ -200,6 +204,11 @@ mod tests {
         assert!(matches!(Contact::frictionless_point(f64::NAN, Vector3::x()), Err(ContactError::NotFinite(_))));
         let infinite = Vector3::new(0.0, f64::INFINITY, 0.0);
         assert!(matches!(Contact::soft_finger(Matrix4::identity(), infinite), Err(ContactError::NotFinite(_))));
+        let overflowing = SMatrix::<f64, 1, 6>::repeat(1e200);
+        let refused = Contact::general(&SMatrix::<f64, 1, 1>::new(1.0), &overflowing);
+        assert!(matches!(refused, Err(ContactError::NotFinite(_))));
+        let huge = Contact::hard_finger(Matrix3::from_diagonal_element(f64::MAX)).expect("a spring");
+        assert!(huge.stiffness().iter().all(|entry| entry.is_finite()));
         // A torsion of the wrong sign hides behind no translation.
         let k = Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, -1.0));
         assert!(matches!(Contact::soft_finger(k, Vector3::x()), Err(ContactError::Negative { .. })));
