@@ -23,6 +23,9 @@ pub enum Friction {
     Harsh,
 }
 
+/// The poses that the goals name, degrees: lower, upper.
+pub const USUAL: [[f64; 2]; 3] = [[-30.0, 30.0], [-10.0, 70.0], [30.0, 100.0]];
+
 impl Case {
     pub fn name(&self) -> String {
         format!("{:?}, {} Hz", self.scheme, self.rate)
@@ -33,7 +36,7 @@ impl Case {
         ConfiguredFinger::default().stiffness_bound(self.rate)
     }
 
-    /// A finger with this controller, at `pose`, that knows its own friction. Set points are not slowed down: steps are steps.
+    /// A finger with this controller, at `pose`. Set points are not slowed down: steps are steps.
     pub fn finger(&self, pose: &Vector3<f64>, friction: Friction) -> ConfiguredFinger {
         let mut finger = ConfiguredFinger::default();
         finger.controller.scheme = self.scheme;
@@ -52,27 +55,29 @@ impl Case {
         finger
     }
 
-    /// rad: joint 0 within +-30, joint 1 -10 to 70, joint 2 30 to 100 degrees.
+    /// rad, within [`USUAL`].
     pub fn poses(&self) -> Vec<Vector3<f64>> {
         let mut random = Pcg64::seed_from_u64(self.seed);
-        let mut within = |low: f64, high: f64| uniform(&mut random, low, high).to_radians();
-        (0..self.poses).map(|_| Vector3::new(within(-30.0, 30.0), within(-10.0, 70.0), within(30.0, 100.0))).collect()
+        (0..self.poses).map(|_| pose(&mut random, &USUAL)).collect()
     }
 
     /// N/cm: isotropic ones, one with axes, four with random axes; none stiffer than the bound.
     pub fn springs(&self) -> Vec<Matrix3<f64>> {
-        let bound = self.bound();
         let mut random = Pcg64::seed_from_u64(self.seed + 1);
-        let isotropic = [1.0, 3.0, bound].map(|stiffness| Matrix3::identity() * stiffness);
+        let isotropic = [1.0, 3.0, self.bound()].map(|stiffness| Matrix3::identity() * stiffness);
         let mut springs: Vec<_> = isotropic.into();
         springs.push(Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0)));
-        for _ in 0..4 {
-            let axis = Unit::new_normalize(direction(&mut random));
-            let turn = Rotation3::from_axis_angle(&axis, uniform(&mut random, 0.0, std::f64::consts::PI));
-            let principal = Vector3::from_fn(|_, _| uniform(&mut random, 1.0, bound));
-            springs.push(turn * Matrix3::from_diagonal(&principal) * turn.inverse());
-        }
+        springs.extend((0..4).map(|_| spring(&mut random, 1.0, self.bound())));
         springs
+    }
+
+    /// Every pose with every spring.
+    pub fn poses_and_springs(&self) -> Vec<(Vector3<f64>, Matrix3<f64>)> {
+        let springs = self.springs();
+        self.poses()
+            .into_iter()
+            .flat_map(|pose| springs.iter().map(move |kx| (pose, *kx)).collect::<Vec<_>>())
+            .collect()
     }
 
     /// Directions to step into from the pose with this number: along each axis, one sign by chance, and one oblique.
@@ -84,6 +89,17 @@ impl Case {
             .collect();
         directions.push(direction(&mut random));
         directions
+    }
+
+    /// Every pose with those of its directions in which the tip can go `distance` cm.
+    pub fn poses_and_directions(&self, distance: f64) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+        let finger = ConfiguredFinger::default();
+        let of_pose = |(number, pose): (usize, Vector3<f64>)| {
+            self.directions(number).into_iter().map(move |direction| (pose, direction))
+        };
+        let mut all: Vec<_> = self.poses().into_iter().enumerate().flat_map(of_pose).collect();
+        all.retain(|(pose, direction)| has_room(&finger, pose, direction, distance));
+        all
     }
 }
 
@@ -108,10 +124,24 @@ pub fn has_room(finger: &ConfiguredFinger, pose: &Vector3<f64>, direction: &Vect
     true
 }
 
-fn direction(random: &mut Pcg64) -> Vector3<f64> {
+/// A pose within these limits (degrees), rad.
+pub fn pose(random: &mut Pcg64, limits: &[[f64; 2]; 3]) -> Vector3<f64> {
+    Vector3::from(limits.map(|[low, high]| uniform(random, low, high).to_radians()))
+}
+
+/// A random spring with eigenvalues between these, N/cm.
+pub fn spring(random: &mut Pcg64, softest: f64, stiffest: f64) -> Matrix3<f64> {
+    let axis = Unit::new_normalize(direction(random));
+    let turn = Rotation3::from_axis_angle(&axis, uniform(random, 0.0, std::f64::consts::PI));
+    let principal = Vector3::from_fn(|_, _| uniform(random, softest, stiffest));
+    turn * Matrix3::from_diagonal(&principal) * turn.inverse()
+}
+
+/// Any direction, of unit length.
+pub fn direction(random: &mut Pcg64) -> Vector3<f64> {
     Vector3::from(<UnitSphere as Distribution<[f64; 3]>>::sample(&UnitSphere, random))
 }
 
-fn uniform(random: &mut Pcg64, low: f64, high: f64) -> f64 {
-    low + (high - low) * random.next_u32() as f64 / 4294967296.0
+pub fn uniform(random: &mut Pcg64, low: f64, high: f64) -> f64 {
+    low + (high - low) * f64::from(random.next_u32()) / 4294967296.0
 }

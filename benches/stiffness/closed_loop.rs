@@ -1,16 +1,20 @@
 //! The core and the simulated finger in one loop, with one cycle between sample and torque.
 
 use crate::cases::{Case, Friction};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
-use sun2xp::control::{Activity, Command, Controller, Feedback, InverseKinematics, Law, Report, SetPoint, State};
+use sun2xp::control::{
+    Activity, Command, Controller, Feedback, InverseKinematics, Law, Measured, Report, SetPoint, State,
+};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
+#[derive(Clone)]
 pub struct ClosedLoop {
     pub plant: Plant,
     pub report: Report,
+    pub set_point: SetPoint,
     /// Smallest true and commanded tensions, largest true one, since [`ClosedLoop::forget`], N.
     pub least_true: f64,
     pub least_commanded: f64,
@@ -18,41 +22,53 @@ pub struct ClosedLoop {
     pub finger: ConfiguredFinger,
     pub rate: f64,
     sensors: Sensors,
+    senses: Senses,
     controller: Controller,
     inverse: InverseKinematics,
     state: State,
     command: Command,
-    set_point: SetPoint,
     loss: f64,
     random: Pcg64,
+}
+
+/// How the controller sees the finger.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Senses {
+    /// In counts, and with noise.
+    Counts,
+    /// As it is.
+    Exact,
 }
 
 impl ClosedLoop {
     /// A finger at rest at `pose`, held there by a spring Kx for 0.3 s.
     pub fn at(case: &Case, pose: &Vector3<f64>, friction: Friction, kx: &Matrix3<f64>) -> Self {
         let finger = case.finger(pose, friction);
-        Self::with_belief(case, &finger, &finger, pose, kx)
+        Self::new(case, &finger, &finger, pose, kx, Senses::Counts)
     }
 
-    /// A finger whose controller believes something else of it.
-    pub fn with_belief(
+    /// A finger whose controller believes something of it that may not be so.
+    pub fn new(
         case: &Case,
         finger: &ConfiguredFinger,
         belief: &ConfiguredFinger,
         pose: &Vector3<f64>,
         kx: &Matrix3<f64>,
+        senses: Senses,
     ) -> Self {
         let mut plant = Plant::new(finger, Vector3::zeros()).expect("the default finger");
         let mut sensors = Sensors::new(finger);
         let controller = Controller::new(belief, case.rate).expect("the default controller");
         let state = controller.start(&read(&mut sensors, &plant));
         plant.release_brake();
-        let motor_torques = plant.tensions() * 0.0475;
+        let radius = Vector4::from(finger.geometry.motor_radius);
+        let motor_torques = plant.tensions().component_mul(&radius);
         // Exact law: it is the fidelity of the spring that is measured.
         let set_point = SetPoint { law: Law::Exact, ..SetPoint::hard_finger(*pose, *kx) };
         let mut this = Self {
             plant,
             report: Report::default(),
+            set_point,
             least_true: f64::INFINITY,
             least_commanded: f64::INFINITY,
             most_true: 0.0,
@@ -60,10 +76,10 @@ impl ClosedLoop {
             finger: finger.clone(),
             rate: case.rate,
             sensors,
+            senses,
             controller,
             state,
             command: Command { motor_torques },
-            set_point,
             loss: 0.0,
             random: Pcg64::seed_from_u64(case.seed + 7),
         };
@@ -77,10 +93,13 @@ impl ClosedLoop {
         self.finger.links().tip(&self.set_point.joints)
     }
 
-    /// Anchors the spring elsewhere, cm. It must be within reach.
-    pub fn move_anchor(&mut self, tip: &Vector3<f64>) {
+    /// Anchors the spring elsewhere, cm. Whether that is within reach.
+    #[must_use]
+    pub fn move_anchor(&mut self, tip: &Vector3<f64>) -> bool {
         let present = self.set_point.joints;
-        self.set_point.joints = self.inverse.joints(tip, &present).expect("the cases stay within reach");
+        let found = self.inverse.joints(tip, &present);
+        self.set_point.joints = *found.as_ref().unwrap_or(&present);
+        found.is_ok()
     }
 
     pub fn push(&mut self, force: Vector3<f64>) {
@@ -97,7 +116,8 @@ impl ClosedLoop {
     }
 
     pub fn cycle(&mut self) {
-        let feedback = read(&mut self.sensors, &self.plant);
+        let counts = read(&mut self.sensors, &self.plant);
+        let values = Measured { motor_angles: self.plant.motor_angles(), tensions: self.plant.tensions() };
         // What the last cycle commanded acts during this one.
         for _ in 0..(1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize {
             self.plant.step((self.command.motor_torques * 0.01).into());
@@ -105,10 +125,12 @@ impl ClosedLoop {
             self.least_true = self.least_true.min(tensions.min());
             self.most_true = self.most_true.max(tensions.max());
         }
-        let lost = f64::from(self.random.next_u32()) < self.loss * 4294967296.0;
-        let feedback = (!lost).then_some(&feedback);
+        let arrived = f64::from(self.random.next_u32()) >= self.loss * 4294967296.0;
         let activity = Activity::Follow(self.set_point);
-        (self.command, self.report) = self.controller.cycle(&mut self.state, feedback, &activity);
+        (self.command, self.report) = match self.senses {
+            Senses::Counts => self.controller.cycle(&mut self.state, arrived.then_some(&counts), &activity),
+            Senses::Exact => self.controller.cycle_measured(&mut self.state, arrived.then_some(&values), &activity),
+        };
         self.least_commanded = self.least_commanded.min(self.report.desired_tensions.min());
     }
 
@@ -116,15 +138,20 @@ impl ClosedLoop {
         (0..self.cycles(seconds)).for_each(|_| self.cycle());
     }
 
+    /// The true tip in every cycle of so many seconds, cm.
+    pub fn tips(&mut self, seconds: f64) -> Vec<Vector3<f64>> {
+        (0..self.cycles(seconds))
+            .map(|_| {
+                self.cycle();
+                self.plant.tip()
+            })
+            .collect()
+    }
+
     /// Mean of the true tip over so many seconds, cm.
     pub fn mean_tip(&mut self, seconds: f64) -> Vector3<f64> {
-        let cycles = self.cycles(seconds);
-        let mut sum = Vector3::zeros();
-        for _ in 0..cycles {
-            self.cycle();
-            sum += self.plant.tip();
-        }
-        sum / cycles as f64
+        let tips = self.tips(seconds);
+        tips.iter().sum::<Vector3<f64>>() / tips.len() as f64
     }
 
     pub fn cycles(&self, seconds: f64) -> usize {

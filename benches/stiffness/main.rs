@@ -1,29 +1,38 @@
 //! How well a finger is the spring that it is told to be: the figures of `docs/stiffness.md`.
 //!
-//!     cargo bench --bench stiffness -- [--quick] [--seed N] [--rates 500,1000,2000] [--schemes "figure 10,state feedback"]
-//!                                      [--write docs/stiffness.md] [--plots FOLDER]
+//!     cargo bench --bench stiffness -- [--quick] [--poses N] [--seed N] [--rates 500,1000,2000] [--controllers "figure 9,figure 10"]
+//!                                      [--only TEXT] [--out FOLDER] [--write docs/stiffness.md]
 //!
 //! The pure core against the simulated finger, in memory and on simulated time, with one cycle between sample and torque.
 
 mod cases;
 mod closed_loop;
 mod contact;
+mod fits;
 mod motion;
+mod parallel;
 mod plots;
 mod robustness;
+mod stability;
 mod statics;
 mod table;
 
 use cases::Case;
 use clap::Parser;
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
 use std::error::Error;
 use std::path::PathBuf;
+use std::time::Instant;
 use sun2xp::model::configuration::Scheme;
 
 #[derive(Parser)]
 #[command(about = "Measures how well a finger is the spring that it is told to be")]
 struct Arguments {
-    /// Four poses instead of 24.
+    /// How many random poses.
+    #[arg(long, default_value_t = 24)]
+    poses: usize,
+    /// Four poses, at 1000 Hz, unless said otherwise.
     #[arg(long)]
     quick: bool,
     /// Seed of the poses, of Kx and of the noise.
@@ -32,45 +41,60 @@ struct Arguments {
     /// Hz, separated by commas.
     #[arg(long, value_delimiter = ',', default_values_t = [500.0, 1000.0, 2000.0])]
     rates: Vec<f64>,
-    /// Tendon controllers, as in the configuration.
+    /// Tendon controllers, as in the configuration, separated by commas. Figure 10 is measured first in any case: it is what the
+    /// others are compared with.
     #[arg(long, value_delimiter = ',', value_parser = scheme, default_values = ["figure 10"])]
-    schemes: Vec<Scheme>,
+    controllers: Vec<Scheme>,
+    /// Only rows whose names contain this.
+    #[arg(long, default_value = "")]
+    only: String,
+    /// Where step responses and ellipsoids are drawn.
+    #[arg(long, default_value = concat!(env!("CARGO_TARGET_TMPDIR"), "/stiffness"))]
+    out: PathBuf,
     /// Replaces the table in this file, between its two marks.
     #[arg(long)]
     write: Option<PathBuf>,
-    /// Draws step responses and ellipsoids into this folder.
-    #[arg(long)]
-    plots: Option<PathBuf>,
     /// Cargo passes it.
     #[arg(long, hide = true)]
     bench: bool,
 }
 
 fn scheme(name: &str) -> Result<Scheme, String> {
-    use serde::Deserialize;
-    use serde::de::IntoDeserializer;
     let name: serde::de::value::StrDeserializer<serde::de::value::Error> = name.into_deserializer();
     Scheme::deserialize(name).map_err(|error| error.to_string())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
-    let poses = if arguments.quick { 4 } else { 24 };
+    let mut arguments = Arguments::parse();
+    if arguments.quick {
+        arguments.poses = 4;
+        arguments.rates = vec![1000.0];
+    }
+    arguments.controllers.retain(|&scheme| scheme != Scheme::Figure10);
+    arguments.controllers.insert(0, Scheme::Figure10);
+    let begun = Instant::now();
     let mut columns = Vec::new();
     for &rate in &arguments.rates {
-        for &scheme in &arguments.schemes {
-            let case = Case { scheme, rate, poses, seed: arguments.seed };
+        for &scheme in &arguments.controllers {
+            let case = Case { scheme, rate, poses: arguments.poses, seed: arguments.seed };
             eprintln!("{}", case.name());
-            columns.push(table::Column::measure(&case));
+            columns.push(table::Column::measure(&case, &arguments.only));
         }
     }
     let text = table::markdown(&columns);
     println!("{text}");
+    eprintln!("{:.0} s", begun.elapsed().as_secs_f64());
     if let Some(file) = &arguments.write {
-        table::replace_in(file, &text)?;
+        table::replace_in(file, &command(), &text)?;
     }
-    if let Some(folder) = &arguments.plots {
-        plots::draw(folder, &arguments.schemes, arguments.seed)?;
-    }
+    plots::draw(&arguments.out, &arguments.controllers, arguments.seed)?;
+    eprintln!("plots in {}", arguments.out.display());
     Ok(())
+}
+
+/// What was typed, without what Cargo adds.
+fn command() -> String {
+    let typed = std::env::args().skip(1).filter(|argument| argument != "--bench");
+    let quoted = typed.map(|argument| if argument.contains(' ') { format!("\"{argument}\"") } else { argument });
+    ["cargo bench --bench stiffness --".into()].into_iter().chain(quoted).collect::<Vec<String>>().join(" ")
 }

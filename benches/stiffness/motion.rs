@@ -1,8 +1,10 @@
 //! Rows that move the spring's anchor and look at how the tip follows.
 
-use crate::cases::{Case, Friction, has_room};
-use crate::closed_loop::ClosedLoop;
-use nalgebra::Matrix3;
+use crate::cases::{Case, Friction};
+use crate::closed_loop::{ClosedLoop, Senses};
+use crate::parallel::{each, least, worst};
+use nalgebra::{Matrix3, Vector3};
+use sun2xp::model::configuration::ConfiguredFinger;
 
 /// What a set of steps came to.
 pub struct Steps {
@@ -18,86 +20,94 @@ pub struct Steps {
 
 /// 5 mm, cm.
 pub const STEP: f64 = 0.5;
+/// What is free beyond the end of a step, so that overshoot does not meet a limit.
+const ROOM: f64 = 1.2 * STEP;
+/// How long a step is watched, s: what has not settled by then counts as this long.
+const WATCHED: f64 = 1.5;
+
+struct Step {
+    time: f64,
+    overshoot: f64,
+    least_true: f64,
+    least_commanded: f64,
+}
 
 /// Steps of the anchor by 5 mm from every pose in several directions, as far as the joint limits leave room.
-pub fn steps(case: &Case, friction: Friction, stiffness: f64, loss: f64) -> Steps {
-    let mut times = Vec::new();
-    let mut steps =
-        Steps { worst: 0.0, median: 0.0, overshoot: 0.0, least_true: f64::INFINITY, least_commanded: f64::INFINITY };
-    for (number, pose) in case.poses().iter().enumerate() {
-        for direction in case.directions(number) {
-            let kx = Matrix3::identity() * stiffness;
-            let mut finger = ClosedLoop::at(case, pose, friction, &kx);
-            if !has_room(&finger.finger, pose, &direction, 1.2 * STEP) {
-                continue;
-            }
-            finger.lose(loss);
-            let target = finger.anchor() + direction * STEP;
-            finger.move_anchor(&target);
-            let mut settled = 0.0;
-            for cycle in 1..=finger.cycles(1.5) {
-                finger.cycle();
-                let error = finger.plant.tip() - target;
-                // Written so that NaN is not settled.
-                if error.norm() > 0.05 * STEP || error.norm().is_nan() {
-                    settled = cycle as f64 / finger.rate;
-                }
-                steps.overshoot = steps.overshoot.max(error.dot(&direction) / STEP);
-            }
-            times.push(settled);
-            steps.least_true = steps.least_true.min(finger.least_true);
-            steps.least_commanded = steps.least_commanded.min(finger.least_commanded);
-        }
-    }
-    times.sort_by(f64::total_cmp);
-    steps.median = times[times.len() / 2];
-    steps.worst = times[times.len() - 1];
-    steps
+pub fn steps(case: &Case, stiffness: f64, loss: f64) -> Steps {
+    steps_of(case, stiffness, loss, |_| {})
 }
 
-/// The distance of the tip from its target in the course of one step, part of the step, by cycle.
-pub fn step_response(case: &Case, number: usize, stiffness: f64, seconds: f64) -> Vec<(f64, f64)> {
-    let pose = case.poses()[number];
+/// The same, of fingers that differ from what their controllers believe.
+pub fn steps_of(case: &Case, stiffness: f64, loss: f64, differ: impl Fn(&mut ConfiguredFinger) + Sync) -> Steps {
     let kx = Matrix3::identity() * stiffness;
-    let mut finger = ClosedLoop::at(case, &pose, Friction::Default, &kx);
-    let room = |direction: &nalgebra::Vector3<f64>| has_room(&finger.finger, &pose, direction, 1.2 * STEP);
-    let direction = case.directions(number).into_iter().find(room).expect("a direction with room");
-    let start = finger.anchor();
-    finger.move_anchor(&(start + direction * STEP));
-    (0..finger.cycles(seconds))
-        .map(|cycle| {
-            finger.cycle();
-            (cycle as f64 / case.rate, (finger.plant.tip() - start).dot(&direction) / STEP)
-        })
-        .collect()
+    let all = each(&case.poses_and_directions(ROOM), |_, (pose, direction)| {
+        let belief = case.finger(pose, Friction::Default);
+        let mut finger = belief.clone();
+        differ(&mut finger);
+        let mut run = ClosedLoop::new(case, &finger, &belief, pose, &kx, Senses::Counts);
+        run.lose(loss);
+        step(&mut run, direction)
+    });
+    let mut times: Vec<f64> = all.iter().map(|step| step.time).collect();
+    times.sort_by(f64::total_cmp);
+    Steps {
+        worst: times[times.len() - 1],
+        median: times[times.len() / 2],
+        overshoot: worst(all.iter().map(|step| step.overshoot)),
+        least_true: least(all.iter().map(|step| step.least_true)),
+        least_commanded: least(all.iter().map(|step| step.least_commanded)),
+    }
 }
 
-/// A reach of 30 mm over 200 ms, minimum jerk, Kx 3: the largest error from 100 ms after its end on, cm, and the least true tension,
-/// N.
+fn step(finger: &mut ClosedLoop, direction: &Vector3<f64>) -> Step {
+    let target = finger.anchor() + direction * STEP;
+    assert!(finger.move_anchor(&target), "a direction with room");
+    let (mut time, mut overshoot) = (0.0, f64::NEG_INFINITY);
+    for cycle in 1..=finger.cycles(WATCHED) {
+        finger.cycle();
+        let error = finger.plant.tip() - target;
+        // Written so that NaN is not settled.
+        if error.norm().is_nan() || error.norm() > 0.05 * STEP {
+            time = cycle as f64 / finger.rate;
+        }
+        overshoot = worst([overshoot, error.dot(direction) / STEP]);
+    }
+    Step { time, overshoot, least_true: finger.least_true, least_commanded: finger.least_commanded }
+}
+
+/// How far the tip has gone in the course of one step, parts of it, over time, s: every pose's first direction with room.
+pub fn step_responses(case: &Case, stiffness: f64, seconds: f64) -> Vec<Vec<(f64, f64)>> {
+    let mut cases = case.poses_and_directions(ROOM);
+    cases.dedup_by_key(|(pose, _)| *pose);
+    each(&cases, |_, (pose, direction)| {
+        let mut finger = ClosedLoop::at(case, pose, Friction::Default, &(Matrix3::identity() * stiffness));
+        let start = finger.anchor();
+        assert!(finger.move_anchor(&(start + direction * STEP)), "a direction with room");
+        let tips = finger.tips(seconds);
+        let gone = |(cycle, tip): (usize, &Vector3<f64>)| {
+            ((cycle + 1) as f64 / case.rate, (tip - start).dot(direction) / STEP)
+        };
+        tips.iter().enumerate().map(gone).collect()
+    })
+}
+
+/// A reach of 30 mm over 200 ms, minimum jerk, Kx 3: the largest error from 100 ms after its end on, cm, and the least true
+/// tension, N.
 pub fn reach(case: &Case) -> (f64, f64) {
     const WAY: f64 = 3.0;
-    let (mut farthest, mut least): (f64, f64) = (0.0, f64::INFINITY);
-    for (number, pose) in case.poses().iter().enumerate() {
-        for direction in case.directions(number) {
-            let mut finger = ClosedLoop::at(case, pose, Friction::Default, &(Matrix3::identity() * 3.0));
-            if !has_room(&finger.finger, pose, &direction, WAY) {
-                continue;
-            }
-            let start = finger.anchor();
-            let cycles = finger.cycles(0.2);
-            for cycle in 1..=cycles {
-                let part = cycle as f64 / cycles as f64;
-                let way = WAY * part.powi(3) * (10.0 - 15.0 * part + 6.0 * part * part);
-                finger.move_anchor(&(start + direction * way));
-                finger.cycle();
-            }
-            finger.run(0.1);
-            for _ in 0..finger.cycles(0.3) {
-                farthest = farthest.max((finger.plant.tip() - finger.anchor()).norm());
-                finger.cycle();
-            }
-            least = least.min(finger.least_true);
+    let all = each(&case.poses_and_directions(WAY), |_, (pose, direction)| {
+        let mut finger = ClosedLoop::at(case, pose, Friction::Default, &(Matrix3::identity() * 3.0));
+        let start = finger.anchor();
+        let cycles = finger.cycles(0.2);
+        for cycle in 1..=cycles {
+            let part = cycle as f64 / cycles as f64;
+            let way = WAY * part.powi(3) * (10.0 - 15.0 * part + 6.0 * part * part);
+            assert!(finger.move_anchor(&(start + direction * way)), "a direction with room");
+            finger.cycle();
         }
-    }
-    (farthest, least)
+        finger.run(0.1);
+        let anchor = finger.anchor();
+        (worst(finger.tips(0.3).iter().map(|tip| (tip - anchor).norm())), finger.least_true)
+    });
+    (worst(all.iter().map(|one| one.0)), least(all.iter().map(|one| one.1)))
 }

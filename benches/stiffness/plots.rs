@@ -1,8 +1,9 @@
 //! Step responses, and commanded against apparent stiffness, as SVG.
 
-use crate::cases::Case;
-use crate::{motion, statics};
-use nalgebra::{Matrix2, Matrix3, Vector2};
+use crate::cases::{Case, Friction};
+use crate::closed_loop::Senses;
+use crate::{fits, motion, statics};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use plotters::prelude::*;
 use std::error::Error;
 use std::path::Path;
@@ -10,6 +11,7 @@ use sun2xp::model::configuration::Scheme;
 
 const RATE: f64 = 1000.0;
 const POSES: usize = 6;
+const FONT: &str = "sans-serif";
 
 /// Draws into `folder`: `step-response.svg` and `stiffness-ellipses.svg`, one panel a controller, at 1000 Hz.
 pub fn draw(folder: &Path, schemes: &[Scheme], seed: u64) -> Result<(), Box<dyn Error>> {
@@ -20,56 +22,65 @@ pub fn draw(folder: &Path, schemes: &[Scheme], seed: u64) -> Result<(), Box<dyn 
 }
 
 fn step_responses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
+    const WATCHED: f64 = 0.6;
     let area = SVGBackend::new(file, (520 * cases.len() as u32, 360)).into_drawing_area();
     area.fill(&WHITE)?;
     for (panel, case) in area.split_evenly((1, cases.len())).iter().zip(cases) {
         let mut chart = ChartBuilder::on(panel)
-            .caption(format!("5 mm step, Kx 3, {}", case.name()), ("sans-serif", 16))
+            .caption(format!("5 mm step, Kx 3 N/cm, {}, {POSES} poses", case.name()), (FONT, 16))
             .margin(8)
             .x_label_area_size(34)
             .y_label_area_size(44)
-            .build_cartesian_2d(0.0..0.6, -0.2..1.6)?;
+            .build_cartesian_2d(0.0..WATCHED, -0.2..1.6)?;
         chart.configure_mesh().x_desc("s").y_desc("part of the step").draw()?;
-        for pose in 0..POSES {
-            let response = motion::step_response(case, pose, 3.0, 0.6);
-            chart.draw_series(LineSeries::new(response, Palette99::pick(pose).stroke_width(1)))?;
+        let limit = |part: f64| LineSeries::new([(0.0, part), (WATCHED, part)], BLACK.mix(0.5).stroke_width(1));
+        chart.draw_series(limit(0.95))?;
+        chart.draw_series(limit(1.05))?;
+        for (number, response) in motion::step_responses(case, 3.0, WATCHED).into_iter().enumerate() {
+            chart.draw_series(LineSeries::new(response, Palette99::pick(number).stroke_width(1)))?;
         }
     }
     area.present()?;
     Ok(())
 }
 
-/// The displacements that 1 N in every direction of the x-z plane wants (black) and finds (red), one drawing a pose.
+/// The forces that a deflection by 1 mm in every direction of a coordinate plane wants (black) and finds (red): sections through
+/// the ellipsoids of Kx = diag(1, 5, 2) and of the apparent stiffness; friction on. One row a controller, one column a pose.
 fn ellipses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
-    let kx = Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, 5.0, 2.0));
+    const PLANE: [usize; 2] = [0, 1];
+    let kx = Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0));
     let area = SVGBackend::new(file, (180 * POSES as u32, 210 * cases.len() as u32)).into_drawing_area();
     area.fill(&WHITE)?;
     let panels = area.split_evenly((cases.len(), POSES));
-    for (panel, number) in panels.iter().zip(0..) {
-        let (case, pose) = (&cases[number / POSES], number % POSES);
-        let found = statics::compliance(case, &case.poses()[pose], &kx);
-        let wanted = kx.map(|entry| if entry > 0.0 { 1.0 / entry } else { 0.0 });
+    let subjects = cases.iter().flat_map(|case| case.poses().into_iter().map(move |pose| (case, pose)));
+    for (panel, (case, pose)) in panels.iter().zip(subjects) {
+        let finger = case.finger(&pose, Friction::Default);
+        let (forces, deflections) = statics::pushed_about(case, &finger, &finger, &pose, &kx, Senses::Counts);
+        let found = fits::apparent_stiffness(&forces, &deflections);
+        let degrees = pose.map(f64::to_degrees);
+        let caption = format!("{:?} ({:.0}, {:.0}, {:.0})", case.scheme, degrees[0], degrees[1], degrees[2]);
         let mut chart = ChartBuilder::on(panel)
-            .caption(format!("{:?}", case.scheme), ("sans-serif", 12))
+            .caption(caption, (FONT, 11))
             .margin(6)
-            .x_label_area_size(20)
-            .y_label_area_size(28)
-            .build_cartesian_2d(-1.2..1.2, -1.2..1.2)?;
-        chart.configure_mesh().x_labels(3).y_labels(3).disable_mesh().draw()?;
-        chart.draw_series(LineSeries::new(ellipse(&wanted), BLACK.stroke_width(2)))?;
-        chart.draw_series(LineSeries::new(ellipse(&found), RED.stroke_width(1)))?;
+            .x_label_area_size(28)
+            .y_label_area_size(34)
+            .build_cartesian_2d(-0.6..0.6, -0.6..0.6)?;
+        chart.configure_mesh().x_labels(3).y_labels(3).disable_mesh().x_desc("f_x, N").y_desc("f_y, N").draw()?;
+        chart.draw_series(LineSeries::new(section(&kx, PLANE), BLACK.stroke_width(2)))?;
+        chart.draw_series(LineSeries::new(section(&found, PLANE), RED.stroke_width(1)))?;
     }
     area.present()?;
     Ok(())
 }
 
-/// C f for f around the unit circle of the x-z plane, cm.
-fn ellipse(compliance: &Matrix3<f64>) -> Vec<(f64, f64)> {
-    let plane = Matrix2::new(compliance[(0, 0)], compliance[(0, 2)], compliance[(2, 0)], compliance[(2, 2)]);
+/// K d for deflections d of 1 mm around the plane of two axes, N.
+fn section(stiffness: &Matrix3<f64>, [a, b]: [usize; 2]) -> Vec<(f64, f64)> {
+    let of = |row, column| 0.1 * stiffness[(row, column)];
+    let plane = Matrix2::new(of(a, a), of(a, b), of(b, a), of(b, b));
     let turned = |degrees: i32| {
         let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
-        let moved = plane * Vector2::new(cos, sin);
-        (moved[0], moved[1])
+        let force = plane * Vector2::new(cos, sin);
+        (force[0], force[1])
     };
     (0..=360).step_by(5).map(turned).collect()
 }

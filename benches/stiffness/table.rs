@@ -1,101 +1,200 @@
-//! The table: measured columns as Markdown.
+//! The table: what is measured, what is wanted, and what each column reaches, as Markdown.
 
 use crate::cases::{Case, Friction};
-use crate::{contact, motion, robustness, statics};
+use crate::closed_loop::Senses;
+use crate::motion::Steps;
+use crate::{contact, motion, robustness, stability, statics};
 use std::fmt::Write;
 use std::path::Path;
+use std::time::Instant;
 use std::{fs, io};
+
+/// One property of a finger.
+struct Row {
+    what: &'static str,
+    /// At 1000 Hz and above.
+    goal: &'static str,
+    measure: fn(&Case) -> String,
+}
 
 /// What was measured for one controller at one rate.
 pub struct Column {
     name: String,
-    cells: Vec<(&'static str, String)>,
+    cells: Vec<(&'static Row, String)>,
 }
 
-const BEGIN: &str = "<!-- table: begin -->\n";
-const END: &str = "<!-- table: end -->";
+static ROWS: [Row; 20] = [
+    Row {
+        what: "apparent stiffness about 1 mm, worst direction, no friction, quantised and noisy sensors",
+        goal: "<= 0.3 %",
+        measure: |case| percent(statics::apparent_stiffness(case, Senses::Counts)),
+    },
+    Row {
+        what: "the same with exact sensors",
+        goal: "",
+        measure: |case| percent(statics::apparent_stiffness(case, Senses::Exact)),
+    },
+    Row {
+        what: "slope of a 2 mm, 3 s triangular force loop, friction: Kx 3 / bound",
+        goal: "<= 3 %",
+        measure: |case| {
+            let [soft, stiff] = [3.0, case.bound()].map(|stiffness| statics::triangle(case, stiffness));
+            format!("{} / {}", percent(soft), percent(stiff))
+        },
+    },
+    Row {
+        what: "pushed from rest by Kx 2 mm, friction: Kx 3 / bound",
+        goal: "<= 5 %",
+        measure: |case| {
+            let [soft, stiff] =
+                [3.0, case.bound()].map(|stiffness| statics::pushed_from_rest(case, Friction::Default, stiffness, 0.2));
+            format!("{} / {}", percent(soft), percent(stiff))
+        },
+    },
+    Row {
+        what: "pushed from rest by Kx 1 mm, harsh joint friction, Kx 3",
+        goal: "<= 50 %",
+        measure: |case| percent(statics::pushed_from_rest(case, Friction::Harsh, 3.0, 0.1)),
+    },
+    Row {
+        what: "5 mm step at Kx 3: time to within 5 %, worst / median; overshoot",
+        goal: "<= 150 ms; <= 10 %",
+        measure: |case| {
+            let steps = motion::steps(case, 3.0, 0.0);
+            format!("{}; {}", times(&steps), percent(steps.overshoot))
+        },
+    },
+    Row {
+        what: "30 mm reach in 200 ms, Kx 3, friction: error from 100 ms after its end on; least true tension",
+        goal: "<= 0.3 mm; >= 4 N",
+        measure: |case| {
+            let (error, least) = motion::reach(case);
+            format!("{:.2} mm; {least:.2} N", 10.0 * error)
+        },
+    },
+    Row {
+        what: "5 mm step at the bound: least true / commanded tension",
+        goal: ">= 2.5 N / 5 N",
+        measure: |case| {
+            let steps = motion::steps(case, case.bound(), 0.0);
+            format!("{:.2} N / {:.2} N", steps.least_true, steps.least_commanded)
+        },
+    },
+    Row {
+        what: "against walls of 30, 100, 300 N/cm, Kx 3: poses not at rest after 2 s; residual motion",
+        goal: "0",
+        measure: |case| walls(case, 3.0),
+    },
+    Row { what: "the same at the bound", goal: "0", measure: |case| walls(case, case.bound()) },
+    Row {
+        what: "over-limit torque against a stop: largest tension over t_max; torque turned by",
+        goal: "<= 0.1 N; 0",
+        measure: |case| {
+            let found = contact::over_limit(case);
+            assert!(found.scale < 1.0, "no torque over the limit: nothing measured");
+            format!("{:+.2} N; {:.2} degrees", found.excess, found.turned)
+        },
+    },
+    Row {
+        what: "motor constants off by 20 %: error of the stiffness",
+        goal: "no effect",
+        measure: |case| percent(robustness::motor_constants(case, &robustness::MOTOR_CONSTANTS)),
+    },
+    Row {
+        what: "motor constants off by 20 %: 5 mm step at Kx 3, worst / median; overshoot",
+        goal: "no effect",
+        measure: |case| {
+            let steps = motion::steps_of(case, 3.0, 0.0, |finger| {
+                finger.simulation.motor_constant_ratio = robustness::MOTOR_CONSTANTS[2];
+            });
+            format!("{}; {}", times(&steps), percent(steps.overshoot))
+        },
+    },
+    Row {
+        what: "tendon stiffness off by 10 %: error of the stiffness",
+        goal: "",
+        measure: |case| percent(robustness::tendon_stiffness(case, &robustness::TENDONS)),
+    },
+    Row {
+        what: "tendon stiffness off by 2 %, as calibrated: error of the stiffness",
+        goal: "<= 1 %",
+        measure: |case| percent(robustness::tendon_stiffness(case, &robustness::CALIBRATED_TENDONS)),
+    },
+    Row {
+        what: "5 % of the replies lost: 5 mm step at Kx 3, worst / median; median longer by",
+        goal: "<= +3 %",
+        measure: |case| {
+            let (whole, lossy) = (motion::steps(case, 3.0, 0.0), motion::steps(case, 3.0, 0.05));
+            format!("{}; {:+.1} %", times(&lossy), 100.0 * (lossy.median / whole.median - 1.0))
+        },
+    },
+    Row {
+        what: "stability, poses as above, Kx up to the bound, loads up to 1 mm: unstable; largest eigenvalue",
+        goal: "0; < 1",
+        measure: |case| eigenvalue(&stability::usual(case)),
+    },
+    Row {
+        what: "the same anywhere within the joint limits",
+        goal: "0; < 1",
+        measure: |case| eigenvalue(&stability::anywhere(case)),
+    },
+    Row {
+        what: "the same, poses as above, against walls of 30, 100, 300 N/cm",
+        goal: "0; < 1",
+        measure: |case| eigenvalue(&stability::against_walls(case)),
+    },
+    Row {
+        what: "5 mm step at the bound: time to within 5 %, worst / median; overshoot",
+        goal: "",
+        measure: |case| {
+            let steps = motion::steps(case, case.bound(), 0.0);
+            format!("{}; {}", times(&steps), percent(steps.overshoot))
+        },
+    },
+];
+
+fn percent(part: f64) -> String {
+    format!("{:.2} %", 100.0 * part)
+}
+
+fn times(steps: &Steps) -> String {
+    format!("{:.0} / {:.0} ms", 1e3 * steps.worst, 1e3 * steps.median)
+}
+
+fn walls(case: &Case, stiffness: f64) -> String {
+    let (restless, motion) = contact::against_walls(case, stiffness);
+    format!("{restless} of {}; {:.1} um rms", case.poses, 1e4 * motion)
+}
+
+fn eigenvalue(found: &stability::Stability) -> String {
+    format!("{} of {}; {:.4}", found.unstable, found.samples, found.largest)
+}
 
 impl Column {
-    pub fn measure(case: &Case) -> Self {
-        let percent = |part: f64| format!("{:.2} %", 100.0 * part);
-        let mut cells = Vec::new();
-        let mut add = |row, cell: String| {
-            eprintln!("  {row}: {cell}");
-            cells.push((row, cell));
+    /// Measures the rows whose names contain `only`.
+    pub fn measure(case: &Case, only: &str) -> Self {
+        let measured = |row: &'static Row| {
+            let begun = Instant::now();
+            let cell = (row.measure)(case);
+            eprintln!("  {}: {cell} [{:.1} s]", row.what, begun.elapsed().as_secs_f64());
+            (row, cell)
         };
-        let stiff = [3.0, case.bound()];
-        add("apparent stiffness, worst direction, 1 mm, no friction", percent(statics::apparent_stiffness(case)));
-        add("slope of a 2 mm, 3 s triangular force loop, friction, Kx 3 and bound", percent(statics::triangle(case)));
-        add(
-            "pushed from rest by Kx 2 mm, friction, Kx 3 and bound",
-            percent(statics::pushed_from_rest(case, Friction::Default, &stiff, 0.2)),
-        );
-        add(
-            "pushed from rest by Kx 1 mm, harsh friction, Kx 3",
-            percent(statics::pushed_from_rest(case, Friction::Harsh, &[3.0], 0.1)),
-        );
-        let step = motion::steps(case, Friction::Default, 3.0, 0.0);
-        add(
-            "5 mm step at Kx 3: worst and median time to 5 %, overshoot",
-            format!("{:.0} / {:.0} ms, {:.1} %", 1e3 * step.worst, 1e3 * step.median, 100.0 * step.overshoot),
-        );
-        let (error, least) = motion::reach(case);
-        add(
-            "30 mm reach in 200 ms: error after 100 ms, least tension",
-            format!("{:.2} mm, {least:.2} N", 10.0 * error),
-        );
-        let hard = motion::steps(case, Friction::Default, case.bound(), 0.0);
-        add(
-            "5 mm step at the bound: least true and commanded tension",
-            format!("{:.2} / {:.2} N", hard.least_true, hard.least_commanded),
-        );
-        for (row, stiffness) in [
-            ("against walls of 30, 100, 300 N/cm, Kx 3: poses not at rest, residual motion", 3.0),
-            ("the same at the bound", case.bound()),
-        ] {
-            let (unstable, motion) = contact::against_a_wall(case, stiffness);
-            add(row, format!("{unstable} of {}, {:.4} mm rms", case.poses, 10.0 * motion));
-        }
-        let (excess, angle) = contact::over_limit(case);
-        add("over-limit torque against a stop: above t_max, turned by", format!("{excess:+.2} N, {angle:.3} degrees"));
-        add(
-            "motor constants off by 20 %: error of 1 mm",
-            percent(robustness::believing_otherwise(case, robustness::motor_constants)),
-        );
-        add(
-            "tendon stiffness off by 10 %: error of 1 mm",
-            percent(robustness::believing_otherwise(case, robustness::tendon_stiffness)),
-        );
-        add(
-            "tendon stiffness known to 2 %: error of 1 mm",
-            percent(robustness::believing_otherwise(case, robustness::calibrated)),
-        );
-        let lossy = motion::steps(case, Friction::Default, 3.0, 0.05);
-        add(
-            "5 % of the replies lost: worst and median time of the 5 mm step, median longer by",
-            format!(
-                "{:.0} / {:.0} ms, {:+.1} %",
-                1e3 * lossy.worst,
-                1e3 * lossy.median,
-                100.0 * (lossy.median / step.median - 1.0)
-            ),
-        );
-        add("growth of a deviation a cycle (below 1: stable)", format!("{:.4}", robustness::growth(case)));
-        Self { name: case.name(), cells }
+        Self { name: case.name(), cells: ROWS.iter().filter(|row| row.what.contains(only)).map(measured).collect() }
     }
 }
 
 /// One row a measurement, one column a controller and rate.
 pub fn markdown(columns: &[Column]) -> String {
-    let mut text = String::from("| worst over poses and Kx unless said |");
+    let mut text = String::from("| worst over poses and Kx unless said | goal |");
     for column in columns {
         let _ = write!(text, " {} |", column.name);
     }
-    text.push_str("\n|---|");
+    text.push_str("\n|---|---|");
     text.push_str(&"---|".repeat(columns.len()));
     text.push('\n');
-    for (row, (name, _)) in columns[0].cells.iter().enumerate() {
-        let _ = write!(text, "| {name} |");
+    for row in 0..columns.first().map_or(0, |column| column.cells.len()) {
+        let Row { what, goal, .. } = columns[0].cells[row].0;
+        let _ = write!(text, "| {what} | {goal} |");
         for column in columns {
             let _ = write!(text, " {} |", column.cells[row].1);
         }
@@ -104,11 +203,14 @@ pub fn markdown(columns: &[Column]) -> String {
     text
 }
 
-/// Puts the table between the two marks in a file.
-pub fn replace_in(file: &Path, table: &str) -> io::Result<()> {
+const BEGIN: &str = "<!-- table: begin -->\n";
+const END: &str = "<!-- table: end -->";
+
+/// Puts the table, and the command that made it, between the two marks in a file.
+pub fn replace_in(file: &Path, command: &str, table: &str) -> io::Result<()> {
     let text = fs::read_to_string(file)?;
-    let missing = || io::Error::other("the marks of the table are missing");
+    let missing = || io::Error::other(format!("{} lacks the lines {BEGIN}{END}", file.display()));
     let begin = text.find(BEGIN).ok_or_else(missing)? + BEGIN.len();
-    let end = text.find(END).ok_or_else(missing)?;
-    fs::write(file, format!("{}{table}{}", &text[..begin], &text[end..]))
+    let end = text.find(END).filter(|&end| end >= begin).ok_or_else(missing)?;
+    fs::write(file, format!("{}`{command}`\n\n{table}{}", &text[..begin], &text[end..]))
 }

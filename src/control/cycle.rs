@@ -7,7 +7,7 @@ use super::low_pass::LowPass;
 use super::motor_torque::MotorTorque;
 use super::release::Release;
 use super::sensors::Sensors;
-use super::signals::{Activity, Command, Feedback, Report, SetPoint};
+use super::signals::{Activity, Command, Feedback, Measured, Report, SetPoint};
 use super::slew::Slew;
 use super::stillness::Stillness;
 use super::tendon_controller::TendonController;
@@ -101,8 +101,7 @@ impl Controller {
 
     /// The state before the first cycle of a finger at rest. Its first command will pull as much as the tendons do.
     pub fn start(&self, feedback: &Feedback) -> State {
-        let motor_angles = self.sensors.motor_angles(feedback);
-        let tensions = self.sensors.tensions(feedback);
+        let Measured { motor_angles, tensions } = self.sensors.measured(feedback);
         let limit = &self.motor_torque.limit;
         let pulls = tensions.zip_map(limit, |tension, limit| tension.clamp(0.0, limit));
         let report = Report {
@@ -135,14 +134,26 @@ impl Controller {
     /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates rests,
     /// but a release goes on.
     pub fn cycle(&self, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) -> (Command, Report) {
+        let measured = feedback.map(|feedback| self.sensors.measured(feedback));
+        self.cycle_measured(state, measured.as_ref(), activity)
+    }
+
+    /// [`Controller::cycle`] from the sensors' values instead of their counts, so without quantisation: the smooth map that a
+    /// linear analysis needs.
+    pub fn cycle_measured(
+        &self,
+        state: &mut State,
+        measured: Option<&Measured>,
+        activity: &Activity,
+    ) -> (Command, Report) {
         state.age = state.age.saturating_add(1);
-        if let Some(feedback) = feedback {
-            self.measure(state, feedback);
+        if let Some(measured) = measured {
+            self.measure(state, measured);
         }
         match *activity {
             Activity::Release { ramp } => self.let_go(state, ramp),
-            Activity::TakeUpSlack if feedback.is_some() => self.take_up_slack(state),
-            Activity::Follow(set_point) if feedback.is_some() => self.follow(state, set_point),
+            Activity::TakeUpSlack if measured.is_some() => self.take_up_slack(state),
+            Activity::Follow(set_point) if measured.is_some() => self.follow(state, set_point),
             Activity::TakeUpSlack | Activity::Follow(_) => {}
         }
         let motor_torques = self.motor_torque.torques(&state.pulls);
@@ -150,10 +161,9 @@ impl Controller {
         (Command { motor_torques }, state.report)
     }
 
-    /// Sensor counts to tensions, joint angles and rates.
-    fn measure(&self, state: &mut State, feedback: &Feedback) {
-        let motor_angles = self.sensors.motor_angles(feedback);
-        let tensions = self.sensors.tensions(feedback);
+    /// Motor angles and tensions to joint angles and rates.
+    fn measure(&self, state: &mut State, measured: &Measured) {
+        let Measured { motor_angles, tensions } = *measured;
         let elapsed = self.period * f64::from(state.age);
         let speeds = (motor_angles - state.motor_angles) / elapsed;
         self.speed_filter.advance(&mut state.motor_speeds, &speeds);

@@ -26,5 +26,5 @@ mod usable;
 pub use cycle::{Controller, State};
 pub use inverse_kinematics::{InverseKinematics, OutOfReach};
 pub use joint_stiffness::JointStiffness;
-pub use signals::{Activity, Command, Feedback, Law, Report, SetPoint, spatial};
+pub use signals::{Activity, Command, Feedback, Law, Measured, Report, SetPoint, spatial};
 pub use tension_distribution::{Distribution, TensionDistribution};

@@ -1,6 +1,6 @@
 //! Encoder counts to motor angles, eq. 28, and strain gauge counts to tensions.
 
-use super::signals::Feedback;
+use super::signals::{Feedback, Measured};
 use super::usable::{positive, signs};
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use nalgebra::Vector4;
@@ -33,6 +33,11 @@ impl Sensors {
             newton_per_count: finger.gauge.newton_per_count,
             gauge_zero: finger.gauge.zero,
         })
+    }
+
+    /// All eight.
+    pub fn measured(&self, feedback: &Feedback) -> Measured {
+        Measured { motor_angles: self.motor_angles(feedback), tensions: self.tensions(feedback) }
     }
 
     /// m_theta of eq. 28, rad; rising as the tendon is pulled in.

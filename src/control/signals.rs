@@ -13,6 +13,15 @@ pub struct Feedback {
     pub gauge_counts: [u16; 4],
 }
 
+/// What the sensors say, in units: a [`Feedback`] with its scales, signs and zeros applied.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// m_theta of eq. 28, rad; rising as the tendon is pulled in.
+    pub motor_angles: Vector4<f64>,
+    /// N.
+    pub tensions: Vector4<f64>,
+}
+
 /// Where a fingertip's spring is anchored and how stiff it is. Taken over whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetPoint {

@@ -1,0 +1,96 @@
+//! Numbers out of recorded points: what a spring, a slope and a decay are.
+
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+/// The relative error of a spring in its worst direction: the largest singular value of S K S - 1 with S = Kx^-1/2, K being
+/// the stiffness that forces (N) and deflections (cm) show together. So u^T K u is within (1 +- e) u^T Kx u for every u.
+pub fn spring_error(forces: &[Vector3<f64>], deflections: &[Vector3<f64>], kx: &Matrix3<f64>) -> f64 {
+    let found = apparent_stiffness(forces, deflections);
+    let mut eigen = kx.symmetric_eigen();
+    eigen.eigenvalues.apply(|stiffness| *stiffness = stiffness.sqrt().recip());
+    let root = eigen.recompose();
+    let error = root * found * root - Matrix3::identity();
+    if error.iter().all(|entry| entry.is_finite()) { error.singular_values().max() } else { f64::INFINITY }
+}
+
+/// K of f = K d by least squares, N/cm.
+pub fn apparent_stiffness(forces: &[Vector3<f64>], deflections: &[Vector3<f64>]) -> Matrix3<f64> {
+    let sum = |a: &[Vector3<f64>], b: &[Vector3<f64>]| -> Matrix3<f64> {
+        a.iter().zip(b).map(|(a, b)| a * b.transpose()).sum()
+    };
+    let squared = sum(deflections, deflections);
+    sum(forces, deflections) * squared.try_inverse().unwrap_or_else(|| Matrix3::repeat(f64::NAN))
+}
+
+/// Least-squares slope of y over x.
+pub fn slope(points: &[(f64, f64)]) -> f64 {
+    let n = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (x, y) = (mean(|point| point.0), mean(|point| point.1));
+    let above: f64 = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum();
+    above / points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>()
+}
+
+/// Below this part of its largest value a channel is rounding.
+const ROUNDING: f64 = 1e-8;
+/// Samples that a recurrence is fitted to.
+const WINDOW: usize = 60;
+/// A recurrence that misses by less than this part explains the samples.
+const EXPLAINED: f64 = 1e-4;
+const LARGEST_ORDER: usize = 6;
+
+/// By which factor the slowest mode of a freely decaying (or growing) linear system changes from one sample to the next: its
+/// largest eigenvalue's modulus. `samples`: one vector of channels an instant, equally spaced.
+///
+/// After the fast modes have gone the last samples obey a short recurrence y[k] = a1 y[k-1] + ... + ap y[k-p], the same in
+/// every channel, and its roots are the eigenvalues left (Prony). The shortest one that explains them has no others.
+pub fn growth(samples: &[DVector<f64>]) -> f64 {
+    let Some(first) = samples.first() else { return f64::NAN };
+    let largest = samples.iter().fold(first.abs(), |largest, sample| largest.sup(&sample.abs()));
+    let scaled: Vec<DVector<f64>> = samples
+        .iter()
+        .map(|sample| sample.zip_map(&largest, |value, largest| if largest > 0.0 { value / largest } else { 0.0 }))
+        .collect();
+    let end = scaled.iter().rposition(|sample| sample.amax() > ROUNDING).map_or(0, |last| last + 1);
+    let window = &scaled[end.saturating_sub(WINDOW)..end];
+    let mut found = f64::NAN;
+    for order in 1..=LARGEST_ORDER.min(window.len().saturating_sub(2)) {
+        let Some((coefficients, missed)) = recurrence(window, order) else { break };
+        found = largest_root(&coefficients);
+        if missed < EXPLAINED {
+            break;
+        }
+    }
+    found
+}
+
+/// a1 .. ap, and the root mean square of what they miss, relative to the samples around.
+fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f64)> {
+    let channels = window[0].len();
+    let rows = (window.len() - order) * channels;
+    let (mut before, mut now) = (DMatrix::zeros(rows, order), DVector::zeros(rows));
+    for k in order..window.len() {
+        // Every instant counts alike, however far the decay has gone.
+        let weight = window[k - order..=k].iter().map(|sample| sample.norm()).fold(0.0, f64::max).recip();
+        for channel in 0..channels {
+            let row = (k - order) * channels + channel;
+            now[row] = window[k][channel] * weight;
+            for back in 0..order {
+                before[(row, back)] = window[k - 1 - back][channel] * weight;
+            }
+        }
+    }
+    let coefficients = before.clone().svd(true, true).solve(&now, 1e-12).ok()?;
+    let missed = (before * &coefficients - now).norm() / ((window.len() - order) as f64).sqrt();
+    Some((coefficients, missed))
+}
+
+/// The largest modulus among the roots of z^p - a1 z^(p-1) - ... - ap.
+fn largest_root(coefficients: &DVector<f64>) -> f64 {
+    let order = coefficients.len();
+    let companion = DMatrix::from_fn(order, order, |row, column| match (row, column) {
+        (0, column) => coefficients[column],
+        (row, column) => f64::from(row == column + 1),
+    });
+    companion.complex_eigenvalues().iter().map(|root| root.norm()).fold(0.0, f64::max)
+}

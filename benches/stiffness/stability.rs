@@ -1,0 +1,132 @@
+//! Rows about the exact one-cycle map: frictionless, exactly measured, with all that the controller remembers.
+
+use crate::cases::{self, Case, Friction, USUAL};
+use crate::closed_loop::{ClosedLoop, Senses};
+use crate::contact::{INTO, WALLS, wall_off};
+use crate::fits;
+use crate::parallel::{each, worst};
+use nalgebra::{DVector, Matrix3, Vector3};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::SeedableRng;
+use sun2xp::model::Surface;
+use sun2xp::model::configuration::ConfiguredFinger;
+
+/// A finger as it is left to itself.
+pub struct Sample {
+    pub pose: Vector3<f64>,
+    pub kx: Matrix3<f64>,
+    /// Force on the tip, N.
+    pub load: Vector3<f64>,
+    pub wall: Option<(Surface, Vector3<f64>)>,
+}
+
+/// What the samples of a row came to.
+pub struct Stability {
+    pub samples: usize,
+    /// How many have an eigenvalue outside the unit circle, or do not come to rest.
+    pub unstable: usize,
+    /// The largest modulus of an eigenvalue among those that come to rest, a cycle.
+    pub largest: f64,
+}
+
+/// Samples for each pose of the other rows.
+const DENSITY: usize = 20;
+
+/// Poses within `limits`, springs up to the bound, small loads: without one the tendons 1 and 4 share t_min, where eq. 20 has
+/// a kink.
+fn samples(case: &Case, limits: &[[f64; 2]; 3]) -> Vec<Sample> {
+    let mut random = Pcg64::seed_from_u64(case.seed + 2);
+    let bound = case.bound();
+    (0..case.poses * DENSITY)
+        .map(|number| {
+            let pose = cases::pose(&mut random, limits);
+            let any = cases::spring(&mut random, 0.5, bound);
+            let kx = if number % 4 == 0 { Matrix3::identity() * bound } else { any };
+            let deflection = cases::uniform(&mut random, 0.01, 0.1);
+            Sample { pose, kx, load: kx * cases::direction(&mut random) * deflection, wall: None }
+        })
+        .collect()
+}
+
+/// Fingers in the poses of the goals.
+pub fn usual(case: &Case) -> Stability {
+    measure(case, &samples(case, &USUAL))
+}
+
+/// Fingers anywhere within their joint limits, near the straight one too.
+pub fn anywhere(case: &Case) -> Stability {
+    let joints = ConfiguredFinger::default().joints;
+    let limits = std::array::from_fn(|joint| [joints.minimum_degrees[joint], joints.maximum_degrees[joint]]);
+    measure(case, &samples(case, &limits))
+}
+
+/// Fingers pressed against walls of the three stiffnesses, from any side.
+pub fn against_walls(case: &Case) -> Stability {
+    let links = ConfiguredFinger::default().links();
+    let mut samples = samples(case, &USUAL);
+    let mut random = Pcg64::seed_from_u64(case.seed + 3);
+    for (number, sample) in samples.iter_mut().enumerate() {
+        let (outward, tip) = (cases::direction(&mut random), links.tip(&sample.pose));
+        let surface = wall_off(&tip, &outward, WALLS[number % WALLS.len()]);
+        sample.wall = Some((surface, tip - outward * INTO));
+        sample.load = Vector3::zeros();
+    }
+    measure(case, &samples)
+}
+
+fn measure(case: &Case, samples: &[Sample]) -> Stability {
+    let found = each(samples, |_, sample| growth(case, sample));
+    let outside = |growth: &Option<f64>| growth.is_none_or(|growth| !(growth < 1.0));
+    Stability {
+        samples: found.len(),
+        unstable: found.iter().filter(|growth| outside(growth)).count(),
+        largest: worst(found.iter().flatten().copied()),
+    }
+}
+
+/// The largest modulus of an eigenvalue of the one-cycle map; none where the finger does not come to rest, or has lost a tendon
+/// or the wall.
+///
+/// Two fingers, one of them nudged by next to nothing: how their difference goes on is the linear map and nothing else.
+pub fn growth(case: &Case, sample: &Sample) -> Option<f64> {
+    const SETTLED: f64 = 2.0;
+    const AT_REST: f64 = 1e-2;
+    const WATCHED: f64 = 1.5;
+    /// Between two samples, s: apart enough that the eigenvalues left are, too.
+    const STRIDE: f64 = 0.005;
+    let description = case.finger(&sample.pose, Friction::None);
+    let mut finger = ClosedLoop::new(case, &description, &description, &sample.pose, &sample.kx, Senses::Exact);
+    finger.push(sample.load);
+    if let Some((surface, anchor)) = &sample.wall {
+        finger.plant.set_surface(Some(*surface));
+        // Where the anchor is out of reach, what is pressed against the wall by less is a sample as good.
+        if !finger.move_anchor(anchor) {
+            finger.push((anchor - finger.anchor()).normalize());
+        }
+    }
+    finger.run(SETTLED);
+    finger.forget();
+
+    let mut nudged = finger.clone();
+    for (motor, angle) in [3e-6, -2e-6, 1e-6, 4e-6].into_iter().enumerate() {
+        nudged.plant.turn_motor(motor, angle);
+    }
+    let stride = finger.cycles(STRIDE).max(1);
+    let mut fastest: f64 = 0.0;
+    let differences: Vec<DVector<f64>> = (0..finger.cycles(WATCHED) / stride)
+        .map(|_| {
+            for _ in 0..stride {
+                finger.cycle();
+                nudged.cycle();
+            }
+            fastest = worst([fastest, finger.plant.joint_rates().amax()]);
+            let (a, b) = (&finger.plant, &nudged.plant);
+            let channels = (a.joints() - b.joints()).as_slice().to_vec();
+            let speeds = a.joint_rates() - b.joint_rates();
+            let motors = a.motor_angles() - b.motor_angles();
+            DVector::from_vec([channels, speeds.as_slice().to_vec(), motors.as_slice().to_vec()].concat())
+        })
+        .collect();
+    let at_rest = fastest < AT_REST && finger.least_true > 0.0;
+    at_rest.then(|| fits::growth(&differences).powf(1.0 / stride as f64))
+}
