@@ -68,8 +68,9 @@ fn residual(tips: &[Vector3<f64>]) -> f64 {
 
 /// What a torque beyond the limits came to.
 pub struct OverLimit {
-    /// How far the largest true tension is above t_max, N.
+    /// How far the largest true tension is above t_max, N: at rest, and from the beginning.
     pub excess: f64,
+    pub excess_on_the_way: f64,
     /// Angle between the joint torque of the true tensions, averaged, and the one that the law asked for, degrees.
     pub turned: f64,
     /// The largest part of the torque that the limits let through: 1 would be no trial.
@@ -82,10 +83,12 @@ pub fn over_limit(case: &Case) -> OverLimit {
     let all = each(&case.poses(), |_, pose| {
         let mut pose = *pose;
         pose[1] = 100f64.to_radians();
-        let mut finger = ClosedLoop::at(case, &pose, Friction::Default, &(Matrix3::identity() * 3.0));
+        let mut finger = ClosedLoop::at(case, &pose, Friction::Default, &(Matrix3::identity() * case.bound()));
         finger.set_point.law = Law::Report;
-        finger.set_point.joints[1] += 1.0;
-        finger.run(1.0);
+        finger.set_point.joints[1] += 2.0;
+        // Joint 0 swings slowly while most of the torque is held back.
+        finger.run(3.0);
+        let most_on_the_way = finger.most_true;
         finger.forget();
         let r = finger.finger.tendons().expect("the default finger").r;
         let cycles = finger.cycles(0.5);
@@ -98,12 +101,14 @@ pub fn over_limit(case: &Case) -> OverLimit {
         }
         OverLimit {
             excess: finger.most_true - finger.finger.tendon.maximum,
+            excess_on_the_way: most_on_the_way - finger.finger.tendon.maximum,
             turned: asked.angle(&given).to_degrees(),
             scale,
         }
     });
     OverLimit {
         excess: worst(all.iter().map(|one| one.excess)),
+        excess_on_the_way: worst(all.iter().map(|one| one.excess_on_the_way)),
         turned: worst(all.iter().map(|one| one.turned)),
         scale: worst(all.iter().map(|one| one.scale)),
     }

@@ -32,12 +32,12 @@ pub fn slope(points: &[(f64, f64)]) -> f64 {
 }
 
 /// Below this part of its largest value a channel is rounding.
-const ROUNDING: f64 = 1e-8;
+const ROUNDING: f64 = 1e-6;
 /// Samples that a recurrence is fitted to.
-const WINDOW: usize = 60;
+const WINDOW: usize = 80;
 /// A recurrence that misses by less than this part explains the samples.
-const EXPLAINED: f64 = 1e-4;
-const LARGEST_ORDER: usize = 6;
+const EXPLAINED: f64 = 1e-3;
+const LARGEST_ORDER: usize = 8;
 
 /// By which factor the slowest mode of a freely decaying (or growing) linear system changes from one sample to the next: its
 /// largest eigenvalue's modulus. `samples`: one vector of channels an instant, equally spaced.

@@ -29,18 +29,18 @@ use sun2xp::model::configuration::Scheme;
 #[derive(Parser)]
 #[command(about = "Measures how well a finger is the spring that it is told to be")]
 struct Arguments {
-    /// How many random poses.
-    #[arg(long, default_value_t = 24)]
-    poses: usize,
-    /// Four poses, at 1000 Hz, unless said otherwise.
+    /// How many random poses; 24, or 4 if quick.
+    #[arg(long)]
+    poses: Option<usize>,
+    /// Few poses, and 1000 Hz only.
     #[arg(long)]
     quick: bool,
     /// Seed of the poses, of Kx and of the noise.
     #[arg(long, default_value_t = 20261121)]
     seed: u64,
-    /// Hz, separated by commas.
-    #[arg(long, value_delimiter = ',', default_values_t = [500.0, 1000.0, 2000.0])]
-    rates: Vec<f64>,
+    /// Hz, separated by commas; 500, 1000 and 2000, or 1000 if quick.
+    #[arg(long, value_delimiter = ',')]
+    rates: Option<Vec<f64>>,
     /// Tendon controllers, as in the configuration, separated by commas. Figure 10 is measured first in any case: it is what the
     /// others are compared with.
     #[arg(long, value_delimiter = ',', value_parser = scheme, default_values = ["figure 10"])]
@@ -66,17 +66,15 @@ fn scheme(name: &str) -> Result<Scheme, String> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = Arguments::parse();
-    if arguments.quick {
-        arguments.poses = 4;
-        arguments.rates = vec![1000.0];
-    }
+    let (poses, rates) = if arguments.quick { (4, vec![1000.0]) } else { (24, vec![500.0, 1000.0, 2000.0]) };
+    let (poses, rates) = (arguments.poses.unwrap_or(poses), arguments.rates.take().unwrap_or(rates));
     arguments.controllers.retain(|&scheme| scheme != Scheme::Figure10);
     arguments.controllers.insert(0, Scheme::Figure10);
     let begun = Instant::now();
     let mut columns = Vec::new();
-    for &rate in &arguments.rates {
+    for &rate in &rates {
         for &scheme in &arguments.controllers {
-            let case = Case { scheme, rate, poses: arguments.poses, seed: arguments.seed };
+            let case = Case { scheme, rate, poses, seed: arguments.seed };
             eprintln!("{}", case.name());
             columns.push(table::Column::measure(&case, &arguments.only));
         }

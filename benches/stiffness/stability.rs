@@ -75,7 +75,7 @@ pub fn against_walls(case: &Case) -> Stability {
 }
 
 fn measure(case: &Case, samples: &[Sample]) -> Stability {
-    let found = each(samples, |_, sample| growth(case, sample));
+    let found = each(samples, |_, sample| growth(case, &case.finger(&sample.pose, Friction::None), sample));
     let outside = |growth: &Option<f64>| growth.is_none_or(|growth| !(growth < 1.0));
     Stability {
         samples: found.len(),
@@ -88,14 +88,13 @@ fn measure(case: &Case, samples: &[Sample]) -> Stability {
 /// or the wall.
 ///
 /// Two fingers, one of them nudged by next to nothing: how their difference goes on is the linear map and nothing else.
-pub fn growth(case: &Case, sample: &Sample) -> Option<f64> {
+pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> Option<f64> {
     const SETTLED: f64 = 2.0;
     const AT_REST: f64 = 1e-2;
     const WATCHED: f64 = 1.5;
     /// Between two samples, s: apart enough that the eigenvalues left are, too.
     const STRIDE: f64 = 0.005;
-    let description = case.finger(&sample.pose, Friction::None);
-    let mut finger = ClosedLoop::new(case, &description, &description, &sample.pose, &sample.kx, Senses::Exact);
+    let mut finger = ClosedLoop::new(case, description, description, &sample.pose, &sample.kx, Senses::Exact);
     finger.push(sample.load);
     if let Some((surface, anchor)) = &sample.wall {
         finger.plant.set_surface(Some(*surface));
@@ -108,7 +107,7 @@ pub fn growth(case: &Case, sample: &Sample) -> Option<f64> {
     finger.forget();
 
     let mut nudged = finger.clone();
-    for (motor, angle) in [3e-6, -2e-6, 1e-6, 4e-6].into_iter().enumerate() {
+    for (motor, angle) in [3e-4, -2e-4, 1e-4, 4e-4].into_iter().enumerate() {
         nudged.plant.turn_motor(motor, angle);
     }
     let stride = finger.cycles(STRIDE).max(1);

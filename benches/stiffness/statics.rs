@@ -28,12 +28,11 @@ pub fn pushed_about(
     senses: Senses,
 ) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
     const DEFLECTION: f64 = 0.1;
-    const SETTLED: f64 = 1.0;
-    let averaged = if senses == Senses::Exact { 0.1 } else { 3.0 };
+    let (settled, averaged) = if senses == Senses::Exact { (2.5, 0.5) } else { (1.0, 3.0) };
     let tip = |force: Vector3<f64>| {
         let mut run = ClosedLoop::new(case, finger, belief, pose, kx, senses);
         run.push(force);
-        run.run(SETTLED);
+        run.run(settled);
         run.mean_tip(averaged)
     };
     [Vector3::x(), Vector3::y(), Vector3::z()]

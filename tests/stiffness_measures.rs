@@ -1,0 +1,162 @@
+//! The measuring instruments of `cargo bench --bench stiffness`, where they could lie: each against something known, and against
+//! fingers that must fail.
+
+#![allow(dead_code, reason = "the bench uses the rest of these files")]
+
+#[path = "../benches/stiffness/cases.rs"]
+mod cases;
+#[path = "../benches/stiffness/closed_loop.rs"]
+mod closed_loop;
+#[path = "../benches/stiffness/contact.rs"]
+mod contact;
+#[path = "../benches/stiffness/fits.rs"]
+mod fits;
+#[path = "../benches/stiffness/parallel.rs"]
+mod parallel;
+#[path = "../benches/stiffness/stability.rs"]
+mod stability;
+#[path = "../benches/stiffness/statics.rs"]
+mod statics;
+
+use cases::{Case, Friction};
+use closed_loop::{ClosedLoop, Senses};
+use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
+use stability::Sample;
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+
+fn case(scheme: Scheme) -> Case {
+    Case { scheme, rate: 1000.0, poses: 3, seed: 3 }
+}
+
+#[test]
+fn a_known_spring_shows_its_stiffness_and_its_error() {
+    let turn = Rotation3::from_euler_angles(0.3, -0.8, 1.1);
+    let kx = turn * Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0)) * turn.inverse();
+    // 8 % too stiff in one principal direction: by the root of Kx, neither rotation nor anisotropy may change that.
+    let soft = turn * Vector3::x();
+    let true_stiffness = kx + soft * soft.transpose() * 0.08;
+    let deflections = [Vector3::new(0.1, 0.0, 0.02), Vector3::new(0.03, 0.1, 0.0), Vector3::new(0.0, 0.05, 0.1)];
+    let forces = deflections.map(|deflection| true_stiffness * deflection);
+    assert!((fits::apparent_stiffness(&forces, &deflections) - true_stiffness).amax() < 1e-12);
+    assert!((fits::spring_error(&forces, &deflections, &kx) - 0.08).abs() < 1e-12);
+    assert!(fits::spring_error(&forces, &deflections, &true_stiffness) < 1e-12);
+    // A tip that does not move, or that is lost, is no spring.
+    assert_eq!(fits::spring_error(&forces, &[Vector3::zeros(); 3], &kx), f64::INFINITY);
+    assert_eq!(fits::spring_error(&forces, &[Vector3::repeat(f64::NAN); 3], &kx), f64::INFINITY);
+}
+
+#[test]
+fn a_line_shows_its_slope_and_a_hysteresis_its_mean() {
+    let line: Vec<(f64, f64)> = (0..50).map(|i| (0.1 * f64::from(i), 4.0 - 0.3 * f64::from(i))).collect();
+    assert!((fits::slope(&line) + 3.0).abs() < 1e-12);
+    // Up with an offset, down with the opposite one.
+    let up = (-20..=20).map(|i| (f64::from(i), 2.0 * f64::from(i) + 5.0));
+    let down = (-20..=20).map(|i| (f64::from(i), 2.0 * f64::from(i) - 5.0));
+    assert!((fits::slope(&up.chain(down).collect::<Vec<_>>()) - 2.0).abs() < 1e-12);
+}
+
+/// x[k+1] = A x[k] with these modes, seen through a mixture.
+fn decay(modes: &[(f64, f64)], count: usize) -> Vec<DVector<f64>> {
+    let size = 2 * modes.len();
+    let mut a = DMatrix::zeros(size, size);
+    for (index, &(modulus, angle)) in modes.iter().enumerate() {
+        let (sin, cos) = angle.sin_cos();
+        let block = nalgebra::Matrix2::new(cos, -sin, sin, cos) * modulus;
+        a.view_mut((2 * index, 2 * index), (2, 2)).copy_from(&block);
+    }
+    let mixture = DMatrix::from_fn(10, size, |row, column| ((3 * row + 7 * column + row * column) as f64).sin());
+    let mut state = DVector::from_element(size, 1e-6);
+    (0..count)
+        .map(|_| {
+            let seen = &mixture * &state;
+            state = &a * &state;
+            seen
+        })
+        .collect()
+}
+
+#[test]
+fn a_known_decay_shows_its_slowest_mode() {
+    for (modes, slowest) in [
+        (&[(0.98, 0.4), (0.7, 1.0), (0.5, 2.0)][..], 0.98),
+        // Two close ones; a real one; one that grows; one that hardly decays.
+        (&[(0.96, 0.2), (0.95, 0.5), (0.3, 0.0)], 0.96),
+        (&[(0.99, 0.0), (0.9, 0.3)], 0.99),
+        (&[(1.01, 0.3), (0.99, 0.1)], 1.01),
+        (&[(0.9999, 0.05), (0.8, 1.0)], 0.9999),
+        // Gone long before the end.
+        (&[(0.5, 0.3), (0.4, 0.0)], 0.5),
+    ] {
+        let found = fits::growth(&decay(modes, 300));
+        assert!((found - slowest).abs() < 2e-4, "{found} for {slowest}");
+    }
+    assert!(fits::growth(&[]).is_nan());
+    assert!(fits::growth(&vec![DVector::zeros(3); 100]).is_nan());
+}
+
+#[test]
+fn what_is_not_a_number_is_the_worst() {
+    assert_eq!(parallel::worst([1.0, f64::NAN, 2.0]), f64::INFINITY);
+    assert_eq!(parallel::least([1.0, f64::NAN, 2.0]), f64::NEG_INFINITY);
+    let items: Vec<usize> = (0..100).collect();
+    assert_eq!(parallel::each(&items, |number, item| number + item), (0..200).step_by(2).collect::<Vec<_>>());
+}
+
+/// Without the compensation of tendon stretch the tip is softer by about a third at 3 N/cm and a half at 6.
+#[test]
+fn a_controller_blind_to_tendon_stretch_is_found_out() {
+    let case = case(Scheme::Figure10);
+    for (stiffness, least, most) in [(3.0, 0.1, 0.45), (6.0, 0.2, 0.7)] {
+        for pose in case.poses() {
+            let kx = Matrix3::identity() * stiffness;
+            let finger = case.finger(&pose, Friction::None);
+            let mut blind = finger.clone();
+            blind.tendon.stiffness = [1e9; 4];
+            let error = |belief: &ConfiguredFinger| {
+                let (forces, deflections) = statics::pushed_about(&case, &finger, belief, &pose, &kx, Senses::Exact);
+                fits::spring_error(&forces, &deflections, &kx)
+            };
+            assert!(error(&finger) < 2e-3, "{}", error(&finger));
+            assert!((least..most).contains(&error(&blind)), "{}", error(&blind));
+        }
+    }
+}
+
+#[test]
+fn a_controller_without_damping_is_found_out() {
+    let case = case(Scheme::Figure10);
+    for pose in case.poses() {
+        let sample = Sample { pose, kx: Matrix3::identity() * 3.0, load: Vector3::new(0.05, -0.1, 0.1), wall: None };
+        let damped = stability::growth(&case, &case.finger(&pose, Friction::None), &sample);
+        assert!(damped.is_some_and(|growth| growth > 0.9 && growth < 1.0), "{damped:?}");
+        let mut undamped = case.finger(&pose, Friction::None);
+        undamped.controller.motor_damping = Some(0.0);
+        undamped.controller.rate_time = Some(0.0);
+        let undamped = stability::growth(&case, &undamped, &sample);
+        assert!(undamped.is_none_or(|growth| growth > 1.0), "{undamped:?}");
+    }
+}
+
+/// The decay that the eigenvalue foretells is the one of a finger that is let go, measured over a time of its own.
+#[test]
+fn the_largest_eigenvalue_foretells_how_a_finger_comes_to_rest() {
+    let case = case(Scheme::Figure10);
+    for pose in case.poses() {
+        let kx = Matrix3::identity() * 3.0;
+        let finger = case.finger(&pose, Friction::None);
+        let load = Vector3::new(0.05, -0.1, 0.1);
+        let growth =
+            stability::growth(&case, &finger, &Sample { pose, kx, load, wall: None }).expect("a stable finger");
+        let mut run = ClosedLoop::new(&case, &finger, &finger, &pose, &kx, Senses::Exact);
+        run.push(load * 1.01);
+        run.run(3.0);
+        let rest = run.plant.tip();
+        // Nudged; once the fast modes have gone, the largest distances within two windows.
+        run.plant.turn_motor(0, 1e-2);
+        run.run(0.2);
+        let mut largest = |seconds| parallel::worst(run.tips(seconds).iter().map(|tip| (tip - rest).norm()));
+        let (early, _, late) = (largest(0.25), largest(0.15), largest(0.25));
+        let found = (late / early).powf(1.0 / 400.0);
+        assert!((found - growth).abs() < 3e-3, "{found} for {growth}");
+    }
+}
