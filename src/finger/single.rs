@@ -16,6 +16,10 @@ const TENSION_SETTLED: f64 = 0.02;
 /// A simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to stop the hand.
 const SIMULATION_PATIENCE_MS: f64 = 1000.0;
 
+/// So long, ms, the last command is repeated where replies stay away. Then the motors are let go until one comes: a torque that
+/// nobody watches winds a tendon up, or off its motor, within some ms, and the watchdog does not see it, as commands go on.
+const BLIND_MS: f64 = 10.0;
+
 /// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
 const BEYOND_LIMITS: f64 = 0.5;
 
@@ -54,6 +58,7 @@ pub struct FingerServo {
 struct Limits {
     period_ms: f64,
     lost: u32,
+    blind: u32,
     tension: u32,
     settled: u32,
     ramp: u32,
@@ -125,6 +130,7 @@ impl FingerServo {
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
                 lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
+                blind: cycles(BLIND_MS),
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
@@ -210,8 +216,15 @@ impl FingerServo {
         if self.under_control() {
             self.take_commands();
             let feedback = self.answered.then_some(&self.feedback);
-            (self.command, self.report.cycle) =
-                self.adjustable.controller.cycle(&mut self.state, feedback, &self.activity);
+            let controller = &self.adjustable.controller;
+            (self.command, self.report.cycle) = controller.cycle(&mut self.state, feedback, &self.activity);
+            // Periods that will be skipped are periods without a reply: what differentiates and predicts must know of them.
+            for _ in 0..skipped.min(self.limits.lost.into()) {
+                (self.command, self.report.cycle) = controller.cycle(&mut self.state, None, &self.activity);
+            }
+            if self.lost_in_a_row >= self.limits.blind {
+                self.command = Command::default();
+            }
             self.move_on();
         }
         self.mailbox.publish(self.report);
