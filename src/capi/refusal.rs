@@ -20,8 +20,8 @@ pub(super) enum Refusal {
     Forked,
     #[error("{0} is a null pointer: pass an array")]
     Null(&'static str),
-    #[error("Status->Size is {size}: set it to sizeof *Status, at least {least}, before the call")]
-    SmallStatus { size: usize, least: usize },
+    #[error("{name}->Size is {size}: set it to sizeof *{name}, at least {least}, before the call")]
+    SmallStruct { name: &'static str, size: usize, least: usize },
     #[error("no hand is open: call OpenHand first, and look at its result")]
     NoHand,
     #[error("the hand is open already, and goes on: CloseHand comes before another OpenHand")]
@@ -41,7 +41,7 @@ impl Refusal {
         match self {
             Self::Forked => libc::EPERM,
             Self::Null(_) => libc::EFAULT,
-            Self::SmallStatus { .. } => libc::EINVAL,
+            Self::SmallStruct { .. } => libc::EINVAL,
             Self::NoHand => libc::ENODEV,
             Self::AlreadyOpen | Self::Busy => libc::EBUSY,
             Self::Panicked(_) => libc::EIO,

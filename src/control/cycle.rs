@@ -57,6 +57,8 @@ pub struct State {
     tensions: Vector4<f64>,
     tendons: TendonState,
     transition: Transition,
+    /// Another controller computes the next pulls than the last.
+    taken_over: bool,
     stillness: Stillness,
     /// N at the tendon.
     pulls: Vector4<f64>,
@@ -117,10 +119,17 @@ impl Controller {
             tensions,
             tendons: TendonState::default(),
             transition: Transition::default(),
+            taken_over: false,
             stillness: Stillness::new(motor_angles),
             pulls,
             report,
         }
+    }
+
+    /// Goes on from the state of another controller of the same finger, with the same sensors and at the same rate, without a
+    /// jump in torque.
+    pub fn take_over(&self, state: &mut State) {
+        state.taken_over = true;
     }
 
     /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates rests,
@@ -189,7 +198,7 @@ impl Controller {
         let measured = state.report.tensions;
         let speed = state.motor_speeds.component_mul(&self.radius);
         let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
-        if begins {
+        if begins || std::mem::take(&mut state.taken_over) {
             state.transition.begin(&state.pulls, &asked);
         }
         let limit = &self.motor_torque.limit;

@@ -50,10 +50,7 @@ fn locate() -> Option<PathBuf> {
 type Wrong = (Option<usize>, String);
 
 fn parse(text: &str) -> Result<Configuration, Wrong> {
-    let line_of = |span: Option<Range<usize>>| {
-        let before = text.get(..span?.start)?;
-        Some(before.matches('\n').count() + 1)
-    };
+    let line_of = |span: Option<Range<usize>>| line_of(text, span);
     let document = Document::parse(text).map_err(|error| (line_of(error.span()), error.message().to_string()))?;
     let root = document.as_table();
     if let Some((key, _)) = root.iter().find(|(key, _)| !matches!(*key, "hand" | "finger")) {
@@ -101,6 +98,12 @@ fn parse(text: &str) -> Result<Configuration, Wrong> {
     Ok(configuration)
 }
 
+/// The line where a span begins, counted from 1.
+pub(super) fn line_of(text: &str, span: Option<Range<usize>>) -> Option<usize> {
+    let before = text.get(..span?.start)?;
+    Some(before.matches('\n').count() + 1)
+}
+
 fn failed_plainly(line_of: &impl Fn(Option<Range<usize>>) -> Option<usize>) -> impl Fn(NotATable) -> Wrong {
     move |NotATable { key, span }| (line_of(span), format!("`{key}` must be a table: [{key}]"))
 }
@@ -121,7 +124,7 @@ fn table(parent: &Table, key: &str) -> Result<Table, NotATable> {
 }
 
 /// Lays `over` on `base`, table by table: what `over` does not name stays.
-fn overlay(base: &mut Table, over: &Table) {
+pub(super) fn overlay(base: &mut Table, over: &Table) {
     for (key, item) in over.iter() {
         let both = (table(base, key), table(over, key));
         let merged = match both {
@@ -144,7 +147,7 @@ fn overlay(base: &mut Table, over: &Table) {
     }
 }
 
-fn deserialize<T: DeserializeOwned>(table: Table) -> Result<T, toml_edit::de::Error> {
+pub(super) fn deserialize<T: DeserializeOwned>(table: Table) -> Result<T, toml_edit::de::Error> {
     T::deserialize(Value::InlineTable(table.into_inline_table()).into_deserializer())
 }
 

@@ -112,15 +112,23 @@ impl Contact {
     /// The largest eigenvalue of the stiffness, N/cm, with a rotation measured by the way it moves a point at `lever` (cm)
     /// from the tip. With the length of the last link it is comparable with that of a Kx: turning joint 2 does both.
     pub fn largest_eigenvalue(&self, lever: f64) -> f64 {
-        let scale = |index: usize| if index < 3 { 1.0 } else { 1.0 / lever };
-        let comparable = Matrix6::from_fn(|row, column| self.0[(row, column)] * scale(row) * scale(column));
-        symmetrised(&comparable).symmetric_eigenvalues().max()
+        symmetrised(&scaled(&self.0, 1.0 / lever)).symmetric_eigenvalues().max()
     }
 
-    /// The same contact, softer by a factor.
-    pub fn scaled(&self, factor: f64) -> Self {
-        Self(self.0 * factor)
+    /// The nearest contact without an eigenvalue, in the sense of [`Contact::largest_eigenvalue`], above `bound` or below
+    /// zero: it keeps its principal directions.
+    pub fn clamped(&self, bound: f64, lever: f64) -> Self {
+        let mut eigen = symmetrised(&scaled(&self.0, 1.0 / lever)).symmetric_eigen();
+        eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
+        let recomposed = scaled(&eigen.recompose(), lever);
+        Self(symmetrised(&recomposed))
     }
+}
+
+/// The rows and columns of the rotation times a factor.
+fn scaled(stiffness: &Matrix6<f64>, factor: f64) -> Matrix6<f64> {
+    let scale = |index: usize| if index < 3 { 1.0 } else { factor };
+    Matrix6::from_fn(|row, column| stiffness[(row, column)] * scale(row) * scale(column))
 }
 
 /// A symmetric stiffness with its rounding averaged away; refused where it is no spring. Of any rank.
@@ -202,6 +210,9 @@ mod tests {
         assert!((wrench - expected).amax() < 1e-12, "{wrench}");
         assert!((soft.largest_eigenvalue(1.0) - 20.0147).abs() < 1e-3);
         assert!(soft.largest_eigenvalue(4.0) < 3.1);
+        let clamped = soft.clamped(6.0, 1.0);
+        assert!((clamped.largest_eigenvalue(1.0) - 6.0).abs() < 1e-12);
+        assert!((soft.clamped(6.0, 4.0).stiffness() - soft.stiffness()).amax() < 1e-12);
     }
 
     #[test]
