@@ -8,6 +8,7 @@ mod simulation;
 mod tendons;
 mod validation;
 
+pub(crate) use contact::symmetrised;
 pub use contact::{Contact, ContactError, spring};
 pub use kinematics::Links;
 pub use simulation::{ConfiguredSimulation, Surface};
