@@ -3,6 +3,7 @@
 
 use crate::model::{ConfiguredSimulation, Links, Tendons, TendonsError};
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
+pub use crate::model::calibrated::{ConfiguredFriction, ConfiguredZeroing, ZeroingMethod};
 use serde::Deserialize;
 
 /// How many fingers a hand has.
@@ -97,6 +98,10 @@ pub struct ConfiguredFinger {
     pub tendon: ConfiguredTendon,
     /// `[finger.joints]`
     pub joints: ConfiguredJoints,
+    /// `[finger.friction]`
+    pub friction: ConfiguredFriction,
+    /// `[finger.zeroing]`
+    pub zeroing: ConfiguredZeroing,
     /// `[finger.stiffness]`
     pub stiffness: ConfiguredStiffness,
     /// `[finger.controller]`
@@ -298,6 +303,8 @@ impl Default for ConfiguredFinger {
             gauge: Default::default(),
             tendon: Default::default(),
             joints: Default::default(),
+            friction: Default::default(),
+            zeroing: Default::default(),
             stiffness: Default::default(),
             controller: Default::default(),
             simulation: Default::default(),
