@@ -1,9 +1,9 @@
 //! The types of a hand's configuration, with defaults for everything: the finger of the report and plausible values for
 //! what the report leaves out. Reading them from a file is the business of the hand; checking them is done here.
 
+pub use crate::model::calibrated::{ConfiguredFriction, ConfiguredZeroing, ZeroingMethod};
 use crate::model::{ConfiguredSimulation, Links, Tendons, TendonsError};
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
-pub use crate::model::calibrated::{ConfiguredFriction, ConfiguredZeroing, ZeroingMethod};
 use serde::Deserialize;
 
 /// How many fingers a hand has.

@@ -17,8 +17,6 @@ pub struct Bench {
     pub report: Report,
     /// A gauge that shows always the same count.
     pub dead_gauge: Option<(usize, u16)>,
-    /// A motor whose tendon is cut: it never comes under tension.
-    pub cut: Option<usize>,
     /// What the board says of its counts.
     pub zero_valid: bool,
     /// Largest true tension, N.
@@ -42,7 +40,6 @@ impl Bench {
             command: Command::default(),
             report: Report::default(),
             dead_gauge: None,
-            cut: None,
             zero_valid: true,
             largest_tension: 0.0,
         }
@@ -59,11 +56,6 @@ impl Bench {
     fn advance(&mut self, feedback: &Feedback, activity: &Activity) {
         let steps = (1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize;
         for _ in 0..steps {
-            if let Some(motor) = self.cut {
-                // Unwound for ever: as slack as a tendon that is not there.
-                let slack = self.plant.motor_angles()[motor];
-                self.plant.turn_motor(motor, -1e3 - slack);
-            }
             self.plant.step((self.command.motor_torques * 0.01).into());
             self.largest_tension = self.largest_tension.max(self.plant.tensions().max());
         }
@@ -93,7 +85,11 @@ impl Bench {
     }
 
     /// The same, with something happening every cycle: seconds since the beginning, the plant.
-    pub fn calibrate_with(&mut self, task: Task, mut happen: impl FnMut(f64, &mut Plant)) -> Result<Findings, Obstacle> {
+    pub fn calibrate_with(
+        &mut self,
+        task: Task,
+        mut happen: impl FnMut(f64, &mut Plant),
+    ) -> Result<Findings, Obstacle> {
         let mut calibration = Calibration::new(task, &self.belief, self.rate).unwrap();
         self.largest_tension = 0.0;
         let mut last = 0.0;

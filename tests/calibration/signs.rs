@@ -8,7 +8,8 @@ use sun2xp::model::configuration::ConfiguredFinger;
 fn every_sign_is_found_from_tight_and_from_slack() {
     for rate in [500.0, 1000.0, 2000.0] {
         for pattern in 0..8u8 {
-            let sign = |seed: u8| std::array::from_fn(|i| if (pattern.wrapping_mul(seed) >> i) & 1 == 1 { -1i8 } else { 1 });
+            let sign =
+                |seed: u8| std::array::from_fn(|i| if (pattern.wrapping_mul(seed) >> i) & 1 == 1 { -1i8 } else { 1 });
             let mut truth = ConfiguredFinger::default();
             truth.motor.sign = sign(37);
             truth.encoder.sign = sign(91);

@@ -117,7 +117,7 @@ fn apparent_error(truth: &ConfiguredFinger, belief: &ConfiguredFinger) -> f64 {
     let mut bench = Bench::new(truth, belief, 1000.0).open();
     let stiffness = nalgebra::Matrix3::identity() * 3.0;
     let hold = Activity::Follow(SetPoint { joints: bench.report.joints, stiffness });
-    let mut settled = |bench: &mut Bench, force: Vector3<f64>| {
+    let settled = |bench: &mut Bench, force: Vector3<f64>| {
         bench.plant.set_external_force(force);
         bench.run(3.0, &hold);
         let mut sum = Vector3::zeros();

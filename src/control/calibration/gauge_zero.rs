@@ -29,15 +29,15 @@ pub(super) struct GaugeZero {
     seconds: f64,
     /// Travel at the beginning, cm.
     start: Option<Vector4<f64>>,
-    /// Tensions at the beginning, N, by the configured zero.
-    tight: Vector4<f64>,
+    /// Tensions at the beginning, N, by the configured zero, where the tendons were under tension.
+    tight: Option<Vector4<f64>>,
     slack: Average,
     out_at: Option<f64>,
 }
 
 impl GaugeZero {
-    /// `tight`: tensions while the tendons were under tension, N, by the configured zeros.
-    pub fn new(tight: Vector4<f64>) -> Self {
+    /// `tight`: tensions while the tendons were under tension, N, by the configured zeros, if they were.
+    pub fn new(tight: Option<Vector4<f64>>) -> Self {
         Self { seconds: 0.0, start: None, tight, slack: Average::default(), out_at: None }
     }
 
@@ -74,8 +74,8 @@ impl GaugeZero {
             if spread[index] > LARGEST_SPREAD {
                 return Err(Obstacle::Restless { tendon, newton: spread[index] });
             }
-            let fall = self.tight[index] - offsets[index];
-            if fall < LEAST_FALL * instruments.minimum {
+            let fall = self.tight.map(|tight| tight[index] - offsets[index]);
+            if let Some(fall) = fall.filter(|&fall| fall < LEAST_FALL * instruments.minimum) {
                 return Err(Obstacle::DeadGauge { tendon, newton: fall });
             }
             if offsets[index].abs() > LARGEST_OFFSET {

@@ -27,7 +27,8 @@ impl<const N: usize> LeastSquares<N> {
     pub fn solve(&self) -> Option<(SVector<f64, N>, f64)> {
         // Scaled to a unit diagonal, so that one bound serves every unit.
         let scale = self.matrix.diagonal().map(|entry| if entry > 0.0 { entry.sqrt().recip() } else { 0.0 });
-        let scaled = SMatrix::<f64, N, N>::from_fn(|row, column| self.matrix[(row, column)] * scale[row] * scale[column]);
+        let scaled =
+            SMatrix::<f64, N, N>::from_fn(|row, column| self.matrix[(row, column)] * scale[row] * scale[column]);
         let cholesky = scaled.cholesky()?;
         // The smallest squared pivot of a unit matrix: what one column has that the others do not explain.
         let least = cholesky.l().diagonal().map(|pivot| pivot * pivot).min();

@@ -31,7 +31,9 @@ pub enum Obstacle {
         newton: f64,
     },
     /// A gauge shows the same with and without tension.
-    #[error("gauge {tendon} changes by {newton:.2} N only when its tendon is let out: dead, or the tendon does not give way")]
+    #[error(
+        "gauge {tendon} changes by {newton:.2} N only when its tendon is let out: dead, or the tendon does not give way"
+    )]
     DeadGauge {
         /// 1 to 4.
         tendon: u8,
@@ -50,10 +52,14 @@ pub enum Obstacle {
         newton: f64,
     },
     /// The board has lost its counts.
-    #[error("zeroing.method is \"kept\", but the board does not say that its counts are still good: zero by \"pose\" or \"stops\"")]
+    #[error(
+        "zeroing.method is \"kept\", but the board does not say that its counts are still good: zero by \"pose\" or \"stops\""
+    )]
     NotKept,
     /// A joint went further than its stop should be.
-    #[error("joint {joint} went {degrees:.0} degrees and met no stop: is a tendon off, are zeroing's stop angles right?")]
+    #[error(
+        "joint {joint} went {degrees:.0} degrees and met no stop: is a tendon off, are zeroing's stop angles right?"
+    )]
     NoStop {
         /// 0 to 2.
         joint: u8,
@@ -74,7 +80,9 @@ pub enum Obstacle {
         expected: f64,
     },
     /// A joint does not follow where it has room.
-    #[error("joint {joint} does not move freely: is something in its way, is zeroing.torque too small for its friction?")]
+    #[error(
+        "joint {joint} does not move freely: is something in its way, is zeroing.torque too small for its friction?"
+    )]
     JointBlocked {
         /// 0 to 2.
         joint: u8,

@@ -122,15 +122,15 @@ impl SignSearch {
         let way = self.measure(instruments, sample.feedback);
         let motor = self.motor;
         let minimum = instruments.minimum;
-        let progress = |part: f64| Progress { step: Step::TryingMotors, part: (motor as f64 + part) / 4.0 };
+        let sweeping = matches!(self.phase, Phase::Sweep(_));
+        let part = motor as f64 * if sweeping { 0.22 } else { 0.03 } + if sweeping { 0.12 } else { 0.0 };
         let mut torques = Vector4::zeros();
-        let part = match &mut self.phase {
+        match &mut self.phase {
             Phase::Rest { seconds } => {
                 *seconds += instruments.period;
                 if *seconds > REST {
                     self.phase = Phase::Push { seconds: 0.0, push: FIRST_PUSH * minimum, from: way[0] };
                 }
-                0.0
             }
             &mut Phase::Push { ref mut seconds, push, from } => {
                 *seconds += instruments.period;
@@ -147,7 +147,6 @@ impl SignSearch {
                 } else {
                     torques[motor] = push * instruments.radius[motor];
                 }
-                0.1 * (motor as f64 / 4.0)
             }
             Phase::Pause { seconds } => {
                 *seconds += instruments.period;
@@ -160,7 +159,6 @@ impl SignSearch {
                         Phase::Sweep(Sweep::new(way[0], FIRST_WAY))
                     };
                 }
-                0.0
             }
             &mut Phase::Sweep(mut sweep) => {
                 if self.advance(&mut sweep, instruments, sample, &way) {
@@ -182,10 +180,9 @@ impl SignSearch {
                 }
                 self.phase = Phase::Sweep(sweep);
                 torques = self.hold(instruments, &way);
-                0.5
             }
-        };
-        Ok(Continue((Activity::Turn(torques), progress(part))))
+        }
+        Ok(Continue((Activity::Turn(torques), Progress { step: Step::TryingMotors, part })))
     }
 
     /// Way of every motor since the beginning, cm of rising count.

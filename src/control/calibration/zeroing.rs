@@ -20,6 +20,8 @@ const TOLERANCE: f64 = 0.035;
 const BEYOND: f64 = 0.17;
 /// How near to the middle of its range a joint is brought back, rad.
 const NEAR: f64 = 0.05;
+/// Part of t_min that every motor pulls with where the finger is under control already.
+const PULLED: f64 = 0.3;
 /// How long the finger comes to rest before its counts are read, s.
 const RESTING: f64 = 0.3;
 
@@ -32,8 +34,8 @@ pub(super) struct Zeroing {
     speed: f64,
     configured: [i32; 4],
     phase: Phase,
-    /// With the tendons tight, at the beginning.
-    first: Reading,
+    /// With the tendons tight, at the beginning, if they were.
+    first: Option<Reading>,
     /// N.
     offset: Vector4<f64>,
     met: (Vector3<f64>, Vector3<f64>),
@@ -42,17 +44,30 @@ pub(super) struct Zeroing {
 #[derive(Clone, Debug)]
 enum Phase {
     Start,
-    /// From slack.
-    Tighten(TakeUp),
     /// The motors keep their torque: friction holds the finger where it is while it is read.
     Read,
     Gauges(GaugeZero),
     /// With the offsets known.
-    TightenAgain(TakeUp),
-    Seek { lead: JointLead, joint: usize, upper: bool, search: StopSearch },
-    Return { lead: JointLead, joint: usize },
-    Rest { lead: JointLead, seconds: f64 },
-    ReadAgain { lead: JointLead, reading: Reading },
+    Tighten(TakeUp),
+    ReadPose(Reading),
+    Seek {
+        lead: JointLead,
+        joint: usize,
+        upper: bool,
+        search: StopSearch,
+    },
+    Return {
+        lead: JointLead,
+        joint: usize,
+    },
+    Rest {
+        lead: JointLead,
+        seconds: f64,
+    },
+    ReadAgain {
+        lead: JointLead,
+        reading: Reading,
+    },
 }
 
 impl Zeroing {
@@ -66,7 +81,7 @@ impl Zeroing {
             speed: zeroing.speed,
             configured: finger.encoder.zero,
             phase: Phase::Start,
-            first: Reading::default(),
+            first: None,
             offset: Vector4::zeros(),
             met: (Vector3::zeros(), Vector3::zeros()),
         }
@@ -80,21 +95,21 @@ impl Zeroing {
                 if self.method == ZeroingMethod::Kept && !sample.zero_valid {
                     return Err(Obstacle::NotKept);
                 }
-                let tight = instruments.tensions(sample.feedback).min() > 0.5 * instruments.minimum;
-                self.phase = if tight { Phase::Read } else { Phase::Tighten(TakeUp::new()) };
-                going(Step::TakingUpSlack, 0.0, keep)
+                let pulls = sample.report.motor_torques.component_div(&instruments.signed_radius);
+                self.phase = if pulls.min() > PULLED * instruments.minimum {
+                    Phase::Read
+                } else {
+                    // Not to be tightened before the gauges are zeroed: wrong ones would pull the finger away.
+                    Phase::Gauges(GaugeZero::new(None))
+                };
+                going(Step::ReadingEncoders, 0.0, keep)
             }
-            Phase::Tighten(take_up) => match take_up.step(instruments, sample)? {
-                Some(activity) => going(Step::TakingUpSlack, 0.0, activity),
-                None => {
-                    self.phase = Phase::Read;
-                    going(Step::ReadingEncoders, 0.1, keep)
-                }
-            },
             Phase::Read => {
-                if self.first.step(instruments, sample) {
-                    self.phase = Phase::Gauges(GaugeZero::new(self.first.tensions()));
+                let mut first = self.first.unwrap_or_default();
+                if first.step(instruments, sample) {
+                    self.phase = Phase::Gauges(GaugeZero::new(Some(first.tensions())));
                 }
+                self.first = Some(first);
                 going(Step::ReadingEncoders, 0.1, keep)
             }
             Phase::Gauges(gauges) => match gauges.step(instruments, sample)? {
@@ -102,25 +117,24 @@ impl Zeroing {
                 Break(offset) => {
                     self.offset = offset;
                     instruments.offset = offset;
-                    match self.method {
-                        ZeroingMethod::Kept => {
-                            let at = self.first.joints(instruments, &offset);
-                            Ok(Break(self.findings(instruments, self.configured, at - at, None)))
+                    match (self.method, self.first) {
+                        (ZeroingMethod::Kept, _) => {
+                            Ok(Break(self.findings(instruments, self.configured, Vector3::zeros(), None)))
                         }
-                        ZeroingMethod::Pose => {
-                            let at = self.first.joints(instruments, &offset);
-                            let zeros = self.first.zeros(instruments, &offset, &self.pose, self.configured);
-                            Ok(Break(self.findings(instruments, zeros, at - self.pose, None)))
-                        }
-                        ZeroingMethod::Stops => {
-                            self.phase = Phase::TightenAgain(TakeUp::new());
+                        (ZeroingMethod::Pose, Some(first)) => Ok(Break(self.at_pose(instruments, &first, &offset))),
+                        (ZeroingMethod::Pose, None) | (ZeroingMethod::Stops, _) => {
+                            self.phase = Phase::Tighten(TakeUp::new());
                             going(Step::TakingUpSlack, 0.25, Activity::Turn(Vector4::zeros()))
                         }
                     }
                 }
             },
-            Phase::TightenAgain(take_up) => match take_up.step(instruments, sample)? {
+            Phase::Tighten(take_up) => match take_up.step(instruments, sample)? {
                 Some(activity) => going(Step::TakingUpSlack, 0.25, activity),
+                None if self.method == ZeroingMethod::Pose => {
+                    self.phase = Phase::ReadPose(Reading::default());
+                    going(Step::ReadingEncoders, 0.9, keep)
+                }
                 None => {
                     let lead = JointLead::new(instruments, sample, self.torque);
                     let search = StopSearch::new(0, -self.longest(0));
@@ -128,6 +142,13 @@ impl Zeroing {
                     going(Step::SeekingStops, 0.3, lead.activity(instruments, sample))
                 }
             },
+            Phase::ReadPose(reading) => {
+                if !reading.step(instruments, sample) {
+                    return going(Step::ReadingEncoders, 0.9, keep);
+                }
+                let reading = *reading;
+                Ok(Break(self.at_pose(instruments, &reading, &Vector4::zeros())))
+            }
             &mut Phase::Seek { ref mut lead, joint, upper, ref mut search } => {
                 lead.measure(instruments, sample);
                 let met = search.step(instruments, lead, self.speed)?;
@@ -209,6 +230,12 @@ impl Zeroing {
             return Err(Obstacle::NoStop { joint: number, degrees: found.to_degrees() });
         }
         Ok(())
+    }
+
+    /// The finger was in the configured pose when it was read.
+    fn at_pose(&self, instruments: &Instruments, reading: &Reading, offset: &Vector4<f64>) -> Findings {
+        let zeros = reading.zeros(instruments, offset, &self.pose, self.configured);
+        self.findings(instruments, zeros, reading.joints(instruments, offset) - self.pose, None)
     }
 
     fn findings(
