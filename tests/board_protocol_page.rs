@@ -36,7 +36,7 @@ fn described() -> Vec<Message> {
                 torque_unit: 2000,
                 torque_limit: 23750,
                 shortest_watchdog_ms: 2,
-                capabilities: Capabilities(0b1101),
+                capabilities: Capabilities(0b1111),
             }),
         ),
         message(2, Frame::Configure(terms)),

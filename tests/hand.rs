@@ -119,6 +119,7 @@ fn refusals_change_nothing() {
 #[test]
 fn a_rate_the_line_cannot_carry_is_refused_with_the_arithmetic() {
     let mut configuration = Configuration::default();
+    configuration.fingers[1].port = "/dev/ttyS0".into();
     configuration.fingers[1].baud = 115_200;
     let Err(HandError::Unusable { section, unusable }) = Hand::open(configuration) else {
         panic!("115 200 baud carry no 1000 cycles a second")

@@ -67,6 +67,7 @@ pub struct Link<T = Port> {
     /// Next outgoing frame follows an incomplete one, or the noise of plugging in.
     delimit_first: bool,
     handshake_sequence: u8,
+    read_at: u64,
     foreign: u64,
     unsent: u64,
 }
@@ -88,6 +89,7 @@ impl<T: Transport> Link<T> {
             unread: 0..0,
             delimit_first: true,
             handshake_sequence: 0,
+            read_at: 0,
             foreign: 0,
             unsent: 0,
         }
@@ -96,6 +98,11 @@ impl<T: Transport> Link<T> {
     /// What carries the bytes.
     pub fn transport(&mut self) -> &mut T {
         &mut self.transport
+    }
+
+    /// When the bytes of the last Reply could be read, and when they were read, ns on the transport's clock.
+    pub fn arrival(&self) -> (u64, u64) {
+        (self.transport.ready_at(), self.read_at)
     }
 
     /// What passed so far.
@@ -285,6 +292,7 @@ impl<T: Transport> Link<T> {
             // One read past the deadline is enough: even an endless stream of rubbish holds nobody up.
             let last = self.transport.now() >= deadline;
             let taken = self.transport.read_until(&mut self.input, deadline)?;
+            self.read_at = self.transport.now();
             self.unread = 0..taken;
             if last || taken == 0 {
                 return Ok(self.message_at_hand());

@@ -75,6 +75,8 @@ pub struct Port {
     // Owns the descriptor, and with it the locks (TIOCEXCL and flock; root passes the first, but not the second).
     tty: TTYPort,
     path: PathBuf,
+    /// When there was last something to read, ns.
+    ready_at: u64,
 }
 
 impl Port {
@@ -84,7 +86,7 @@ impl Port {
             .exclusive(true)
             .open_native()
             .map_err(|error| opening_failed(path, &error))?;
-        let port = Self { tty, path: path.to_owned() };
+        let port = Self { tty, path: path.to_owned(), ready_at: 0 };
         let set_up = |text: String| PortError::SetUp { path: path.to_owned(), text };
         let offered = port.tty.baud_rate().map_err(|error| set_up(error.to_string()))?;
         // A UART tolerates 3 %; a driver that cannot do the rate at all offers something quite different.
@@ -151,7 +153,7 @@ impl Port {
     }
 
     /// Waits with the signal mask as it is. False at the deadline.
-    fn wait_for_input(&self, deadline: u64) -> Result<bool, PortError> {
+    fn wait_for_input(&mut self, deadline: u64) -> Result<bool, PortError> {
         loop {
             let left = deadline.saturating_sub(realtime::now());
             let timeout = libc::timespec {
@@ -164,7 +166,10 @@ impl Port {
             match ready {
                 0 => return Ok(false),
                 // Hang-up is reported beside the last bytes; the read after them meets it again.
-                1 if poll.revents & libc::POLLIN != 0 => return Ok(true),
+                1 if poll.revents & libc::POLLIN != 0 => {
+                    self.ready_at = realtime::now();
+                    return Ok(true);
+                }
                 1 => return Err(PortError::Vanished),
                 _ => match io::Error::last_os_error() {
                     error if error.kind() == io::ErrorKind::Interrupted => {}
@@ -205,6 +210,10 @@ impl Transport for Port {
             }
         }
         Ok(0)
+    }
+
+    fn ready_at(&self) -> u64 {
+        self.ready_at
     }
 
     fn discard_input(&mut self) -> Result<(), PortError> {

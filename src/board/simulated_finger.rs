@@ -102,6 +102,18 @@ impl SimulatedFinger {
         Vector4::from(self.torques.map(f64::from)) * (f64::from(self.torque_unit) * 1e-7)
     }
 
+    /// What a Reply would say now.
+    pub fn status(&self) -> Status {
+        let state = match self.state {
+            State::Idle => Status::default(),
+            State::Ready => Status::CONFIGURED,
+            State::Enabled { .. } => Status::CONFIGURED | Status::ENABLED,
+            State::Ended { holds_until: None } => Status::CONFIGURED | Status::ENDED,
+            State::Ended { holds_until: Some(_) } => Status::CONFIGURED | Status::ENDED | Status::HOLDING,
+        };
+        state | Status::ZERO_VALID | self.latched
+    }
+
     /// Faults that are present from now on: bits of [`Status::FAULTS`]. They take the torque off at once.
     pub fn set_faults(&mut self, faults: Status) {
         self.present = Status(faults.0 & Status::FAULTS.0);
@@ -252,17 +264,6 @@ impl SimulatedFinger {
             }
         };
         self.state = State::Ended { holds_until };
-    }
-
-    fn status(&self) -> Status {
-        let state = match self.state {
-            State::Idle => Status::default(),
-            State::Ready => Status::CONFIGURED,
-            State::Enabled { .. } => Status::CONFIGURED | Status::ENABLED,
-            State::Ended { holds_until: None } => Status::CONFIGURED | Status::ENDED,
-            State::Ended { holds_until: Some(_) } => Status::CONFIGURED | Status::ENDED | Status::HOLDING,
-        };
-        state | Status::ZERO_VALID | self.latched
     }
 }
 

@@ -9,6 +9,11 @@ pub trait Transport {
     /// or none at the deadline. Bytes that are there already are taken even after the deadline.
     fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError>;
 
+    /// When the bytes that were last taken could be read, ns: the reading itself comes after.
+    fn ready_at(&self) -> u64 {
+        self.now()
+    }
+
     /// Throws away bytes that came in and were not read.
     fn discard_input(&mut self) -> Result<(), PortError>;
 

@@ -1,5 +1,6 @@
 //! Why a finger stopped by itself.
 
+use crate::board::protocol::Refused;
 use thiserror::Error;
 
 /// What made a finger fault. Its motors are then in the configured end state.
@@ -30,6 +31,12 @@ pub enum Fault {
         /// Status bits of the reply.
         status: u16,
     },
+    /// The board refuses the commands of this finger.
+    #[error("the board refuses commands: {refused}. Mend that, CloseHand, OpenHand")]
+    CommandRefused {
+        /// What it said.
+        refused: Refused,
+    },
     /// A tendon did not come under tension at open.
     #[error(
         "tendon {tendon} did not come under tension within {milliseconds} ms of taking up slack: is it broken, off its \
@@ -40,6 +47,17 @@ pub enum Fault {
         tendon: u8,
         /// How long it was tried, ms.
         milliseconds: u32,
+    },
+    /// The encoders tell joint angles that the finger cannot have.
+    #[error(
+        "joint {joint} reads {degrees} degrees, which it cannot reach: a tendon is broken or off its pulley, an encoder jumped or lost \
+         its zero, or an encoder sign is wrong"
+    )]
+    ImpossiblePose {
+        /// 0 to 2.
+        joint: u8,
+        /// What the encoders say, degrees.
+        degrees: i32,
     },
     /// The servo thread panicked: a defect of this library.
     #[error("the servo thread failed: a defect of this library, please report it")]

@@ -104,8 +104,15 @@ pub(super) fn mailbox(report: FingerReport) -> (Mailbox, ServoEnd) {
     let (reports_in, reports_out) = triple_buffer(&report);
     let (orders_in, orders_out) = triple_buffer(&Order::Nothing);
     let closing = Arc::new(AtomicBool::new(false));
-    let planners = PlannersEnd { sent: report.set_point, set_points: set_points_in, orders: orders_in, ordered: 0, reports: reports_out };
-    let servo = ServoEnd { set_points: set_points_out, orders: orders_out, reports: reports_in, closing: closing.clone() };
+    let planners = PlannersEnd {
+        sent: report.set_point,
+        set_points: set_points_in,
+        orders: orders_in,
+        ordered: 0,
+        reports: reports_out,
+    };
+    let servo =
+        ServoEnd { set_points: set_points_out, orders: orders_out, reports: reports_in, closing: closing.clone() };
     (Mailbox { planners: Mutex::new(planners), closing }, servo)
 }
 

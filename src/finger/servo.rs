@@ -3,8 +3,7 @@
 use crate::board::{Link, LinkError, OutgoingCommand, Transport};
 use crate::finger::{Fault, FingerServo};
 use crate::model::configuration::FINGERS;
-use crate::realtime::{Clock, CycleTiming, Schedule};
-use rtrb::Producer;
+use crate::realtime::{Clock, Schedule, Stage};
 
 /// The part of a period, from the thread's awakening, in which replies are awaited; the rest is for computing.
 const REPLY_WINDOW: f64 = 0.85;
@@ -22,20 +21,22 @@ impl<T: Transport> ServedPort<T> {
     }
 }
 
+/// How long a board may take to confirm its end state, ns: two attempts. Without it the watchdog does the same.
+const CONFIRMATION: u64 = 100_000_000;
+
 /// One to three fingers on one to three ports, run by one thread.
 pub struct Servo<T, C> {
     clock: C,
     schedule: Schedule,
     reply_window: u64,
     ports: Vec<ServedPort<T>>,
-    timings: Producer<CycleTiming>,
 }
 
 impl<T: Transport, C: Clock> Servo<T, C> {
-    /// A servo whose first cycle begins at the start of `schedule`. Timings that nobody collects are dropped.
-    pub fn new(clock: C, schedule: Schedule, ports: Vec<ServedPort<T>>, timings: Producer<CycleTiming>) -> Self {
+    /// A servo whose first cycle begins at the start of `schedule`.
+    pub fn new(clock: C, schedule: Schedule, ports: Vec<ServedPort<T>>) -> Self {
         let reply_window = (schedule.period() as f64 * REPLY_WINDOW) as u64;
-        Self { clock, schedule, reply_window, ports, timings }
+        Self { clock, schedule, reply_window, ports }
     }
 
     /// Runs until every finger is closed, or faulted and asked to close.
@@ -43,8 +44,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         while !self.finished() {
             self.cycle();
         }
-        // What a finger that was closed or faulted in the last cycle has still to say.
-        self.send_stops();
+        self.confirm_stops();
     }
 
     /// Whether every finger is closed, or faulted and asked to close.
@@ -59,28 +59,30 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         self.clock.sleep_until(beginning);
         let began = self.clock.now();
         self.send_stops();
+        let mut sending = began;
         for port in &mut self.ports {
             port.send();
+            let sent = self.clock.now();
+            port.note(Stage::WakeUp, beginning, began);
+            port.note(Stage::Write, sending, sent);
+            sending = sent;
         }
         for port in &mut self.ports {
-            port.receive(began + self.reply_window);
+            port.receive(began + self.reply_window, sending, &self.clock);
         }
-        let replied = self.clock.now();
-        let skipped = self.schedule.advance(replied);
+        let mut computing = self.clock.now();
+        let skipped = self.schedule.advance(computing);
         for port in &mut self.ports {
             let damaged = port.link.counters().damaged;
             for finger in &mut port.fingers {
                 finger.end(began, skipped, damaged);
+                let computed = self.clock.now();
+                finger.note(Stage::Compute, computing, computed);
+                finger.note(Stage::Whole, beginning, computed);
+                finger.tell_timing();
+                computing = computed;
             }
         }
-        let nanoseconds = |from: u64, to: u64| u32::try_from(to.saturating_sub(from)).unwrap_or(u32::MAX);
-        let timing = CycleTiming {
-            wake_up: nanoseconds(beginning, began),
-            exchange: nanoseconds(began, replied),
-            compute: nanoseconds(replied, self.clock.now()),
-        };
-        // A full ring means that nobody collects: the cycle is worth more than its figure.
-        let _ = self.timings.push(timing);
     }
 
     /// The last thing to do when a cycle panicked: every finger faulted, every board told to stop.
@@ -89,7 +91,19 @@ impl<T: Transport, C: Clock> Servo<T, C> {
             finger.fault(Fault::Internal);
             finger.end(0, 0, 0);
         }
+        self.confirm_stops();
+    }
+
+    /// Tells every board to stop, until it confirms that or the line fails: closing a port throws away what has not left it
+    /// yet. Nothing else is left to do in time, so this waits.
+    fn confirm_stops(&mut self) {
         self.send_stops();
+        for port in &mut self.ports {
+            for finger in &port.fingers {
+                let deadline = self.clock.now() + CONFIRMATION;
+                while self.clock.now() < deadline && matches!(port.link.stop(finger.address(), deadline), Ok(false)) {}
+            }
+        }
     }
 
     fn send_stops(&mut self) {
@@ -118,20 +132,34 @@ impl<T: Transport> ServedPort<T> {
         }
     }
 
-    fn receive(&mut self, deadline: u64) {
+    fn receive(&mut self, deadline: u64, sent: u64, clock: &impl Clock) {
         while self.fingers.iter().any(FingerServo::waiting) {
             match self.link.receive(deadline) {
                 Ok(Some(received)) => {
-                    let addressed = self.fingers.iter_mut().filter(|finger| finger.address() == received.address);
-                    addressed.for_each(|finger| finger.take(&received));
+                    let addressed = self.fingers.iter_mut().find(|finger| finger.address() == received.address);
+                    let Some(finger) = addressed.filter(|finger| finger.awaits(&received)) else { continue };
+                    finger.take(&received);
+                    let (ready, read) = self.link.arrival();
+                    finger.note(Stage::Wire, sent, ready);
+                    finger.note(Stage::Read, ready, read);
+                    finger.note(Stage::Decode, read, clock.now());
                 }
                 Ok(None) => break,
+                // The other fingers of the board may be as they were.
+                Err(LinkError::Refused { address, refused }) => {
+                    let addressed = self.fingers.iter_mut().filter(|finger| finger.address() == address);
+                    addressed.for_each(|finger| finger.fault(Fault::CommandRefused { refused }));
+                }
                 Err(error) => {
                     self.fail(&error);
                     break;
                 }
             }
         }
+    }
+
+    fn note(&mut self, stage: Stage, from: u64, to: u64) {
+        self.fingers.iter_mut().for_each(|finger| finger.note(stage, from, to));
     }
 
     fn fail(&mut self, error: &LinkError) {

@@ -7,13 +7,18 @@ use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Mailbox, Order, ServoEnd, mailbox};
 use crate::finger::{Fault, FingerReport, Stage};
 use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState, Unusable};
-use nalgebra::{Matrix3, Vector4};
+use crate::realtime::{self, CycleTiming};
+use nalgebra::{Matrix3, Vector3, Vector4};
+use rtrb::Producer;
 
 /// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
 const TENSION_SETTLED: f64 = 0.02;
 
 /// A simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to stop the hand.
 const SIMULATION_PATIENCE_MS: f64 = 1000.0;
+
+/// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
+const BEYOND_LIMITS: f64 = 0.5;
 
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
@@ -29,6 +34,8 @@ pub struct FingerServo {
     feedback: Feedback,
     command: Command,
     mailbox: ServoEnd,
+    timing: CycleTiming,
+    timings: Producer<CycleTiming>,
     report: FingerReport,
     address: u8,
     /// Knows the torque of one count of a command.
@@ -53,10 +60,13 @@ struct Limits {
     tension: u32,
     settled: u32,
     ramp: u32,
+    /// Joint angles that a finger under tension can have, rad: lowest and highest.
+    pose: (Vector3<f64>, Vector3<f64>),
 }
 
 impl FingerServo {
-    /// A finger that stands where its board says, limp, with the planners' end of its mailbox.
+    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`; those that
+    /// nobody collects are dropped.
     ///
     /// `stiffness` is the Kx that it will hold its pose with, already admitted.
     ///
@@ -69,6 +79,7 @@ impl FingerServo {
         stiffness: Matrix3<f64>,
         identity: &Identity,
         configured: &Configured,
+        timings: Producer<CycleTiming>,
     ) -> Result<(Self, Mailbox), Unusable> {
         let controller = Controller::new(finger, hand.rate)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
@@ -76,7 +87,7 @@ impl FingerServo {
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
         let report = FingerReport {
             stage: Stage::Opening,
-            set_point: SetPoint { joints: nalgebra::Vector3::zeros(), stiffness },
+            set_point: SetPoint { joints: Vector3::zeros(), stiffness },
             cycle: Default::default(),
             orders: 0,
             calibration: None,
@@ -97,6 +108,8 @@ impl FingerServo {
             feedback,
             command: Command::default(),
             mailbox: servo,
+            timing: CycleTiming::default(),
+            timings,
             report,
             address,
             board: *identity,
@@ -110,6 +123,10 @@ impl FingerServo {
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
+                pose: {
+                    let (low, high) = finger.joint_limits();
+                    (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS))
+                },
             },
             settled_cycles: 0,
             stage_cycles: 0,
@@ -165,11 +182,13 @@ impl FingerServo {
         !self.answered && self.under_control()
     }
 
-    /// Takes a reply in, if it answers this cycle's command: a late one would be an old measurement.
+    /// Whether a reply answers this cycle's command: a late one would be an old measurement.
+    pub fn awaits(&self, received: &Received) -> bool {
+        received.sequence == self.sequence && self.waiting()
+    }
+
+    /// Takes in the reply that answers this cycle's command.
     pub fn take(&mut self, received: &Received) {
-        if received.sequence != self.sequence || !self.waiting() {
-            return;
-        }
         self.answered = true;
         let reply = &received.reply;
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
@@ -204,6 +223,17 @@ impl FingerServo {
         self.mailbox.publish(self.report);
     }
 
+    /// Notes when a stage of this cycle began and ended, ns.
+    pub fn note(&mut self, stage: realtime::Stage, from: u64, to: u64) {
+        self.timing.note(stage, from, to);
+    }
+
+    /// Leaves the timing of this cycle to whoever collects it.
+    pub fn tell_timing(&mut self) {
+        // A full ring means that nobody collects: the cycle is worth more than its figure.
+        let _ = self.timings.push(std::mem::take(&mut self.timing));
+    }
+
     /// Stops the finger for a reason.
     pub fn fault(&mut self, fault: Fault) {
         if self.under_control() {
@@ -213,6 +243,16 @@ impl FingerServo {
 
     fn under_control(&self) -> bool {
         !matches!(self.report.stage, Stage::Closed | Stage::Faulted(_))
+    }
+
+    /// A spring pulls a finger that is believed to be where it cannot be with all it has.
+    fn check_pose(&mut self) {
+        let (low, high) = self.limits.pose;
+        let joints = self.report.cycle.joints;
+        if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
+            let degrees = joints[joint].to_degrees() as i32;
+            self.fault(Fault::ImpossiblePose { joint: joint as u8, degrees });
+        }
     }
 
     fn count_replies(&mut self) {
@@ -302,6 +342,10 @@ impl FingerServo {
             Stage::Opening if self.report.cycle.under_tension => {
                 self.settled_cycles += 1;
                 if self.settled_cycles >= self.limits.settled {
+                    self.check_pose();
+                    if !self.under_control() {
+                        return;
+                    }
                     let joints = self.report.cycle.joints;
                     self.report.set_point = SetPoint { joints, stiffness: self.initial_stiffness };
                     self.activity = Activity::Follow(self.report.set_point);
@@ -316,6 +360,7 @@ impl FingerServo {
                     self.fault(Fault::SlackTendon { tendon, milliseconds });
                 }
             }
+            Stage::Running => self.check_pose(),
             Stage::Closing if self.stage_cycles > self.limits.ramp => self.enter(Stage::Closed),
             _ => {}
         }

@@ -1,9 +1,10 @@
 //! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
 
-use crate::finger::{FingerReport, Mailbox, Stage};
+use crate::finger::{self, FingerReport, Mailbox};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
-use crate::realtime::{CycleTiming, Histograms, Priority, spawn};
+use crate::hand::opening::Reached;
+use crate::realtime::{CycleTiming, Distribution, Histograms, Priority, Stage, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use parking_lot::Mutex;
 use rtrb::Consumer;
@@ -19,8 +20,6 @@ const COLLECTING: Duration = Duration::from_millis(50);
 pub(super) struct Member {
     pub admission: Admission,
     pub mailbox: Mailbox,
-    /// Which of the servo threads runs the finger, as an index into the timings.
-    pub servo: usize,
 }
 
 /// Routes to the fingers, collects from them.
@@ -30,7 +29,7 @@ pub(super) struct Dispatcher {
     collector: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
-/// The timings of one servo thread.
+/// The timings of one finger.
 struct Collected {
     arriving: Consumer<CycleTiming>,
     histograms: Histograms,
@@ -45,10 +44,14 @@ impl Collected {
 }
 
 impl Dispatcher {
-    /// `members` in the order of their numbers; `timings` by servo thread.
-    pub fn new(members: Vec<Member>, timings: Vec<Consumer<CycleTiming>>) -> Self {
-        let collected = |arriving| Mutex::new(Collected { arriving, histograms: Histograms::new() });
-        Self { members, timings: Arc::new(timings.into_iter().map(collected).collect()), collector: None }
+    /// `fingers` in the order of their numbers.
+    pub fn new(fingers: Vec<Reached>) -> Self {
+        let (mut members, mut timings) = (Vec::new(), Vec::new());
+        for finger in fingers {
+            members.push(Member { admission: finger.admission, mailbox: finger.mailbox });
+            timings.push(Mutex::new(Collected { arriving: finger.timings, histograms: Histograms::new() }));
+        }
+        Self { members, timings: Arc::new(timings), collector: None }
     }
 
     /// Starts the thread that collects timings, so that none is lost while nobody asks.
@@ -82,7 +85,7 @@ impl Dispatcher {
     pub fn report(&self, finger: i32) -> Result<FingerReport, HandError> {
         let report = self.last_report(finger)?;
         match report.stage {
-            Stage::Faulted(fault) => Err(HandError::Faulted { finger, fault }),
+            finger::Stage::Faulted(fault) => Err(HandError::Faulted { finger, fault }),
             _ => Ok(report),
         }
     }
@@ -92,11 +95,19 @@ impl Dispatcher {
         Ok(self.member(finger)?.mailbox.report())
     }
 
-    /// The timings of the thread that runs a finger.
-    pub fn timings(&self, finger: i32) -> Result<Histograms, HandError> {
-        let mut collected = self.timings[self.member(finger)?.servo].lock();
+    /// What was counted of a stage.
+    pub fn timing(&self, finger: i32, stage: Stage) -> Result<Distribution, HandError> {
+        let mut collected = self.timings[self.index(finger)?].lock();
         collected.collect();
-        Ok(collected.histograms.clone())
+        Ok(collected.histograms.distribution(stage))
+    }
+
+    /// Begins to count anew.
+    pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
+        let mut collected = self.timings[self.index(finger)?].lock();
+        collected.collect();
+        collected.histograms.reset();
+        Ok(())
     }
 
     /// Every member, in the order of their numbers.
@@ -106,8 +117,12 @@ impl Dispatcher {
 
     /// The member with a number.
     pub fn member(&self, finger: i32) -> Result<&Member, HandError> {
+        self.index(finger).map(|index| &self.members[index])
+    }
+
+    fn index(&self, finger: i32) -> Result<usize, HandError> {
         let index = usize::try_from(finger).ok().and_then(|number| number.checked_sub(1));
-        index.and_then(|index| self.members.get(index)).ok_or(HandError::NoSuchFinger(finger))
+        index.filter(|&index| index < self.members.len()).ok_or(HandError::NoSuchFinger(finger))
     }
 }
 

@@ -2,12 +2,15 @@
 //! their reports (section 3 of the report).
 
 mod admission;
+mod calibrating;
+mod calibration_file;
 mod configuration_file;
 mod dispatcher;
 mod error;
 mod opening;
 mod root;
 
+pub use calibrating::{Calibrating, Standing};
 pub use configuration_file::{configured, read};
 pub use error::HandError;
 pub use root::{FingerStatus, Hand};

@@ -6,12 +6,16 @@ use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::model::Refusal;
 use crate::model::configuration::{Configuration, FINGERS, Unusable};
-use crate::realtime::{Priority, now};
+use crate::realtime::{CycleTiming, Priority, now};
 use nalgebra::Matrix3;
+use rtrb::{Consumer, RingBuffer};
 use std::path::PathBuf;
 
 /// Simulated boards run below every servo: they stand for something outside the machine.
 const SIMULATED_BOARD_PRIORITY: u8 = 20;
+
+/// Cycles whose timings a servo can leave before they are collected: almost a second at the highest rate.
+const TIMINGS: usize = 4096;
 
 /// A finger that has been reached: its servo side is in a [`ServedPort`].
 pub(super) struct Reached {
@@ -21,6 +25,8 @@ pub(super) struct Reached {
     pub mailbox: Mailbox,
     /// What may be asked of it.
     pub admission: Admission,
+    /// Where the servo leaves its timings.
+    pub timings: Consumer<CycleTiming>,
 }
 
 /// A port with its fingers, and the thread that shall serve it.
@@ -103,9 +109,10 @@ fn shake_hands(
         .shake_hands(address, &Terms::new(hand, finger), deadline)
         .map_err(|source| HandError::Link { finger: index + 1, source })?;
     let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;
+    let (producer, timings) = RingBuffer::new(TIMINGS);
     let (servo, mailbox) =
-        FingerServo::new(hand, finger, address, stiffness, &identity, &configured).map_err(unusable)?;
-    Ok((servo, Reached { index, mailbox, admission: admission(configuration, index) }))
+        FingerServo::new(hand, finger, address, stiffness, &identity, &configured, producer).map_err(unusable)?;
+    Ok((servo, Reached { index, mailbox, admission: admission(configuration, index), timings }))
 }
 
 fn admission(configuration: &Configuration, index: usize) -> Admission {

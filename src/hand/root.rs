@@ -2,23 +2,21 @@
 
 use crate::board::{Port, SimulatedFinger, SimulatedPort};
 use crate::finger::{FingerReport, Servo, Stage};
-use crate::hand::dispatcher::{Dispatcher, Member};
-use crate::hand::opening::{Line, Reached, check, reach, simulate};
+use crate::hand::dispatcher::Dispatcher;
+use crate::hand::opening::{Line, check, reach, simulate};
 use crate::hand::{HandError, configured};
 use crate::model::configuration::{Configuration, FINGERS};
-use crate::realtime::{CycleTiming, Latency, MonotonicClock, Priority, Realtime, Schedule, now, spawn};
+use crate::realtime::{self, Distribution, MonotonicClock, Priority, Realtime, Schedule, now, spawn};
 use crossbeam_channel::bounded;
 use nalgebra::Vector3;
-use rtrb::{Producer, RingBuffer};
+use parking_lot::Mutex;
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::thread::{JoinHandle, sleep};
 use std::time::Duration;
 
 type PortServo = Servo<Port, MonotonicClock>;
-
-/// Cycles whose timings a servo can leave before they are collected: almost a second at the highest rate.
-const TIMINGS: usize = 4096;
 
 /// The first cycle begins so long after the threads are started, ns: they have their priorities and cores by then.
 const HEAD_START: u64 = 10_000_000;
@@ -30,10 +28,14 @@ const LOOKING: Duration = Duration::from_millis(1);
 ///
 /// Every call may come from several threads. Dropping it closes it.
 pub struct Hand {
-    dispatcher: Dispatcher,
+    pub(super) dispatcher: Dispatcher,
     servos: Vec<JoinHandle<PortServo>>,
     simulated: [Option<SimulatedPort>; FINGERS],
     configuration: Configuration,
+    /// The configuration with what has been found by calibration since open.
+    pub(super) calibrated: Mutex<Configuration>,
+    /// Where the configuration was read from, and where calibration is stored.
+    pub(super) file: Option<PathBuf>,
     realtime: bool,
 }
 
@@ -48,12 +50,8 @@ pub struct FingerStatus {
     pub rate: f64,
     /// Measured cycles in a second since open, Hz.
     pub measured_rate: f64,
-    /// From the scheduled beginning of a cycle to its first instruction, microseconds.
-    pub wake_up: Latency,
-    /// From the command to the reply, microseconds.
-    pub exchange: Latency,
-    /// Computation of one cycle, all fingers of the thread, microseconds.
-    pub compute: Latency,
+    /// From the scheduled beginning of a cycle to its first instruction, microseconds: the servo's jitter.
+    pub wake_up: Distribution,
     /// Cycles since open.
     pub cycles: u64,
     /// Cycles without a valid reply.
@@ -77,7 +75,7 @@ impl Hand {
         if file.is_none() {
             say("no configuration file: this is the simulated hand (SUN2XP_CONFIG or sun2xp.toml names a real one)");
         }
-        Self::open(configuration)
+        Self::open_from(configuration, file, false)
     }
 
     /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons and returns when every finger holds the
@@ -87,23 +85,32 @@ impl Hand {
     /// A configuration that cannot be used, a port or board that does not serve, a finger that faults. Everything that was
     /// opened is closed again then, and every motor is in its end state.
     pub fn open(configuration: Configuration) -> Result<Self, HandError> {
+        Self::open_from(configuration, None, false)
+    }
+
+    /// Opens the hand with its motors off: to find signs and zeros before anything pulls. `file`: where calibration shall
+    /// be stored. A finger becomes a spring when it has been calibrated by [`Hand::zero`] or [`Hand::identify`].
+    ///
+    /// # Errors
+    /// As [`Hand::open`].
+    pub fn open_limp(configuration: Configuration, file: Option<PathBuf>) -> Result<Self, HandError> {
+        Self::open_from(configuration, file, true)
+    }
+
+    fn open_from(configuration: Configuration, file: Option<PathBuf>, limp: bool) -> Result<Self, HandError> {
         check(&configuration)?;
         let simulated = simulate(&configuration)?;
-        let (lines, reached) = reach(&configuration, &simulated)?;
+        let (lines, reached) = reach(&configuration, &simulated, limp)?;
         let mut threads: Vec<u8> = lines.iter().map(|line| line.thread).collect();
         threads.sort_unstable();
         threads.dedup();
 
-        let (producers, consumers): (Vec<_>, Vec<_>) = threads.iter().map(|_| RingBuffer::new(TIMINGS)).unzip();
-        let member = |finger: Reached| {
-            let servo = threads.partition_point(|&thread| thread < configuration.thread(finger.index));
-            Member { admission: finger.admission, mailbox: finger.mailbox, servo }
-        };
-        let members = reached.into_iter().map(member).collect();
-        let dispatcher = Dispatcher::new(members, consumers);
-        let mut hand = Self { dispatcher, servos: Vec::new(), simulated, configuration, realtime: true };
+        let dispatcher = Dispatcher::new(reached);
+        let calibrated = Mutex::new(configuration.clone());
+        let servos = Vec::new();
+        let mut hand = Self { dispatcher, servos, simulated, configuration, calibrated, file, realtime: true };
         // From here on, dropping the hand closes it.
-        hand.start(&threads, lines, producers)?;
+        hand.start(&threads, lines)?;
         hand.wait_for_every_finger()?;
         Ok(hand)
     }
@@ -146,7 +153,6 @@ impl Hand {
     /// No such finger.
     pub fn status(&self, finger: i32) -> Result<FingerStatus, HandError> {
         let report = self.dispatcher.last_report(finger)?;
-        let timings = self.dispatcher.timings(finger)?;
         let seconds = report.last.saturating_sub(report.first) as f64 * 1e-9;
         let intervals = report.cycles.saturating_sub(1) as f64;
         Ok(FingerStatus {
@@ -154,15 +160,29 @@ impl Hand {
             realtime: self.realtime,
             rate: self.configuration.hand.rate,
             measured_rate: if seconds > 0.0 { intervals / seconds } else { 0.0 },
-            wake_up: timings.wake_up(),
-            exchange: timings.exchange(),
-            compute: timings.compute(),
+            wake_up: self.timing(finger, realtime::Stage::WakeUp)?,
             cycles: report.cycles,
             lost_replies: report.lost_replies,
             skipped_periods: report.skipped_periods,
             damaged_frames: report.damaged_frames,
             torque_scale: report.cycle.torque_scale,
         })
+    }
+
+    /// How long a stage of the cycles of finger 1, 2 or 3 has taken since open or since the timings were last reset.
+    ///
+    /// # Errors
+    /// No such finger.
+    pub fn timing(&self, finger: i32, stage: realtime::Stage) -> Result<Distribution, HandError> {
+        self.dispatcher.timing(finger, stage)
+    }
+
+    /// Forgets the timings of finger 1, 2 or 3.
+    ///
+    /// # Errors
+    /// No such finger.
+    pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
+        self.dispatcher.reset_timing(finger)
     }
 
     /// Pushes the fingertip of a simulated finger with a force in the finger's frame, N, until the next such call.
@@ -187,24 +207,19 @@ impl Hand {
     /// Brings every finger to its end state, as configured, and ends the threads. The same as dropping the hand.
     pub fn close(self) {}
 
-    fn start(
-        &mut self,
-        threads: &[u8],
-        lines: Vec<Line>,
-        producers: Vec<Producer<CycleTiming>>,
-    ) -> Result<(), HandError> {
+    fn start(&mut self, threads: &[u8], lines: Vec<Line>) -> Result<(), HandError> {
         let system = |doing| move |source| HandError::System { doing, source };
         self.dispatcher.start_collecting().map_err(system("start the thread that collects reports"))?;
         let period = (1e9 / self.configuration.hand.rate).round() as u64;
         let first = now() + HEAD_START;
         let mut lines: Vec<Option<Line>> = lines.into_iter().map(Some).collect();
         let (told, hear) = bounded(threads.len());
-        for (place, (&thread, timings)) in threads.iter().zip(producers).enumerate() {
+        for (place, &thread) in threads.iter().enumerate() {
             let own = lines.iter_mut().filter(|line| line.as_ref().is_some_and(|line| line.thread == thread));
             let ports = own.filter_map(Option::take).map(|line| line.port).collect();
             // Staggered, so that the fingers do not ask for one core at one instant.
             let phase = period * place as u64 / threads.len() as u64;
-            let servo = Servo::new(MonotonicClock, Schedule::new(first + phase, period), ports, timings);
+            let servo = Servo::new(MonotonicClock, Schedule::new(first + phase, period), ports);
             let told = told.clone();
             let handle = spawn(&format!("sun2xp servo {thread}"), self.priority(thread), move |realtime| {
                 // The receiver waits for this; if OpenHand has given up meanwhile, nobody needs it.

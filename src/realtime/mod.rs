@@ -8,4 +8,4 @@ mod timing;
 pub use clock::{Clock, MonotonicClock, now};
 pub use period::Schedule;
 pub use threads::{Priority, Realtime, spawn};
-pub use timing::{CycleTiming, Histograms, Latency};
+pub use timing::{CycleTiming, Distribution, Histograms, Stage};

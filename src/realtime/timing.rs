@@ -1,68 +1,108 @@
-//! Where the time of a cycle goes, as data: the servo writes one small record a cycle, whoever collects the reports counts
-//! them.
+//! Where the time of a cycle goes, as data: the servo writes one small record a finger and cycle, whoever collects the reports
+//! counts them.
 
 use hdrhistogram::Histogram;
 
-/// The times of one cycle, ns.
+/// A part of a finger's cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// From the scheduled beginning of the cycle to the thread's first instruction.
+    WakeUp,
+    /// Handing the commands of the port to the system.
+    Write,
+    /// From there until reply bytes can be read: both ways on the line, and the board.
+    Wire,
+    /// Reading them.
+    Read,
+    /// From bytes to the finger's reply, checks included.
+    Decode,
+    /// The pure core, and the report.
+    Compute,
+    /// From the scheduled beginning to the end of the computation.
+    Whole,
+}
+
+impl Stage {
+    /// Every stage, in the order of time.
+    pub const ALL: [Stage; 7] =
+        [Stage::WakeUp, Stage::Write, Stage::Wire, Stage::Read, Stage::Decode, Stage::Compute, Stage::Whole];
+}
+
+/// The times of one cycle of one finger, ns, by [`Stage::ALL`]; none where there was no such stage, as without a reply.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CycleTiming {
-    /// From the scheduled beginning to the first instruction.
-    pub wake_up: u32,
-    /// From the first instruction to the reply, or to giving up on it.
-    pub exchange: u32,
-    /// The pure core.
-    pub compute: u32,
+    stages: [Option<u32>; Stage::ALL.len()],
+}
+
+impl CycleTiming {
+    /// Notes a stage that lasted from one time to another, ns.
+    pub fn note(&mut self, stage: Stage, from: u64, to: u64) {
+        self.stages[stage as usize] = Some(u32::try_from(to.saturating_sub(from)).unwrap_or(u32::MAX));
+    }
 }
 
 /// The distribution of one stage, microseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Latency {
-    /// Half of all cycles took no longer.
+pub struct Distribution {
+    /// How many cycles were counted.
+    pub count: u64,
+    /// The shortest.
+    pub minimum: f64,
+    /// Half of them took no longer.
     pub median: f64,
-    /// 99 of 100 cycles took no longer.
+    /// 99 of 100 took no longer.
     pub p99: f64,
-    /// The longest of all.
+    /// 999 of 1000 took no longer.
+    pub p999: f64,
+    /// The longest.
     pub maximum: f64,
 }
 
 /// Distributions of every stage since they were last reset.
 #[derive(Clone, Debug)]
 pub struct Histograms {
-    wake_up: Histogram<u32>,
-    exchange: Histogram<u32>,
-    compute: Histogram<u32>,
+    stages: [Histogram<u32>; Stage::ALL.len()],
 }
 
 impl Histograms {
     /// Empty ones. Fixed in size: 1 ns to 4.3 s in steps of 1 %.
     pub fn new() -> Self {
-        let empty = || {
+        let empty = |_| {
             Histogram::new_with_bounds(1, u64::from(u32::MAX), 2)
                 .unwrap_or_else(|_| unreachable!("the bounds and digits are constants that the histogram takes"))
         };
-        Self { wake_up: empty(), exchange: empty(), compute: empty() }
+        Self { stages: Stage::ALL.map(empty) }
     }
 
     /// Counts one cycle.
     pub fn record(&mut self, timing: &CycleTiming) {
-        self.wake_up.saturating_record(timing.wake_up.into());
-        self.exchange.saturating_record(timing.exchange.into());
-        self.compute.saturating_record(timing.compute.into());
+        for (histogram, time) in self.stages.iter_mut().zip(timing.stages) {
+            if let Some(time) = time {
+                histogram.saturating_record(time.into());
+            }
+        }
     }
 
-    /// Wake-up latency.
-    pub fn wake_up(&self) -> Latency {
-        latency(&self.wake_up)
+    /// Forgets everything.
+    pub fn reset(&mut self) {
+        self.stages.iter_mut().for_each(Histogram::reset);
     }
 
-    /// Command out to reply in.
-    pub fn exchange(&self) -> Latency {
-        latency(&self.exchange)
-    }
-
-    /// The pure core.
-    pub fn compute(&self) -> Latency {
-        latency(&self.compute)
+    /// What was counted of a stage; zeros if nothing was.
+    pub fn distribution(&self, stage: Stage) -> Distribution {
+        let histogram = &self.stages[stage as usize];
+        let microseconds = |ns: u64| ns as f64 * 1e-3;
+        if histogram.is_empty() {
+            return Distribution::default();
+        }
+        Distribution {
+            count: histogram.len(),
+            minimum: microseconds(histogram.min()),
+            median: microseconds(histogram.value_at_quantile(0.5)),
+            p99: microseconds(histogram.value_at_quantile(0.99)),
+            p999: microseconds(histogram.value_at_quantile(0.999)),
+            maximum: microseconds(histogram.max()),
+        }
     }
 }
 
@@ -72,11 +112,40 @@ impl Default for Histograms {
     }
 }
 
-fn latency(histogram: &Histogram<u32>) -> Latency {
-    let microseconds = |ns: u64| ns as f64 * 1e-3;
-    Latency {
-        median: microseconds(histogram.value_at_quantile(0.5)),
-        p99: microseconds(histogram.value_at_quantile(0.99)),
-        maximum: microseconds(histogram.max()),
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stages_are_counted_apart_and_missing_ones_not_at_all() {
+        let mut histograms = Histograms::new();
+        for cycle in 1..=1000u64 {
+            let mut timing = CycleTiming::default();
+            timing.note(Stage::WakeUp, 5_000, 5_000 + 1000 * cycle);
+            if cycle % 2 == 0 {
+                timing.note(Stage::Wire, 0, 70_000);
+            }
+            histograms.record(&timing);
+        }
+        let wake_up = histograms.distribution(Stage::WakeUp);
+        assert_eq!(wake_up.count, 1000);
+        for (is, exact) in
+            [(wake_up.minimum, 1.0), (wake_up.median, 500.0), (wake_up.p99, 990.0), (wake_up.p999, 999.0)]
+        {
+            assert!((is / exact - 1.0).abs() < 0.011, "{wake_up:?}");
+        }
+        assert_eq!(histograms.distribution(Stage::Wire).count, 500);
+        assert_eq!(histograms.distribution(Stage::Read), Distribution::default());
+        histograms.reset();
+        assert_eq!(histograms.distribution(Stage::WakeUp).count, 0);
+    }
+
+    #[test]
+    fn a_clock_that_seems_to_run_backward_counts_as_no_time() {
+        let mut timing = CycleTiming::default();
+        timing.note(Stage::Whole, 10, 5);
+        let mut histograms = Histograms::new();
+        histograms.record(&timing);
+        assert!(histograms.distribution(Stage::Whole).maximum < 0.002);
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use std::error::Error;
 use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};
-use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
+use sun2xp::board::{Pace, SimulatedBoard, SimulatedFinger, SimulatedPort};
 use sun2xp::hand;
 use sun2xp::model::Surface;
 use sun2xp::model::configuration::{Configuration, FINGERS};
@@ -19,7 +19,8 @@ use sun2xp::realtime::Priority;
 ///     wall FINGER PX PY PZ NX NY NZ K        a wall through P with normal N, stiffness K N/cm
 ///     ball FINGER X Y Z RADIUS K             a ball
 ///     free FINGER                            no force, no wall, no ball
-///     state FINGER                           true joints (rad), tip (cm) and tensions (N)
+///     state FINGER                           true joints (rad), tip (cm) and tensions (N), torques of the motors (N cm),
+///                                            status bits as in a Reply
 ///     quit
 ///
 /// Positions and forces are in the finger's frame, lengths in cm. The end of standard input does not end the program, so that it
@@ -61,6 +62,10 @@ pub struct Arguments {
     /// SCHED_FIFO priority of the board, where permitted; 0: not real-time.
     #[arg(long, value_name = "P", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=99))]
     priority: u8,
+    /// Stand still, for up to half a second, while commands stay away: for a busy machine, which carries the bytes of a
+    /// pseudo-terminal late. The watchdog waits so much longer.
+    #[arg(long)]
+    patient: bool,
 }
 
 type Failure = Box<dyn Error>;
@@ -78,10 +83,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut board = SimulatedBoard::new(&configuration, &fingers)?;
     for action in [&arguments.force, &arguments.wall, &arguments.ball].into_iter().flatten() {
         for finger in board.fingers() {
-            action.apply(finger.plant());
+            action.apply(finger);
         }
     }
-    let port = SimulatedPort::start(board, Pace::RealTime, Priority { fifo: arguments.priority, core: None })?;
+    let pace = if arguments.patient { Pace::Patient } else { Pace::RealTime };
+    let port = SimulatedPort::start(board, pace, Priority { fifo: arguments.priority, core: None })?;
     if let Some(link) = &arguments.link {
         make_link(port.path(), link)?;
     }
@@ -127,7 +133,7 @@ fn carry_out(port: &SimulatedPort, configuration: &Configuration, number: u8, ac
     let index = usize::from(number).wrapping_sub(1);
     let address = (index < FINGERS).then(|| configuration.address(index));
     address
-        .and_then(|address| port.with_finger(address, |finger| action.apply(finger.plant())))
+        .and_then(|address| port.with_finger(address, |finger| action.apply(finger)))
         .unwrap_or_else(|| format!("error this board has no finger {number}"))
 }
 
@@ -197,7 +203,9 @@ impl Action {
     }
 
     /// The answer.
-    fn apply(&self, plant: &mut sun2xp::plant::Plant) -> String {
+    fn apply(&self, finger: &mut SimulatedFinger) -> String {
+        let (torques, status) = (finger.motor_torques(), finger.status());
+        let plant = finger.plant();
         match *self {
             Action::Force(force) => plant.set_external_force(force.into()),
             Action::Touch(surface) => plant.set_surface(Some(surface)),
@@ -209,10 +217,12 @@ impl Action {
                 let listed =
                     |numbers: &[f64]| numbers.iter().map(|number| format!("{number:.5}")).collect::<Vec<_>>().join(" ");
                 return format!(
-                    "state joints {} tip {} tensions {}",
+                    "state joints {} tip {} tensions {} torques {} status {:#06x}",
                     listed(plant.joints().as_slice()),
                     listed(plant.tip().as_slice()),
-                    listed(plant.tensions().as_slice())
+                    listed(plant.tensions().as_slice()),
+                    listed(torques.as_slice()),
+                    status.0
                 );
             }
         }

@@ -1,0 +1,28 @@
+/* Opens, sends every finger to one pose, says so on standard output, and ends with the hand open: after "return" by returning
+   from main, after "exit" by exit, after "_exit" past every handler, after "wait" never. */
+#include <string.h>
+#include <unistd.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+int main(int count, char **arguments)
+{
+    const double Sent[3] = {0.2, 0.6, 1.1};
+    int finger;
+
+    CHECK(count == 2);
+    CHECK(OpenHand() == 0);
+    for (finger = 1; finger <= 3; finger++)
+        CHECK(SendPos(finger, Sent) == 0);
+    PAUSE_MS(1000);
+    printf("there\n");
+    fflush(stdout);
+    if (strcmp(arguments[1], "wait") == 0)
+        for (;;)
+            pause();
+    if (strcmp(arguments[1], "_exit") == 0)
+        _exit(3);
+    if (strcmp(arguments[1], "exit") == 0)
+        exit(3);
+    return 3;
+}

@@ -1,0 +1,164 @@
+//! A second board, in C and written from the page of the protocol alone. If the library settles its fingers, then the page
+//! says all that a board has to know.
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdout, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use sun2xp::hand::{Hand, read};
+
+const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/c/second_board.c");
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/board-protocol.md");
+
+/// The finger is this close to its target, rad.
+const CLOSE: f64 = 0.02;
+/// A busy machine moves the finger more slowly than time passes.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Compiles the board into the folder, and refuses any warning.
+fn compile(folder: &Path) -> PathBuf {
+    let program = folder.join("second_board");
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_string());
+    let output = Command::new(&compiler)
+        .args(["-std=c99", "-D_XOPEN_SOURCE=700", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-o"])
+        .arg(&program)
+        .arg(SOURCE)
+        .arg("-lm")
+        .output()
+        .unwrap_or_else(|error| panic!("{compiler}: {error}"));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    program
+}
+
+/// A running board. It ends with the test, also with one that fails.
+struct Board {
+    process: Child,
+    output: BufReader<ChildStdout>,
+    port: String,
+}
+
+impl Board {
+    fn start(program: &Path, address: usize) -> Self {
+        let mut process = Command::new(program)
+            .arg(address.to_string())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the board starts");
+        let output = BufReader::new(process.stdout.take().expect("the board's output is a pipe"));
+        let mut board = Self { process, output, port: String::new() };
+        board.port = board.line();
+        board
+    }
+
+    fn line(&mut self) -> String {
+        let mut line = String::new();
+        self.output.read_line(&mut line).expect("the board's output is text");
+        assert!(!line.is_empty(), "the board ended by itself");
+        line.trim_end().to_string()
+    }
+
+    /// Where the joints truly are, which the library only knows from encoders and gauges.
+    fn joints(&mut self) -> Vec<f64> {
+        let input = self.process.stdin.as_mut().expect("the board's input is a pipe");
+        input.write_all(b"\n").expect("the board reads its input");
+        self.line().split(' ').map(|angle| angle.parse().expect("the board prints angles")).collect()
+    }
+
+    fn kill(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+/// Sends all fingers to their targets and waits until each is there and stays.
+fn settle(hand: &Hand, targets: [[f64; 3]; 3]) {
+    for (finger, target) in (1..).zip(targets) {
+        hand.send_position(finger, target).expect("the target is taken");
+    }
+    let begin = Instant::now();
+    let mut since = None;
+    loop {
+        let positions = [1, 2, 3].map(|finger| hand.position(finger).expect("the finger is running"));
+        let worst = positions
+            .iter()
+            .flatten()
+            .zip(targets.iter().flatten())
+            .map(|(is, wanted)| (is - wanted).abs())
+            .fold(0.0, f64::max);
+        // Passing by is not arriving.
+        let arrived = if worst < CLOSE { Some(*since.get_or_insert_with(Instant::now)) } else { None };
+        since = arrived;
+        if arrived.is_some_and(|instant| instant.elapsed() > Duration::from_millis(200)) {
+            return;
+        }
+        assert!(begin.elapsed() < PATIENCE, "after {PATIENCE:?} at {positions:?} instead of {targets:?}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn settles_three_fingers_and_notices_a_dead_board() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let program = compile(folder.path());
+    let mut boards = [1, 2, 3].map(|address| Board::start(&program, address));
+
+    // A busy machine may keep servo or board from running for longer than the usual watchdog.
+    let mut text = "[hand]\nwatchdog_ms = 1000\n".to_string();
+    for (finger, board) in (1..).zip(&boards) {
+        text += &format!("[finger.{finger}]\nport = \"{}\"\n", board.port);
+    }
+    let path = folder.path().join("sun2xp.toml");
+    std::fs::write(&path, text).expect("the configuration is written");
+    let hand = Hand::open(read(&path).expect("the configuration is good")).expect("all boards answer");
+
+    // The hand holds the pose in which it found the fingers.
+    for finger in 1..=3 {
+        let position = hand.position(finger).expect("the finger is running");
+        let start = [0.0, 30.0_f64.to_radians(), 60.0_f64.to_radians()];
+        for (is, was) in position.iter().zip(start) {
+            assert!((is - was).abs() < CLOSE, "finger {finger} begins at {position:?} instead of {start:?}");
+        }
+    }
+
+    for targets in
+        [[[0.1, 0.4, 0.9], [-0.1, 0.6, 1.1], [0.0, 0.7, 0.8]], [[-0.15, 0.7, 1.2], [0.15, 0.3, 0.8], [0.1, 0.4, 1.3]]]
+    {
+        settle(&hand, targets);
+        for (board, target) in boards.iter_mut().zip(targets) {
+            let joints = board.joints();
+            let worst = joints.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max);
+            assert!(worst < CLOSE, "the finger is truly at {joints:?} instead of {target:?}");
+        }
+    }
+
+    boards[1].kill();
+    let begin = Instant::now();
+    let error = loop {
+        match hand.position(2) {
+            Err(error) => break error,
+            Ok(_) => assert!(begin.elapsed() < PATIENCE, "a dead board goes unnoticed"),
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    let text = error.to_string();
+    assert!(text.contains("finger 2 is faulted") && text.contains("port"), "{text}");
+    // The others are on boards of their own.
+    for finger in [1, 3] {
+        hand.position(finger).expect("the finger is running");
+    }
+}
+
+#[test]
+fn the_page_is_right_about_its_examples() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let output = Command::new(compile(folder.path())).arg("--check").arg(PAGE).output().expect("the check runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+}

@@ -1,0 +1,203 @@
+//! `docs/sun2xp.toml` against the configuration types: complete, true and never stale.
+
+use std::collections::BTreeSet;
+use std::fs;
+use sun2xp::control::Controller;
+use sun2xp::hand::{self, HandError};
+use sun2xp::model::configuration::Configuration;
+use toml_edit::{DocumentMut, Item, Table};
+
+const REFERENCE: &str = include_str!("../docs/sun2xp.toml");
+
+fn read(text: &str) -> Result<Configuration, (Option<usize>, String)> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("sun2xp.toml");
+    fs::write(&file, text).expect("written");
+    hand::read(&file).map_err(|error| match error {
+        HandError::Configuration { line, reason, .. } => (line, reason),
+        other => panic!("{other}"),
+    })
+}
+
+fn usable(text: &str) -> Configuration {
+    read(text).unwrap_or_else(|(line, reason)| panic!("line {line:?}: {reason}\n{text}"))
+}
+
+/// The reference with the optional keys in force: a # without a space behind it hides a key.
+fn with_optional_keys() -> String {
+    let shown = |line: &'static str| match line.strip_prefix('#') {
+        Some(key) if key.starts_with(|first: char| first.is_ascii_lowercase() || first == '[') => key,
+        _ => line,
+    };
+    REFERENCE.lines().map(|line| shown(line).to_owned() + "\n").collect()
+}
+
+/// A key with its table, its value, the line it stands on (from 1), and the comment above it.
+#[derive(Debug)]
+struct Key {
+    table: String,
+    name: String,
+    value: String,
+    line: usize,
+    comment: String,
+}
+
+fn keys(text: &str) -> Vec<Key> {
+    let (mut keys, mut table, mut comment) = (Vec::new(), String::new(), String::new());
+    for (index, line) in text.lines().enumerate() {
+        if let Some(words) = line.strip_prefix('#') {
+            comment += words;
+        } else if let Some(name) = line.strip_prefix('[') {
+            table = name.trim_end_matches(']').into();
+        } else if let Some((name, value)) = line.split_once(" = ") {
+            let (name, value) = (name.to_owned(), value.to_owned());
+            keys.push(Key { table: table.clone(), name, value, line: index + 1, comment: comment.clone() });
+        } else {
+            comment.clear();
+        }
+    }
+    keys
+}
+
+/// The keys that a table can have: what its type says it expected instead of another one.
+fn expected_keys(table: &str) -> BTreeSet<String> {
+    let (_, reason) = read(&format!("[{table}]\nno_such_key = 1\n")).expect_err("an unknown key");
+    let (_, list) = reason.split_once("expected").unwrap_or_else(|| panic!("{reason}"));
+    list.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+fn table<'a>(document: &'a DocumentMut, path: &str) -> &'a Table {
+    let item = path.split('.').fold(document.as_item(), |item, part| item.get(part).unwrap_or(&Item::None));
+    item.as_table().unwrap_or_else(|| panic!("[{path}] is not in the reference"))
+}
+
+#[test]
+fn the_reference_is_the_default_hand() {
+    assert_eq!(usable(REFERENCE), Configuration::default());
+}
+
+#[test]
+fn every_key_of_every_table_is_in_it() {
+    let document: DocumentMut = with_optional_keys().parse().expect("TOML");
+    let named = |path: &str| table(&document, path).iter().map(|(key, _)| key.to_owned()).collect::<BTreeSet<_>>();
+    let fingers: BTreeSet<String> = ["1", "2", "3"].map(String::from).into();
+
+    let in_file: BTreeSet<String> = document.iter().map(|(key, _)| key.to_owned()).collect();
+    assert_eq!(in_file, ["finger", "hand"].map(String::from).into());
+    assert_eq!(named("hand"), expected_keys("hand"));
+    // What differs between fingers by default stands in their own tables.
+    let of_fingers: BTreeSet<String> = &named("finger") | &named("finger.1");
+    assert_eq!(&of_fingers - &fingers, expected_keys("finger"));
+    assert_eq!(named("finger.1"), named("finger.2"));
+    assert_eq!(named("finger.1"), named("finger.3"));
+    let tables: Vec<String> = table(&document, "finger")
+        .iter()
+        .filter(|(key, item)| item.is_table() && !fingers.contains(*key))
+        .map(|(key, _)| format!("finger.{key}"))
+        .collect();
+    assert_eq!(tables.len(), 9, "{tables:?}");
+    for path in tables {
+        assert_eq!(named(&path), expected_keys(&path), "[{path}]");
+    }
+}
+
+#[test]
+fn the_optional_keys_say_what_counts_without_them() {
+    let (shown, default) = (usable(&with_optional_keys()), Configuration::default());
+    for (index, finger) in shown.fingers.iter().enumerate() {
+        let reference = &default.fingers[index];
+        assert!(finger.base.is_some() && finger.turn_degrees.is_some() && finger.core.is_some());
+        assert_eq!(shown.finger_to_palm(index), default.finger_to_palm(index));
+        assert!(finger.stiffness.bound.is_some());
+        assert_eq!(finger.stiffness_bound(1000.0), reference.stiffness_bound(1000.0));
+        assert!(finger.geometry.ghost_row.is_some());
+        let (q, default_q) = (finger.tendons().expect("tendons").q, reference.tendons().expect("tendons").q);
+        assert!((q - default_q).amax() < 1e-6, "{q}{default_q}");
+        // The controllers, number by number; rounding of the ghost row apart.
+        let mut unshown = finger.clone();
+        unshown.geometry.ghost_row = None;
+        let gains = &finger.controller;
+        let given = [gains.tension_gain, gains.tension_integral, gains.motor_damping, gains.rate_time];
+        let filters = [gains.speed_filter, gains.stretch_filter, gains.set_point_speed];
+        assert!(given.iter().chain(&filters).all(Option::is_some), "{gains:?}");
+        let controller = |finger| format!("{:?}", Controller::new(finger, default.hand.rate).expect("a controller"));
+        assert_eq!(controller(&unshown), controller(reference));
+        assert!(finger.simulation.surface.is_some());
+    }
+}
+
+#[test]
+fn the_examples_in_the_comments_are_usable() {
+    let example: String =
+        REFERENCE.lines().filter_map(|line| line.strip_prefix("#     ")).flat_map(|line| [line, "\n"]).collect();
+    let hand = usable(&example);
+    assert_eq!(hand.fingers.each_ref().map(|finger| finger.tendon.minimum), [5.0, 6.0, 5.0]);
+    assert_eq!(hand.fingers.each_ref().map(|finger| finger.tendon.maximum), [50.0; 3]);
+    assert_eq!(hand.fingers.each_ref().map(|finger| finger.simulation.surface.is_some()), [false, false, true]);
+}
+
+#[test]
+fn every_key_is_read_and_a_misspelt_one_is_refused_with_its_line() {
+    let text = with_optional_keys();
+    for key in keys(&text) {
+        let misspelt: String = text
+            .lines()
+            .enumerate()
+            .map(
+                |(index, line)| {
+                    if index + 1 == key.line { format!("{}s = 1\n", key.name) } else { format!("{line}\n") }
+                },
+            )
+            .collect();
+        let (line, reason) = read(&misspelt).expect_err("misspelt");
+        assert!(reason.contains(&format!("`{}s`", key.name)), "{}.{}: {reason}", key.table, key.name);
+        assert_eq!(line, Some(key.line), "{}.{}: {reason}", key.table, key.name);
+    }
+}
+
+/// `value` with each of its numbers replaced.
+fn with_numbers(value: &str, number: &str) -> String {
+    let part_of_a_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | 'e' | '+');
+    let mut replaced = String::new();
+    let mut rest = value;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit() || c == '-') {
+        replaced += &rest[..start];
+        replaced += number;
+        rest = rest[start..].trim_start_matches(part_of_a_number);
+    }
+    replaced + rest
+}
+
+/// Whether a range is there, and not as the part of another one.
+fn tells(comment: &str, range: &str) -> bool {
+    let numeric = |c: char| c.is_ascii_alphanumeric() || c == '-';
+    comment.match_indices(range).any(|(start, _)| {
+        let (before, after) = (&comment[..start], &comment[start + range.len()..]);
+        !before.ends_with(|c| numeric(c) || c == '.') && !after.starts_with(numeric)
+    })
+}
+
+#[test]
+fn every_range_is_told() {
+    // Beyond every range, for the types of numbers that there are: floating, and whole ones of 8, 16 and 32 bits.
+    let beyond = ["1e300", "-1e300", "255", "0", "65535", "4294967295"];
+    let mut told = 0;
+    for key in keys(&with_optional_keys()) {
+        // Texts, choices, a surface, whose ranges are told together, and what [finger.1] has told.
+        if key.value.starts_with(['"', '{', 't', 'f']) || matches!(key.table.as_str(), "finger.2" | "finger.3") {
+            continue;
+        }
+        let refusals = beyond.iter().filter_map(|number| {
+            let text = format!("[{}]\n{} = {}\n", key.table, key.name, with_numbers(&key.value, number));
+            read(&text).err()
+        });
+        let ranges: BTreeSet<String> = refusals
+            .filter_map(|(_, reason)| reason.split_once(" is outside ").map(|(_, range)| range.to_owned()))
+            .collect();
+        for range in ranges {
+            assert!(tells(&key.comment, &range), "{}.{}: {range:?} is not in {:?}", key.table, key.name, key.comment);
+            told += 1;
+        }
+    }
+    assert!(told > 40, "only {told} ranges found");
+}

@@ -1,0 +1,138 @@
+//! Planners that end without CloseHand: their boards go to the configured end state.
+
+use crate::c::{Bench, STRICT, c_compilers};
+use crate::rig::{Board, State, TARGET, goes, on_boards, open, three_boards, turn, write_configuration};
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+use sun2xp::board::protocol::Status;
+
+const HOLD: &str = "end_state = 'hold'\nhold_time_ms = 1500\nhold_torque_limit = 0.3\n";
+const HOLD_TIME: Duration = Duration::from_millis(1500);
+
+/// A little more than the limit, for its rounding to the board's unit.
+const MOST_HELD: f64 = 0.301;
+
+/// A C planner that has sent every finger somewhere; then it does what `ending` says.
+struct Planner {
+    process: Child,
+    _bench: Bench,
+}
+
+impl Planner {
+    fn start(boards: &[Board; 3], hand: &str, ending: &str) -> Self {
+        let bench = Bench::new();
+        let program = bench.build(c_compilers()[0], STRICT, &["goes.c"]);
+        let configuration = bench.path().join("sun2xp.toml");
+        write_configuration(&configuration, boards, hand);
+        let mut planner = Command::new(program);
+        planner.arg(ending).env("SUN2XP_CONFIG", configuration).stdout(Stdio::piped());
+        let mut process = planner.spawn().expect("a planner");
+        let mut line = String::new();
+        BufReader::new(process.stdout.take().expect("its output")).read_line(&mut line).expect("a line");
+        assert_eq!(line, "there\n");
+        Self { process, _bench: bench }
+    }
+
+    /// Until it has ended with status 3.
+    fn ends(mut self) {
+        assert_eq!(self.process.wait().expect("it ends").code(), Some(3));
+    }
+
+    /// SIGKILL.
+    fn dies(mut self) {
+        self.process.kill().expect("killed");
+        self.process.wait().expect("gone");
+    }
+}
+
+impl Drop for Planner {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn holds(state: &State) -> bool {
+    state.has(Status::HOLDING)
+}
+
+fn assert_held_within_the_limit(state: &State) {
+    let strongest = state.torques.iter().fold(0.0f64, |most, torque| most.max(torque.abs()));
+    assert!(strongest > 0.2 && strongest <= MOST_HELD, "{state:?}");
+}
+
+#[test]
+fn a_killed_planner_leaves_its_motors_released() {
+    let _turn = turn();
+    let mut boards = three_boards();
+    let planner = Planner::start(&boards, "", "wait");
+    for (index, board) in boards.iter_mut().enumerate() {
+        let state = board.state(index + 1);
+        assert!(state.has(Status::ENABLED) && !state.limp(), "{state:?}");
+    }
+    planner.dies();
+    for (index, board) in boards.iter_mut().enumerate() {
+        let state = board.wait_for(index + 1, "ended", |state| state.has(Status::ENDED));
+        assert!(state.has(Status::WATCHDOG_TRIPPED) && state.limp(), "{state:?}");
+    }
+    // The next planner finds the boards ready.
+    goes(&open(on_boards(&boards)), 2, TARGET);
+}
+
+#[test]
+fn a_killed_planner_leaves_its_motors_holding_for_a_while() {
+    let _turn = turn();
+    let mut boards = three_boards();
+    let planner = Planner::start(&boards, HOLD, "wait");
+    let strongest = boards[0].state(1).torques.into_iter().fold(0.0, f64::max);
+    assert!(strongest > MOST_HELD, "nothing to bound: {strongest} N cm");
+    let killed = Instant::now();
+    planner.dies();
+    for (index, board) in boards.iter_mut().enumerate() {
+        assert_held_within_the_limit(&board.wait_for(index + 1, "holding", holds));
+    }
+    for (index, board) in boards.iter_mut().enumerate() {
+        let state = board.wait_for(index + 1, "released", |state| !holds(state));
+        assert!(state.has(Status::ENDED) && state.has(Status::WATCHDOG_TRIPPED) && state.limp(), "{state:?}");
+        assert!(killed.elapsed() >= HOLD_TIME, "let go after {:?}", killed.elapsed());
+    }
+}
+
+#[test]
+fn a_planner_that_returns_or_exits_releases_by_itself() {
+    let _turn = turn();
+    for ending in ["return", "exit"] {
+        let mut boards = three_boards();
+        Planner::start(&boards, "", ending).ends();
+        for (index, board) in boards.iter_mut().enumerate() {
+            let state = board.state(index + 1);
+            assert!(state.has(Status::ENDED) && state.limp(), "{ending}: {state:?}");
+            assert!(!state.has(Status::WATCHDOG_TRIPPED), "{ending}: left to the watchdog: {state:?}");
+        }
+    }
+}
+
+#[test]
+fn a_planner_that_returns_leaves_its_motors_holding_for_a_while() {
+    let _turn = turn();
+    let mut boards = three_boards();
+    let planner = Planner::start(&boards, HOLD, "return");
+    planner.ends();
+    for (index, board) in boards.iter_mut().enumerate() {
+        let state = board.wait_for(index + 1, "released", |state| !holds(state));
+        assert!(state.has(Status::ENDED) && state.limp(), "{state:?}");
+        assert!(!state.has(Status::WATCHDOG_TRIPPED), "left to the watchdog: {state:?}");
+    }
+}
+
+#[test]
+fn a_planner_that_leaves_past_every_handler_is_left_to_the_watchdogs() {
+    let _turn = turn();
+    let mut boards = three_boards();
+    Planner::start(&boards, "", "_exit").ends();
+    for (index, board) in boards.iter_mut().enumerate() {
+        let state = board.wait_for(index + 1, "ended", |state| state.has(Status::ENDED));
+        assert!(state.has(Status::WATCHDOG_TRIPPED) && state.limp(), "{state:?}");
+    }
+}

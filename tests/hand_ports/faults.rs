@@ -1,0 +1,115 @@
+//! Boards that fail while the hand is open: the finger faults and says why, the others go on.
+
+use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three_boards, turn, wait_until};
+use sun2xp::board::protocol::Status;
+use sun2xp::board::{Pace, SimulatedBoard, SimulatedFinger, SimulatedPort};
+use sun2xp::finger::{Fault, Stage};
+use sun2xp::hand::Hand;
+use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::Priority;
+
+/// Waits for the fault of a finger, and returns what its calls say then.
+fn fault_text(hand: &Hand, finger: i32) -> String {
+    wait_until("faulted", || hand.position(finger).is_err());
+    let refused = [
+        hand.position(finger).map(drop),
+        hand.send_position(finger, START),
+        hand.send_stiffness(finger, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+    ];
+    let [text, ..] = refused.map(|result| {
+        let error = result.expect_err("faulted");
+        assert_eq!(error.errno(), libc::EIO, "{error}");
+        error.to_string()
+    });
+    assert!(text.starts_with(&format!("finger {finger} is faulted: ")), "{text}");
+    text
+}
+
+#[test]
+fn a_board_that_dies_faults_its_finger_only() {
+    let _turn = turn();
+    for one_thread in [false, true] {
+        let mut boards = three_boards();
+        let mut configuration = on_boards(&boards);
+        if one_thread {
+            configuration.fingers.iter_mut().for_each(|finger| finger.thread = 3);
+        }
+        let hand = open(configuration);
+        goes(&hand, 2, TARGET);
+        boards[1].kill();
+        let text = fault_text(&hand, 2);
+        assert!(text.contains("port failed") && text.contains("unplugged"), "{text}");
+        assert!(matches!(hand.status(2).expect("status").stage, Stage::Faulted(Fault::PortFailed { .. })));
+        goes(&hand, 1, TARGET);
+        goes(&hand, 3, TARGET);
+        close(hand);
+        assert!(boards[0].state(1).limp());
+    }
+}
+
+#[test]
+fn a_board_that_falls_silent_faults_its_finger_and_its_watchdog_ends_it() {
+    let _turn = turn();
+    let mut boards = three_boards();
+    let hand = open(on_boards(&boards));
+    goes(&hand, 1, TARGET);
+    boards[0].signal(libc::SIGSTOP);
+    let text = fault_text(&hand, 1);
+    assert!(text.contains("no valid reply from the board for 500 ms"), "{text}");
+    goes(&hand, 2, TARGET);
+    close(hand);
+    boards[0].signal(libc::SIGCONT);
+    boards[0].wait_for(1, "ended", |state| state.has(Status::ENDED) && state.limp());
+    // Nothing stale is left in the line.
+    goes(&open(on_boards(&boards)), 1, START);
+}
+
+/// A board in this process, so that things can happen to it that the program has no order for.
+fn own_board() -> (SimulatedPort, Hand) {
+    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
+    let port =
+        SimulatedPort::start(board, Pace::Patient, Priority { fifo: 20, core: None }).expect("a pseudo-terminal");
+    let hand = open(on_one_port(&port.path().to_string_lossy(), 2_000_000));
+    (port, hand)
+}
+
+fn with_finger<R>(board: &SimulatedPort, finger: u8, act: impl FnOnce(&mut SimulatedFinger) -> R) -> R {
+    board.with_finger(finger, act).expect("the board has the finger")
+}
+
+#[test]
+fn a_finger_that_lost_its_configuration_faults_and_its_neighbours_go_on() {
+    let _turn = turn();
+    let (board, hand) = own_board();
+    goes(&hand, 2, TARGET);
+    with_finger(&board, 2, SimulatedFinger::reset);
+    let text = fault_text(&hand, 2);
+    assert!(text.contains("not configured") && text.contains("lost its power"), "{text}");
+    for finger in [1, 3] {
+        assert!(with_finger(&board, finger, |finger| finger.enabled()));
+        goes(&hand, finger.into(), TARGET);
+    }
+    close(hand);
+    goes(&open(on_one_port(&board.path().to_string_lossy(), 2_000_000)), 2, TARGET);
+}
+
+#[test]
+fn an_emergency_stop_faults_the_finger_with_its_status_bits() {
+    let _turn = turn();
+    let (board, hand) = own_board();
+    with_finger(&board, 3, |finger| finger.set_faults(Status::EMERGENCY_STOP));
+    let text = fault_text(&hand, 3);
+    let Stage::Faulted(Fault::BoardStopped { status }) = hand.status(3).expect("status").stage else {
+        panic!("{text}")
+    };
+    assert!(Status(status).has(Status::EMERGENCY_STOP) && text.contains("status bits"), "{text}");
+    goes(&hand, 1, TARGET);
+    close(hand);
+
+    // As long as it is pressed, the hand does not open; then it does.
+    let port = board.path().to_string_lossy().into_owned();
+    let error = Hand::open(on_one_port(&port, 2_000_000)).err().expect("refused").to_string();
+    assert!(error.contains("finger 3") && error.contains("emergency stop"), "{error}");
+    with_finger(&board, 3, |finger| finger.set_faults(Status::default()));
+    goes(&open(on_one_port(&port, 2_000_000)), 3, TARGET);
+}

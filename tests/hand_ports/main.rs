@@ -1,0 +1,10 @@
+//! The library against `sun2xp board`, a program of its own, through configured ports.
+
+#[allow(dead_code)]
+#[path = "../c/mod.rs"]
+mod c;
+mod endings;
+mod faults;
+mod motion;
+mod opening;
+mod rig;

@@ -1,0 +1,218 @@
+//! Board programs, and a hand that is configured for their ports.
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command as Program, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+use sun2xp::board::protocol::Status;
+use sun2xp::hand::Hand;
+use sun2xp::model::configuration::Configuration;
+
+/// A pose of joint 2 at more than 0.8 rad.
+pub const TARGET: [f64; 3] = [0.2, 0.6, 1.1];
+
+/// The simulated fingers' start pose.
+pub const START: [f64; 3] = [0.0, 30.0 * std::f64::consts::PI / 180.0, 60.0 * std::f64::consts::PI / 180.0];
+
+/// Longer than any wait of a test should be on a busy machine.
+const LIMIT: Duration = Duration::from_secs(20);
+
+/// One hand at a time: its servos and boards want the machine. To be kept for the length of a test.
+pub fn turn() -> MutexGuard<'static, ()> {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    // A test that failed has left nothing behind.
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// `sun2xp board` with its orders.
+pub struct Board {
+    process: Child,
+    orders: ChildStdin,
+    answers: BufReader<ChildStdout>,
+    pub port: String,
+}
+
+/// The answer to `state`.
+#[derive(Debug)]
+pub struct State {
+    pub joints: Vec<f64>,
+    pub tensions: Vec<f64>,
+    /// N cm.
+    pub torques: Vec<f64>,
+    pub status: Status,
+}
+
+impl Board {
+    /// A board with these fingers. It asks for the priority that simulated boards have in the library, and is as patient.
+    pub fn start(fingers: &[&str]) -> Self {
+        let mut program = Program::new(env!("CARGO_BIN_EXE_sun2xp"));
+        program
+            .args(["board", "--patient", "--priority", "20"])
+            .args(fingers.iter().flat_map(|finger| ["--finger", finger]));
+        let mut process = program.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("a board");
+        let orders = process.stdin.take().expect("its input");
+        let mut answers = BufReader::new(process.stdout.take().expect("its output"));
+        let port = line(&mut answers);
+        Self { process, orders, answers, port }
+    }
+
+    pub fn order(&mut self, order: &str) {
+        assert_eq!(self.ask(order), "ok", "{order}");
+    }
+
+    pub fn state(&mut self, finger: usize) -> State {
+        let answer = self.ask(&format!("state {finger}"));
+        let numbers = |name: &str, count: usize| {
+            let words = answer.split_whitespace().skip_while(|&word| word != name).skip(1);
+            let numbers: Vec<f64> = words.take(count).map(|word| word.parse().expect("a number")).collect();
+            assert_eq!(numbers.len(), count, "{answer}");
+            numbers
+        };
+        let status = answer.rsplit_once("status 0x").expect("a status").1;
+        State {
+            joints: numbers("joints", 3),
+            tensions: numbers("tensions", 4),
+            torques: numbers("torques", 4),
+            status: Status(u16::from_str_radix(status, 16).expect("bits")),
+        }
+    }
+
+    /// Asks for the state of a finger until it is as wanted.
+    pub fn wait_for(&mut self, finger: usize, what: &str, wanted: impl Fn(&State) -> bool) -> State {
+        let begun = Instant::now();
+        loop {
+            let state = self.state(finger);
+            if wanted(&state) {
+                return state;
+            }
+            assert!(begun.elapsed() < LIMIT, "finger {finger}: not {what}: {state:?}");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    /// SIGKILL.
+    pub fn kill(&mut self) {
+        self.process.kill().expect("killed");
+        self.process.wait().expect("gone");
+    }
+
+    /// SIGSTOP and SIGCONT: the port stays, and nobody is behind it.
+    pub fn signal(&self, signal: libc::c_int) {
+        // SAFETY: the process has not been waited for, so the number is still its own.
+        assert_eq!(unsafe { libc::kill(self.process.id() as libc::pid_t, signal) }, 0);
+    }
+
+    fn ask(&mut self, order: &str) -> String {
+        writeln!(self.orders, "{order}").expect("an order");
+        line(&mut self.answers)
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+impl State {
+    pub fn has(&self, bits: Status) -> bool {
+        self.status.has(bits)
+    }
+
+    pub fn limp(&self) -> bool {
+        self.torques.iter().all(|&torque| torque == 0.0)
+    }
+}
+
+fn line(answers: &mut BufReader<ChildStdout>) -> String {
+    let mut line = String::new();
+    answers.read_line(&mut line).expect("an answer");
+    line.trim_end().to_owned()
+}
+
+/// Three boards with a finger each.
+pub fn three_boards() -> [Board; 3] {
+    ["1", "2", "3"].map(|finger| Board::start(&[finger]))
+}
+
+/// A hand on these ports. Its watchdogs are patient: a busy machine may carry the bytes of a pseudo-terminal tens of ms late.
+pub fn on_ports(ports: [&str; 3]) -> Configuration {
+    let mut configuration = Configuration::default();
+    configuration.hand.watchdog_ms = 500;
+    for (finger, port) in configuration.fingers.iter_mut().zip(ports) {
+        finger.port = port.into();
+    }
+    configuration
+}
+
+/// A hand on the ports of three boards.
+pub fn on_boards(boards: &[Board; 3]) -> Configuration {
+    on_ports(boards.each_ref().map(|board| board.port.as_str()))
+}
+
+/// A hand whose three fingers share a port, and therefore a thread.
+pub fn on_one_port(port: &str, baud: u32) -> Configuration {
+    let mut configuration = on_ports([port; 3]);
+    for finger in &mut configuration.fingers {
+        (finger.baud, finger.thread) = (baud, 1);
+    }
+    configuration
+}
+
+pub fn open(configuration: Configuration) -> Hand {
+    Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"))
+}
+
+pub fn farthest(hand: &Hand, finger: i32, target: [f64; 3]) -> f64 {
+    let position = hand.position(finger).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
+    position.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max)
+}
+
+/// Sends a finger somewhere and waits until it has been within 0.02 rad for 100 ms.
+pub fn goes(hand: &Hand, finger: i32, target: [f64; 3]) {
+    hand.send_position(finger, target).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
+    settles(hand, finger, target);
+}
+
+/// Waits until a finger has been within 0.02 rad of `target` for 100 ms.
+pub fn settles(hand: &Hand, finger: i32, target: [f64; 3]) {
+    let begun = Instant::now();
+    let mut since = Instant::now();
+    while since.elapsed() < Duration::from_millis(100) {
+        if farthest(hand, finger, target) > 0.02 {
+            since = Instant::now();
+        }
+        assert!(begun.elapsed() < LIMIT, "finger {finger} does not settle: {:?}", hand.report(finger));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Waits for something.
+pub fn wait_until(what: &str, mut wanted: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !wanted() {
+        assert!(begun.elapsed() < LIMIT, "not {what}");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Closes a hand; one that never ends fails the test instead of stopping it.
+pub fn close(hand: Hand) {
+    let (closed, hear) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        hand.close();
+        closed.send(())
+    });
+    hear.recv_timeout(LIMIT).expect("the hand closes");
+}
+
+/// Writes a configuration file with what [`on_ports`] configures, and more keys of `[hand]`.
+pub fn write_configuration(file: &Path, boards: &[Board; 3], hand: &str) {
+    let mut text = format!("[hand]\nwatchdog_ms = 500\n{hand}");
+    for (index, board) in boards.iter().enumerate() {
+        text += &format!("[finger.{}]\nport = '{}'\n", index + 1, board.port);
+    }
+    std::fs::write(file, text).expect("written");
+}
