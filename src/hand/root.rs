@@ -1,6 +1,7 @@
 //! Root: opens and closes a hand, owns its threads and ports, reports its status.
 
 use crate::board::{Port, SimulatedFinger, SimulatedPort};
+use crate::control::calibration::Verdict;
 use crate::finger::{FingerReport, Servo, Stage};
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::opening::{Line, check, reach, simulate};
@@ -62,6 +63,8 @@ pub struct FingerStatus {
     pub damaged_frames: u64,
     /// The part of the wanted joint torque that the tension limits let through in the last cycle, 0 to 1.
     pub torque_scale: f64,
+    /// The part of the calibration under way that is done, 0 to 1; 0 where there is none.
+    pub calibration: f64,
 }
 
 impl Hand {
@@ -166,6 +169,10 @@ impl Hand {
             skipped_periods: report.skipped_periods,
             damaged_frames: report.damaged_frames,
             torque_scale: report.cycle.torque_scale,
+            calibration: match report.calibration {
+                Some(Verdict::Going(progress)) => progress.part,
+                _ => 0.0,
+            },
         })
     }
 

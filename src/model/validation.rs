@@ -201,11 +201,20 @@ impl ConfiguredFinger {
         each("friction.joint_coulomb", &self.friction.joint_coulomb, 0.0, 1000.0, "N cm")?;
         let zeroing = &self.zeroing;
         each("zeroing.pose_degrees", &zeroing.pose_degrees, -180.0, 180.0, "degrees")?;
-        let (lower, upper) = self.stops();
+        each("zeroing.lower_stop_degrees", &zeroing.lower_stop_degrees.unwrap_or_default(), -270.0, 270.0, "degrees")?;
+        each("zeroing.upper_stop_degrees", &zeroing.upper_stop_degrees.unwrap_or_default(), -270.0, 270.0, "degrees")?;
+        let ((lower, upper), (low, high)) = (self.stops(), self.joint_limits());
         for joint in 0..3 {
-            let (low, high) = (lower[joint].to_degrees(), upper[joint].to_degrees());
-            within("zeroing.lower_stop_degrees", low, -270.0, self.joints.minimum_degrees[joint], "degrees")?;
-            within("zeroing.upper_stop_degrees", high, self.joints.maximum_degrees[joint], 270.0, "degrees")?;
+            let inside = |key, stop: f64, limit: f64| {
+                let (stop, limit) = (stop.to_degrees(), limit.to_degrees());
+                unusable(key, format!("joint {joint}: a stop at {stop:.1} degrees is inside its limit of {limit:.1}"))
+            };
+            if lower[joint] > low[joint] {
+                return inside("zeroing.lower_stop_degrees", lower[joint], low[joint]);
+            }
+            if upper[joint] < high[joint] {
+                return inside("zeroing.upper_stop_degrees", upper[joint], high[joint]);
+            }
         }
         within("zeroing.torque", zeroing.torque, 1e-3, 100.0, "N cm")?;
         within("zeroing.speed", zeroing.speed, 1e-2, 10.0, "rad/s")?;
