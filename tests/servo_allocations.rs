@@ -62,4 +62,8 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     others = BY_OTHERS.load(Relaxed) - others;
     assert!(others < 100, "the planner's calls allocate: {others}");
     assert!(cycles(2) > 500 && cycles(3) > 500, "all fingers ran");
+
+    // Nor while a finger is calibrated and its controller replaced.
+    hand.zero(2, |_| {}).expect("zeroed");
+    assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads, calibrating");
 }

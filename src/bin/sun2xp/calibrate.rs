@@ -122,11 +122,11 @@ fn tell(findings: Findings) -> io::Result<()> {
 /// A table of what was configured and what was found.
 fn compare(finger: i32, before: &ConfiguredFinger, after: &ConfiguredFinger) -> io::Result<()> {
     let mut output = io::stdout().lock();
+    writeln!(output, "{:<32} {:<36} {:<36} changed", format!("finger.{finger}"), "configured", "found")?;
     let mut row = |key: &str, before: String, after: String| {
         let changed = if before == after { "" } else { "*" };
         writeln!(output, "{key:<32} {before:<36} {after:<36} {changed}")
     };
-    row(&format!("finger.{finger}"), "configured".into(), "found".into())?;
     row("motor.sign", list(&before.motor.sign, 0), list(&after.motor.sign, 0))?;
     row("encoder.sign", list(&before.encoder.sign, 0), list(&after.encoder.sign, 0))?;
     row("encoder.zero", list(&before.encoder.zero, 0), list(&after.encoder.zero, 0))?;

@@ -16,6 +16,8 @@ struct Arguments {
     tool: Tool,
 }
 
+// There is one of it in a process.
+#[allow(clippy::large_enum_variant)]
 #[derive(Subcommand)]
 enum Tool {
     Board(board::Arguments),

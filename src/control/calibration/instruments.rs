@@ -32,6 +32,8 @@ pub(super) struct Instruments {
     /// t_min, t_max, N.
     pub minimum: f64,
     pub maximum: f64,
+    /// Length of the finger beyond each joint, cm.
+    pub beyond: Vector3<f64>,
     /// Seconds of a cycle.
     pub period: f64,
 }
@@ -57,6 +59,10 @@ impl Instruments {
             offset: Vector4::zeros(),
             minimum: finger.tendon.minimum,
             maximum: finger.tendon.maximum,
+            beyond: {
+                let [l0, l1, l2] = finger.geometry.links;
+                Vector3::new(l0 + l1 + l2, l1 + l2, l2)
+            },
             period: 1.0 / rate,
             tendons,
             sensors,

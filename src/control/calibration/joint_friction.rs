@@ -11,11 +11,12 @@ use super::routine::Sample;
 use nalgebra::Vector3;
 
 /// Speeds, rad/s, and how far each goes, rad.
-const SWINGS: [(f64, f64); 2] = [(0.15, 0.4), (0.8, 0.8)];
+const SWINGS: [(f64, f64); 2] = [(0.15, 0.4), (0.6, 0.8)];
 /// Distance kept from the stop, rad.
 const CLEAR: f64 = 0.1;
-/// Left out after every change of direction, rad: the joint has its speed by then.
-const RUN_UP: f64 = 0.1;
+/// Left out after every change of direction, s: an extended finger swings for so long, and its inertia takes as much torque as
+/// its friction.
+const RUN_UP: f64 = 0.5;
 /// A joint that pulls at its limit for so long is blocked, s.
 const BLOCKED: f64 = 0.3;
 /// rad/s.
@@ -59,7 +60,7 @@ impl JointFriction {
         let from = *self.from.get_or_insert(lead.anchor[joint]);
         lead.advance(joint, target, speed * instruments.period);
         let anchor = lead.anchor[joint];
-        if (1..=4).contains(&self.leg) && (anchor - from).abs() > RUN_UP && anchor != target {
+        if (1..=4).contains(&self.leg) && (anchor - from).abs() > RUN_UP * speed && anchor != target {
             let torque = instruments.tendons.r.row(joint).transpose().dot(&instruments.tensions(sample.feedback));
             let sign = (target - from).signum();
             self.fit.add(&Vector3::new(1.0, sign, sign * speed), torque);

@@ -8,14 +8,16 @@ use nalgebra::{Vector3, Vector4};
 
 /// N cm/rad: less than the softest spring that the tendon controllers are tuned for gives a bent finger.
 const STIFFNESS: f64 = 30.0;
-/// N cm s/rad.
-const DAMPING: f64 = 0.8;
+/// N cm s/rad for every cm of finger beyond the joint, whose inertia must not swing on the spring.
+const DAMPING: f64 = 0.2;
 /// Time constant of the low-pass on the joints, s: for supervision, not for the loop.
 const SMOOTHING: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointLead {
     pub anchor: Vector3<f64>,
+    /// How far the anchor moved in this cycle, rad.
+    moved: Vector3<f64>,
     /// Smoothed, rad, by the configured zero.
     pub joints: Vector3<f64>,
     /// Smoothed, N.
@@ -29,11 +31,12 @@ impl JointLead {
     pub fn new(instruments: &Instruments, sample: &Sample, limit: f64) -> Self {
         let tensions = instruments.tensions(sample.feedback);
         let joints = instruments.joints(&instruments.travel(sample.feedback), &tensions);
-        Self { anchor: joints, joints, tensions, limit }
+        Self { anchor: joints, moved: Vector3::zeros(), joints, tensions, limit }
     }
 
     /// Takes a measurement in.
     pub fn measure(&mut self, instruments: &Instruments, sample: &Sample) {
+        self.moved = Vector3::zeros();
         let gain = (instruments.period / SMOOTHING).min(1.0);
         self.tensions += (instruments.tensions(sample.feedback) - self.tensions) * gain;
         let joints = instruments.joints(&instruments.travel(sample.feedback), &self.tensions);
@@ -44,7 +47,9 @@ impl JointLead {
     pub fn advance(&mut self, joint: usize, target: f64, step: f64) {
         let farthest = self.limit / STIFFNESS;
         let anchor = self.anchor[joint] + (target - self.anchor[joint]).clamp(-step, step);
+        let before = self.anchor[joint];
         self.anchor[joint] = anchor.clamp(self.joints[joint] - farthest, self.joints[joint] + farthest);
+        self.moved[joint] = self.anchor[joint] - before;
     }
 
     /// Whether the torque of a joint is at its limit: it lags as far behind as it may.
@@ -56,7 +61,9 @@ impl JointLead {
     pub fn activity(&self, instruments: &Instruments, sample: &Sample) -> Activity {
         let spring = (self.anchor - self.joints) * STIFFNESS;
         let spring = spring.map(|torque| torque.clamp(-self.limit, self.limit));
-        let torques = spring - sample.report.joint_rates * DAMPING;
+        // Against the anchor's own speed, so that a moving joint does not lag.
+        let slip = sample.report.joint_rates - self.moved / instruments.period;
+        let torques = spring - slip.component_mul(&instruments.beyond) * DAMPING;
         Activity::Tense(instruments.ask(instruments.distribution.distribute(&torques).tensions))
     }
 }
