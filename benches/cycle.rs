@@ -38,7 +38,7 @@ fn cycle(bencher: Bencher, scheme: Scheme, stiffness: f64) {
     });
     let mut state = controller.start(&feedback[0]);
     let stiffness = Matrix3::new(3.0, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0) * stiffness;
-    let activity = Activity::Follow(SetPoint { joints: Vector3::new(0.3, 0.6, 1.2), stiffness });
+    let activity = Activity::Follow(SetPoint::hard_finger(Vector3::new(0.3, 0.6, 1.2), stiffness));
     let mut turn = 0;
     bencher.bench_local(|| {
         turn = (turn + 1) % feedback.len();

@@ -99,10 +99,10 @@ proptest! {
         let links = Links([3.556, 5.080, 4.000]);
         let (theta, away, rates) = (Vector3::from(theta), Vector3::from(away), Vector3::from(rates));
         let root = nalgebra::Matrix3::from_row_slice(&root);
-        let set_point = SetPoint { joints: theta + away, stiffness: root * root.transpose() };
+        let set_point = SetPoint::hard_finger(theta + away, root * root.transpose());
         let law = JointStiffness::new(links, 0.02);
         let jacobian = links.jacobian(&theta);
-        let expected = jacobian.transpose() * (set_point.stiffness * (jacobian * away));
+        let expected = jacobian.transpose() * (root * root.transpose() * (jacobian * away));
         let rest = law.torques(&set_point, &theta, &Vector3::zeros());
         prop_assert!((rest - expected).amax() < 1e-9);
         let power = rates.dot(&(law.torques(&set_point, &theta, &rates) - rest));
@@ -112,7 +112,7 @@ proptest! {
 
 #[test]
 fn without_stiffness_only_damping_is_left() {
-    let set_point = SetPoint { joints: Vector3::new(0.3, 0.2, 0.1), stiffness: nalgebra::Matrix3::zeros() };
+    let set_point = SetPoint::hard_finger(Vector3::new(0.3, 0.2, 0.1), nalgebra::Matrix3::zeros());
     let law = JointStiffness::new(Links([3.556, 5.080, 4.000]), 0.02);
     assert_eq!(law.torques(&set_point, &Vector3::zeros(), &Vector3::zeros()), Vector3::zeros());
     let rates = Vector3::new(1.0, -2.0, 0.5);

@@ -67,12 +67,17 @@ static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
 
 /// Runs one call: 0 where it is done, -1 where it is refused. No panic leaves it.
 pub(super) fn guarded(name: &'static str, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
+    let errno = process::errno();
     let outcome = match process::is_forked_child() {
         true => Err(Refusal::Forked),
         false => catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| Err(Refusal::Panicked(message(&*panic)))),
     };
     match outcome {
-        Ok(()) => 0,
+        Ok(()) => {
+            // Files that are looked for and not there, and locks that were waited for, have set it.
+            process::set_errno(errno);
+            0
+        }
         Err(refusal) => {
             refuse(name, &refusal);
             -1
@@ -136,6 +141,16 @@ mod tests {
         let errno = std::io::Error::last_os_error().raw_os_error();
         assert_eq!((result, errno), (-1, Some(libc::EIO)));
         assert_eq!(told(), "SendPos: the library failed (a defect): a defect of this library, please report it");
+    }
+
+    #[test]
+    fn success_leaves_errno() {
+        process::set_errno(libc::E2BIG);
+        let call = || {
+            process::set_errno(libc::ENOENT);
+            Ok(())
+        };
+        assert_eq!((guarded("OpenHand", call), process::errno()), (0, libc::E2BIG));
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod cycle;
 mod figure10;
 mod figure9;
 mod gains;
+mod inverse_kinematics;
 mod joint_positions;
 mod joint_stiffness;
 mod low_pass;
@@ -24,6 +25,7 @@ mod transition;
 mod usable;
 
 pub use cycle::{Controller, State};
+pub use inverse_kinematics::{InverseKinematics, OutOfReach};
 pub use joint_stiffness::JointStiffness;
-pub use signals::{Activity, Command, Feedback, Report, SetPoint};
+pub use signals::{Activity, Command, Feedback, Law, Report, SetPoint, spatial};
 pub use tension_distribution::{Distribution, TensionDistribution};

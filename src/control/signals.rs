@@ -1,6 +1,8 @@
 //! What goes in and comes out of one servo cycle.
 
-use nalgebra::{Matrix3, Vector3, Vector4};
+pub use crate::model::configuration::Law;
+
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
 
 /// What the board measured at one instant, as it measured it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,14 +16,35 @@ pub struct Feedback {
 /// Where a fingertip's spring is anchored and how stiff it is. Taken over whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetPoint {
-    /// theta_d: desired joint angles, rad.
+    /// theta_d: desired joint angles, rad. With the exact law it stands for the tip's pose there.
     pub joints: Vector3<f64>,
-    /// Kx in the finger's frame, N/cm; symmetric.
-    pub stiffness: Matrix3<f64>,
+    /// How deflections become torques.
+    pub law: Law,
+    /// K of [`Contact::stiffness`](crate::model::Contact::stiffness) in the finger's frame; symmetric: rows and columns 0 to
+    /// 2 translation, N/cm, 3 to 5 rotation, N cm/rad.
+    pub stiffness: Matrix6<f64>,
+    /// Damping relative to what the controller chooses from the stiffness: 1 is that, 0.2 to 3.
+    pub damping: f64,
+}
+
+impl SetPoint {
+    /// A hard finger, so a spring of three dimensions: `stiffness` is Kx, N/cm. The report's law, the chosen damping.
+    pub fn hard_finger(joints: Vector3<f64>, stiffness: Matrix3<f64>) -> Self {
+        let stiffness = spatial(&stiffness);
+        Self { joints, law: Law::Report, stiffness, damping: 1.0 }
+    }
+}
+
+/// Kx, N/cm, as the stiffness of a set point: without rotation.
+pub fn spatial(kx: &Matrix3<f64>) -> Matrix6<f64> {
+    let mut stiffness = Matrix6::zeros();
+    stiffness.fixed_view_mut::<3, 3>(0, 0).copy_from(kx);
+    stiffness
 }
 
 /// What a finger is doing; decided by its servo thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a set point in a box would be allocated and freed in the servo")]
 pub enum Activity {
     /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is.
     TakeUpSlack,

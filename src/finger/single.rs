@@ -17,6 +17,10 @@ const TENSION_SETTLED: f64 = 0.02;
 /// A simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to stop the hand.
 const SIMULATION_PATIENCE_MS: f64 = 1000.0;
 
+/// So long, ms, the last command is repeated where replies stay away. Then the motors are let go until one comes: a torque that
+/// nobody watches winds a tendon up, or off its motor, within some ms, and the watchdog does not see it, as commands go on.
+const BLIND_MS: f64 = 10.0;
+
 /// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
 const BEYOND_LIMITS: f64 = 0.5;
 
@@ -49,7 +53,8 @@ pub struct FingerServo {
     /// Cycles since the stage began.
     stage_cycles: u32,
     stops_left: u8,
-    initial_stiffness: Matrix3<f64>,
+    /// How the finger holds the pose that it finds at open.
+    initial: SetPoint,
     end_state: EndState,
 }
 
@@ -57,6 +62,7 @@ pub struct FingerServo {
 struct Limits {
     period_ms: f64,
     lost: u32,
+    blind: u32,
     tension: u32,
     settled: u32,
     ramp: u32,
@@ -85,9 +91,11 @@ impl FingerServo {
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
+        let law = finger.controller.law;
+        let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
         let report = FingerReport {
             stage: Stage::Opening,
-            set_point: SetPoint { joints: Vector3::zeros(), stiffness },
+            set_point: initial,
             cycle: Default::default(),
             orders: 0,
             calibration: None,
@@ -120,6 +128,7 @@ impl FingerServo {
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
                 lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
+                blind: cycles(BLIND_MS),
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
@@ -131,7 +140,7 @@ impl FingerServo {
             settled_cycles: 0,
             stage_cycles: 0,
             stops_left: STOPS_AFTER_FAULT,
-            initial_stiffness: stiffness,
+            initial,
             end_state: hand.end_state,
         };
         Ok((this, planners))
@@ -218,6 +227,13 @@ impl FingerServo {
             self.calibrate();
             let feedback = self.answered.then_some(&self.feedback);
             (self.command, self.report.cycle) = self.controller.cycle(&mut self.state, feedback, &self.activity);
+            // Periods that will be skipped are periods without a reply: what differentiates and predicts must know of them.
+            for _ in 0..skipped.min(self.limits.lost.into()) {
+                (self.command, self.report.cycle) = self.controller.cycle(&mut self.state, None, &self.activity);
+            }
+            if self.lost_in_a_row >= self.limits.blind {
+                self.command = Command::default();
+            }
             self.move_on();
         }
         self.mailbox.publish(self.report);
@@ -347,7 +363,7 @@ impl FingerServo {
                         return;
                     }
                     let joints = self.report.cycle.joints;
-                    self.report.set_point = SetPoint { joints, stiffness: self.initial_stiffness };
+                    self.report.set_point = SetPoint { joints, ..self.initial };
                     self.activity = Activity::Follow(self.report.set_point);
                     self.enter(Stage::Running);
                 }

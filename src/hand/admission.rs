@@ -1,7 +1,7 @@
 //! What a planner may ask of a finger: the checks between a call and the servo. Nothing that fails one reaches it.
 
 use crate::hand::HandError;
-use crate::model::configuration::OutOfRange;
+use crate::model::configuration::{Law, OutOfRange};
 use nalgebra::{Matrix3, Vector3};
 
 /// Kx may be asymmetric, or have a negative eigenvalue, by so much of its largest entry or eigenvalue: the rounding of a
@@ -17,6 +17,8 @@ pub(super) struct Admission {
     pub joint_limits: (Vector3<f64>, Vector3<f64>),
     /// Bound on the largest eigenvalue of Kx, N/cm.
     pub stiffness_bound: f64,
+    /// What SendPos makes of deflections.
+    pub law: Law,
     /// Refuse or clamp.
     pub out_of_range: OutOfRange,
 }
@@ -51,10 +53,13 @@ impl Admission {
                 return Err(HandError::NotSymmetric { finger: self.finger, row, column, difference });
             }
         }
-        let symmetric = (asked + asked.transpose()) * 0.5;
+        // Halved before they are added: the sum of two finite entries may be infinite, and its eigenvalues NaN, which no
+        // comparison below would stop.
+        let symmetric = asked * 0.5 + asked.transpose() * 0.5;
         let mut eigen = symmetric.symmetric_eigen();
         let (smallest, largest) = (eigen.eigenvalues.min(), eigen.eigenvalues.max());
-        if smallest < -ROUNDING * largest.abs().max(smallest.abs()) {
+        // An eigenvalue may be infinite where no entry is.
+        if smallest < -ROUNDING * largest.abs().max(smallest.abs()).min(f64::MAX) {
             return Err(HandError::Negative { finger: self.finger, smallest });
         }
         let bound = self.stiffness_bound;
@@ -90,6 +95,7 @@ mod tests {
             finger: 2,
             joint_limits: (Vector3::new(-1.0, -0.5, 0.1), Vector3::new(1.0, 1.7, 2.0)),
             stiffness_bound: 6.0,
+            law: Law::Report,
             out_of_range,
         }
     }
@@ -122,6 +128,21 @@ mod tests {
         // Within rounding of zero: taken as zero.
         let kx = refuse.stiffness(diagonal(1.0, -0.0005, 0.0)).expect("admissible");
         assert!(kx.symmetric_eigenvalues().min() > -1e-12);
+    }
+
+    #[test]
+    fn no_finite_kx_becomes_nan() {
+        let (huge, tiny) = (f64::MAX, f64::MIN_POSITIVE / 1024.0);
+        for value in [huge, 0.9 * huge, 1e200, tiny] {
+            for rows in [[[value; 3]; 3], [[value, 0.0, 0.0], [0.0, value, 0.0], [0.0, 0.0, 0.0]]] {
+                let clamped = admission(OutOfRange::Clamp).stiffness(rows).expect("clamped");
+                assert!(clamped.iter().all(|entry| entry.is_finite()), "{value:e}: {clamped}");
+                let refused = admission(OutOfRange::Refuse).stiffness(rows);
+                assert_eq!(refused.is_err(), value > 1.0, "{value:e}: {refused:?}");
+                let negative = admission(OutOfRange::Clamp).stiffness(rows.map(|row| row.map(|entry| -entry)));
+                assert!(matches!(negative, Err(HandError::Negative { .. })), "-{value:e}: {negative:?}");
+            }
+        }
     }
 
     #[test]

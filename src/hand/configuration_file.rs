@@ -84,11 +84,16 @@ fn parse(text: &str) -> Result<Configuration, Wrong> {
     check(&configuration).map_err(|refusal| {
         let key = refusal.unusable.key;
         let (section, span) = match refusal.finger {
-            None => ("hand".to_string(), span_of(root.get("hand"), key)),
+            None => {
+                let hand = root.get("hand");
+                ("hand".to_string(), span_of(hand, key).or_else(|| nearest_table(hand, key)))
+            }
             Some(index) => {
                 let number = (index + 1).to_string();
-                let own = span_of(all.get(&number), key);
-                (format!("finger.{number}"), own.or_else(|| span_of(root.get("finger"), key)))
+                let (own, shared) = (all.get(&number), root.get("finger"));
+                let span = span_of(own, key).or_else(|| span_of(shared, key));
+                let near = || nearest_table(own, key).or_else(|| nearest_table(shared, key));
+                (format!("finger.{number}"), span.or_else(near))
             }
         };
         (line_of(span), format!("{section}.{key}: {}", refusal.unusable.reason))
@@ -148,6 +153,20 @@ fn span_of(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
     let (path, last) = dotted.rsplit_once('.').unwrap_or(("", dotted));
     let parent = path.split('.').filter(|part| !part.is_empty()).try_fold(section?, |item, part| item.get(part))?;
     parent.as_table_like()?.key(last)?.span()
+}
+
+/// Where the innermost table around a dotted key begins. A default does not fit what the file says, so the key itself is not
+/// there, but what it does not fit mostly stands beside it.
+fn nearest_table(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
+    let (path, _) = dotted.rsplit_once('.').unwrap_or(("", dotted));
+    let mut item = section?;
+    let mut span = item.span();
+    for part in path.split('.').filter(|part| !part.is_empty()) {
+        let Some(inner) = item.get(part) else { break };
+        item = inner;
+        span = item.span().or(span);
+    }
+    span
 }
 
 #[cfg(test)]
@@ -216,11 +235,13 @@ mod tests {
             ("[finger.1.geometry]\nghost_row = [-1, -1, -1, -1]\n", Some(2), "positive"),
             ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [0, 1, 0, 0]]\n", Some(2), "positive"),
             ("[finger.3.tendon]\nmaximum = 8\n", Some(2), "null vector"),
-            ("[finger.tendon]\n\nminimum = 40\n", None, "null vector"),
+            // The key is a default: the table that makes it impossible.
+            ("[finger.tendon]\n\nminimum = 40\n", Some(1), "null vector"),
+            ("[hand]\nrate = 500\n\n[finger.3.tendon]\nminimum = 40\n", Some(4), "null vector"),
             ("[hand]\nrate = nan\n", Some(2), "outside"),
             ("[hand]\nwatchdog_ms = 3\nrate = 500\n", Some(2), "two periods"),
             ("[finger.2.joints]\nminimum_degrees = [0, 0, -5]\n", Some(2), "singular"),
-            ("[finger]\nport = '/dev/ttyUSB0'\naddress = 1\n", None, "thread"),
+            ("[finger]\nport = '/dev/ttyUSB0'\naddress = 1\n", Some(1), "thread"),
         ] {
             let (found, reason) = refusal(text);
             assert_eq!(found, line, "{text:?}: {reason}");

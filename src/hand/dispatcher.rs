@@ -1,5 +1,6 @@
 //! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
 
+use crate::control::spatial;
 use crate::finger::{self, FingerReport, Mailbox};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
@@ -67,17 +68,16 @@ impl Dispatcher {
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
         let member = self.member(finger)?;
         let admitted = member.admission.joints(joints)?;
-        member
-            .mailbox
-            .send(|set_point| set_point.joints = admitted)
-            .map_err(|fault| HandError::Faulted { finger, fault })
+        let law = member.admission.law;
+        let sent = member.mailbox.send(|set_point| (set_point.joints, set_point.law) = (admitted, law));
+        sent.map_err(|fault| HandError::Faulted { finger, fault })
     }
 
     /// Kx, N/cm, row by row.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         let member = self.member(finger)?;
         let admitted = member.admission.stiffness(rows)?;
-        let sent = member.mailbox.send(|set_point| set_point.stiffness = admitted);
+        let sent = member.mailbox.send(|set_point| set_point.stiffness = spatial(&admitted));
         sent.map_err(|fault| HandError::Faulted { finger, fault })
     }
 

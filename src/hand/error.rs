@@ -90,8 +90,8 @@ pub enum HandError {
     },
     /// A configuration file cannot be read.
     #[error(
-        "cannot read the configuration file {}: {source}. SUN2XP_CONFIG names a file that must exist; unset it for the \
-         file in the working directory or the simulated hand", path.display()
+        "cannot read the configuration file {}: {source}. It must be a text file that this user can read; where SUN2XP_CONFIG \
+         names one it must exist", path.display()
     )]
     ConfigurationFile {
         /// The file.
@@ -169,9 +169,9 @@ impl HandError {
             Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
             Self::NotSymmetric { .. } | Self::Negative { .. } => libc::EDOM,
             Self::Faulted { .. } => libc::EIO,
-            Self::ConfigurationFile { source, .. } | Self::System { source, .. } => {
-                source.raw_os_error().unwrap_or(libc::EIO)
-            }
+            // Without an errno of the system's the file was read, but is no text.
+            Self::ConfigurationFile { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
+            Self::System { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
             Self::Link { source, .. } => source.errno(),
             Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } | Self::NoAnswer(_) => libc::ETIMEDOUT,
             Self::Calibration { .. } => libc::ECANCELED,

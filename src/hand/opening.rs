@@ -121,6 +121,7 @@ fn admission(configuration: &Configuration, index: usize) -> Admission {
         finger: index as i32 + 1, // 1 to 3
         joint_limits: finger.joint_limits(),
         stiffness_bound: finger.stiffness_bound(configuration.hand.rate),
+        law: finger.controller.law,
         out_of_range: configuration.hand.out_of_range,
     }
 }

@@ -202,12 +202,25 @@ pub enum Scheme {
     Figure10,
 }
 
+/// How the torque of the fingertip's spring is found.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Law {
+    /// tau = J^T Kx J (theta_d - theta), eqs. 3 and 6: the spring for small deflections.
+    #[default]
+    Report,
+    /// tau = J^T Kx (x_d - x): the spring at any deflection, but blind to which of two joint solutions has the tip at x_d.
+    Exact,
+}
+
 /// `[finger.controller]`. What is left out is chosen for the rate.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredController {
     /// The tendon controller.
     pub scheme: Scheme,
+    /// The stiffness law behind SendPos. A fingertip set point always has the exact one.
+    pub law: Law,
     /// K_T, dimensionless: tension commanded for a tension error.
     pub tension_gain: Option<f64>,
     /// K_TI, 1/s.

@@ -1,6 +1,6 @@
-//! The finger as a chain of three links: tip position and Jacobian, eqs. 7-12.
+//! The finger as a chain of three links: position and rotation of the tip, and their Jacobians, eqs. 7-12.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix6x3, UnitQuaternion, Vector3};
 
 /// The link lengths l0, l1, l2 of a finger, cm (section 5.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +40,30 @@ impl Links {
             fall * c0,
             -l2 * s12 * c0,
         )
+    }
+
+    /// Rotation of the last link in the finger's frame: its own z axis points from joint 2 to the tip. Joint 0 turns about y,
+    /// joints 1 and 2 about the x axis that joint 0 has turned. A quaternion, because the angle of a small rotation is lost in
+    /// the trace of a matrix.
+    pub fn tip_rotation(&self, theta: &Vector3<f64>) -> UnitQuaternion<f64> {
+        UnitQuaternion::from_axis_angle(&Vector3::y_axis(), theta[0])
+            * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), theta[1] + theta[2])
+    }
+
+    /// Jacobian of the tip's whole motion in the finger's frame: rows 0 to 2 as [`Links::jacobian`], cm/rad; rows 3 to 5 the
+    /// rotation of [`Links::tip_rotation`], rad/rad, whose columns are the axes of the joints.
+    pub fn spatial_jacobian(&self, theta: &Vector3<f64>) -> Matrix6x3<f64> {
+        let (s0, c0) = theta[0].sin_cos();
+        let mut jacobian = Matrix6x3::zeros();
+        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.jacobian(theta));
+        #[rustfmt::skip]
+        let axes = Matrix3::new(
+            0.0, c0, c0,
+            1.0, 0.0, 0.0,
+            0.0, -s0, -s0,
+        );
+        jacobian.fixed_view_mut::<3, 3>(3, 0).copy_from(&axes);
+        jacobian
     }
 
     /// Distance of the tip from the axis of joint 0, cm: l0 + l1 C1 + l2 C12. Zero is a singular pose.

@@ -3,11 +3,13 @@
 
 mod calibrated;
 pub mod configuration;
+mod contact;
 mod kinematics;
 mod simulation;
 mod tendons;
 mod validation;
 
+pub use contact::{Contact, ContactError, spring};
 pub use kinematics::Links;
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use tendons::{Tendons, TendonsError};

@@ -224,7 +224,7 @@ fn over_limit_torque_keeps_its_direction() {
     let mut finger = ConfiguredFinger::default();
     finger.simulation.joint_coulomb_friction = [0.0; 3];
     let mut servo = Loop::new(&finger, 1000.0);
-    let far = Activity::Follow(SetPoint { joints: Vector3::new(3.0, 0.3, 0.6), stiffness: Matrix3::identity() * 6.0 });
+    let far = Activity::Follow(SetPoint::hard_finger(Vector3::new(3.0, 0.3, 0.6), Matrix3::identity() * 6.0));
     servo.run(3.0, &far);
     assert!(servo.report.torque_scale < 1.0, "{}", servo.report.torque_scale);
     assert!(servo.report.desired_tensions.max() <= 60.0 + 1e-9);

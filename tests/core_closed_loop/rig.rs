@@ -118,7 +118,7 @@ fn read(sensors: &mut Sensors, plant: &Plant) -> Feedback {
 
 /// The fingertip as an isotropic spring, N/cm.
 pub fn spring(joints: Vector3<f64>, stiffness: f64) -> Activity {
-    Activity::Follow(SetPoint { joints, stiffness: nalgebra::Matrix3::identity() * stiffness })
+    Activity::Follow(SetPoint::hard_finger(joints, nalgebra::Matrix3::identity() * stiffness))
 }
 
 /// 24 poses, rad: joint 0 within +-30, joint 1 -10 to 70, joint 2 30 to 100 degrees.

@@ -47,8 +47,7 @@ fn a_jammed_motor_does_not_wind_up_the_integral() {
     let count = |newton: f64| (newton * 4095.0 / 100.0).round() as u16;
     let held = Feedback { motor_counts: [0; 4], gauge_counts: [count(5.0); 4] };
     let mut state = controller.start(&held);
-    let there =
-        Activity::Follow(SetPoint { joints: Vector3::new(0.3, 0.3, 0.3), stiffness: Matrix3::identity() * 3.0 });
+    let there = Activity::Follow(SetPoint::hard_finger(Vector3::new(0.3, 0.3, 0.3), Matrix3::identity() * 3.0));
     for _ in 0..5000 {
         controller.cycle(&mut state, Some(&held), &there);
     }

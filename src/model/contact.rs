@@ -1,0 +1,216 @@
+//! What a fingertip may exchange with an object, section 4.2: D x D springs of every contact type as one spatial stiffness.
+
+use nalgebra::allocator::Allocator;
+use nalgebra::{Const, DefaultAllocator, DimDiff, DimSub, Matrix3, Matrix4, Matrix6, SMatrix, U1, Vector3};
+use thiserror::Error;
+
+/// K may be asymmetric, or have a negative eigenvalue, by so much of its largest entry or eigenvalue: the rounding of a
+/// planner that works in `float`.
+const ROUNDING: f64 = 1e-3;
+
+/// A normal shorter than this has no direction.
+const SHORTEST_NORMAL: f64 = 1e-6;
+
+/// The spring of a contact, as a symmetric, positive semi-definite 6 x 6 stiffness at the tip, in the axes of the finger's
+/// frame: rows and columns 0 to 2 translation (N/cm), 3 to 5 rotation (N cm/rad), between them N/rad.
+///
+/// A contact of D dimensions is a D x D stiffness K and the D x 6 selection S of the tip's motion that it feels:
+/// S^T K S. So the D x 3 Jacobian of eq. 6 is S J with the 6 x 3 J of [`Links::spatial_jacobian`], and
+/// K_theta = (S J)^T K (S J).
+///
+/// [`Links::spatial_jacobian`]: crate::model::Links::spatial_jacobian
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact(Matrix6<f64>);
+
+/// A stiffness that is no spring, or a contact without a direction.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ContactError {
+    /// NaN or infinity.
+    #[error("contains {0}: every entry must be a finite number")]
+    NotFinite(f64),
+    /// K[row][column] and K[column][row] differ.
+    #[error("is not symmetric: entries [{row}][{column}] and [{column}][{row}] differ by {difference:.3e}")]
+    NotSymmetric {
+        /// Row of the first such pair.
+        row: usize,
+        /// Column of the first such pair.
+        column: usize,
+        /// Their difference, in the unit of the entries.
+        difference: f64,
+    },
+    /// A negative eigenvalue.
+    #[error("has the negative eigenvalue {smallest:.3e}")]
+    Negative {
+        /// Smallest eigenvalue.
+        smallest: f64,
+    },
+    /// The contact's normal is zero.
+    #[error("has no direction: the contact's normal has the length {0:.3e}")]
+    NoNormal(f64),
+}
+
+impl Contact {
+    /// Hard finger with friction: three forces. `stiffness`: Kx, N/cm.
+    ///
+    /// # Errors
+    /// Kx is no spring.
+    pub fn hard_finger(stiffness: Matrix3<f64>) -> Result<Self, ContactError> {
+        Self::general(&stiffness, &translation())
+    }
+
+    /// Soft finger: three forces and a moment about the contact's normal. Row and column 3 of `stiffness` belong to the
+    /// rotation about `normal`: N cm/rad on the diagonal, N/rad beside it. `normal` need not have unit length.
+    ///
+    /// # Errors
+    /// K is no spring, or the normal is zero.
+    pub fn soft_finger(stiffness: Matrix4<f64>, normal: Vector3<f64>) -> Result<Self, ContactError> {
+        let normal = unit(normal)?;
+        let mut selection = SMatrix::<f64, 4, 6>::zeros();
+        selection.fixed_view_mut::<3, 6>(0, 0).copy_from(&translation());
+        selection.fixed_view_mut::<1, 3>(3, 3).copy_from(&normal.transpose());
+        Self::general(&stiffness, &selection)
+    }
+
+    /// Frictionless point: a force along the contact's normal. `stiffness`: N/cm. `normal` need not have unit length.
+    ///
+    /// # Errors
+    /// A negative stiffness, or the normal is zero.
+    pub fn frictionless_point(stiffness: f64, normal: Vector3<f64>) -> Result<Self, ContactError> {
+        let normal = unit(normal)?;
+        let mut selection = SMatrix::<f64, 1, 6>::zeros();
+        selection.fixed_view_mut::<1, 3>(0, 0).copy_from(&normal.transpose());
+        Self::general(&SMatrix::<f64, 1, 1>::new(stiffness), &selection)
+    }
+
+    /// Any contact: `stiffness` K of D dimensions, `selection` S the part of the tip's translation (cm) and rotation (rad)
+    /// that each of them is.
+    ///
+    /// # Errors
+    /// K is no spring, or an entry of S is not finite.
+    pub fn general<const D: usize>(
+        stiffness: &SMatrix<f64, D, D>,
+        selection: &SMatrix<f64, D, 6>,
+    ) -> Result<Self, ContactError>
+    where
+        Const<D>: DimSub<U1>,
+        DefaultAllocator: Allocator<Const<D>, DimDiff<Const<D>, U1>> + Allocator<DimDiff<Const<D>, U1>>,
+    {
+        finite(selection.as_slice())?;
+        let checked = spring(stiffness)?;
+        let spatial = selection.transpose() * checked * selection;
+        // Finite factors may have an infinite product.
+        finite(spatial.as_slice())?;
+        // Symmetric but for rounding; the servo takes symmetry for granted.
+        Ok(Self(spatial * 0.5 + spatial.transpose() * 0.5))
+    }
+
+    /// The 6 x 6 stiffness.
+    pub fn stiffness(&self) -> &Matrix6<f64> {
+        &self.0
+    }
+
+    /// The largest eigenvalue of the stiffness, N/cm, with a rotation measured by the way it moves a point at `lever` (cm)
+    /// from the tip. With the length of the last link it is comparable with that of a Kx: turning joint 2 does both.
+    pub fn largest_eigenvalue(&self, lever: f64) -> f64 {
+        let scale = |index: usize| if index < 3 { 1.0 } else { 1.0 / lever };
+        Matrix6::from_fn(|row, column| self.0[(row, column)] * scale(row) * scale(column)).symmetric_eigenvalues().max()
+    }
+
+    /// The same contact, softer by a factor.
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self(self.0 * factor)
+    }
+}
+
+/// A symmetric stiffness with its rounding averaged away; refused where it is no spring. Of any rank.
+///
+/// # Errors
+/// NaN or infinity; not symmetric by more than a thousandth of the largest entry; an eigenvalue below minus a thousandth
+/// of the largest.
+pub fn spring<const D: usize>(asked: &SMatrix<f64, D, D>) -> Result<SMatrix<f64, D, D>, ContactError>
+where
+    Const<D>: DimSub<U1>,
+    DefaultAllocator: Allocator<Const<D>, DimDiff<Const<D>, U1>> + Allocator<DimDiff<Const<D>, U1>>,
+{
+    finite(asked.as_slice())?;
+    let tolerance = ROUNDING * asked.amax();
+    for row in 0..D {
+        for column in row + 1..D {
+            let difference = (asked[(row, column)] - asked[(column, row)]).abs();
+            if difference > tolerance {
+                return Err(ContactError::NotSymmetric { row, column, difference });
+            }
+        }
+    }
+    // Halved before they are added: the sum of two finite entries may be infinite, and its eigenvalues NaN.
+    let symmetric = asked * 0.5 + asked.transpose() * 0.5;
+    let eigenvalues = symmetric.symmetric_eigenvalues();
+    let (smallest, largest) = (eigenvalues.min(), eigenvalues.max());
+    // An eigenvalue may be infinite where no entry is.
+    if smallest < -ROUNDING * largest.abs().max(smallest.abs()).min(f64::MAX) {
+        return Err(ContactError::Negative { smallest });
+    }
+    Ok(symmetric)
+}
+
+fn finite(values: &[f64]) -> Result<(), ContactError> {
+    values.iter().find(|value| !value.is_finite()).map_or(Ok(()), |&value| Err(ContactError::NotFinite(value)))
+}
+
+fn unit(normal: Vector3<f64>) -> Result<Vector3<f64>, ContactError> {
+    finite(normal.as_slice())?;
+    normal.try_normalize(SHORTEST_NORMAL).ok_or(ContactError::NoNormal(normal.norm()))
+}
+
+fn translation() -> SMatrix<f64, 3, 6> {
+    SMatrix::<f64, 3, 6>::identity()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_contact_feels_what_its_selection_says() {
+        let kx = Matrix3::new(3.0, 0.5, 0.1, 0.5, 2.0, 0.25, 0.1, 0.25, 1.0);
+        let hard = Contact::hard_finger(kx).expect("a spring");
+        assert_eq!(hard.stiffness().fixed_view::<3, 3>(0, 0), kx);
+        assert_eq!(hard.stiffness().fixed_view::<6, 3>(0, 3).amax(), 0.0);
+
+        let normal = Vector3::new(0.0, 3.0, 4.0);
+        let point = Contact::frictionless_point(2.0, normal).expect("a spring");
+        let n = normal / 5.0;
+        assert!((point.stiffness().fixed_view::<3, 3>(0, 0) - n * n.transpose() * 2.0).amax() < 1e-15);
+
+        let mut k = Matrix4::identity() * 3.0;
+        k[(3, 3)] = 20.0;
+        (k[(0, 3)], k[(3, 0)]) = (0.5, 0.5);
+        let soft = Contact::soft_finger(k, normal).expect("a spring");
+        let turned = nalgebra::Vector6::new(0.0, 0.0, 0.0, 0.1, 0.6, 0.8);
+        let wrench = soft.stiffness() * turned;
+        // Turned by 1 rad about the normal, and by 0.1 rad about x, which a soft finger does not feel.
+        let expected = nalgebra::Vector6::new(0.5, 0.0, 0.0, 0.0, 12.0, 16.0);
+        assert!((wrench - expected).amax() < 1e-12, "{wrench}");
+        assert!((soft.largest_eigenvalue(1.0) - 20.0147).abs() < 1e-3);
+        assert!(soft.largest_eigenvalue(4.0) < 3.1);
+    }
+
+    #[test]
+    fn what_is_no_spring_is_refused() {
+        let skewed = Matrix3::new(3.0, 0.5, 0.0, 0.4, 2.0, 0.0, 0.0, 0.0, 1.0);
+        assert!(matches!(Contact::hard_finger(skewed), Err(ContactError::NotSymmetric { row: 0, column: 1, .. })));
+        assert!(matches!(Contact::frictionless_point(-1.0, Vector3::x()), Err(ContactError::Negative { .. })));
+        assert!(matches!(Contact::frictionless_point(1.0, Vector3::zeros()), Err(ContactError::NoNormal(_))));
+        assert!(matches!(Contact::frictionless_point(f64::NAN, Vector3::x()), Err(ContactError::NotFinite(_))));
+        let infinite = Vector3::new(0.0, f64::INFINITY, 0.0);
+        assert!(matches!(Contact::soft_finger(Matrix4::identity(), infinite), Err(ContactError::NotFinite(_))));
+        let overflowing = SMatrix::<f64, 1, 6>::repeat(1e200);
+        let refused = Contact::general(&SMatrix::<f64, 1, 1>::new(1.0), &overflowing);
+        assert!(matches!(refused, Err(ContactError::NotFinite(_))));
+        let huge = Contact::hard_finger(Matrix3::from_diagonal_element(f64::MAX)).expect("a spring");
+        assert!(huge.stiffness().iter().all(|entry| entry.is_finite()));
+        // A torsion of the wrong sign hides behind no translation.
+        let k = Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, -1.0));
+        assert!(matches!(Contact::soft_finger(k, Vector3::x()), Err(ContactError::Negative { .. })));
+    }
+}

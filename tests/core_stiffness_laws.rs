@@ -1,0 +1,140 @@
+//! Both stiffness laws and every contact type, against the definitions of section 4.2.
+
+use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector6};
+use proptest::prelude::*;
+use sun2xp::control::{JointStiffness, Law, SetPoint};
+use sun2xp::model::{Contact, Links};
+
+const LINKS: Links = Links([3.556, 5.080, 4.000]);
+
+fn law() -> JointStiffness {
+    JointStiffness::new(LINKS, 0.015)
+}
+
+fn set_point(joints: Vector3<f64>, contact: &Contact, law: Law) -> SetPoint {
+    SetPoint { joints, law, stiffness: *contact.stiffness(), damping: 1.0 }
+}
+
+fn soft_finger(root: [f64; 16], normal: [f64; 3]) -> (Matrix4<f64>, Vector3<f64>, Contact) {
+    let root = Matrix4::from_row_slice(&root);
+    let k = root * root.transpose();
+    let normal = Vector3::from(normal).normalize();
+    (k, normal, Contact::soft_finger(k, normal).expect("a spring"))
+}
+
+fn theta() -> impl Strategy<Value = Vector3<f64>> {
+    (-1.0..1.0f64, -0.5..1.7f64, 0.1..2.0f64).prop_map(|(a, b, c)| Vector3::new(a, b, c))
+}
+
+fn normal() -> impl Strategy<Value = [f64; 3]> {
+    prop::array::uniform3(-1.0..1.0f64).prop_filter("a direction", |n| Vector3::from(*n).norm() > 0.1)
+}
+
+proptest! {
+    /// The rotational Jacobian is the derivative of the last link's rotation, and that link ends in the tip.
+    #[test]
+    fn rotational_jacobian_is_the_derivative_of_the_tip_frame(theta in theta()) {
+        let jacobian = LINKS.spatial_jacobian(&theta);
+        for joint in 0..3 {
+            let mut step = Vector3::zeros();
+            step[joint] = 1e-5;
+            let turned = LINKS.tip_rotation(&(theta + step)) * LINKS.tip_rotation(&(theta - step)).inverse();
+            let difference = turned.scaled_axis() / 2e-5;
+            prop_assert!((jacobian.fixed_view::<3, 1>(3, joint) - difference).amax() < 1e-8);
+        }
+        prop_assert_eq!(jacobian.fixed_view::<3, 3>(0, 0), LINKS.jacobian(&theta));
+        let shorter = Links([3.556, 5.080, 0.0]);
+        let link = LINKS.tip(&theta) - shorter.tip(&theta);
+        prop_assert!((LINKS.tip_rotation(&theta) * Vector3::new(0.0, 0.0, 4.0) - link).amax() < 1e-12);
+    }
+
+    /// Eq. 6 for D = 4: K_theta = J_c^T K J_c with the 4 x 3 Jacobian of tip and rotation about the normal.
+    #[test]
+    fn soft_finger_is_eq_6_with_its_4_by_3_jacobian(
+        theta in theta(), root in prop::array::uniform16(-1.5..1.5f64), n in normal(),
+        away in prop::array::uniform3(-0.3..0.3f64),
+    ) {
+        let (k, normal, contact) = soft_finger(root, n);
+        let spatial = LINKS.spatial_jacobian(&theta);
+        let mut jacobian = SMatrix::<f64, 4, 3>::zeros();
+        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&LINKS.jacobian(&theta));
+        jacobian.set_row(3, &(normal.transpose() * spatial.fixed_view::<3, 3>(3, 0)));
+        let expected = jacobian.transpose() * k * jacobian;
+        let away = Vector3::from(away);
+        let point = set_point(theta + away, &contact, Law::Report);
+        prop_assert!((law().joint_stiffness(&point, &theta) - expected).amax() < 1e-9);
+        prop_assert!((law().spring(&point, &theta) - expected * away).amax() < 1e-9);
+    }
+
+    /// tau = J^T f with the force of the definition, at any deflection; a tip in place has no torque.
+    #[test]
+    fn exact_law_is_the_spring_at_any_deflection(
+        theta in theta(), desired in theta(), root in prop::array::uniform9(-1.5..1.5f64),
+    ) {
+        let root = Matrix3::from_row_slice(&root);
+        let kx = root * root.transpose();
+        let contact = Contact::hard_finger(kx).expect("a spring");
+        let force = kx * (LINKS.tip(&desired) - LINKS.tip(&theta));
+        let point = set_point(desired, &contact, Law::Exact);
+        prop_assert!((law().spring(&point, &theta) - LINKS.jacobian(&theta).transpose() * force).amax() < 1e-9);
+        prop_assert_eq!(law().spring(&point, &desired), Vector3::zeros());
+    }
+
+    /// Both laws are one for a small deflection, rotation included: their difference is of second order.
+    #[test]
+    fn both_laws_agree_to_first_order(
+        theta in theta(), root in prop::array::uniform16(-1.5..1.5f64), n in normal(),
+        away in prop::array::uniform3(-1.0..1.0f64),
+    ) {
+        let (_, _, contact) = soft_finger(root, n);
+        let apart = |size: f64| {
+            let desired = theta + Vector3::from(away) * size;
+            let [exact, report] = [Law::Exact, Law::Report]
+                .map(|which| law().spring(&set_point(desired, &contact, which), &theta));
+            (exact - report).norm()
+        };
+        prop_assert!(apart(1e-4) <= apart(1e-3) * 0.02 + 1e-9);
+    }
+
+    /// The damper takes energy out, in proportion to the planner's ratio, and leaves the spring alone.
+    #[test]
+    fn damping_is_in_proportion_to_its_ratio(
+        theta in theta(), rates in prop::array::uniform3(-3.0..3.0f64), ratio in 0.2..3.0f64,
+        root in prop::array::uniform16(-1.5..1.5f64), n in normal(),
+    ) {
+        let (_, _, contact) = soft_finger(root, n);
+        let plain = set_point(theta, &contact, Law::Exact);
+        let rates = Vector3::from(rates);
+        let one = law().torques(&plain, &theta, &rates);
+        let scaled = law().torques(&SetPoint { damping: ratio, ..plain }, &theta, &rates);
+        prop_assert!((scaled - one * ratio).amax() < 1e-9);
+        prop_assert!(one.dot(&rates) <= 0.0);
+    }
+}
+
+/// A finger turned about the normal alone is turned back: a soft finger's torsion, without translation to hide behind.
+#[test]
+fn torsion_alone_turns_the_tip_back_about_the_normal() {
+    let k = Matrix4::from_diagonal(&nalgebra::Vector4::new(0.0, 0.0, 0.0, 10.0));
+    let contact = Contact::soft_finger(k, Vector3::y()).expect("a spring");
+    let theta = Vector3::new(0.1, 0.4, 0.0);
+    let desired = Vector3::new(0.4, 0.4, 0.0);
+    let report = law().spring(&set_point(desired, &contact, Law::Report), &theta);
+    assert!((report - Vector3::new(3.0, 0.0, 0.0)).amax() < 1e-12, "{report}");
+    // The rotation vector of a turn about y by 0.3 rad is 0.3 y, whatever the other joints.
+    let exact = law().spring(&set_point(desired, &contact, Law::Exact), &theta);
+    assert!((exact - report).amax() < 1e-12, "{exact}");
+}
+
+/// A frictionless point feels nothing across its normal.
+#[test]
+fn a_frictionless_point_slides() {
+    let theta = Vector3::new(0.2, 0.5, 1.0);
+    let normal = Vector3::new(1.0, -2.0, 0.5).normalize();
+    let contact = Contact::frictionless_point(4.0, normal).expect("a spring");
+    let across = normal.cross(&Vector3::z());
+    let wrench = contact.stiffness() * Vector6::new(across.x, across.y, across.z, 0.3, 0.4, 0.5);
+    assert!(wrench.amax() < 1e-12);
+    let eigenvalues = law().joint_stiffness(&set_point(theta, &contact, Law::Report), &theta).symmetric_eigenvalues();
+    assert_eq!(eigenvalues.iter().filter(|&&value| value.abs() > 1e-9).count(), 1);
+}
