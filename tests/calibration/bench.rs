@@ -75,7 +75,7 @@ impl Bench {
         self.run(0.3, &Activity::TakeUpSlack);
         let stiffness = nalgebra::Matrix3::identity() * 3.0;
         let joints = self.report.joints;
-        self.run(0.5, &Activity::Follow(SetPoint { joints, stiffness }));
+        self.run(0.5, &Activity::Follow(SetPoint::hard_finger(joints, stiffness)));
         self
     }
 

@@ -14,9 +14,9 @@ fn every_sign_is_found_from_tight_and_from_slack() {
             truth.motor.sign = sign(37);
             truth.encoder.sign = sign(91);
             let falling = sign(53);
-            for tendon in 0..4 {
-                truth.gauge.newton_per_count[tendon] *= f64::from(falling[tendon]);
-                truth.gauge.zero[tendon] = if falling[tendon] < 0 { 4000.0 } else { 0.0 };
+            for (tendon, sign) in falling.into_iter().enumerate() {
+                truth.gauge.newton_per_count[tendon] *= f64::from(sign);
+                truth.gauge.zero[tendon] = if sign < 0 { 4000.0 } else { 0.0 };
             }
             let mut bench = Bench::new(&truth, &ConfiguredFinger::default(), rate);
             let before = bench.plant.joints();
