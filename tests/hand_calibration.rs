@@ -24,7 +24,7 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     assert!(steps.contains(&Step::TryingMotors));
     assert_eq!(stage(2), Stage::Limp);
 
-    // The simulated finger starts in the pose that is configured by default, and friction keeps it near there.
+    // The simulated finger starts in the pose that is configured by default, and stays near there: slack is not taken up evenly.
     let zeros = hand.zero(2, |_| {}).expect("zeros");
     let Findings::Zeros(zeros) = zeros else { panic!("{zeros:?}") };
     for tendon in 0..4 {
@@ -35,7 +35,7 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     assert_eq!([stage(1), stage(3)], [Stage::Limp; 2]);
     let joints = hand.position(2).expect("position");
     let pose = [0.0, 30f64.to_radians(), 60f64.to_radians()];
-    assert!(joints.iter().zip(pose).all(|(is, was)| (is - was).abs() < 0.1), "{joints:?}");
+    assert!(joints.iter().zip(pose).all(|(is, was)| (is - was).abs() < 0.3), "{joints:?}");
     hand.send_position(2, joints).expect("a finger that is zeroed takes set points");
 
     assert!(hand.store_calibration().expect("stored"));
