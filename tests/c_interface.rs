@@ -110,6 +110,11 @@ fn dlclose_leaves_the_hand() {
 }
 
 #[test]
+fn a_finger_is_zeroed() {
+    succeed(&strict(&[]), &["zero.c"]);
+}
+
+#[test]
 fn the_status_tells_of_the_servo() {
     succeed(&strict(&[]), &["status.c"]);
 }

@@ -2,8 +2,10 @@
 
 use crate::capi::process;
 use crate::capi::refusal::{self, Refusal};
-use crate::hand::{Hand, HandError};
+use crate::control::calibration::Task;
+use crate::hand::{Calibrating, Hand, HandError, Standing};
 use parking_lot::{Mutex, RwLock};
+use std::thread::sleep;
 use std::time::Duration;
 
 /// Locked while a hand is being opened or closed, which takes long; the calls to a finger never wait for it.
@@ -15,6 +17,9 @@ static HAND: RwLock<Option<Hand>> = RwLock::new(None);
 /// How long exit waits for a call in progress. That call may be on the exiting thread itself, which has left it by a
 /// signal handler that calls exit: then it would wait for ever.
 const PATIENCE_AT_EXIT: Duration = Duration::from_millis(100);
+
+/// How often a calibration is looked at.
+const LOOKING: Duration = Duration::from_millis(5);
 
 pub(super) fn open() -> Result<(), Refusal> {
     let Some(_opening) = LIFE.try_lock() else { return Err(Refusal::Busy) };
@@ -46,4 +51,15 @@ pub(super) fn with<T>(call: impl FnOnce(&Hand) -> Result<T, HandError>) -> Resul
     let hand = HAND.read();
     let hand = hand.as_ref().ok_or(Refusal::NoHand)?;
     Ok(call(hand)?)
+}
+
+/// Calibrates a finger of the open hand and stores what was found. The hand is looked at from time to time and not kept from
+/// being closed, nor other calls from being made.
+pub(super) fn calibrate(finger: i32, task: Task) -> Result<(), Refusal> {
+    let mut calibrating = with(|hand| Calibrating::begin(hand, finger, task))?;
+    while let Standing::Going(_) = with(|hand| calibrating.poll(hand))? {
+        sleep(LOOKING);
+    }
+    with(|hand| hand.store_calibration())?;
+    Ok(())
 }

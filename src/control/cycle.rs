@@ -38,6 +38,8 @@ pub struct Controller {
     distribution: TensionDistribution,
     tendons: TendonController,
     motor_torque: MotorTorque,
+    /// K_delta at the tendon, N s/m.
+    motor_damping: f64,
     /// Motor radii, m.
     radius: Vector4<f64>,
     /// N.
@@ -73,6 +75,8 @@ enum Doing {
     /// With the spring's anchor on its way to the set point, rad.
     Following(Vector3<f64>),
     Releasing(Release),
+    Tensing,
+    PullingFreely,
 }
 
 impl Controller {
@@ -94,6 +98,7 @@ impl Controller {
             distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, finger.tendon.maximum)?,
             tendons: TendonController::new(finger.controller.scheme, &gains, rate, motor_torque.limit),
             motor_torque,
+            motor_damping: gains.motor_damping,
             radius: tendons.radius * 0.01,
             tight: TIGHT * finger.tendon.minimum,
         })
@@ -155,7 +160,10 @@ impl Controller {
             Activity::Release { ramp } => self.let_go(state, ramp),
             Activity::TakeUpSlack if feedback.is_some() => self.take_up_slack(state),
             Activity::Follow(set_point) if feedback.is_some() => self.follow(state, set_point),
-            Activity::TakeUpSlack | Activity::Follow(_) => {}
+            Activity::Tense(desired) if feedback.is_some() => self.tense(state, desired),
+            Activity::Pull(pulls) if feedback.is_some() => self.pull_freely(state, pulls),
+            Activity::Turn(torques) => self.turn(state, torques),
+            Activity::TakeUpSlack | Activity::Follow(_) | Activity::Tense(_) | Activity::Pull(_) => {}
         }
         let motor_torques = self.motor_torque.torques(&state.pulls);
         state.report.motor_torques = motor_torques;
@@ -207,6 +215,45 @@ impl Controller {
     /// Joint torques to pulls: R^-1 and the tendon controller.
     fn pull(&self, state: &mut State, joint_torques: Vector3<f64>, slack: [bool; 4], begins: bool) {
         let Distribution { tensions: desired, scale } = self.distribution.distribute(&joint_torques);
+        self.bring(state, desired, slack, begins);
+        state.report.joint_torques = joint_torques;
+        state.report.torque_scale = scale;
+    }
+
+    /// Tensions as they are asked for.
+    fn tense(&self, state: &mut State, desired: Vector4<f64>) {
+        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
+        let begins = !matches!(state.doing, Doing::Tensing);
+        state.doing = Doing::Tensing;
+        self.bring(state, desired, slack, begins);
+        state.report.joint_torques = Vector3::zeros();
+        state.report.torque_scale = 1.0;
+    }
+
+    /// Pulls without tension feedback.
+    fn pull_freely(&self, state: &mut State, pulls: Vector4<f64>) {
+        let speed = state.motor_speeds.component_mul(&self.radius);
+        self.pull_with(state, pulls - speed * self.motor_damping);
+    }
+
+    /// Motor torques without any feedback.
+    fn turn(&self, state: &mut State, torques: Vector4<f64>) {
+        self.pull_with(state, self.motor_torque.pulls(&torques));
+    }
+
+    fn pull_with(&self, state: &mut State, pulls: Vector4<f64>) {
+        let limit = &self.motor_torque.limit;
+        state.pulls = pulls.zip_map(limit, |pull, limit| pull.clamp(-limit, limit));
+        state.doing = Doing::PullingFreely;
+        // Whatever follows begins anew.
+        state.tendons = TendonState::default();
+        state.report.joint_torques = Vector3::zeros();
+        state.report.desired_tensions = state.pulls;
+        state.report.torque_scale = 1.0;
+    }
+
+    /// Desired tensions to pulls: the tendon controller.
+    fn bring(&self, state: &mut State, desired: Vector4<f64>, slack: [bool; 4], begins: bool) {
         let measured = state.report.tensions;
         let speed = state.motor_speeds.component_mul(&self.radius);
         let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
@@ -217,9 +264,7 @@ impl Controller {
         let limit = &self.motor_torque.limit;
         let pulls = asked + state.transition.advance(self.period);
         state.pulls = pulls.zip_map(limit, |pull, limit| pull.clamp(-limit, limit));
-        state.report.joint_torques = joint_torques;
         state.report.desired_tensions = desired;
-        state.report.torque_scale = scale;
     }
 
     /// Motor torques in a ramp to zero.

@@ -3,6 +3,7 @@
 //!
 //! One file is one box of Figure 9 (or of Figure 10); [`Controller::cycle`] connects them.
 
+pub mod calibration;
 mod cycle;
 mod figure10;
 mod figure9;

@@ -3,6 +3,8 @@
 
 mod adjustment;
 mod admission;
+mod calibrating;
+mod calibration_file;
 mod configuration_file;
 mod dispatcher;
 mod error;
@@ -10,6 +12,7 @@ mod fingertip;
 mod opening;
 mod root;
 
+pub use calibrating::{Calibrating, Standing};
 pub use configuration_file::{configured, read};
 pub use error::HandError;
 pub use fingertip::FingerTip;

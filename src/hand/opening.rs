@@ -67,10 +67,11 @@ pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<Simulate
     Ok(ports)
 }
 
-/// Opens every port and shakes hands with every finger on it.
+/// Opens every port and shakes hands with every finger on it. `limp`: the motors shall stay off.
 pub(super) fn reach(
     configuration: &Configuration,
     simulated: &[Option<SimulatedPort>; FINGERS],
+    limp: bool,
 ) -> Result<(Vec<Line>, Vec<Reached>), HandError> {
     let path = |index: usize| match &simulated[index] {
         Some(port) => port.path().to_path_buf(),
@@ -87,7 +88,7 @@ pub(super) fn reach(
         let mut fingers = Vec::new();
         for index in sharing {
             let (servo, finger) = shake_hands(configuration, index, &mut link)?;
-            fingers.push(servo);
+            fingers.push(if limp { servo.limp() } else { servo });
             reached.push(finger);
         }
         lines.push(Line { thread: configuration.thread(first), port: ServedPort::new(link, fingers) });

@@ -1,6 +1,7 @@
 //! Root: opens and closes a hand, owns its threads and ports, reports its status.
 
 use crate::board::{Port, SimulatedFinger, SimulatedPort};
+use crate::control::calibration::Verdict;
 use crate::finger::{FingerReport, Servo, Stage};
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::opening::{Line, check, reach, simulate};
@@ -12,6 +13,7 @@ use nalgebra::Vector3;
 use parking_lot::RwLock;
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::thread::{JoinHandle, sleep};
 use std::time::Duration;
 
@@ -30,8 +32,10 @@ pub struct Hand {
     pub(super) dispatcher: Dispatcher,
     servos: Vec<JoinHandle<PortServo>>,
     simulated: [Option<SimulatedPort>; FINGERS],
-    /// As it is now: planners may adjust it.
+    /// As it is now: planners may adjust it, and calibration changes what it finds.
     pub(super) configuration: RwLock<Configuration>,
+    /// Where the configuration was read from, and where calibration is stored.
+    pub(super) file: Option<PathBuf>,
     realtime: bool,
 }
 
@@ -58,6 +62,8 @@ pub struct FingerStatus {
     pub damaged_frames: u64,
     /// The part of the wanted joint torque that the tension limits let through in the last cycle, 0 to 1.
     pub torque_scale: f64,
+    /// The part of the calibration under way that is done, 0 to 1; 0 where there is none.
+    pub calibration: f64,
 }
 
 impl Hand {
@@ -71,7 +77,7 @@ impl Hand {
         if file.is_none() {
             say("no configuration file: this is the simulated hand (SUN2XP_CONFIG or sun2xp.toml names a real one)");
         }
-        Self::open(configuration)
+        Self::open_from(configuration, file, false)
     }
 
     /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons and returns when every finger holds the
@@ -81,16 +87,30 @@ impl Hand {
     /// A configuration that cannot be used, a port or board that does not serve, a finger that faults. Everything that was
     /// opened is closed again then, and every motor is in its end state.
     pub fn open(configuration: Configuration) -> Result<Self, HandError> {
+        Self::open_from(configuration, None, false)
+    }
+
+    /// Opens the hand with its motors off: to find signs and zeros before anything pulls. `file`: where calibration shall
+    /// be stored. A finger becomes a spring when it has been calibrated by [`Hand::zero`] or [`Hand::identify`].
+    ///
+    /// # Errors
+    /// As [`Hand::open`].
+    pub fn open_limp(configuration: Configuration, file: Option<PathBuf>) -> Result<Self, HandError> {
+        Self::open_from(configuration, file, true)
+    }
+
+    fn open_from(configuration: Configuration, file: Option<PathBuf>, limp: bool) -> Result<Self, HandError> {
         check(&configuration)?;
         let simulated = simulate(&configuration)?;
-        let (lines, reached) = reach(&configuration, &simulated)?;
+        let (lines, reached) = reach(&configuration, &simulated, limp)?;
         let mut threads: Vec<u8> = lines.iter().map(|line| line.thread).collect();
         threads.sort_unstable();
         threads.dedup();
 
         let dispatcher = Dispatcher::new(reached);
         let configuration = RwLock::new(configuration);
-        let mut hand = Self { dispatcher, servos: Vec::new(), simulated, configuration, realtime: true };
+        let servos = Vec::new();
+        let mut hand = Self { dispatcher, servos, simulated, configuration, file, realtime: true };
         // From here on, dropping the hand closes it.
         hand.start(&threads, lines)?;
         hand.wait_for_every_finger()?;
@@ -148,6 +168,10 @@ impl Hand {
             skipped_periods: report.skipped_periods,
             damaged_frames: report.damaged_frames,
             torque_scale: report.cycle.torque_scale,
+            calibration: match report.calibration {
+                Some(Verdict::Going(progress)) => progress.part,
+                _ => 0.0,
+            },
         })
     }
 
