@@ -307,12 +307,14 @@ fn the_library_exports_the_calls_and_nothing_else() {
         "GetPosD",
         "GetStatus",
         "HandError",
+        "IdentifyFinger",
         "OpenHand",
         "PushFinger",
         "SendKx",
         "SendKxD",
         "SendPos",
         "SendPosD",
+        "ZeroFinger",
     ];
     assert_eq!(exported, calls);
 }
