@@ -513,7 +513,7 @@ int GetStatus(int i,
  counts are still good. What was found is in force at once, and is written into the
  configuration file if OpenHand has read one: only the keys that changed, comments stay.
  Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
- free finger has moved a little.
+ free finger has moved, by up to some tenths of a radian.
 
  Waits until it is done: seconds, up to a minute with "stops". Meanwhile GetStatus tells
  the part that is done (FingerStatus.Calibration), other calls go on, and set points for

@@ -314,6 +314,7 @@ fn the_library_exports_the_calls_and_nothing_else() {
         "GetStatus",
         "GetTip",
         "HandError",
+        "IdentifyFinger",
         "OpenHand",
         "PushFinger",
         "SendContact",
@@ -323,6 +324,7 @@ fn the_library_exports_the_calls_and_nothing_else() {
         "SendPos",
         "SendPosD",
         "SendTip",
+        "ZeroFinger",
     ];
     assert_eq!(exported, calls);
 }

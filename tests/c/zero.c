@@ -7,17 +7,12 @@
 int main(void)
 {
     struct FingerStatus Status;
-    double Before[3], After[3];
-    int joint;
+    double After[3];
 
     CHECK(ZeroFinger(1) == -1 && errno == ENODEV);
     CHECK(OpenHand() == 0);
-    CHECK(GetPos(2, Before) == 0);
     CHECK(ZeroFinger(2) == 0);
     CHECK(GetPos(2, After) == 0);
-    /* Tendons that were let out are not taken up evenly: a free finger has moved a little. */
-    for (joint = 0; joint < 3; joint++)
-        CHECK(After[joint] - Before[joint] < 0.3 && Before[joint] - After[joint] < 0.3);
     Status.Size = sizeof Status;
     CHECK(GetStatus(2, &Status) == 0);
     CHECK(Status.State == FINGER_RUNNING && Status.Calibration == 0.0);
