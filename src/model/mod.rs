@@ -4,12 +4,16 @@
 pub mod configuration;
 mod contact;
 mod kinematics;
+mod link_dynamics;
+mod mechanics;
 mod simulation;
 mod tendons;
 mod validation;
 
 pub use contact::{Contact, ContactError, spring};
 pub use kinematics::Links;
+pub use link_dynamics::LinkDynamics;
+pub use mechanics::{ConfiguredFriction, ConfiguredLinks};
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use tendons::{Tendons, TendonsError};
 pub use validation::Refusal;

@@ -3,3 +3,4 @@
 mod behaviour;
 mod rig;
 mod robustness;
+mod state_feedback;

@@ -1,0 +1,174 @@
+//! State feedback: what the loops of the report cannot do, and that its tests can fail.
+
+use super::rig::{Loop, finger_with, poses_of, spring};
+use nalgebra::{Matrix3, Vector3};
+use sun2xp::control::{Activity, Law, SetPoint};
+use sun2xp::model::Surface;
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+
+/// Not the seed of anything that the controller was designed on.
+const SEED: u64 = 871;
+
+const RATES: [f64; 3] = [500.0, 1000.0, 2000.0];
+
+fn finger() -> ConfiguredFinger {
+    finger_with(Scheme::StateFeedback)
+}
+
+fn finger_at(pose: &Vector3<f64>) -> ConfiguredFinger {
+    let mut finger = finger();
+    finger.simulation.start_degrees = pose.map(f64::to_degrees).into();
+    finger
+}
+
+/// The spring of a fingertip at a place, N/cm.
+fn exact(joints: Vector3<f64>, stiffness: f64) -> Activity {
+    let set_point = SetPoint::hard_finger(joints, Matrix3::identity() * stiffness);
+    Activity::Follow(SetPoint { law: Law::Exact, ..set_point })
+}
+
+/// Joint angles with the tip `way` (cm) from where it is at `joints`, by Newton; none beyond the joint limits or near to straight.
+fn shifted(finger: &ConfiguredFinger, joints: &Vector3<f64>, way: &Vector3<f64>) -> Option<Vector3<f64>> {
+    let (links, (low, high)) = (finger.links(), finger.joint_limits());
+    let target = links.tip(joints) + way;
+    let mut found = *joints;
+    for _ in 0..50 {
+        found += links.jacobian(&found).try_inverse()? * (target - links.tip(&found));
+    }
+    let within = (0..3).all(|joint| (low[joint]..high[joint]).contains(&found[joint]));
+    ((links.tip(&found) - target).norm() < 1e-9 && within && found[2] > 0.35).then_some(found)
+}
+
+#[test]
+fn settles_everywhere() {
+    for rate in RATES {
+        let (mut worst, mut least) = (0.0f64, f64::INFINITY);
+        for pose in poses_of(SEED) {
+            let mut servo = Loop::new(&finger(), rate);
+            let target = spring(pose, 3.0);
+            servo.run(1.5, &target);
+            assert!(servo.least_commanded >= 5.0);
+            least = least.min(servo.least_true);
+            servo.forget();
+            for _ in 0..2 {
+                let error = (servo.mean_joints(0.25, &target) - pose).amax();
+                println!("{rate} Hz {pose}: {error} {}", servo.least_true);
+                worst = worst.max(error);
+            }
+            assert!((servo.report.joints - servo.plant.joints()).amax() < 1e-2);
+        }
+        println!("{rate} Hz: within {worst:.4} rad, true tensions from {least:.3} N up");
+    }
+}
+
+struct Step {
+    worst: f64,
+    median: f64,
+    overshoot: f64,
+    least_true: f64,
+    least_commanded: f64,
+}
+
+/// Steps of 5 mm from every pose in three directions.
+fn steps(rate: f64, stiffness: f64, loss: f64, change: impl Fn(&mut ConfiguredFinger)) -> Step {
+    let mut times = Vec::new();
+    let mut found =
+        Step { worst: 0.0, median: 0.0, overshoot: 0.0, least_true: f64::INFINITY, least_commanded: f64::INFINITY };
+    for (number, pose) in poses_of(SEED).into_iter().enumerate() {
+        for axis in 0..3 {
+            let mut finger = finger_at(&pose);
+            change(&mut finger);
+            let direction = Vector3::ith(axis, if (number + axis) % 2 == 0 { 1.0 } else { -1.0 });
+            if shifted(&finger, &pose, &(direction * 0.6)).is_none() {
+                continue;
+            }
+            let Some(goal) = shifted(&finger, &pose, &(direction * 0.5)) else { continue };
+            let tip = finger.links().tip(&goal);
+            let mut servo = Loop::new(&finger, rate);
+            servo.run(0.3, &exact(pose, stiffness));
+            servo.lose(loss);
+            servo.forget();
+            let mut last = 0.0;
+            for cycle in 1..=(rate as usize) {
+                servo.cycle(&exact(goal, stiffness));
+                let error = servo.plant.tip() - tip;
+                if error.norm() > 0.025 {
+                    last = cycle as f64 / rate;
+                }
+                found.overshoot = found.overshoot.max(error.dot(&direction) / 0.5);
+            }
+            if last > 0.15 {
+                println!("{rate} Hz, {stiffness} N/cm, {:.0?} {direction:?}: {last}", pose.map(f64::to_degrees));
+            }
+            times.push(last);
+            found.least_true = found.least_true.min(servo.least_true);
+            found.least_commanded = found.least_commanded.min(servo.least_commanded);
+        }
+    }
+    times.sort_by(f64::total_cmp);
+    found.median = times[times.len() / 2];
+    found.worst = times[times.len() - 1];
+    println!(
+        "{rate} Hz, {stiffness} N/cm, loss {loss}: {} steps, worst {:.3} s, median {:.3} s, overshoot {:.1} %, tension {:.2} N",
+        times.len(),
+        found.worst,
+        found.median,
+        found.overshoot * 100.0,
+        found.least_true
+    );
+    found
+}
+
+#[test]
+fn steps_are_short() {
+    for rate in RATES {
+        let found = steps(rate, 3.0, 0.0, |_| ());
+        assert!(found.least_commanded >= 5.0);
+        let found = steps(rate, if rate < 1000.0 { 5.0 } else { 6.0 }, 0.0, |_| ());
+        assert!(found.least_commanded >= 5.0);
+    }
+}
+
+#[test]
+fn lost_replies() {
+    steps(1000.0, 3.0, 0.05, |_| ());
+}
+
+#[test]
+fn walls_are_stable() {
+    for (rate, stiffness) in [(500.0, 3.0), (1000.0, 3.0), (1000.0, 6.0), (2000.0, 3.0)] {
+        let mut worst = 0.0f64;
+        for pose in poses_of(SEED) {
+            for wall in [30.0, 100.0, 300.0] {
+                for axis in 0..3 {
+                    let normal = Vector3::ith(axis, 1.0);
+                    let mut finger = finger_at(&pose);
+                    let at = finger.links().tip(&pose) - normal * 0.05;
+                    let surface = Surface::Wall { point: at.into(), normal: normal.into(), stiffness: wall };
+                    finger.simulation.surface = Some(surface);
+                    let Some(goal) = shifted(&finger, &pose, &(normal * -0.4)) else { continue };
+                    let mut servo = Loop::new(&finger, rate);
+                    servo.run(0.1, &exact(pose, stiffness));
+                    servo.run(1.0, &exact(goal, stiffness));
+                    let tips: Vec<_> = (0..(0.3 * rate) as usize)
+                        .map(|_| {
+                            servo.cycle(&exact(goal, stiffness));
+                            servo.plant.tip()
+                        })
+                        .collect();
+                    let mean = tips.iter().sum::<Vector3<f64>>() / tips.len() as f64;
+                    let square = tips.iter().map(|tip| (tip - mean).norm_squared()).sum::<f64>() / tips.len() as f64;
+                    if square.sqrt() > 0.005 {
+                        println!(
+                            "{rate} Hz {stiffness} wall {wall} axis {axis} {:.0?}: {}",
+                            pose.map(f64::to_degrees),
+                            square.sqrt()
+                        );
+                    }
+                    worst = worst.max(square.sqrt());
+                }
+            }
+        }
+        println!("{rate} Hz, {stiffness} N/cm: tip moves {worst} cm rms against a wall");
+    }
+}
