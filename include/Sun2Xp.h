@@ -1,6 +1,6 @@
 /* Sun2Xp.h - a three-finger tendon-driven hand as a set of springs
 
-   GENERATED from src/capi/calls.rs and cbindgen.toml; do not edit. To renew it:
+   GENERATED from src/capi/ and cbindgen.toml; do not edit. To renew it:
 
        SUN2XP_WRITE_HEADER=1 cargo test --test header
 
@@ -50,10 +50,12 @@
        EPERM    the process is a forked child (chapter 6)
        EFAULT   an argument is a null pointer
        ENODEV   no hand is open
-       EBUSY    OpenHand while a hand is open, or is being opened or closed
+       EBUSY    OpenHand while a hand is open, or is being opened or closed; a key that
+                cannot change while a hand is open
        EINVAL   no such finger; NaN or infinity; an unusable configuration
-       ERANGE   angles outside the joint limits; Kx stiffer than the bound
-       EDOM     Kx not symmetric, or with a negative eigenvalue
+       ERANGE   angles outside the joint limits; a tip out of reach; Kx stiffer than the
+                bound; damping outside its range
+       EDOM     Kx not symmetric, or with a negative eigenvalue; a normal of length zero
        EIO      the finger is faulted: it has stopped by itself
        ENOTSUP  not for a finger on a real port
        others   a configuration file or a port: what the system said, or the nearest
@@ -259,6 +261,36 @@ struct FingerStatus {
      Damaged or foreign frames on the finger's port.
      */
     unsigned long DamagedFrames;
+};
+
+/*
+ What GetTip tells of a fingertip. Set Size = sizeof (struct FingerTip) before the call:
+ later versions add members at the end, and a program never gets more than it has room
+ for.
+ */
+struct FingerTip {
+    /*
+     In: bytes of room, sizeof *Tip. Out: bytes that were filled, never more.
+     */
+    unsigned int Size;
+    /*
+     Directions of Force that the joints feel: 3, or fewer near a singular pose.
+     */
+    int Felt;
+    /*
+     Where the tip is, x, y, z of the finger's frame, cm.
+     */
+    double Tip[3];
+    /*
+     What the tip does to the thing it touches, x, y, z of the finger's frame, N. It comes
+     from the measured tensions, so the finger's friction and weight and what accelerates
+     it are in it. Never NaN: along a direction that the joints do not feel it is zero.
+     */
+    double Force[3];
+    /*
+     Measured tendon tensions, N.
+     */
+    double Tensions[4];
 };
 
 /*
@@ -470,6 +502,161 @@ int GetStatus(int i,
  Threads: any.
  */
 int PushFinger(int i, const double *Force);
+
+/*
+ SendTip - send a desired fingertip position to a finger
+
+     int SendTip(int i, const double *Tip);
+
+   i     finger, 1 to 3
+   Tip   Tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm.
+         Always double. Read during the call only
+
+ From the next cycle on the fingertip is a spring anchored there, with the stiffness
+ sent last, and exactly so at any distance: its force is Kx (Tip - tip), where SendPos
+ by default has the report's law, which is that of small distances. Of several joint
+ solutions within the joint limits it takes the one nearest to the present pose. The
+ anchor goes there straight in the joints, at a bounded speed.
+
+ Returns 0, or -1 with
+   EFAULT   Tip is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an entry is NaN or infinite
+   ERANGE   too far, too near, or outside the joint limits; never clamped
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; less than 1 us.
+
+     double Tip[3] = {0.0, -6.0, 8.0};
+     SendTip(1, Tip);
+ */
+int SendTip(int i,
+            const double *Tip);
+
+/*
+ GetTip - read position and force of a fingertip, and the tendon tensions
+
+     int GetTip(int i, struct FingerTip *Tip);
+
+   i     finger, 1 to 3
+   Tip   Tip->Size is set by the caller, all else is filled in from the servo's last
+         cycle. Written only if the call returns 0
+
+ Returns 0, or -1 with
+   EFAULT   Tip is null
+   EINVAL   Size is too small; no such finger
+   ENODEV   no hand is open
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; about 1 us.
+
+     struct FingerTip Tip;
+     Tip.Size = sizeof Tip;
+     if (GetTip(1, &Tip) == 0) printf("%g N along z\n", Tip.Force[2]);
+ */
+int GetTip(int i, struct FingerTip *Tip);
+
+/*
+ SendContact - make a fingertip the spring of a contact type
+
+     int SendContact(int i, int D, const double *K, const double *Normal);
+
+   i        finger, 1 to 3
+   D        dimensions of the contact (section 4.2 of the report):
+            1   frictionless point: a force along the normal
+            3   hard finger with friction: three forces; SendContact (i, 3, Kx, 0) is
+                SendKx (i, Kx)
+            4   soft finger: three forces and a moment about the normal
+   K        K[D][D] or K[D * D], row by row. Rows and columns 0 to 2 of D = 3 and 4 are
+            x, y, z of the finger's frame, N/cm; row and column 3 are the rotation
+            about the normal: N cm/rad on the diagonal, N/rad beside it. For D = 1 N/cm
+            along the normal
+   Normal   Normal[3]: direction of the contact's normal in the finger's frame, of any
+            length but zero. Not used for D = 3, and may be null there
+
+ Always double. Read during the calls only. Takes effect whole, from the next cycle on,
+ and takes the place of the stiffness sent last, as a later SendKx takes its. In the
+ directions that a contact does not have the finger is limp, still damped. K must be
+ symmetric and without a negative eigenvalue, as for SendKx; for its bound a rotation
+ counts as it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
+
+ Returns 0, or -1 with
+   EFAULT   K is null, or Normal for D = 1 or 4
+   ENODEV   no hand is open
+   EINVAL   no such finger; no such D; an entry is NaN or infinite
+   EDOM     K is not symmetric, or has a negative eigenvalue; Normal is zero
+   ERANGE   K is stiffer than the bound (or it is clamped: hand.out_of_range)
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; a few us.
+
+     double K[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
+     double Normal[3] = {0, -1, 0};
+     SendContact(1, 4, &K[0][0], Normal);
+ */
+int SendContact(int i,
+                int D,
+                const double *K,
+                const double *Normal);
+
+/*
+ SendDamping - set the damping of a fingertip
+
+     int SendDamping(int i, double Ratio);
+
+   i       finger, 1 to 3
+   Ratio   damping relative to what the controller chooses from the stiffness: 0.2 to
+           3; 1 is that, and is so after OpenHand
+
+ Stays until it is sent again, whatever the stiffness.
+
+ Returns 0, or -1 with
+   ENODEV   no hand is open
+   EINVAL   no such finger; Ratio is NaN or infinite
+   ERANGE   Ratio is outside its range (or it is clamped: hand.out_of_range)
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; about 100 ns.
+ */
+int SendDamping(int i,
+                double Ratio);
+
+/*
+ AdjustFinger - change the configuration of a finger while it runs
+
+     int AdjustFinger(int i, const char *Keys);
+
+   i      finger, 1 to 3
+   Keys   lines of TOML as they would stand under [finger.i] of the configuration file
+          (chapter 8), in UTF-8. Read during the call only
+
+ All keys take effect together, within a cycle and without a jump in torque; what is
+ not named stays. The change lasts until CloseHand: the file is not written. What a
+ finger is opened with cannot change: port, baud, address, thread, core, priority,
+ base, turn_degrees, encoder, motor.sign, motor.torque_limit, motor.torque_constant,
+ stiffness.initial and simulation. controller.law counts from the next SendPos on.
+
+ Returns 0, or -1 with
+   EFAULT   Keys is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; Keys cannot be read; the configuration with them cannot be
+            used
+   EBUSY    a key cannot change while the hand is open
+   ERANGE   the position or stiffness sent last is outside the new limits (or it is
+            clamped: hand.out_of_range)
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; about 100 us, and allocates.
+
+     AdjustFinger(1, "tendon.minimum = 6\ncontroller.tension_gain = 3");
+ */
+int AdjustFinger(int i,
+                 const char *Keys);
 
 #ifdef __cplusplus
 }

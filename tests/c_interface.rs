@@ -114,6 +114,11 @@ fn the_status_tells_of_the_servo() {
     succeed(&strict(&[]), &["status.c"]);
 }
 
+#[test]
+fn a_fingertip_is_sent_read_and_made_a_contact() {
+    succeed(&strict(&["-ansi"]), &["tip.c"]);
+}
+
 /// The `sun2xp board` program behind a port of its own, ended when dropped.
 struct Board {
     process: Child,
@@ -297,17 +302,22 @@ fn the_library_exports_the_calls_and_nothing_else() {
     let mut exported: Vec<_> = listing.lines().filter_map(|line| line.split_whitespace().nth(2)).collect();
     exported.sort_unstable();
     let calls = [
+        "AdjustFinger",
         "CloseHand",
         "GetPos",
         "GetPosD",
         "GetStatus",
+        "GetTip",
         "HandError",
         "OpenHand",
         "PushFinger",
+        "SendContact",
+        "SendDamping",
         "SendKx",
         "SendKxD",
         "SendPos",
         "SendPosD",
+        "SendTip",
     ];
     assert_eq!(exported, calls);
 }

@@ -61,5 +61,15 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads");
     others = BY_OTHERS.load(Relaxed) - others;
     assert!(others < 100, "the planner's calls allocate: {others}");
+    // A new controller is made by the planner and only copied by the servo.
+    let end = cycles(1) + 200;
+    for step in 0u32.. {
+        hand.adjust(1, &format!("tendon.minimum = {}", 5 + step % 3)).expect("adjusted");
+        if cycles(1) >= end {
+            break;
+        }
+        std::thread::yield_now();
+    }
+    assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads while a finger is adjusted");
     assert!(cycles(2) > 500 && cycles(3) > 500, "all fingers ran");
 }

@@ -204,7 +204,12 @@ impl Transport for Port {
                 0 => return Err(PortError::Vanished),
                 1.. => return Ok(taken as usize),
                 _ => match io::Error::last_os_error() {
-                    error if matches!(error.kind(), io::ErrorKind::Interrupted | io::ErrorKind::WouldBlock) => {}
+                    // A driver that announces bytes and has none must not hold anybody past the deadline.
+                    error if matches!(error.kind(), io::ErrorKind::Interrupted | io::ErrorKind::WouldBlock) => {
+                        if realtime::now() >= deadline {
+                            break;
+                        }
+                    }
                     error => return Err(failed(error)),
                 },
             }

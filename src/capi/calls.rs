@@ -276,17 +276,9 @@ pub extern "C" fn HandError() -> *const c_char {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetStatus(i: c_int, Status: *mut FingerStatus) -> c_int {
     guarded("GetStatus", || {
-        non_null(Status, "Status")?;
-        // SAFETY: not null; the first member is there by the manual's contract. Only it: a program may have less room.
-        let size = unsafe { Status.cast::<c_uint>().read_unaligned() } as usize;
-        if size < FIRST_SIZE {
-            return Err(Refusal::SmallStatus { size, least: FIRST_SIZE });
-        }
-        let filled = size.min(size_of::<FingerStatus>());
-        let status = default_hand::with(|hand| hand.status(i).map(|status| told(&status, filled)))?;
-        // SAFETY: `filled` is at most the caller's room and at most the size of `status`.
-        unsafe { (&raw const status).cast::<u8>().copy_to_nonoverlapping(Status.cast(), filled) };
-        Ok(())
+        let told = |filled| default_hand::with(|hand| hand.status(i).map(|status| told(&status, filled)));
+        // SAFETY: the manual's contract: null, or as much room as its first member says.
+        unsafe { fill(Status, "Status", FIRST_SIZE, told) }
     })
 }
 
@@ -340,7 +332,7 @@ fn told(status: &hand::FingerStatus, filled: usize) -> FingerStatus {
     }
 }
 
-fn non_null<T>(pointer: *const T, name: &'static str) -> Result<(), Refusal> {
+pub(super) fn non_null<T>(pointer: *const T, name: &'static str) -> Result<(), Refusal> {
     if pointer.is_null() { Err(Refusal::Null(name)) } else { Ok(()) }
 }
 
@@ -349,10 +341,34 @@ fn non_null<T>(pointer: *const T, name: &'static str) -> Result<(), Refusal> {
 ///
 /// # Safety
 /// `array` is null or points to `N` entries.
-unsafe fn load<T, const N: usize>(array: *const T, name: &'static str) -> Result<[T; N], Refusal> {
+pub(super) unsafe fn load<T, const N: usize>(array: *const T, name: &'static str) -> Result<[T; N], Refusal> {
     non_null(array, name)?;
     // SAFETY: not null, and `N` entries by the contract of this function.
     Ok(unsafe { array.cast::<[T; N]>().read_unaligned() })
+}
+
+/// Fills a struct of the caller's whose first member is its Size: at most as much as there is room for. `told` is asked with
+/// the number of bytes that will be filled.
+///
+/// # Safety
+/// `out` is null, or points to a Size and to as many bytes as that says.
+pub(super) unsafe fn fill<T>(
+    out: *mut T,
+    name: &'static str,
+    least: usize,
+    told: impl FnOnce(usize) -> Result<T, Refusal>,
+) -> Result<(), Refusal> {
+    non_null(out, name)?;
+    // SAFETY: not null; the first member is there by the contract. Only it: a program may have less room.
+    let size = unsafe { out.cast::<c_uint>().read_unaligned() } as usize;
+    if size < least {
+        return Err(Refusal::SmallStruct { name, size, least });
+    }
+    let filled = size.min(size_of::<T>());
+    let whole = told(filled)?;
+    // SAFETY: `filled` is at most the caller's room and at most the size of `whole`.
+    unsafe { (&raw const whole).cast::<u8>().copy_to_nonoverlapping(out.cast(), filled) };
+    Ok(())
 }
 
 fn rows(entries: [f64; 9]) -> [[f64; 3]; 3] {

@@ -14,11 +14,13 @@ pub(super) fn is_forked_child() -> bool {
     FORKED.load(Ordering::Relaxed)
 }
 
-/// Watches for fork and exit from now on. Once is enough: neither can be taken back.
+/// Watches for fork and exit from now on, and keeps ports away from the standard descriptors. To be called at every open: a
+/// planner may have closed one since the last.
 pub(super) fn watch() {
+    keep_standard_descriptors();
+    // Neither handler can be taken back.
     static WATCH: Once = Once::new();
     WATCH.call_once(|| {
-        keep_standard_descriptors();
         // SAFETY: both handlers are functions of this library, which stays loaded (`-z nodelete`), and no panic leaves
         // them. Out of memory is the only failure; then a planner's exit is what its death is: the boards' watchdogs act.
         unsafe {
@@ -54,6 +56,12 @@ extern "C" fn at_exit() {
         // Whatever goes wrong here, the process ends, and the boards' watchdogs see to the motors.
         let _ = catch_unwind(default_hand::close_at_exit);
     }
+}
+
+/// The calling thread's errno.
+pub(super) fn errno() -> c_int {
+    // SAFETY: the address of the calling thread's own errno is always valid.
+    unsafe { *libc::__errno_location() }
 }
 
 /// Sets the calling thread's errno.

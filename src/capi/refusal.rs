@@ -20,8 +20,8 @@ pub(super) enum Refusal {
     Forked,
     #[error("{0} is a null pointer: pass an array")]
     Null(&'static str),
-    #[error("Status->Size is {size}: set it to sizeof *Status, at least {least}, before the call")]
-    SmallStatus { size: usize, least: usize },
+    #[error("{name}->Size is {size}: set it to sizeof *{name}, at least {least}, before the call")]
+    SmallStruct { name: &'static str, size: usize, least: usize },
     #[error("no hand is open: call OpenHand first, and look at its result")]
     NoHand,
     #[error("the hand is open already, and goes on: CloseHand comes before another OpenHand")]
@@ -41,7 +41,7 @@ impl Refusal {
         match self {
             Self::Forked => libc::EPERM,
             Self::Null(_) => libc::EFAULT,
-            Self::SmallStatus { .. } => libc::EINVAL,
+            Self::SmallStruct { .. } => libc::EINVAL,
             Self::NoHand => libc::ENODEV,
             Self::AlreadyOpen | Self::Busy => libc::EBUSY,
             Self::Panicked(_) => libc::EIO,
@@ -67,12 +67,17 @@ static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
 
 /// Runs one call: 0 where it is done, -1 where it is refused. No panic leaves it.
 pub(super) fn guarded(name: &'static str, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
+    let errno = process::errno();
     let outcome = match process::is_forked_child() {
         true => Err(Refusal::Forked),
         false => catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| Err(Refusal::Panicked(message(&*panic)))),
     };
     match outcome {
-        Ok(()) => 0,
+        Ok(()) => {
+            // Files that are looked for and not there, and locks that were waited for, have set it.
+            process::set_errno(errno);
+            0
+        }
         Err(refusal) => {
             refuse(name, &refusal);
             -1
@@ -136,6 +141,16 @@ mod tests {
         let errno = std::io::Error::last_os_error().raw_os_error();
         assert_eq!((result, errno), (-1, Some(libc::EIO)));
         assert_eq!(told(), "SendPos: the library failed (a defect): a defect of this library, please report it");
+    }
+
+    #[test]
+    fn success_leaves_errno() {
+        process::set_errno(libc::E2BIG);
+        let call = || {
+            process::set_errno(libc::ENOENT);
+            Ok(())
+        };
+        assert_eq!((guarded("OpenHand", call), process::errno()), (0, libc::E2BIG));
     }
 
     #[test]

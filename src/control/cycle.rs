@@ -39,7 +39,7 @@ pub struct Controller {
     distribution: TensionDistribution,
     tendons: TendonController,
     motor_torque: MotorTorque,
-    state_feedback: Option<Box<StateFeedback>>,
+    state_feedback: Option<StateFeedback>,
     /// Motor radii, m.
     radius: Vector4<f64>,
     /// N.
@@ -59,6 +59,8 @@ pub struct State {
     tensions: Vector4<f64>,
     tendons: TendonState,
     transition: Transition,
+    /// Another controller computes the next pulls than the last.
+    taken_over: bool,
     stillness: Stillness,
     /// N at the tendon.
     pulls: Vector4<f64>,
@@ -87,7 +89,7 @@ impl Controller {
         let gains = Gains::new(&finger.controller, rate)?;
         let motor_torque = MotorTorque::new(finger, &tendons)?;
         let state_feedback = match finger.controller.scheme {
-            Scheme::StateFeedback => Some(Box::new(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?)),
+            Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
             Scheme::Figure9 | Scheme::Figure10 => None,
         };
         Ok(Self {
@@ -127,12 +129,19 @@ impl Controller {
             tensions,
             tendons: TendonState::default(),
             transition: Transition::default(),
+            taken_over: false,
             stillness: Stillness::new(motor_angles),
             pulls,
             against_friction: Vector4::zeros(),
             state_feedback: self.state_feedback.as_ref().map(|law| law.start(&self.sensors, feedback)),
             report,
         }
+    }
+
+    /// Goes on from the state of another controller of the same finger, with the same sensors and at the same rate, without a
+    /// jump in torque.
+    pub fn take_over(&self, state: &mut State) {
+        state.taken_over = true;
     }
 
     /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates rests,
@@ -250,7 +259,7 @@ impl Controller {
 
     /// Pulls to the motors: without a jump where something begins, and within their limits.
     fn give(&self, state: &mut State, asked: &Vector4<f64>, begins: bool) {
-        if begins {
+        if begins || std::mem::take(&mut state.taken_over) {
             state.transition.begin(&state.pulls, asked);
         }
         let limit = &self.motor_torque.limit;

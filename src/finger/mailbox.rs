@@ -4,8 +4,9 @@
 //! inheritance), and a channel is not lock-free when a real-time thread shares a core with a preempted sender. The planners'
 //! own side is locked among themselves only.
 
-use crate::control::{Report, SetPoint};
+use crate::control::{Controller, Report, SetPoint};
 use crate::finger::Fault;
+use nalgebra::Vector3;
 use parking_lot::Mutex;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -50,6 +51,18 @@ pub struct FingerReport {
     pub last: u64,
 }
 
+/// What a servo computes with, and what a planner may change while it runs.
+#[derive(Clone, Debug)]
+pub struct Adjustable {
+    /// The boxes of Figure 9.
+    pub controller: Controller,
+    /// Joint angles that a finger under tension can have, rad: lowest and highest.
+    pub pose: (Vector3<f64>, Vector3<f64>),
+}
+
+// A servo copies it out of a buffer: nothing may be allocated or freed then.
+const _: () = assert!(!std::mem::needs_drop::<Adjustable>());
+
 /// The planners' end.
 pub struct Mailbox {
     planners: Mutex<PlannersEnd>,
@@ -59,23 +72,36 @@ pub struct Mailbox {
 struct PlannersEnd {
     sent: SetPoint,
     set_points: Input<SetPoint>,
+    adjustments: Input<Adjustable>,
     reports: Output<FingerReport>,
 }
 
 /// The servo's end. Nothing here waits or allocates.
 pub(super) struct ServoEnd {
     set_points: Output<SetPoint>,
+    adjustments: Output<Adjustable>,
     reports: Input<FingerReport>,
     closing: Arc<AtomicBool>,
 }
 
-/// A mailbox whose both ends hold `report`, with its set point.
-pub(super) fn mailbox(report: FingerReport) -> (Mailbox, ServoEnd) {
+/// A mailbox whose both ends hold `report`, with its set point, and `adjustable`.
+pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd) {
     let (set_points_in, set_points_out) = triple_buffer(&report.set_point);
+    let (adjustments_in, adjustments_out) = triple_buffer(adjustable);
     let (reports_in, reports_out) = triple_buffer(&report);
     let closing = Arc::new(AtomicBool::new(false));
-    let planners = PlannersEnd { sent: report.set_point, set_points: set_points_in, reports: reports_out };
-    let servo = ServoEnd { set_points: set_points_out, reports: reports_in, closing: closing.clone() };
+    let planners = PlannersEnd {
+        sent: report.set_point,
+        set_points: set_points_in,
+        adjustments: adjustments_in,
+        reports: reports_out,
+    };
+    let servo = ServoEnd {
+        set_points: set_points_out,
+        adjustments: adjustments_out,
+        reports: reports_in,
+        closing: closing.clone(),
+    };
     (Mailbox { planners: Mutex::new(planners), closing }, servo)
 }
 
@@ -100,6 +126,24 @@ impl Mailbox {
         Ok(())
     }
 
+    /// The set point that was sent last.
+    pub fn sent(&self) -> SetPoint {
+        self.planners.lock().sent
+    }
+
+    /// Gives the servo something else to compute with, unless the finger is faulted.
+    ///
+    /// # Errors
+    /// The fault; nothing is changed then.
+    pub fn adjust(&self, adjustable: Adjustable) -> Result<(), Fault> {
+        let mut planners = self.planners.lock();
+        if let Stage::Faulted(fault) = planners.reports.read().stage {
+            return Err(fault);
+        }
+        planners.adjustments.write(adjustable);
+        Ok(())
+    }
+
     /// Takes over the set point that the servo has found for itself at open, as what the next change starts from.
     pub fn adopt(&self) {
         let mut planners = self.planners.lock();
@@ -116,6 +160,11 @@ impl ServoEnd {
     /// The set point, if a planner has sent one since the last call.
     pub fn new_set_point(&mut self) -> Option<SetPoint> {
         self.set_points.update().then(|| *self.set_points.output_buffer())
+    }
+
+    /// What the servo shall compute with, if a planner has changed it since the last call.
+    pub fn new_adjustable(&mut self) -> Option<&Adjustable> {
+        self.adjustments.update().then(|| self.adjustments.output_buffer())
     }
 
     /// Whether the finger shall be brought to its end state.

@@ -3,7 +3,7 @@
 use crate::board::protocol::{Command as BoardCommand, Configured, Identity, Status};
 use crate::board::{OutgoingCommand, Received};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
-use crate::finger::mailbox::{Mailbox, ServoEnd, mailbox};
+use crate::finger::mailbox::{Adjustable, Mailbox, ServoEnd, mailbox};
 use crate::finger::{Fault, FingerReport, Stage};
 use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState, Unusable};
 use crate::realtime::{self, CycleTiming};
@@ -16,6 +16,10 @@ const TENSION_SETTLED: f64 = 0.02;
 /// A simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to stop the hand.
 const SIMULATION_PATIENCE_MS: f64 = 1000.0;
 
+/// So long, ms, the last command is repeated where replies stay away. Then the motors are let go until one comes: a torque that
+/// nobody watches winds a tendon up, or off its motor, within some ms, and the watchdog does not see it, as commands go on.
+const BLIND_MS: f64 = 10.0;
+
 /// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
 const BEYOND_LIMITS: f64 = 0.5;
 
@@ -24,7 +28,7 @@ const STOPS_AFTER_FAULT: u8 = 3;
 
 /// One finger: its controller, its place in the protocol, its mailbox.
 pub struct FingerServo {
-    controller: Controller,
+    adjustable: Adjustable,
     state: State,
     activity: Activity,
     feedback: Feedback,
@@ -54,11 +58,22 @@ pub struct FingerServo {
 struct Limits {
     period_ms: f64,
     lost: u32,
+    blind: u32,
     tension: u32,
     settled: u32,
     ramp: u32,
-    /// Joint angles that a finger under tension can have, rad: lowest and highest.
-    pose: (Vector3<f64>, Vector3<f64>),
+}
+
+impl Adjustable {
+    /// What the configuration says.
+    ///
+    /// # Errors
+    /// A configuration that no controller can be made from.
+    pub fn new(hand: &ConfiguredHand, finger: &ConfiguredFinger) -> Result<Self, Unusable> {
+        let (low, high) = finger.joint_limits();
+        let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
+        Ok(Self { controller: Controller::new(finger, hand.rate)?, pose })
+    }
 }
 
 impl FingerServo {
@@ -78,9 +93,9 @@ impl FingerServo {
         configured: &Configured,
         timings: Producer<CycleTiming>,
     ) -> Result<(Self, Mailbox), Unusable> {
-        let controller = Controller::new(finger, hand.rate)?;
+        let adjustable = Adjustable::new(hand, finger)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
-        let state = controller.start(&feedback);
+        let state = adjustable.controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
         let law = finger.controller.law;
         let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
@@ -95,9 +110,9 @@ impl FingerServo {
             first: 0,
             last: 0,
         };
-        let (planners, servo) = mailbox(report);
+        let (planners, servo) = mailbox(report, &adjustable);
         let this = Self {
-            controller,
+            adjustable,
             state,
             activity: Activity::TakeUpSlack,
             feedback,
@@ -115,13 +130,10 @@ impl FingerServo {
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
                 lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
+                blind: cycles(BLIND_MS),
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
-                pose: {
-                    let (low, high) = finger.joint_limits();
-                    (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS))
-                },
             },
             settled_cycles: 0,
             stage_cycles: 0,
@@ -204,7 +216,15 @@ impl FingerServo {
         if self.under_control() {
             self.take_commands();
             let feedback = self.answered.then_some(&self.feedback);
-            (self.command, self.report.cycle) = self.controller.cycle(&mut self.state, feedback, &self.activity);
+            let controller = &self.adjustable.controller;
+            (self.command, self.report.cycle) = controller.cycle(&mut self.state, feedback, &self.activity);
+            // Periods that will be skipped are periods without a reply: what differentiates and predicts must know of them.
+            for _ in 0..skipped.min(self.limits.lost.into()) {
+                (self.command, self.report.cycle) = controller.cycle(&mut self.state, None, &self.activity);
+            }
+            if self.lost_in_a_row >= self.limits.blind {
+                self.command = Command::default();
+            }
             self.move_on();
         }
         self.mailbox.publish(self.report);
@@ -234,7 +254,7 @@ impl FingerServo {
 
     /// A spring pulls a finger that is believed to be where it cannot be with all it has.
     fn check_pose(&mut self) {
-        let (low, high) = self.limits.pose;
+        let (low, high) = self.adjustable.pose;
         let joints = self.report.cycle.joints;
         if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
             let degrees = joints[joint].to_degrees() as i32;
@@ -257,6 +277,10 @@ impl FingerServo {
     }
 
     fn take_commands(&mut self) {
+        if let Some(adjustable) = self.mailbox.new_adjustable() {
+            self.adjustable = adjustable.clone();
+            self.adjustable.controller.take_over(&mut self.state);
+        }
         if let Some(set_point) = self.mailbox.new_set_point()
             && let Activity::Follow(_) = self.activity
         {

@@ -1,14 +1,19 @@
 //! What a planner may ask of a finger: the checks between a call and the servo. Nothing that fails one reaches it.
 
+use crate::control::InverseKinematics;
 use crate::hand::HandError;
 use crate::model::configuration::{Law, OutOfRange};
-use nalgebra::{Matrix3, Vector3};
+use crate::model::{Contact, Links};
+use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};
 
 /// Kx may be asymmetric, or have a negative eigenvalue, by so much of its largest entry or eigenvalue: the rounding of a
 /// planner that works in `float`.
 const ROUNDING: f64 = 1e-3;
 
-/// The limits of one finger.
+/// Damping that a planner may ask for, relative to the chosen one.
+const DAMPING: (f64, f64) = (0.2, 3.0);
+
+/// The limits of one finger, and what its tip is computed with.
 #[derive(Clone, Debug)]
 pub(super) struct Admission {
     /// 1 to 3.
@@ -17,6 +22,11 @@ pub(super) struct Admission {
     pub joint_limits: (Vector3<f64>, Vector3<f64>),
     /// Bound on the largest eigenvalue of Kx, N/cm.
     pub stiffness_bound: f64,
+    /// A^-1 within the joint limits.
+    pub inverse_kinematics: InverseKinematics,
+    pub links: Links,
+    /// R of eq. 14, cm.
+    pub r: Matrix3x4<f64>,
     /// What SendPos makes of deflections.
     pub law: Law,
     /// Refuse or clamp.
@@ -53,10 +63,13 @@ impl Admission {
                 return Err(HandError::NotSymmetric { finger: self.finger, row, column, difference });
             }
         }
-        let symmetric = (asked + asked.transpose()) * 0.5;
+        // Halved before they are added: the sum of two finite entries may be infinite, and its eigenvalues NaN, which no
+        // comparison below would stop.
+        let symmetric = asked * 0.5 + asked.transpose() * 0.5;
         let mut eigen = symmetric.symmetric_eigen();
         let (smallest, largest) = (eigen.eigenvalues.min(), eigen.eigenvalues.max());
-        if smallest < -ROUNDING * largest.abs().max(smallest.abs()) {
+        // An eigenvalue may be infinite where no entry is.
+        if smallest < -ROUNDING * largest.abs().max(smallest.abs()).min(f64::MAX) {
             return Err(HandError::Negative { finger: self.finger, smallest });
         }
         let bound = self.stiffness_bound;
@@ -74,6 +87,38 @@ impl Admission {
         Ok((recomposed + recomposed.transpose()) * 0.5)
     }
 
+    /// Joint angles, rad, for a tip position, cm, nearest to the `present` ones. Never clamped: the nearest point of the
+    /// workspace may be on the other side of an object.
+    pub fn tip(&self, tip: [f64; 3], present: &Vector3<f64>) -> Result<Vector3<f64>, HandError> {
+        self.finite("Tip", &tip)?;
+        let found = self.inverse_kinematics.joints(&Vector3::from(tip), present);
+        found.map_err(|source| HandError::OutOfReach { finger: self.finger, tip, source })
+    }
+
+    /// The stiffness of a contact, within the bound. A rotation counts by the way it moves the last joint.
+    pub fn contact(&self, contact: &Contact) -> Result<Matrix6<f64>, HandError> {
+        let (bound, lever) = (self.stiffness_bound, self.links.0[2]);
+        let largest = contact.largest_eigenvalue(lever);
+        // A bound sent as `float` is a bound.
+        if largest <= bound * (1.0 + 8.0 * f64::from(f32::EPSILON)) {
+            return Ok(*contact.stiffness());
+        }
+        match self.out_of_range {
+            OutOfRange::Refuse => Err(HandError::TooStiff { finger: self.finger, largest, bound }),
+            OutOfRange::Clamp => Ok(*contact.clamped(bound, lever).stiffness()),
+        }
+    }
+
+    /// Damping relative to the chosen one.
+    pub fn damping(&self, ratio: f64) -> Result<f64, HandError> {
+        self.finite("Ratio", &[ratio])?;
+        let (low, high) = DAMPING;
+        if (ratio < low || ratio > high) && self.out_of_range == OutOfRange::Refuse {
+            return Err(HandError::Damping { finger: self.finger, ratio, low, high });
+        }
+        Ok(ratio.clamp(low, high))
+    }
+
     /// Refuses NaN and infinity: they must never reach the servo.
     pub fn finite(&self, what: &'static str, values: &[f64]) -> Result<(), HandError> {
         match values.iter().find(|value| !value.is_finite()) {
@@ -88,9 +133,14 @@ mod tests {
     use super::*;
 
     fn admission(out_of_range: OutOfRange) -> Admission {
+        let joint_limits = (Vector3::new(-1.0, -0.5, 0.1), Vector3::new(1.0, 1.7, 2.0));
+        let links = Links([3.556, 5.080, 4.000]);
         Admission {
             finger: 2,
-            joint_limits: (Vector3::new(-1.0, -0.5, 0.1), Vector3::new(1.0, 1.7, 2.0)),
+            joint_limits,
+            inverse_kinematics: InverseKinematics::new(links, joint_limits),
+            links,
+            r: Matrix3x4::zeros(),
             stiffness_bound: 6.0,
             law: Law::Report,
             out_of_range,
@@ -128,6 +178,21 @@ mod tests {
     }
 
     #[test]
+    fn no_finite_kx_becomes_nan() {
+        let (huge, tiny) = (f64::MAX, f64::MIN_POSITIVE / 1024.0);
+        for value in [huge, 0.9 * huge, 1e200, tiny] {
+            for rows in [[[value; 3]; 3], [[value, 0.0, 0.0], [0.0, value, 0.0], [0.0, 0.0, 0.0]]] {
+                let clamped = admission(OutOfRange::Clamp).stiffness(rows).expect("clamped");
+                assert!(clamped.iter().all(|entry| entry.is_finite()), "{value:e}: {clamped}");
+                let refused = admission(OutOfRange::Refuse).stiffness(rows);
+                assert_eq!(refused.is_err(), value > 1.0, "{value:e}: {refused:?}");
+                let negative = admission(OutOfRange::Clamp).stiffness(rows.map(|row| row.map(|entry| -entry)));
+                assert!(matches!(negative, Err(HandError::Negative { .. })), "-{value:e}: {negative:?}");
+            }
+        }
+    }
+
+    #[test]
     fn clamping_takes_the_nearest_admissible_value() {
         let clamp = admission(OutOfRange::Clamp);
         assert_eq!(clamp.joints([2.0, -3.0, 1.0]).expect("clamped"), Vector3::new(1.0, -0.5, 1.0));
@@ -136,6 +201,29 @@ mod tests {
         let expected = Matrix3::new(3.5, 2.5, 0.0, 2.5, 3.5, 0.0, 0.0, 0.0, 2.0);
         assert!((kx - expected).amax() < 1e-12, "{kx}");
         assert!(matches!(clamp.joints([f64::INFINITY, 0.0, 1.0]), Err(HandError::NotFinite { .. })));
+    }
+
+    #[test]
+    fn a_torsion_counts_by_the_lever_of_the_last_link() {
+        let contact = |torsion| {
+            let k = nalgebra::Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, torsion));
+            Contact::soft_finger(k, Vector3::z()).expect("a spring")
+        };
+        // 6 N/cm at 4 cm.
+        let (refuse, clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
+        assert_eq!(refuse.contact(&contact(96.0)).expect("admissible"), *contact(96.0).stiffness());
+        assert!(matches!(refuse.contact(&contact(97.0)), Err(HandError::TooStiff { .. })));
+        let clamped = clamp.contact(&contact(970.0)).expect("clamped");
+        assert!((clamped - contact(96.0).stiffness()).amax() < 1e-10, "{clamped}");
+    }
+
+    #[test]
+    fn damping_has_its_range() {
+        let (refuse, clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
+        assert_eq!([0.2, 1.0, 3.0].map(|ratio| refuse.damping(ratio).expect("admissible")), [0.2, 1.0, 3.0]);
+        assert!(matches!(refuse.damping(0.19), Err(HandError::Damping { .. })));
+        assert!(matches!(clamp.damping(f64::NAN), Err(HandError::NotFinite { .. })));
+        assert_eq!((clamp.damping(0.0).expect("clamped"), clamp.damping(9.0).expect("clamped")), (0.2, 3.0));
     }
 
     #[test]

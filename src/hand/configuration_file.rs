@@ -50,10 +50,7 @@ fn locate() -> Option<PathBuf> {
 type Wrong = (Option<usize>, String);
 
 fn parse(text: &str) -> Result<Configuration, Wrong> {
-    let line_of = |span: Option<Range<usize>>| {
-        let before = text.get(..span?.start)?;
-        Some(before.matches('\n').count() + 1)
-    };
+    let line_of = |span: Option<Range<usize>>| line_of(text, span);
     let document = Document::parse(text).map_err(|error| (line_of(error.span()), error.message().to_string()))?;
     let root = document.as_table();
     if let Some((key, _)) = root.iter().find(|(key, _)| !matches!(*key, "hand" | "finger")) {
@@ -84,16 +81,27 @@ fn parse(text: &str) -> Result<Configuration, Wrong> {
     check(&configuration).map_err(|refusal| {
         let key = refusal.unusable.key;
         let (section, span) = match refusal.finger {
-            None => ("hand".to_string(), span_of(root.get("hand"), key)),
+            None => {
+                let hand = root.get("hand");
+                ("hand".to_string(), span_of(hand, key).or_else(|| nearest_table(hand, key)))
+            }
             Some(index) => {
                 let number = (index + 1).to_string();
-                let own = span_of(all.get(&number), key);
-                (format!("finger.{number}"), own.or_else(|| span_of(root.get("finger"), key)))
+                let (own, shared) = (all.get(&number), root.get("finger"));
+                let span = span_of(own, key).or_else(|| span_of(shared, key));
+                let near = || nearest_table(own, key).or_else(|| nearest_table(shared, key));
+                (format!("finger.{number}"), span.or_else(near))
             }
         };
         (line_of(span), format!("{section}.{key}: {}", refusal.unusable.reason))
     })?;
     Ok(configuration)
+}
+
+/// The line where a span begins, counted from 1.
+pub(super) fn line_of(text: &str, span: Option<Range<usize>>) -> Option<usize> {
+    let before = text.get(..span?.start)?;
+    Some(before.matches('\n').count() + 1)
 }
 
 fn failed_plainly(line_of: &impl Fn(Option<Range<usize>>) -> Option<usize>) -> impl Fn(NotATable) -> Wrong {
@@ -116,7 +124,7 @@ fn table(parent: &Table, key: &str) -> Result<Table, NotATable> {
 }
 
 /// Lays `over` on `base`, table by table: what `over` does not name stays.
-fn overlay(base: &mut Table, over: &Table) {
+pub(super) fn overlay(base: &mut Table, over: &Table) {
     for (key, item) in over.iter() {
         let both = (table(base, key), table(over, key));
         let merged = match both {
@@ -139,7 +147,7 @@ fn overlay(base: &mut Table, over: &Table) {
     }
 }
 
-fn deserialize<T: DeserializeOwned>(table: Table) -> Result<T, toml_edit::de::Error> {
+pub(super) fn deserialize<T: DeserializeOwned>(table: Table) -> Result<T, toml_edit::de::Error> {
     T::deserialize(Value::InlineTable(table.into_inline_table()).into_deserializer())
 }
 
@@ -148,6 +156,20 @@ fn span_of(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
     let (path, last) = dotted.rsplit_once('.').unwrap_or(("", dotted));
     let parent = path.split('.').filter(|part| !part.is_empty()).try_fold(section?, |item, part| item.get(part))?;
     parent.as_table_like()?.key(last)?.span()
+}
+
+/// Where the innermost table around a dotted key begins. A default does not fit what the file says, so the key itself is not
+/// there, but what it does not fit mostly stands beside it.
+fn nearest_table(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
+    let (path, _) = dotted.rsplit_once('.').unwrap_or(("", dotted));
+    let mut item = section?;
+    let mut span = item.span();
+    for part in path.split('.').filter(|part| !part.is_empty()) {
+        let Some(inner) = item.get(part) else { break };
+        item = inner;
+        span = item.span().or(span);
+    }
+    span
 }
 
 #[cfg(test)]
@@ -216,11 +238,13 @@ mod tests {
             ("[finger.1.geometry]\nghost_row = [-1, -1, -1, -1]\n", Some(2), "positive"),
             ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [0, 1, 0, 0]]\n", Some(2), "positive"),
             ("[finger.3.tendon]\nmaximum = 8\n", Some(2), "null vector"),
-            ("[finger.tendon]\n\nminimum = 40\n", None, "null vector"),
+            // The key is a default: the table that makes it impossible.
+            ("[finger.tendon]\n\nminimum = 40\n", Some(1), "null vector"),
+            ("[hand]\nrate = 500\n\n[finger.3.tendon]\nminimum = 40\n", Some(4), "null vector"),
             ("[hand]\nrate = nan\n", Some(2), "outside"),
             ("[hand]\nwatchdog_ms = 3\nrate = 500\n", Some(2), "two periods"),
             ("[finger.2.joints]\nminimum_degrees = [0, 0, -5]\n", Some(2), "singular"),
-            ("[finger]\nport = '/dev/ttyUSB0'\naddress = 1\n", None, "thread"),
+            ("[finger]\nport = '/dev/ttyUSB0'\naddress = 1\n", Some(1), "thread"),
         ] {
             let (found, reason) = refusal(text);
             assert_eq!(found, line, "{text:?}: {reason}");

@@ -1,13 +1,13 @@
 //! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
 
-use crate::control::spatial;
+use crate::control::{SetPoint, spatial};
 use crate::finger::{self, FingerReport, Mailbox};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::opening::Reached;
 use crate::realtime::{CycleTiming, Distribution, Histograms, Priority, Stage, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
-use parking_lot::Mutex;
+use parking_lot::{Mutex, RwLock};
 use rtrb::Consumer;
 use std::io;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ const COLLECTING: Duration = Duration::from_millis(50);
 
 /// One finger as the planners see it.
 pub(super) struct Member {
-    pub admission: Admission,
+    pub admission: RwLock<Admission>,
     pub mailbox: Mailbox,
 }
 
@@ -49,7 +49,7 @@ impl Dispatcher {
     pub fn new(fingers: Vec<Reached>) -> Self {
         let (mut members, mut timings) = (Vec::new(), Vec::new());
         for finger in fingers {
-            members.push(Member { admission: finger.admission, mailbox: finger.mailbox });
+            members.push(Member { admission: RwLock::new(finger.admission), mailbox: finger.mailbox });
             timings.push(Mutex::new(Collected { arriving: finger.timings, histograms: Histograms::new() }));
         }
         Self { members, timings: Arc::new(timings), collector: None }
@@ -66,19 +66,30 @@ impl Dispatcher {
 
     /// theta_d, rad.
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
-        let member = self.member(finger)?;
-        let admitted = member.admission.joints(joints)?;
-        let law = member.admission.law;
-        let sent = member.mailbox.send(|set_point| (set_point.joints, set_point.law) = (admitted, law));
-        sent.map_err(|fault| HandError::Faulted { finger, fault })
+        self.send(finger, |admission| {
+            let (joints, law) = (admission.joints(joints)?, admission.law);
+            Ok(move |set_point: &mut SetPoint| (set_point.joints, set_point.law) = (joints, law))
+        })
     }
 
     /// Kx, N/cm, row by row.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
+        self.send(finger, |admission| {
+            let stiffness = spatial(&admission.stiffness(rows)?);
+            Ok(move |set_point: &mut SetPoint| set_point.stiffness = stiffness)
+        })
+    }
+
+    /// Sends the change that `admit` lets through. Both are one step: limits do not change between them.
+    pub fn send<C: FnOnce(&mut SetPoint)>(
+        &self,
+        finger: i32,
+        admit: impl FnOnce(&Admission) -> Result<C, HandError>,
+    ) -> Result<(), HandError> {
         let member = self.member(finger)?;
-        let admitted = member.admission.stiffness(rows)?;
-        let sent = member.mailbox.send(|set_point| set_point.stiffness = spatial(&admitted));
-        sent.map_err(|fault| HandError::Faulted { finger, fault })
+        let admission = member.admission.read();
+        let change = admit(&admission)?;
+        member.mailbox.send(change).map_err(|fault| HandError::Faulted { finger, fault })
     }
 
     /// The newest report of a finger that is not faulted.

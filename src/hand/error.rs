@@ -1,9 +1,10 @@
 //! Why a call was refused, and what to do about it.
 
 use crate::board::LinkError;
+use crate::control::OutOfReach;
 use crate::finger::Fault;
-use crate::model::Refusal;
 use crate::model::configuration::Unusable;
+use crate::model::{ContactError, Refusal};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -16,7 +17,7 @@ pub enum HandError {
     /// NaN or infinity in an argument.
     #[error("{what} of finger {finger} contains {value}: every entry must be a finite number")]
     NotFinite {
-        /// Pos, Kx or Force.
+        /// The argument.
         what: &'static str,
         /// 1 to 3.
         finger: i32,
@@ -79,6 +80,60 @@ pub enum HandError {
         /// Smallest eigenvalue, N/cm.
         smallest: f64,
     },
+    /// A fingertip position that the finger does not reach.
+    #[error("the tip of finger {finger} cannot be at {:.3}, {:.3}, {:.3} cm: {source}", tip[0], tip[1], tip[2])]
+    OutOfReach {
+        /// 1 to 3.
+        finger: i32,
+        /// What was asked, cm.
+        tip: [f64; 3],
+        /// Why not.
+        source: OutOfReach,
+    },
+    /// The stiffness of a contact that is none.
+    #[error("the stiffness of finger {finger}'s contact {source}: a contact is a spring with a direction")]
+    Contact {
+        /// 1 to 3.
+        finger: i32,
+        /// What is wrong with it.
+        source: ContactError,
+    },
+    /// A contact of a type that is not known.
+    #[error(
+        "there is no contact of {0} dimensions: 1 is a frictionless point, 3 a hard finger with friction, 4 a soft finger"
+    )]
+    NoSuchContact(i32),
+    /// A damping ratio outside its range.
+    #[error(
+        "the damping {ratio} of finger {finger} is outside {low} to {high}, relative to the damping that the controller \
+         chooses: stay inside, or set `hand.out_of_range = \"clamp\"`"
+    )]
+    Damping {
+        /// 1 to 3.
+        finger: i32,
+        /// What was asked.
+        ratio: f64,
+        /// Least.
+        low: f64,
+        /// Most.
+        high: f64,
+    },
+    /// Keys to adjust that cannot be read.
+    #[error("finger {finger}, line {line} of the keys to adjust: {reason}")]
+    Adjustment {
+        /// 1 to 3.
+        finger: i32,
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A key that cannot change while the hand is open.
+    #[error("`{key}` cannot change while the hand is open: CloseHand, change the configuration file, OpenHand")]
+    Permanent {
+        /// With dots, relative to the finger.
+        key: String,
+    },
     /// A finger has stopped by itself.
     #[error("finger {finger} is faulted: {fault}")]
     Faulted {
@@ -89,8 +144,8 @@ pub enum HandError {
     },
     /// A configuration file cannot be read.
     #[error(
-        "cannot read the configuration file {}: {source}. SUN2XP_CONFIG names a file that must exist; unset it for the \
-         file in the working directory or the simulated hand", path.display()
+        "cannot read the configuration file {}: {source}. It must be a text file that this user can read; where SUN2XP_CONFIG \
+         names one it must exist", path.display()
     )]
     ConfigurationFile {
         /// The file.
@@ -143,12 +198,17 @@ impl HandError {
         match self {
             Self::NoSuchFinger(_) | Self::NotFinite { .. } => libc::EINVAL,
             Self::Configuration { .. } | Self::Unusable { .. } => libc::EINVAL,
+            Self::NoSuchContact(_) | Self::Adjustment { .. } => libc::EINVAL,
             Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
+            Self::OutOfReach { .. } | Self::Damping { .. } => libc::ERANGE,
+            Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
+            Self::Contact { .. } => libc::EDOM,
+            Self::Permanent { .. } => libc::EBUSY,
             Self::NotSymmetric { .. } | Self::Negative { .. } => libc::EDOM,
             Self::Faulted { .. } => libc::EIO,
-            Self::ConfigurationFile { source, .. } | Self::System { source, .. } => {
-                source.raw_os_error().unwrap_or(libc::EIO)
-            }
+            // Without an errno of the system's the file was read, but is no text.
+            Self::ConfigurationFile { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
+            Self::System { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
             Self::Link { source, .. } => source.errno(),
             Self::NotSimulated(_) => libc::ENOTSUP,
         }

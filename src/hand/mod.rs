@@ -1,13 +1,16 @@
 //! Root and Dispatcher: opens and closes a hand, reads its configuration, routes commands to the fingers and collects
 //! their reports (section 3 of the report).
 
+mod adjustment;
 mod admission;
 mod configuration_file;
 mod dispatcher;
 mod error;
+mod fingertip;
 mod opening;
 mod root;
 
 pub use configuration_file::{configured, read};
 pub use error::HandError;
+pub use fingertip::FingerTip;
 pub use root::{FingerStatus, Hand};

@@ -1,6 +1,7 @@
 //! From a configuration to ports with fingers behind them: everything that happens before a servo thread runs.
 
 use crate::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms, capacity};
+use crate::control::InverseKinematics;
 use crate::finger::{FingerServo, Mailbox, ServedPort};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
@@ -114,11 +115,15 @@ fn shake_hands(
     Ok((servo, Reached { index, mailbox, admission: admission(configuration, index), timings }))
 }
 
-fn admission(configuration: &Configuration, index: usize) -> Admission {
+pub(super) fn admission(configuration: &Configuration, index: usize) -> Admission {
     let finger = &configuration.fingers[index];
+    let joint_limits = finger.joint_limits();
     Admission {
         finger: index as i32 + 1, // 1 to 3
-        joint_limits: finger.joint_limits(),
+        joint_limits,
+        inverse_kinematics: InverseKinematics::new(finger.links(), joint_limits),
+        links: finger.links(),
+        r: finger.r(),
         stiffness_bound: finger.stiffness_bound(configuration.hand.rate),
         law: finger.controller.law,
         out_of_range: configuration.hand.out_of_range,

@@ -9,6 +9,7 @@ use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{self, Distribution, MonotonicClock, Priority, Realtime, Schedule, now, spawn};
 use crossbeam_channel::bounded;
 use nalgebra::Vector3;
+use parking_lot::RwLock;
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread::{JoinHandle, sleep};
@@ -26,10 +27,11 @@ const LOOKING: Duration = Duration::from_millis(1);
 ///
 /// Every call may come from several threads. Dropping it closes it.
 pub struct Hand {
-    dispatcher: Dispatcher,
+    pub(super) dispatcher: Dispatcher,
     servos: Vec<JoinHandle<PortServo>>,
     simulated: [Option<SimulatedPort>; FINGERS],
-    configuration: Configuration,
+    /// As it is now: planners may adjust it.
+    pub(super) configuration: RwLock<Configuration>,
     realtime: bool,
 }
 
@@ -87,6 +89,7 @@ impl Hand {
         threads.dedup();
 
         let dispatcher = Dispatcher::new(reached);
+        let configuration = RwLock::new(configuration);
         let mut hand = Self { dispatcher, servos: Vec::new(), simulated, configuration, realtime: true };
         // From here on, dropping the hand closes it.
         hand.start(&threads, lines)?;
@@ -137,7 +140,7 @@ impl Hand {
         Ok(FingerStatus {
             stage: report.stage,
             realtime: self.realtime,
-            rate: self.configuration.hand.rate,
+            rate: self.configuration.read().hand.rate,
             measured_rate: if seconds > 0.0 { intervals / seconds } else { 0.0 },
             wake_up: self.timing(finger, realtime::Stage::WakeUp)?,
             cycles: report.cycles,
@@ -169,18 +172,18 @@ impl Hand {
     /// # Errors
     /// No such finger, NaN or infinity, a finger on a real port.
     pub fn push_simulated(&self, finger: i32, force: [f64; 3]) -> Result<(), HandError> {
-        self.dispatcher.member(finger)?.admission.finite("Force", &force)?;
+        self.dispatcher.member(finger)?.admission.read().finite("Force", &force)?;
         let index = finger as usize - 1; // the member is there: 1 to 3
         let port = self.simulated[index].as_ref().ok_or(HandError::NotSimulated(finger))?;
         let push = |finger: &mut SimulatedFinger| finger.plant().set_external_force(Vector3::from(force));
         // The board was made with this one address.
-        port.with_finger(self.configuration.address(index), push);
+        port.with_finger(self.configuration.read().address(index), push);
         Ok(())
     }
 
     /// Whether the first refusal of each kind is to be printed on standard error.
     pub fn print_refusals(&self) -> bool {
-        self.configuration.hand.print_refusals
+        self.configuration.read().hand.print_refusals
     }
 
     /// Brings every finger to its end state, as configured, and ends the threads. The same as dropping the hand.
@@ -189,7 +192,7 @@ impl Hand {
     fn start(&mut self, threads: &[u8], lines: Vec<Line>) -> Result<(), HandError> {
         let system = |doing| move |source| HandError::System { doing, source };
         self.dispatcher.start_collecting().map_err(system("start the thread that collects reports"))?;
-        let period = (1e9 / self.configuration.hand.rate).round() as u64;
+        let period = (1e9 / self.configuration.read().hand.rate).round() as u64;
         let first = now() + HEAD_START;
         let mut lines: Vec<Option<Line>> = lines.into_iter().map(Some).collect();
         let (told, hear) = bounded(threads.len());
@@ -214,9 +217,10 @@ impl Hand {
     }
 
     fn priority(&self, thread: u8) -> Priority {
-        let own = (0..FINGERS).find(|&index| self.configuration.thread(index) == thread);
+        let configuration = self.configuration.read();
+        let own = (0..FINGERS).find(|&index| configuration.thread(index) == thread);
         // Fingers that share a thread have the same priority and core: the configuration was checked.
-        let finger = own.map(|index| &self.configuration.fingers[index]);
+        let finger = own.map(|index| &configuration.fingers[index]);
         finger.map_or_else(Priority::default, |finger| Priority { fifo: finger.priority, core: finger.core })
     }
 
@@ -226,7 +230,9 @@ impl Hand {
             let mut opening = false;
             for member in self.dispatcher.members() {
                 match member.mailbox.report().stage {
-                    Stage::Faulted(fault) => return Err(HandError::Faulted { finger: member.admission.finger, fault }),
+                    Stage::Faulted(fault) => {
+                        return Err(HandError::Faulted { finger: member.admission.read().finger, fault });
+                    }
                     stage => opening |= stage == Stage::Opening,
                 }
             }

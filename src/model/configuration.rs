@@ -3,7 +3,7 @@
 
 use crate::model::{ConfiguredFriction, ConfiguredLinks, ConfiguredSimulation, Links, Tendons, TendonsError};
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// How many fingers a hand has.
 pub const FINGERS: usize = 3;
@@ -18,7 +18,7 @@ pub struct Unusable {
 }
 
 /// What happens to the motors when commands stop: by CloseHand, by exit, or by the planner's death.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndState {
     /// Torque goes to zero: in a ramp while the servo lives, at once where only the board is left to do it.
@@ -29,7 +29,7 @@ pub enum EndState {
 }
 
 /// What happens to a command outside the limits.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OutOfRange {
     /// ERANGE, and nothing changes.
@@ -40,7 +40,7 @@ pub enum OutOfRange {
 }
 
 /// `[hand]`: what all fingers share.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredHand {
     /// Cycles of every finger servo in a second, Hz: 100 to 5000.
@@ -66,7 +66,7 @@ pub struct ConfiguredHand {
 }
 
 /// `[finger]`, overridden by `[finger.1]` to `[finger.3]`: one finger, its port, thread and controller.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredFinger {
     /// Path of the serial port, or `simulated`.
@@ -110,7 +110,7 @@ pub struct ConfiguredFinger {
 }
 
 /// `[finger.geometry]`
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredGeometry {
     /// l0, l1, l2, cm.
@@ -124,7 +124,7 @@ pub struct ConfiguredGeometry {
 }
 
 /// `[finger.motor]`
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredMotor {
     /// +1 where a positive command pulls the tendon, else -1.
@@ -140,7 +140,7 @@ pub struct ConfiguredMotor {
 }
 
 /// `[finger.encoder]`
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredEncoder {
     /// Counts a revolution of the motor.
@@ -152,7 +152,7 @@ pub struct ConfiguredEncoder {
 }
 
 /// `[finger.gauge]`
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredGauge {
     /// Tension of one count, N.
@@ -162,7 +162,7 @@ pub struct ConfiguredGauge {
 }
 
 /// `[finger.tendon]`
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredTendon {
     /// t_min of eq. 19, N. Also the homing pretension.
@@ -174,7 +174,7 @@ pub struct ConfiguredTendon {
 }
 
 /// `[finger.joints]`
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredJoints {
     /// Lower soft limits, degrees.
@@ -184,7 +184,7 @@ pub struct ConfiguredJoints {
 }
 
 /// `[finger.stiffness]`
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredStiffness {
     /// Kx that the finger holds its pose with after OpenHand, N/cm, row-major.
@@ -194,7 +194,7 @@ pub struct ConfiguredStiffness {
 }
 
 /// Which tendon controller runs.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Scheme {
     /// Figure 9: an integral on the tension error.
     #[serde(rename = "figure 9")]
@@ -209,7 +209,7 @@ pub enum Scheme {
 }
 
 /// How the torque of the fingertip's spring is found.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Law {
     /// tau = J^T Kx J (theta_d - theta), eqs. 3 and 6: the spring for small deflections.
@@ -220,7 +220,7 @@ pub enum Law {
 }
 
 /// `[finger.controller]`. What is left out is chosen for the rate.
-#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredController {
     /// The tendon controller.
@@ -404,11 +404,15 @@ impl ConfiguredFinger {
         Links(self.geometry.links)
     }
 
+    /// R of eq. 14, cm.
+    pub fn r(&self) -> Matrix3x4<f64> {
+        Matrix3x4::from_fn(|joint, tendon| self.geometry.r[joint][tendon])
+    }
+
     /// R, Q and M.
     pub fn tendons(&self) -> Result<Tendons, TendonsError> {
-        let r = Matrix3x4::from_fn(|joint, tendon| self.geometry.r[joint][tendon]);
         let ghost = self.geometry.ghost_row.map(RowVector4::from);
-        Tendons::new(r, Vector4::from(self.geometry.motor_radius), ghost)
+        Tendons::new(self.r(), Vector4::from(self.geometry.motor_radius), ghost)
     }
 
     /// The initial Kx, N/cm.

@@ -98,8 +98,10 @@ impl Contact {
         finite(selection.as_slice())?;
         let checked = spring(stiffness)?;
         let spatial = selection.transpose() * checked * selection;
+        // Finite factors may have an infinite product.
+        finite(spatial.as_slice())?;
         // Symmetric but for rounding; the servo takes symmetry for granted.
-        Ok(Self((spatial + spatial.transpose()) * 0.5))
+        Ok(Self(spatial * 0.5 + spatial.transpose() * 0.5))
     }
 
     /// The 6 x 6 stiffness.
@@ -110,14 +112,23 @@ impl Contact {
     /// The largest eigenvalue of the stiffness, N/cm, with a rotation measured by the way it moves a point at `lever` (cm)
     /// from the tip. With the length of the last link it is comparable with that of a Kx: turning joint 2 does both.
     pub fn largest_eigenvalue(&self, lever: f64) -> f64 {
-        let scale = |index: usize| if index < 3 { 1.0 } else { 1.0 / lever };
-        Matrix6::from_fn(|row, column| self.0[(row, column)] * scale(row) * scale(column)).symmetric_eigenvalues().max()
+        scaled(&self.0, 1.0 / lever).symmetric_eigenvalues().max()
     }
 
-    /// The same contact, softer by a factor.
-    pub fn scaled(&self, factor: f64) -> Self {
-        Self(self.0 * factor)
+    /// The nearest contact without an eigenvalue, in the sense of [`Contact::largest_eigenvalue`], above `bound` or below
+    /// zero: it keeps its principal directions.
+    pub fn clamped(&self, bound: f64, lever: f64) -> Self {
+        let mut eigen = scaled(&self.0, 1.0 / lever).symmetric_eigen();
+        eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
+        let recomposed = scaled(&eigen.recompose(), lever);
+        Self((recomposed + recomposed.transpose()) * 0.5)
     }
+}
+
+/// The rows and columns of the rotation times a factor.
+fn scaled(stiffness: &Matrix6<f64>, factor: f64) -> Matrix6<f64> {
+    let scale = |index: usize| if index < 3 { 1.0 } else { factor };
+    Matrix6::from_fn(|row, column| stiffness[(row, column)] * scale(row) * scale(column))
 }
 
 /// A symmetric stiffness with its rounding averaged away; refused where it is no spring. Of any rank.
@@ -140,10 +151,12 @@ where
             }
         }
     }
-    let symmetric = (asked + asked.transpose()) * 0.5;
+    // Halved before they are added: the sum of two finite entries may be infinite, and its eigenvalues NaN.
+    let symmetric = asked * 0.5 + asked.transpose() * 0.5;
     let eigenvalues = symmetric.symmetric_eigenvalues();
     let (smallest, largest) = (eigenvalues.min(), eigenvalues.max());
-    if smallest < -ROUNDING * largest.abs().max(smallest.abs()) {
+    // An eigenvalue may be infinite where no entry is.
+    if smallest < -ROUNDING * largest.abs().max(smallest.abs()).min(f64::MAX) {
         return Err(ContactError::Negative { smallest });
     }
     Ok(symmetric)
@@ -189,6 +202,9 @@ mod tests {
         assert!((wrench - expected).amax() < 1e-12, "{wrench}");
         assert!((soft.largest_eigenvalue(1.0) - 20.0147).abs() < 1e-3);
         assert!(soft.largest_eigenvalue(4.0) < 3.1);
+        let clamped = soft.clamped(6.0, 1.0);
+        assert!((clamped.largest_eigenvalue(1.0) - 6.0).abs() < 1e-12);
+        assert!((soft.clamped(6.0, 4.0).stiffness() - soft.stiffness()).amax() < 1e-12);
     }
 
     #[test]
@@ -200,6 +216,11 @@ mod tests {
         assert!(matches!(Contact::frictionless_point(f64::NAN, Vector3::x()), Err(ContactError::NotFinite(_))));
         let infinite = Vector3::new(0.0, f64::INFINITY, 0.0);
         assert!(matches!(Contact::soft_finger(Matrix4::identity(), infinite), Err(ContactError::NotFinite(_))));
+        let overflowing = SMatrix::<f64, 1, 6>::repeat(1e200);
+        let refused = Contact::general(&SMatrix::<f64, 1, 1>::new(1.0), &overflowing);
+        assert!(matches!(refused, Err(ContactError::NotFinite(_))));
+        let huge = Contact::hard_finger(Matrix3::from_diagonal_element(f64::MAX)).expect("a spring");
+        assert!(huge.stiffness().iter().all(|entry| entry.is_finite()));
         // A torsion of the wrong sign hides behind no translation.
         let k = Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, -1.0));
         assert!(matches!(Contact::soft_finger(k, Vector3::x()), Err(ContactError::Negative { .. })));

@@ -1,10 +1,10 @@
 //! What the physics of a simulated finger needs to know and a real finger brings along.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The parameters of a simulated finger: `[finger.simulation]`. Defaults: chosen to be plausible for a finger of this size
 /// driven by small geared motors; nothing was compared with the real hand. SI units, but cm where lengths are geometry.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredSimulation {
     /// Masses of links 0, 1, 2 and of the tip, kg.
@@ -41,7 +41,7 @@ pub struct ConfiguredSimulation {
 }
 
 /// Something that a simulated fingertip can touch: frictionless and elastic. In the finger's frame, cm and N/cm.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Surface {
     /// A flat wall through `point`; `normal` points to the finger's side.

@@ -8,18 +8,20 @@ int main(void)
 {
     struct stat null, standard;
     float Pos[3], Wrong[3] = {0, 0, 9};
-    int descriptor;
+    int descriptor, round;
 
-    for (descriptor = 0; descriptor < 3; descriptor++)
-        close(descriptor);
-    CHECK(OpenHand() == 0);
     CHECK(stat("/dev/null", &null) == 0);
-    for (descriptor = 0; descriptor < 3; descriptor++) {
-        CHECK(fstat(descriptor, &standard) == 0);
-        CHECK(standard.st_rdev == null.st_rdev);
+    for (round = 0; round < 2; round++) {
+        for (descriptor = 0; descriptor < 3; descriptor++)
+            close(descriptor);
+        CHECK(OpenHand() == 0);
+        for (descriptor = 0; descriptor < 3; descriptor++) {
+            CHECK(fstat(descriptor, &standard) == 0);
+            CHECK(standard.st_rdev == null.st_rdev);
+        }
+        CHECK(SendPos(1, Wrong) == -1);
+        CHECK(GetPos(1, Pos) == 0);
+        CHECK(CloseHand() == 0);
     }
-    CHECK(SendPos(1, Wrong) == -1);
-    CHECK(GetPos(1, Pos) == 0);
-    CHECK(CloseHand() == 0);
     return 0;
 }

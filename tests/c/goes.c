@@ -14,7 +14,7 @@ int main(int count, char **arguments)
     CHECK(OpenHand() == 0);
     for (finger = 1; finger <= 3; finger++)
         CHECK(SendPos(finger, Sent) == 0);
-    PAUSE_MS(1000);
+    PAUSE_MS(1500);
     printf("there\n");
     fflush(stdout);
     if (strcmp(arguments[1], "wait") == 0)

@@ -1,5 +1,6 @@
 //! The servo's core drives the simulated finger: quantised and noisy sensors, friction, one cycle of delay.
 
+mod adjustment;
 mod behaviour;
 mod rig;
 mod robustness;

@@ -65,6 +65,17 @@ impl Loop {
         self
     }
 
+    /// Another controller goes on from here.
+    pub fn adjust(&mut self, belief: &ConfiguredFinger) {
+        self.replace(belief);
+        self.controller.take_over(&mut self.state);
+    }
+
+    /// Another controller, without telling it so.
+    pub fn replace(&mut self, belief: &ConfiguredFinger) {
+        self.controller = Controller::new(belief, self.rate).unwrap();
+    }
+
     /// From now on this part of the replies is lost.
     pub fn lose(&mut self, loss: f64) {
         self.loss = loss;

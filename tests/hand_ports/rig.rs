@@ -137,12 +137,15 @@ pub fn three_boards() -> [Board; 3] {
     ["1", "2", "3"].map(|finger| Board::start(&[finger]))
 }
 
-/// A hand on these ports. Its watchdogs are patient: a busy machine may carry the bytes of a pseudo-terminal tens of ms late.
+/// A hand on these ports. A busy machine carries the bytes of a pseudo-terminal some ms late, and now and then many: periods are
+/// twice as long as by default, watchdogs as patient as they can be, and set points move slowly, so that a finger that the servo
+/// does not see for a moment does not run far.
 pub fn on_ports(ports: [&str; 3]) -> Configuration {
     let mut configuration = Configuration::default();
-    configuration.hand.watchdog_ms = 500;
+    (configuration.hand.rate, configuration.hand.watchdog_ms) = (500.0, 1000);
     for (finger, port) in configuration.fingers.iter_mut().zip(ports) {
         finger.port = port.into();
+        finger.controller.set_point_speed = Some(1.0);
     }
     configuration
 }
@@ -210,7 +213,8 @@ pub fn close(hand: Hand) {
 
 /// Writes a configuration file with what [`on_ports`] configures, and more keys of `[hand]`.
 pub fn write_configuration(file: &Path, boards: &[Board; 3], hand: &str) {
-    let mut text = format!("[hand]\nwatchdog_ms = 500\n{hand}");
+    let mut text =
+        format!("[hand]\nrate = 500\nwatchdog_ms = 1000\n{hand}[finger.controller]\nset_point_speed = 1.0\n");
     for (index, board) in boards.iter().enumerate() {
         text += &format!("[finger.{}]\nport = '{}'\n", index + 1, board.port);
     }

@@ -1,0 +1,117 @@
+//! What is measured: poses, springs, directions; all from one seed.
+
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use rand_distr::{Distribution, UnitSphere};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+
+/// One column of the table.
+#[derive(Clone, Copy)]
+pub struct Case {
+    pub scheme: Scheme,
+    pub rate: f64,
+    pub poses: usize,
+    pub seed: u64,
+}
+
+/// What the joints of a finger rub with.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Friction {
+    None,
+    Default,
+    Harsh,
+}
+
+impl Case {
+    pub fn name(&self) -> String {
+        format!("{:?}, {} Hz", self.scheme, self.rate)
+    }
+
+    /// The admissible bound on the largest eigenvalue of Kx, N/cm.
+    pub fn bound(&self) -> f64 {
+        ConfiguredFinger::default().stiffness_bound(self.rate)
+    }
+
+    /// A finger with this controller, at `pose`, that knows its own friction. Set points are not slowed down: steps are steps.
+    pub fn finger(&self, pose: &Vector3<f64>, friction: Friction) -> ConfiguredFinger {
+        let mut finger = ConfiguredFinger::default();
+        finger.controller.scheme = self.scheme;
+        finger.controller.set_point_speed = Some(1000.0);
+        finger.simulation.start_degrees = pose.map(f64::to_degrees).into();
+        finger.simulation.seed = self.seed;
+        match friction {
+            Friction::None => {
+                finger.simulation.joint_coulomb_friction = [0.0; 3];
+                finger.simulation.motor_coulomb_friction = [0.0; 4];
+                finger.simulation.conduit_friction = 0.0;
+            }
+            Friction::Default => {}
+            Friction::Harsh => finger.simulation.joint_coulomb_friction = [2e-3; 3],
+        }
+        finger
+    }
+
+    /// rad: joint 0 within +-30, joint 1 -10 to 70, joint 2 30 to 100 degrees.
+    pub fn poses(&self) -> Vec<Vector3<f64>> {
+        let mut random = Pcg64::seed_from_u64(self.seed);
+        let mut within = |low: f64, high: f64| uniform(&mut random, low, high).to_radians();
+        (0..self.poses).map(|_| Vector3::new(within(-30.0, 30.0), within(-10.0, 70.0), within(30.0, 100.0))).collect()
+    }
+
+    /// N/cm: isotropic ones, one with axes, four with random axes; none stiffer than the bound.
+    pub fn springs(&self) -> Vec<Matrix3<f64>> {
+        let bound = self.bound();
+        let mut random = Pcg64::seed_from_u64(self.seed + 1);
+        let isotropic = [1.0, 3.0, bound].map(|stiffness| Matrix3::identity() * stiffness);
+        let mut springs: Vec<_> = isotropic.into();
+        springs.push(Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0)));
+        for _ in 0..4 {
+            let axis = Unit::new_normalize(direction(&mut random));
+            let turn = Rotation3::from_axis_angle(&axis, uniform(&mut random, 0.0, std::f64::consts::PI));
+            let principal = Vector3::from_fn(|_, _| uniform(&mut random, 1.0, bound));
+            springs.push(turn * Matrix3::from_diagonal(&principal) * turn.inverse());
+        }
+        springs
+    }
+
+    /// Directions to step into from the pose with this number: along each axis, one sign by chance, and one oblique.
+    pub fn directions(&self, pose: usize) -> Vec<Vector3<f64>> {
+        let mut random = Pcg64::seed_from_u64(self.seed + 100 + pose as u64);
+        let mut directions: Vec<_> = [Vector3::x(), Vector3::y(), Vector3::z()]
+            .into_iter()
+            .map(|axis| if uniform(&mut random, -1.0, 1.0) < 0.0 { -axis } else { axis })
+            .collect();
+        directions.push(direction(&mut random));
+        directions
+    }
+}
+
+/// +x, -x, +y, -y, +z, -z.
+pub fn axes() -> impl Iterator<Item = Vector3<f64>> {
+    [Vector3::x(), Vector3::y(), Vector3::z()].into_iter().flat_map(|axis| [axis, -axis])
+}
+
+/// Whether the tip can go `distance` cm straight from `pose` without leaving the joint limits or straightening.
+pub fn has_room(finger: &ConfiguredFinger, pose: &Vector3<f64>, direction: &Vector3<f64>, distance: f64) -> bool {
+    const STRIDE: f64 = 0.05;
+    const BENT: f64 = 0.35;
+    let (low, high) = finger.joint_limits();
+    let mut joints = *pose;
+    for _ in 0..(distance / STRIDE).ceil() as usize {
+        let Some(inverse) = finger.links().jacobian(&joints).try_inverse() else { return false };
+        joints += inverse * direction * STRIDE;
+        if joints[2] < BENT || (0..3).any(|joint| joints[joint] < low[joint] || joints[joint] > high[joint]) {
+            return false;
+        }
+    }
+    true
+}
+
+fn direction(random: &mut Pcg64) -> Vector3<f64> {
+    Vector3::from(<UnitSphere as Distribution<[f64; 3]>>::sample(&UnitSphere, random))
+}
+
+fn uniform(random: &mut Pcg64, low: f64, high: f64) -> f64 {
+    low + (high - low) * random.next_u32() as f64 / 4294967296.0
+}

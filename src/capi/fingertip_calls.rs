@@ -1,0 +1,235 @@
+//! The exported functions that speak of the fingertip and of what may change while a finger runs. As in `calls.rs`, their
+//! comments are the C manual.
+
+// Named like the calls of 1990.
+#![allow(non_snake_case)]
+
+use crate::capi::calls::{fill, load, non_null};
+use crate::capi::default_hand;
+use crate::capi::refusal::guarded;
+use crate::hand::{self, HandError};
+use crate::model::{Contact, ContactError};
+use nalgebra::{Matrix3, Matrix4, Vector3};
+use std::ffi::{CStr, c_char, c_int, c_uint};
+use std::mem::offset_of;
+
+/// What GetTip tells of a fingertip. Set Size = sizeof (struct FingerTip) before the call:
+/// later versions add members at the end, and a program never gets more than it has room
+/// for.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct FingerTip {
+    /// In: bytes of room, sizeof *Tip. Out: bytes that were filled, never more.
+    pub Size: c_uint,
+    /// Directions of Force that the joints feel: 3, or fewer near a singular pose.
+    pub Felt: c_int,
+    /// Where the tip is, x, y, z of the finger's frame, cm.
+    pub Tip: [f64; 3],
+    /// What the tip does to the thing it touches, x, y, z of the finger's frame, N. It comes
+    /// from the measured tensions, so the finger's friction and weight and what accelerates
+    /// it are in it. Never NaN: along a direction that the joints do not feel it is zero.
+    pub Force: [f64; 3],
+    /// Measured tendon tensions, N.
+    pub Tensions: [f64; 4],
+}
+
+/// SendTip - send a desired fingertip position to a finger
+///
+///     int SendTip(int i, const double *Tip);
+///
+///   i     finger, 1 to 3
+///   Tip   Tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm.
+///         Always double. Read during the call only
+///
+/// From the next cycle on the fingertip is a spring anchored there, with the stiffness
+/// sent last, and exactly so at any distance: its force is Kx (Tip - tip), where SendPos
+/// by default has the report's law, which is that of small distances. Of several joint
+/// solutions within the joint limits it takes the one nearest to the present pose. The
+/// anchor goes there straight in the joints, at a bounded speed.
+///
+/// Returns 0, or -1 with
+///   EFAULT   Tip is null
+///   ENODEV   no hand is open
+///   EINVAL   no such finger; an entry is NaN or infinite
+///   ERANGE   too far, too near, or outside the joint limits; never clamped
+///   EIO      the finger is faulted
+///   EPERM    forked child
+///
+/// Threads: any. Never waits for a servo; less than 1 us.
+///
+///     double Tip[3] = {0.0, -6.0, 8.0};
+///     SendTip(1, Tip);
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
+    guarded("SendTip", || {
+        // SAFETY: the manual's contract: null, or the array of the synopsis.
+        let tip = unsafe { load::<f64, 3>(Tip, "Tip") }?;
+        default_hand::with(|hand| hand.send_tip(i, tip))
+    })
+}
+
+/// GetTip - read position and force of a fingertip, and the tendon tensions
+///
+///     int GetTip(int i, struct FingerTip *Tip);
+///
+///   i     finger, 1 to 3
+///   Tip   Tip->Size is set by the caller, all else is filled in from the servo's last
+///         cycle. Written only if the call returns 0
+///
+/// Returns 0, or -1 with
+///   EFAULT   Tip is null
+///   EINVAL   Size is too small; no such finger
+///   ENODEV   no hand is open
+///   EIO      the finger is faulted
+///   EPERM    forked child
+///
+/// Threads: any. Never waits for a servo; about 1 us.
+///
+///     struct FingerTip Tip;
+///     Tip.Size = sizeof Tip;
+///     if (GetTip(1, &Tip) == 0) printf("%g N along z\n", Tip.Force[2]);
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
+    guarded("GetTip", || {
+        let told = |filled| default_hand::with(|hand| hand.fingertip(i).map(|tip| told(&tip, filled)));
+        // SAFETY: the manual's contract: null, or as much room as its first member says.
+        unsafe { fill(Tip, "Tip", FIRST_SIZE, told) }
+    })
+}
+
+/// SendContact - make a fingertip the spring of a contact type
+///
+///     int SendContact(int i, int D, const double *K, const double *Normal);
+///
+///   i        finger, 1 to 3
+///   D        dimensions of the contact (section 4.2 of the report):
+///            1   frictionless point: a force along the normal
+///            3   hard finger with friction: three forces; SendContact (i, 3, Kx, 0) is
+///                SendKx (i, Kx)
+///            4   soft finger: three forces and a moment about the normal
+///   K        K[D][D] or K[D * D], row by row. Rows and columns 0 to 2 of D = 3 and 4 are
+///            x, y, z of the finger's frame, N/cm; row and column 3 are the rotation
+///            about the normal: N cm/rad on the diagonal, N/rad beside it. For D = 1 N/cm
+///            along the normal
+///   Normal   Normal[3]: direction of the contact's normal in the finger's frame, of any
+///            length but zero. Not used for D = 3, and may be null there
+///
+/// Always double. Read during the calls only. Takes effect whole, from the next cycle on,
+/// and takes the place of the stiffness sent last, as a later SendKx takes its. In the
+/// directions that a contact does not have the finger is limp, still damped. K must be
+/// symmetric and without a negative eigenvalue, as for SendKx; for its bound a rotation
+/// counts as it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
+///
+/// Returns 0, or -1 with
+///   EFAULT   K is null, or Normal for D = 1 or 4
+///   ENODEV   no hand is open
+///   EINVAL   no such finger; no such D; an entry is NaN or infinite
+///   EDOM     K is not symmetric, or has a negative eigenvalue; Normal is zero
+///   ERANGE   K is stiffer than the bound (or it is clamped: hand.out_of_range)
+///   EIO      the finger is faulted
+///   EPERM    forked child
+///
+/// Threads: any. Never waits for a servo; a few us.
+///
+///     double K[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
+///     double Normal[3] = {0, -1, 0};
+///     SendContact(1, 4, &K[0][0], Normal);
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: *const f64) -> c_int {
+    guarded("SendContact", || {
+        // K has no size before D has a meaning.
+        non_null(K, "K")?;
+        // SAFETY: the manual's contract, here and below: null, or the array of the synopsis for this D.
+        let normal = || unsafe { load::<f64, 3>(Normal, "Normal") }.map(Vector3::from);
+        let contact = match D {
+            1 => Contact::frictionless_point(unsafe { load::<f64, 1>(K, "K") }?[0], normal()?),
+            3 => Contact::hard_finger(Matrix3::from_row_slice(&unsafe { load::<f64, 9>(K, "K") }?)),
+            4 => Contact::soft_finger(Matrix4::from_row_slice(&unsafe { load::<f64, 16>(K, "K") }?), normal()?),
+            _ => return default_hand::with(|hand| hand.report(i).and(Err(HandError::NoSuchContact(D)))),
+        };
+        default_hand::with(|hand| {
+            // The finger's number is looked at first.
+            hand.report(i)?;
+            hand.send_contact(i, contact.map_err(|source: ContactError| HandError::Contact { finger: i, source })?)
+        })
+    })
+}
+
+/// SendDamping - set the damping of a fingertip
+///
+///     int SendDamping(int i, double Ratio);
+///
+///   i       finger, 1 to 3
+///   Ratio   damping relative to what the controller chooses from the stiffness: 0.2 to
+///           3; 1 is that, and is so after OpenHand
+///
+/// Stays until it is sent again, whatever the stiffness.
+///
+/// Returns 0, or -1 with
+///   ENODEV   no hand is open
+///   EINVAL   no such finger; Ratio is NaN or infinite
+///   ERANGE   Ratio is outside its range (or it is clamped: hand.out_of_range)
+///   EIO      the finger is faulted
+///   EPERM    forked child
+///
+/// Threads: any. Never waits for a servo; about 100 ns.
+#[unsafe(no_mangle)]
+pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
+    guarded("SendDamping", || default_hand::with(|hand| hand.send_damping(i, Ratio)))
+}
+
+/// AdjustFinger - change the configuration of a finger while it runs
+///
+///     int AdjustFinger(int i, const char *Keys);
+///
+///   i      finger, 1 to 3
+///   Keys   lines of TOML as they would stand under [finger.i] of the configuration file
+///          (chapter 8), in UTF-8. Read during the call only
+///
+/// All keys take effect together, within a cycle and without a jump in torque; what is
+/// not named stays. The change lasts until CloseHand: the file is not written. What a
+/// finger is opened with cannot change: port, baud, address, thread, core, priority,
+/// base, turn_degrees, encoder, motor.sign, motor.torque_limit, motor.torque_constant,
+/// stiffness.initial and simulation. controller.law counts from the next SendPos on.
+///
+/// Returns 0, or -1 with
+///   EFAULT   Keys is null
+///   ENODEV   no hand is open
+///   EINVAL   no such finger; Keys cannot be read; the configuration with them cannot be
+///            used
+///   EBUSY    a key cannot change while the hand is open
+///   ERANGE   the position or stiffness sent last is outside the new limits (or it is
+///            clamped: hand.out_of_range)
+///   EIO      the finger is faulted
+///   EPERM    forked child
+///
+/// Threads: any. Never waits for a servo; about 100 us, and allocates.
+///
+///     AdjustFinger(1, "tendon.minimum = 6\ncontroller.tension_gain = 3");
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
+    guarded("AdjustFinger", || {
+        non_null(Keys, "Keys")?;
+        // SAFETY: not null, and a string by the manual's contract.
+        let keys = unsafe { CStr::from_ptr(Keys) }.to_str();
+        default_hand::with(|hand| {
+            hand.report(i)?;
+            let reason = "is not UTF-8".to_string();
+            hand.adjust(i, keys.map_err(|_| HandError::Adjustment { finger: i, line: 1, reason })?)
+        })
+    })
+}
+
+/// The smallest size that a program can have been compiled with: up to the last member
+/// of the first version.
+const FIRST_SIZE: usize = offset_of!(FingerTip, Tensions) + size_of::<[f64; 4]>();
+
+fn told(tip: &hand::FingerTip, filled: usize) -> FingerTip {
+    FingerTip {
+        Size: filled as c_uint,
+        Felt: tip.felt as c_int, // 0 to 3
+        Tip: tip.tip,
+        Force: tip.force,
+        Tensions: tip.tensions,
+    }
+}

@@ -1,0 +1,167 @@
+//! Changing a finger's configuration while it runs: a new controller is made here, beside the servo, and handed to it whole.
+
+use crate::finger::Adjustable;
+use crate::hand::admission::Admission;
+use crate::hand::configuration_file::{deserialize, line_of, overlay};
+use crate::hand::dispatcher::Member;
+use crate::hand::opening::{admission, check};
+use crate::hand::{Hand, HandError};
+use crate::model::Contact;
+use crate::model::configuration::{ConfiguredFinger, Unusable};
+use nalgebra::Matrix6;
+use toml_edit::{Document, Item, Table};
+
+/// Keys, with dots, and tables of keys that count only at open: what the port, the thread and the board were opened with, what
+/// the servo's state is measured in, and the simulated finger.
+const PERMANENT: &[&str] = &[
+    "port",
+    "baud",
+    "address",
+    "thread",
+    "core",
+    "priority",
+    "base",
+    "turn_degrees",
+    "encoder",
+    "motor.sign",
+    "motor.torque_limit",
+    "motor.torque_constant",
+    "stiffness.initial",
+    "simulation",
+];
+
+impl Hand {
+    /// Changes keys of the configuration of finger 1, 2 or 3 while it runs: `keys` are lines of TOML as they would stand under
+    /// `[finger.N]`, such as `tendon.minimum = 6`. All of them take effect together, within a cycle and without a jump in
+    /// torque. What is not named stays. `controller.law` counts from the next set point on.
+    ///
+    /// # Errors
+    /// No such finger, keys that cannot be read, that cannot change while the hand is open, or that make a configuration that cannot
+    /// be used; limits that the set point sent last is outside of, unless commands are clamped; finger faulted. Nothing is
+    /// changed then.
+    pub fn adjust(&self, finger: i32, keys: &str) -> Result<(), HandError> {
+        let member = self.dispatcher.member(finger)?;
+        let index = finger as usize - 1; // the member is there: 1 to 3
+        // Held throughout: of two adjustments the second starts from what the first has made.
+        let mut configuration = self.configuration.write();
+        let mut changed = configuration.clone();
+        changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys)?;
+        check(&changed)?;
+        let unusable = |unusable: Unusable| HandError::Unusable { section: format!("finger.{finger}"), unusable };
+        let adjustable = Adjustable::new(&changed.hand, &changed.fingers[index]).map_err(unusable)?;
+        adjust_member(member, admission(&changed, index), adjustable)?;
+        *configuration = changed;
+        Ok(())
+    }
+}
+
+/// Limits and controller, in one step for everybody who sends.
+fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) -> Result<(), HandError> {
+    let finger = changed.finger;
+    let mut admission = member.admission.write();
+    let sent = member.mailbox.sent();
+    let joints = changed.joints(sent.joints.into())?;
+    let contact = Contact::general(&sent.stiffness, &Matrix6::identity());
+    let stiffness = changed.contact(&contact.map_err(|source| HandError::Contact { finger, source })?)?;
+    let faulted = |fault| HandError::Faulted { finger, fault };
+    member.mailbox.adjust(adjustable).map_err(faulted)?;
+    if joints != sent.joints || stiffness != sent.stiffness {
+        let clamp = |set_point: &mut crate::control::SetPoint| {
+            (set_point.joints, set_point.stiffness) = (joints, stiffness);
+        };
+        member.mailbox.send(clamp).map_err(faulted)?;
+    }
+    *admission = changed;
+    Ok(())
+}
+
+/// The configuration of a finger with `keys` laid over it.
+fn adjusted(number: i32, finger: &ConfiguredFinger, keys: &str) -> Result<ConfiguredFinger, HandError> {
+    let wrong =
+        |line: Option<usize>, reason: String| HandError::Adjustment { finger: number, line: line.unwrap_or(1), reason };
+    let over = Document::parse(keys).map_err(|error| wrong(line_of(keys, error.span()), error.message().into()))?;
+    if let Some(key) = permanent(over.as_table(), "") {
+        return Err(HandError::Permanent { key });
+    }
+    let present = toml_edit::ser::to_document(finger).map_err(|error| wrong(None, error.to_string()))?;
+    let mut merged = present.as_table().clone();
+    overlay(&mut merged, over.as_table());
+    deserialize(merged).map_err(|error| wrong(line_of(keys, error.span()), error.message().into()))
+}
+
+/// The first key that counts only at open.
+fn permanent(table: &Table, above: &str) -> Option<String> {
+    table.iter().find_map(|(key, item)| {
+        let path = if above.is_empty() { key.to_string() } else { format!("{above}.{key}") };
+        if PERMANENT.contains(&path.as_str()) {
+            return Some(path);
+        }
+        match item.clone() {
+            Item::Table(below) => permanent(&below, &path),
+            Item::Value(value) => permanent(&value.as_inline_table()?.clone().into_table(), &path),
+            Item::None | Item::ArrayOfTables(_) => None,
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn changed(keys: &str) -> ConfiguredFinger {
+        adjusted(1, &ConfiguredFinger::default(), keys).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[test]
+    fn what_is_not_named_stays() {
+        assert_eq!(changed(""), ConfiguredFinger::default());
+        let mut expected = ConfiguredFinger::default();
+        expected.tendon.minimum = 6.0;
+        expected.controller.tension_gain = Some(3.0);
+        assert_eq!(changed("tendon.minimum = 6\ncontroller.tension_gain = 3"), expected);
+        assert_eq!(changed("tendon = { minimum = 6 }\n[controller]\ntension_gain = 3.0\n"), expected);
+        // Upon an earlier change, and with an optional table that is set.
+        expected.geometry.ghost_row = Some([1.0; 4]);
+        expected.simulation.surface =
+            Some(crate::model::Surface::Ball { centre: [0.0, 1.0, 9.0], radius: 2.0, stiffness: 30.0 });
+        let mut again = adjusted(1, &expected, "tendon.maximum = 50").expect("usable");
+        assert_eq!(again.tendon.maximum, 50.0);
+        again.tendon.maximum = 60.0;
+        assert_eq!(again, expected);
+    }
+
+    #[test]
+    fn keys_of_open_are_refused_by_name() {
+        for keys in [
+            "port = 'x'",
+            "encoder.zero = [0, 0, 0, 0]",
+            "motor = { sign = [1, 1, 1, 1] }",
+            "core = 1",
+            "tendon.minimum = 6\nsimulation.seed = 3",
+            "[stiffness]\nbound = 5\ninitial = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
+        ] {
+            let refusal = adjusted(1, &ConfiguredFinger::default(), keys).expect_err("refused");
+            assert!(matches!(refusal, HandError::Permanent { .. }), "{refusal}");
+            assert_eq!(refusal.errno(), libc::EBUSY);
+        }
+        let refusal = adjusted(1, &ConfiguredFinger::default(), "simulation.seed = 3").expect_err("refused");
+        assert!(refusal.to_string().starts_with("`simulation` cannot change"), "{refusal}");
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_told_with_its_line() {
+        for (keys, place, word) in [
+            ("tendon.minimum = 6\ntendon.minimun = 5", 2, "minimun"),
+            ("\n\ntendon.minimum = ", 3, ""),
+            ("controller.tension_gain = 'much'", 1, "invalid type"),
+        ] {
+            match adjusted(2, &ConfiguredFinger::default(), keys).expect_err("refused") {
+                HandError::Adjustment { finger: 2, line, reason } => {
+                    assert_eq!(line, place, "{keys}: {reason}");
+                    assert!(reason.contains(word), "{reason}");
+                }
+                other => panic!("{other}"),
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+/* SendTip, GetTip, SendContact, SendDamping, AdjustFinger: what they do, and every refusal. */
+#include <errno.h>
+#include <string.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+#define REFUSED(Call, Errno, Word) \
+    do { \
+        errno = 0; \
+        CHECK((Call) == -1); \
+        CHECK(errno == (Errno)); \
+        CHECK(strstr(HandError(), (Word)) != NULL); \
+    } while (0)
+
+static double distance(const double *One, const double *Other)
+{
+    double x = One[0] - Other[0], y = One[1] - Other[1], z = One[2] - Other[2];
+
+    return x * x + y * y + z * z;
+}
+
+/* Until the tip is within 1 mm of where it shall be. */
+static void arrive(int finger, const double *Wanted, struct FingerTip *Tip)
+{
+    int tries;
+
+    for (tries = 0; tries < 500; tries++) {
+        CHECK(GetTip(finger, Tip) == 0);
+        if (distance(Tip->Tip, Wanted) < 0.01)
+            return;
+        PAUSE_MS(20);
+    }
+    fprintf(stderr, "the tip is at %g %g %g\n", Tip->Tip[0], Tip->Tip[1], Tip->Tip[2]);
+    exit(1);
+}
+
+int main(void)
+{
+    struct { struct FingerTip Known; unsigned char Later[64]; } Larger;
+    struct FingerTip *Tip = &Larger.Known, Untouched;
+    double Wanted[3] = {1.0, -6.0, 8.0};
+    double Far[3] = {0.0, 0.0, 14.0}, Near[3] = {0.0, 0.0, 4.0}, Behind[3] = {9.0, -2.0, -6.0};
+    double Soft[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
+    double Hard[9] = {3, 0.5, 0, 0.5, 3, 0, 0, 0, 3}, Skewed[9] = {3, 0.5, 0, 0, 3, 0, 0, 0, 3};
+    double Normal[3] = {0, -2, 0}, Nothing[3] = {0, 0, 0}, Nan[3] = {0, 0, 0}, Point = 3.0, Force[3] = {0, 0, -1};
+    int byte, tries;
+
+    Nan[1] = strtod("nan", NULL);
+    Larger.Known.Size = sizeof Larger;
+    REFUSED(SendTip(1, Wanted), ENODEV, "OpenHand");
+    REFUSED(GetTip(1, Tip), ENODEV, "OpenHand");
+    REFUSED(SendContact(1, 3, Hard, NULL), ENODEV, "OpenHand");
+    REFUSED(SendContact(1, 2, Hard, NULL), ENODEV, "OpenHand");
+    REFUSED(SendDamping(1, 1.0), ENODEV, "OpenHand");
+    REFUSED(AdjustFinger(1, "tendon.minimum = 6"), ENODEV, "OpenHand");
+    REFUSED(SendTip(1, NULL), EFAULT, "Tip");
+    REFUSED(GetTip(1, NULL), EFAULT, "Tip");
+    REFUSED(SendContact(1, 3, NULL, Normal), EFAULT, "K is");
+    REFUSED(SendContact(1, 4, &Soft[0][0], NULL), EFAULT, "Normal");
+    REFUSED(SendContact(1, 1, &Point, NULL), EFAULT, "Normal");
+    REFUSED(AdjustFinger(1, NULL), EFAULT, "Keys");
+
+    CHECK(OpenHand() == 0);
+    CHECK(SendTip(1, Wanted) == 0);
+    memset(&Larger, 0x55, sizeof Larger);
+    Tip->Size = sizeof Larger;
+    arrive(1, Wanted, Tip);
+    CHECK(Tip->Size == sizeof *Tip);
+    for (byte = 0; byte < 64; byte++)
+        CHECK(Larger.Later[byte] == 0x55);
+    CHECK(Tip->Felt == 3);
+    CHECK(Tip->Tensions[0] > 3.0 && Tip->Tensions[0] < 60.0);
+
+    Untouched = *Tip;
+    REFUSED(SendTip(4, Wanted), EINVAL, "1, 2 and 3");
+    REFUSED(SendTip(1, Nan), EINVAL, "Tip");
+    REFUSED(SendTip(1, Far), ERANGE, "outstretched");
+    REFUSED(SendTip(1, Near), ERANGE, "folded");
+    REFUSED(SendTip(1, Behind), ERANGE, "joint 0");
+    REFUSED(GetTip(0, Tip), EINVAL, "1, 2 and 3");
+    Tip->Size = Untouched.Size = 8;
+    REFUSED(GetTip(1, Tip), EINVAL, "Tip->Size");
+    CHECK(memcmp(Tip, &Untouched, sizeof Untouched) == 0);
+    Tip->Size = sizeof *Tip;
+
+    CHECK(SendContact(1, 4, &Soft[0][0], Normal) == 0);
+    CHECK(SendContact(1, 1, &Point, Normal) == 0);
+    CHECK(SendContact(1, 3, Hard, NULL) == 0);
+    REFUSED(SendContact(4, 3, Hard, NULL), EINVAL, "1, 2 and 3");
+    REFUSED(SendContact(1, 2, Hard, Normal), EINVAL, "2 dimensions");
+    REFUSED(SendContact(1, 4, &Soft[0][0], Nothing), EDOM, "normal");
+    REFUSED(SendContact(1, 4, &Soft[0][0], Nan), EINVAL, "finite");
+    REFUSED(SendContact(1, 3, Skewed, NULL), EDOM, "symmetric");
+    Soft[3][3] = -1;
+    REFUSED(SendContact(1, 4, &Soft[0][0], Normal), EDOM, "eigenvalue");
+    Soft[3][3] = 1000;
+    REFUSED(SendContact(1, 4, &Soft[0][0], Normal), ERANGE, "bound");
+
+    CHECK(SendDamping(1, 0.5) == 0);
+    CHECK(SendDamping(1, 1.0) == 0);
+    REFUSED(SendDamping(4, 1.0), EINVAL, "1, 2 and 3");
+    REFUSED(SendDamping(1, 0.1), ERANGE, "0.2 to 3");
+    REFUSED(SendDamping(1, Nan[1]), EINVAL, "Ratio");
+
+    REFUSED(AdjustFinger(4, "tendon.minimum = 6"), EINVAL, "1, 2 and 3");
+    REFUSED(AdjustFinger(1, "tendon.minimum = "), EINVAL, "line 1");
+    REFUSED(AdjustFinger(1, "tendon.minimum = 6\ntendon.maximum = 7"), EINVAL, "tendon.maximum");
+    REFUSED(AdjustFinger(1, "priority = 3"), EBUSY, "priority");
+    REFUSED(AdjustFinger(1, "joints.maximum_degrees = [60, 40, 40]"), ERANGE, "Pos[");
+    REFUSED(AdjustFinger(1, "\377"), EINVAL, "UTF-8");
+    CHECK(AdjustFinger(1, "tendon.minimum = 8\ncontroller.tension_gain = 3") == 0);
+    for (tries = 0; tries < 250; tries++) {
+        CHECK(GetTip(1, Tip) == 0);
+        for (byte = 0; byte < 4 && Tip->Tensions[byte] > 7.0; byte++)
+            ;
+        if (byte == 4)
+            break;
+        PAUSE_MS(20);
+    }
+    CHECK(tries < 250);
+
+    CHECK(PushFinger(1, Force) == 0);
+    for (tries = 0; tries < 250; tries++) {
+        CHECK(GetTip(1, Tip) == 0);
+        if (Tip->Force[2] > 0.6 && Tip->Force[2] < 1.4 && APART(Tip->Force[0], 0.0) < 0.4)
+            break;
+        PAUSE_MS(20);
+    }
+    CHECK(tries < 250);
+    CHECK(CloseHand() == 0);
+    return 0;
+}

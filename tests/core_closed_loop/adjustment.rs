@@ -1,0 +1,80 @@
+//! What section 5 calls adjustable, adjusted while the finger runs.
+
+use crate::rig::{Loop, spring};
+use nalgebra::Vector3;
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+
+/// Without noise, so that what is left of a jump is the adjustment's.
+fn quiet() -> ConfiguredFinger {
+    let mut finger = ConfiguredFinger::default();
+    finger.simulation.gauge_noise = 0.0;
+    finger
+}
+
+/// A change, and whether the commands would jump by it if nothing were done.
+type Change = (&'static str, fn(&mut ConfiguredFinger), bool);
+
+const CHANGES: &[Change] = &[
+    ("t_min", |finger| finger.tendon.minimum = 12.0, true),
+    ("t_max", |finger| finger.tendon.maximum = 30.0, false),
+    ("gains", |finger| finger.controller.tension_gain = Some(3.0), false),
+    ("damper", |finger| finger.controller.motor_damping = Some(300.0), false),
+    ("scheme", |finger| finger.controller.scheme = Scheme::Figure9, false),
+    ("links", |finger| finger.geometry.links = [3.556, 5.080, 4.200], false),
+    ("tendon stiffness", |finger| finger.tendon.stiffness = [280.0; 4], false),
+    ("motor radius", |finger| finger.geometry.motor_radius = [0.0480; 4], true),
+];
+
+/// Largest change of a command from one cycle to the next, N at the tendon: at rest, by the adjustment, and by the controller's
+/// replacement without ado.
+fn jumps(change: fn(&mut ConfiguredFinger)) -> [f64; 3] {
+    let mut finger = quiet();
+    let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
+    let rested = || {
+        let mut servo = Loop::new(&quiet(), 1000.0);
+        servo.run(1.5, &activity);
+        servo.forget();
+        servo
+    };
+    change(&mut finger);
+    let (mut at_rest, mut adjusted, mut replaced) = (rested(), rested(), rested());
+    adjusted.adjust(&finger);
+    replaced.replace(&finger);
+    [&mut at_rest, &mut adjusted, &mut replaced].map(|servo| {
+        servo.cycle(&activity);
+        servo.largest_jump
+    })
+}
+
+#[test]
+fn an_adjustment_does_not_jump() {
+    for (name, change, would_jump) in CHANGES {
+        let [at_rest, adjusted, replaced] = jumps(*change);
+        assert!(adjusted < at_rest + 0.5, "{name}: {adjusted} N, {at_rest} N at rest");
+        if *would_jump {
+            assert!(
+                replaced > adjusted + 1.0,
+                "{name}: blind, {replaced} N without a transition, {adjusted} N with it"
+            );
+        }
+    }
+}
+
+/// What the adjustment asks for is there soon after, smoothly all the way.
+#[test]
+fn an_adjustment_takes_effect() {
+    let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
+    let mut servo = Loop::new(&quiet(), 1000.0);
+    servo.run(1.5, &activity);
+    let joints = servo.plant.joints();
+    let mut finger = quiet();
+    finger.tendon.minimum = 12.0;
+    servo.forget();
+    servo.adjust(&finger);
+    servo.run(1.0, &activity);
+    assert!(servo.largest_jump < 6.0, "{} N", servo.largest_jump);
+    servo.forget();
+    servo.run(0.2, &activity);
+    assert!(servo.least_commanded > 12.0 - 1e-9 && servo.least_true > 11.0, "{}", servo.least_true);
+    assert!((servo.plant.joints() - joints).amax() < 0.02);
+}

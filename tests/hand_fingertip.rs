@@ -1,0 +1,119 @@
+//! Fingertip set points, contacts and adjustment on a hand with simulated boards, in real time.
+
+use nalgebra::{Matrix4, Vector3, Vector4};
+use std::time::{Duration, Instant};
+use sun2xp::control::Law;
+use sun2xp::hand::{FingerTip, Hand, HandError};
+use sun2xp::model::Contact;
+use sun2xp::model::configuration::{Configuration, OutOfRange};
+
+fn open(configuration: Configuration) -> Hand {
+    Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"))
+}
+
+fn tip(hand: &Hand, finger: i32) -> FingerTip {
+    hand.fingertip(finger).unwrap_or_else(|error| panic!("finger {finger}: {error}"))
+}
+
+fn until(what: &str, mut holds: impl FnMut() -> bool) {
+    let limit = Instant::now() + Duration::from_secs(10);
+    while !holds() {
+        assert!(Instant::now() < limit, "not within 10 s: {what}");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// A cycle that takes in what was sent is over.
+fn taken_in(hand: &Hand, finger: i32) {
+    let cycles = hand.report(finger).expect("report").cycles;
+    until("cycles", || hand.report(finger).expect("report").cycles > cycles + 3);
+}
+
+#[test]
+fn a_tip_goes_where_it_is_sent_and_tells_what_it_presses() {
+    let hand = open(Configuration::default());
+    let wanted = Vector3::new(1.0, -6.0, 8.0);
+    hand.send_tip(2, wanted.into()).expect("sent");
+    until("the tip arrives", || (Vector3::from(tip(&hand, 2).tip) - wanted).norm() < 0.1);
+    let report = hand.report(2).expect("report");
+    assert_eq!(report.set_point.law, Law::Exact);
+    hand.push_simulated(2, [0.0, 1.0, 0.0]).expect("pushed");
+    until("the tip pushes back", || {
+        let tip = tip(&hand, 2);
+        (Vector3::from(tip.force) - Vector3::new(0.0, -1.0, 0.0)).amax() < 0.3 && tip.felt == 3
+    });
+    // By the spring's own law, within the dead band of the joints' friction.
+    let given_way = || Vector3::from(tip(&hand, 2).tip) - wanted;
+    until("the spring gives way", || (given_way() - Vector3::new(0.0, 1.0 / 3.0, 0.0)).amax() < 0.08);
+    // The angles of the joints have the configured law again.
+    hand.send_position(2, [0.2, 0.6, 1.1]).expect("sent");
+    taken_in(&hand, 2);
+    assert_eq!(hand.report(2).expect("report").set_point.law, Law::Report);
+}
+
+#[test]
+fn the_configured_law_is_that_of_joint_set_points() {
+    let mut configuration = Configuration::default();
+    configuration.fingers[0].controller.law = Law::Exact;
+    let hand = open(configuration);
+    assert_eq!([1, 2].map(|finger| hand.report(finger).expect("report").set_point.law), [Law::Exact, Law::Report]);
+    hand.adjust(2, "controller.law = 'exact'").expect("adjusted");
+    hand.send_position(2, [0.2, 0.6, 1.1]).expect("sent");
+    taken_in(&hand, 2);
+    assert_eq!(hand.report(2).expect("report").set_point.law, Law::Exact);
+}
+
+#[test]
+fn contacts_and_damping_arrive_at_the_servo() {
+    let hand = open(Configuration::default());
+    let k = Matrix4::from_diagonal(&Vector4::new(3.0, 2.0, 1.0, 20.0));
+    let soft = Contact::soft_finger(k, Vector3::new(0.0, -1.0, 1.0)).expect("a spring");
+    hand.send_contact(3, soft).expect("sent");
+    hand.send_damping(3, 1.5).expect("sent");
+    taken_in(&hand, 3);
+    let set_point = hand.report(3).expect("report").set_point;
+    assert_eq!((&set_point.stiffness, set_point.damping), (soft.stiffness(), 1.5));
+    // Kx takes the place of the contact, and leaves the damping.
+    hand.send_stiffness(3, [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]).expect("sent");
+    taken_in(&hand, 3);
+    let set_point = hand.report(3).expect("report").set_point;
+    assert_eq!((set_point.stiffness.sum(), set_point.damping), (6.0, 1.5));
+}
+
+#[test]
+fn an_adjustment_is_taken_over_whole_or_not_at_all() {
+    let hand = open(Configuration::default());
+    hand.adjust(1, "tendon.minimum = 9\ncontroller.scheme = 'figure 9'").expect("adjusted");
+    until("the tendons have the new tension", || tip(&hand, 1).tensions.iter().all(|&tension| tension > 8.0));
+    let before = hand.report(1).expect("report");
+    let refused = [
+        // A good key beside one that is not.
+        hand.adjust(1, "tendon.minimum = 4\ntendon.maximum = 5"),
+        hand.adjust(1, "tendon.minimum = 4\ncontroller.rate_time = 7"),
+        hand.adjust(1, "tendon.minimum = 4\nbaud = 9600"),
+        // Together with what was adjusted before: Figure 9 has no proportional term.
+        hand.adjust(1, "controller.tension_gain = 3"),
+        // What was sent last would be outside.
+        hand.adjust(1, "joints.maximum_degrees = [60, 20, 120]"),
+    ];
+    let errnos = refused.map(|result| result.expect_err("refused").errno());
+    assert_eq!(errnos, [libc::EINVAL, libc::EINVAL, libc::EBUSY, libc::EINVAL, libc::ERANGE]);
+    taken_in(&hand, 1);
+    assert_eq!(hand.report(1).expect("report").set_point, before.set_point);
+    assert!(hand.report(1).expect("report").cycle.desired_tensions.min() > 9.0 - 1e-9);
+    // New limits are in force at once; the other fingers keep theirs.
+    hand.adjust(1, "joints.maximum_degrees = [60, 40, 120]").expect("adjusted");
+    assert!(matches!(hand.send_position(1, [0.0, 0.8, 1.0]), Err(HandError::BeyondJointLimit { .. })));
+    hand.send_position(2, [0.0, 0.8, 1.0]).expect("sent");
+}
+
+#[test]
+fn where_commands_are_clamped_the_set_point_follows_its_limits() {
+    let mut configuration = Configuration::default();
+    configuration.hand.out_of_range = OutOfRange::Clamp;
+    let hand = open(configuration);
+    hand.send_position(1, [0.0, 0.6, 1.0]).expect("sent");
+    hand.adjust(1, "joints.maximum_degrees = [60, 20, 120]").expect("adjusted");
+    taken_in(&hand, 1);
+    assert_eq!(hand.report(1).expect("report").set_point.joints[1], 20f64.to_radians());
+}
