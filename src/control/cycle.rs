@@ -59,8 +59,8 @@ pub struct State {
     tensions: Vector4<f64>,
     tendons: TendonState,
     transition: Transition,
-    /// Another controller computes the next pulls than the last.
-    taken_over: bool,
+    /// What the controller before this one would pull next, N at the tendon.
+    goes_on_from: Option<Vector4<f64>>,
     stillness: Stillness,
     /// N at the tendon.
     pulls: Vector4<f64>,
@@ -129,7 +129,7 @@ impl Controller {
             tensions,
             tendons: TendonState::default(),
             transition: Transition::default(),
-            taken_over: false,
+            goes_on_from: None,
             stillness: Stillness::new(motor_angles),
             pulls,
             against_friction: Vector4::zeros(),
@@ -138,10 +138,22 @@ impl Controller {
         }
     }
 
-    /// Goes on from the state of another controller of the same finger, with the same sensors and at the same rate, without a
-    /// jump in torque.
-    pub fn take_over(&self, state: &mut State) {
-        state.taken_over = true;
+    /// One cycle that goes on from the state of another controller of the same finger, with the same encoders and at the same
+    /// rate, without a jump in torque.
+    ///
+    /// It goes on from what `previous` would command in this very cycle, and not from its last command: so a planner that adjusts
+    /// in every cycle neither stops the feedback nor delays it.
+    pub fn take_over(
+        &self,
+        previous: &Self,
+        state: &mut State,
+        feedback: Option<&Feedback>,
+        activity: &Activity,
+    ) -> (Command, Report) {
+        let mut before = *state;
+        previous.cycle(&mut before, feedback, activity);
+        state.goes_on_from = Some(before.pulls);
+        self.cycle(state, feedback, activity)
     }
 
     /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates rests,
@@ -175,8 +187,14 @@ impl Controller {
 
     /// Keeps the observers of state feedback going in every activity; whether it can decide.
     fn observe(&self, state: &mut State, feedback: Option<&Feedback>) -> bool {
-        let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
+        let Some(law) = &self.state_feedback else {
+            state.state_feedback = None;
             return false;
+        };
+        let Some(elastic) = &mut state.state_feedback else {
+            // Another scheme was in charge until now.
+            state.state_feedback = feedback.map(|feedback| law.start(&self.sensors, feedback));
+            return state.state_feedback.is_some();
         };
         law.observe(elastic, &self.sensors, feedback);
         state.report.joints = elastic.joints;
@@ -259,8 +277,9 @@ impl Controller {
 
     /// Pulls to the motors: without a jump where something begins, and within their limits.
     fn give(&self, state: &mut State, asked: &Vector4<f64>, begins: bool) {
-        if begins || std::mem::take(&mut state.taken_over) {
-            state.transition.begin(&state.pulls, asked);
+        let goes_on_from = state.goes_on_from.take();
+        if let Some(before) = goes_on_from.or(begins.then_some(state.pulls)) {
+            state.transition.begin(&before, asked);
         }
         let limit = &self.motor_torque.limit;
         let pulls = asked + state.transition.advance(self.period);

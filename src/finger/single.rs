@@ -215,9 +215,16 @@ impl FingerServo {
         }
         if self.under_control() {
             self.take_commands();
+            let new = self.mailbox.new_adjustable();
+            let previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
             let feedback = self.answered.then_some(&self.feedback);
             let controller = &self.adjustable.controller;
-            (self.command, self.report.cycle) = controller.cycle(&mut self.state, feedback, &self.activity);
+            (self.command, self.report.cycle) = match &previous {
+                None => controller.cycle(&mut self.state, feedback, &self.activity),
+                Some(Adjustable { controller: previous, .. }) => {
+                    controller.take_over(previous, &mut self.state, feedback, &self.activity)
+                }
+            };
             // Periods that will be skipped are periods without a reply: what differentiates and predicts must know of them.
             for _ in 0..skipped.min(self.limits.lost.into()) {
                 (self.command, self.report.cycle) = controller.cycle(&mut self.state, None, &self.activity);
@@ -277,10 +284,6 @@ impl FingerServo {
     }
 
     fn take_commands(&mut self) {
-        if let Some(adjustable) = self.mailbox.new_adjustable() {
-            self.adjustable = adjustable.clone();
-            self.adjustable.controller.take_over(&mut self.state);
-        }
         if let Some(set_point) = self.mailbox.new_set_point()
             && let Activity::Follow(_) = self.activity
         {

@@ -12,6 +12,8 @@ pub struct Loop {
     pub rate: f64,
     sensors: Sensors,
     controller: Controller,
+    /// Whom the controller takes over from in the next cycle.
+    previous: Option<Controller>,
     state: State,
     command: Command,
     /// Part of the replies that are lost, and their source of chance.
@@ -43,6 +45,7 @@ impl Loop {
             rate,
             sensors,
             controller,
+            previous: None,
             state,
             command: Command { motor_torques },
             loss: 0.0,
@@ -67,8 +70,8 @@ impl Loop {
 
     /// Another controller goes on from here.
     pub fn adjust(&mut self, belief: &ConfiguredFinger) {
-        self.replace(belief);
-        self.controller.take_over(&mut self.state);
+        let controller = Controller::new(belief, self.rate).unwrap();
+        self.previous = Some(std::mem::replace(&mut self.controller, controller));
     }
 
     /// Another controller, without telling it so.
@@ -96,7 +99,10 @@ impl Loop {
         }
         let lost = (self.random.next_u32() as f64) < self.loss * 4294967296.0;
         let feedback = if lost { None } else { Some(&feedback) };
-        let (command, report) = self.controller.cycle(&mut self.state, feedback, activity);
+        let (command, report) = match self.previous.take() {
+            None => self.controller.cycle(&mut self.state, feedback, activity),
+            Some(previous) => self.controller.take_over(&previous, &mut self.state, feedback, activity),
+        };
         let jump = (command.motor_torques - self.command.motor_torques).amax() / 0.0475;
         self.largest_jump = self.largest_jump.max(jump);
         self.least_commanded = self.least_commanded.min(report.desired_tensions.min());
