@@ -19,7 +19,7 @@ pub(super) struct Gains {
 /// three rates, and no tension fell under 1.6 N; at half as much again two poses missed, and a tendon went slack.
 const SET_POINT_SPEED: f64 = 2.0;
 
-/// rad/s. State feedback follows its reference, which therefore may move as fast as the tensions can carry it.
+/// rad/s. State feedback follows its reference, which therefore may move as fast as the tensions can carry it: from 1000 Hz up.
 const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 10.0;
 
 /// Rate, Hz, then the fields of [`Gains`] in their order but the last. Found by experiment with the finger of the default configuration.
@@ -61,7 +61,7 @@ impl Gains {
             speed_filter: configured.speed_filter.unwrap_or(speed_filter),
             stretch_filter: configured.stretch_filter.unwrap_or(stretch_filter),
             set_point_speed: configured.set_point_speed.unwrap_or(match configured.scheme {
-                Scheme::StateFeedback => STATE_FEEDBACK_SET_POINT_SPEED,
+                Scheme::StateFeedback => STATE_FEEDBACK_SET_POINT_SPEED * (rate / 1000.0).min(1.0),
                 Scheme::Figure9 | Scheme::Figure10 => SET_POINT_SPEED,
             }),
         };

@@ -211,3 +211,67 @@ fn exponential(rates: &Matrix6<f64>, time: f64) -> (Matrix6<f64>, Matrix6<f64>) 
 fn inverse(matrix: &Matrix2<f64>) -> Matrix2<f64> {
     Matrix2::new(matrix.m22, -matrix.m12, -matrix.m21, matrix.m11) / matrix.determinant()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TENDON: ElasticTendon = ElasticTendon { mass: 2.66, viscous: 8.9, stiffness: 3e4, home: 5.0 };
+
+    fn design(disturbance: f64) -> ObserverDesign {
+        ObserverDesign { link: 2000.0, disturbance, encoder_step: 1.5e-6, gauge_step: 0.024, gauge_noise: 0.03 }
+    }
+
+    /// A motor that pulls a resting joint with 20 N, of which friction takes 3: tension and d that the observer finds. Integrated
+    /// by small steps, not by the observer's own matrices.
+    fn found(disturbance: f64) -> (f64, f64) {
+        let observer = TendonObserver::new(TENDON, &design(disturbance), 1e-3);
+        let (mut travel, mut speed) = (0.0f64, 0.0f64);
+        let mut estimate = observer.start(0.0, TENDON.home);
+        for _ in 0..1000 {
+            let tension = TENDON.home + TENDON.stiffness * travel;
+            observer.correct(&mut estimate, travel, tension);
+            observer.predict(&mut estimate, 20.0, 0.0);
+            for _ in 0..1000 {
+                let tension = TENDON.home + TENDON.stiffness * travel;
+                // More viscous than the observer knows, so that it comes to rest.
+                speed += 1e-6 * (20.0 - 3.0 - tension - 200.0 * speed) / TENDON.mass;
+                travel += 1e-6 * speed;
+            }
+        }
+        let motion = observer.motion(&estimate, 20.0, 0.0);
+        (motion.tension, motion.disturbance)
+    }
+
+    #[test]
+    fn what_the_motor_does_not_give_is_found() {
+        let (tension, disturbance) = found(200.0);
+        assert!((tension - 17.0).abs() < 1e-3, "{tension}");
+        assert!((disturbance + 3.0).abs() < 1e-2, "{disturbance}");
+        // Without the state d the friction is taken for tension.
+        let (tension, disturbance) = found(0.0);
+        assert!((tension - 17.0).abs() > 0.01 && disturbance.abs() < 1e-6, "{tension} {disturbance}");
+    }
+
+    #[test]
+    fn the_gain_after_a_lost_reply_goes_back_to_the_steady_one() {
+        let observer = TendonObserver::new(TENDON, &design(200.0), 1e-3);
+        let apart = |gain: &Matrix6x2<f64>| (gain - observer.gain).component_div(&observer.gain).amax();
+        assert!(apart(&observer.recovery[0]) > 0.1);
+        assert!(apart(&observer.recovery[RECOVERY - 1]) < 0.1 * apart(&observer.recovery[0]));
+    }
+
+    #[test]
+    fn constant_motion_is_followed_without_lag() {
+        let observer = TendonObserver::new(TENDON, &design(200.0), 1e-3);
+        let mut estimate = observer.start(0.0, TENDON.home);
+        for cycle in 0..2000 {
+            let travel = 0.05 * 1e-3 * f64::from(cycle);
+            observer.correct(&mut estimate, travel, TENDON.home);
+            observer.predict(&mut estimate, TENDON.home + TENDON.viscous * 0.05, 0.0);
+        }
+        let motion = observer.motion(&estimate, TENDON.home + TENDON.viscous * 0.05, 0.0);
+        assert!((motion.speed - 0.05).abs() < 1e-6 && (motion.motor_speed - 0.05).abs() < 1e-6, "{motion:?}");
+        assert!((motion.travel - 0.1).abs() < 1e-7);
+    }
+}

@@ -1,10 +1,10 @@
 //! What the controller believes of the bodies and the friction of a finger. The defaults are those of a simulated finger,
 //! whose truth is its own table, `[finger.simulation]`: the two differ where an experiment wants them to.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// `[finger.links]`: the links as uniform cylinders, the tip as a point.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredLinks {
     /// Masses of links 0, 1, 2 and of the tip, kg.
@@ -14,7 +14,7 @@ pub struct ConfiguredLinks {
 }
 
 /// `[finger.friction]`: what the controller compensates.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredFriction {
     /// Coulomb friction of each motor, N cm of commanded torque.
