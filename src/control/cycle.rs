@@ -1,4 +1,4 @@
-//! One servo cycle: the boxes of Figure 9 connected.
+//! One servo cycle: the boxes of Figure 9 connected, or state feedback in the place of most of them.
 
 use super::gains::Gains;
 use super::joint_positions::JointPositions;
@@ -9,13 +9,14 @@ use super::release::Release;
 use super::sensors::Sensors;
 use super::signals::{Activity, Command, Feedback, Report, SetPoint};
 use super::slew::Slew;
+use super::state_feedback::{Decision, StateFeedback, StateFeedbackState};
 use super::stillness::Stillness;
 use super::tendon_controller::TendonController;
 use super::tension_distribution::{Distribution, TensionDistribution};
 use super::tension_integral::{TendonInput, TendonState};
 use super::transition::Transition;
 use super::usable::positive;
-use crate::model::configuration::{ConfiguredFinger, Unusable};
+use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
 use nalgebra::{Vector3, Vector4};
 
 /// A tendon counts as tight from this part of t_min on.
@@ -40,6 +41,7 @@ pub struct Controller {
     motor_torque: MotorTorque,
     /// K_delta at the tendon, N s/m.
     motor_damping: f64,
+    state_feedback: Option<StateFeedback>,
     /// Motor radii, m.
     radius: Vector4<f64>,
     /// N.
@@ -64,6 +66,9 @@ pub struct State {
     stillness: Stillness,
     /// N at the tendon.
     pulls: Vector4<f64>,
+    /// The part of `pulls` that is fed forward against friction.
+    against_friction: Vector4<f64>,
+    state_feedback: Option<StateFeedbackState>,
     report: Report,
 }
 
@@ -87,6 +92,10 @@ impl Controller {
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
         let gains = Gains::new(&finger.controller, rate)?;
         let motor_torque = MotorTorque::new(finger, &tendons)?;
+        let state_feedback = match finger.controller.scheme {
+            Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
+            Scheme::Figure9 | Scheme::Figure10 => None,
+        };
         Ok(Self {
             period: 1.0 / rate,
             sensors: Sensors::new(finger)?,
@@ -99,6 +108,7 @@ impl Controller {
             tendons: TendonController::new(finger.controller.scheme, &gains, rate, motor_torque.limit),
             motor_torque,
             motor_damping: gains.motor_damping,
+            state_feedback,
             radius: tendons.radius * 0.01,
             tight: TIGHT * finger.tendon.minimum,
         })
@@ -127,6 +137,8 @@ impl Controller {
             goes_on_from: None,
             stillness: Stillness::new(motor_angles),
             pulls,
+            against_friction: Vector4::zeros(),
+            state_feedback: self.state_feedback.as_ref().map(|law| law.start(&self.sensors, feedback)),
             report,
         }
     }
@@ -150,14 +162,22 @@ impl Controller {
     }
 
     /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates rests,
-    /// but a release goes on.
+    /// but a release goes on, and so does state feedback for some cycles, from what it predicts.
     pub fn cycle(&self, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) -> (Command, Report) {
         state.age = state.age.saturating_add(1);
         if let Some(feedback) = feedback {
             self.measure(state, feedback);
         }
+        let observed = self.observe(state, feedback);
+        if !matches!(activity, Activity::Follow(_)) {
+            state.against_friction = Vector4::zeros();
+            if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
+                law.idle(elastic);
+            }
+        }
         match *activity {
             Activity::Release { ramp } => self.let_go(state, ramp),
+            Activity::Follow(set_point) if observed => self.follow_by_state(state, &set_point),
             Activity::TakeUpSlack if feedback.is_some() => self.take_up_slack(state),
             Activity::Follow(set_point) if feedback.is_some() => self.follow(state, set_point),
             Activity::Tense(desired) if feedback.is_some() => self.tense(state, desired),
@@ -165,9 +185,29 @@ impl Controller {
             Activity::Turn(torques) => self.turn(state, torques),
             Activity::TakeUpSlack | Activity::Follow(_) | Activity::Tense(_) | Activity::Pull(_) => {}
         }
+        if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
+            law.commanded(elastic, &state.pulls, &state.against_friction);
+        }
         let motor_torques = self.motor_torque.torques(&state.pulls);
         state.report.motor_torques = motor_torques;
         (Command { motor_torques }, state.report)
+    }
+
+    /// Keeps the observers of state feedback going in every activity; whether it can decide.
+    fn observe(&self, state: &mut State, feedback: Option<&Feedback>) -> bool {
+        let Some(law) = &self.state_feedback else {
+            state.state_feedback = None;
+            return false;
+        };
+        let Some(elastic) = &mut state.state_feedback else {
+            // Another scheme was in charge until now.
+            state.state_feedback = feedback.map(|feedback| law.start(&self.sensors, feedback));
+            return state.state_feedback.is_some();
+        };
+        law.observe(elastic, &self.sensors, feedback);
+        state.report.joints = elastic.joints;
+        state.report.joint_rates = elastic.joint_rates;
+        !law.blind(elastic)
     }
 
     /// Sensor counts to tensions, joint angles and rates.
@@ -210,6 +250,25 @@ impl Controller {
         let spring = SetPoint { joints: anchor, ..set_point };
         let torques = self.joint_stiffness.torques(&spring, &state.report.joints, &state.report.joint_rates);
         self.pull(state, torques, [false; 4], begins);
+    }
+
+    /// The spring by state feedback. It begins without deflection.
+    fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
+        let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
+            return;
+        };
+        let begins = !matches!(state.doing, Doing::Following(_));
+        if begins {
+            law.begin(elastic);
+        }
+        state.doing = Doing::Following(elastic.joints);
+        let Decision { pulls, against_friction, joint_torques, distribution } =
+            law.decide(elastic, set_point, &self.distribution);
+        state.against_friction = against_friction;
+        self.give(state, &pulls, begins);
+        state.report.joint_torques = joint_torques;
+        state.report.desired_tensions = distribution.tensions;
+        state.report.torque_scale = distribution.scale;
     }
 
     /// Joint torques to pulls: R^-1 and the tendon controller.
@@ -257,14 +316,19 @@ impl Controller {
         let measured = state.report.tensions;
         let speed = state.motor_speeds.component_mul(&self.radius);
         let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
+        self.give(state, &asked, begins);
+        state.report.desired_tensions = desired;
+    }
+
+    /// Pulls to the motors: without a jump where something begins, and within their limits.
+    fn give(&self, state: &mut State, asked: &Vector4<f64>, begins: bool) {
         let goes_on_from = state.goes_on_from.take();
         if let Some(before) = goes_on_from.or(begins.then_some(state.pulls)) {
-            state.transition.begin(&before, &asked);
+            state.transition.begin(&before, asked);
         }
         let limit = &self.motor_torque.limit;
         let pulls = asked + state.transition.advance(self.period);
         state.pulls = pulls.zip_map(limit, |pull, limit| pull.clamp(-limit, limit));
-        state.report.desired_tensions = desired;
     }
 
     /// Motor torques in a ramp to zero.

@@ -40,18 +40,6 @@ pub struct ConfiguredZeroing {
     pub time_limit_s: f64,
 }
 
-/// `[finger.friction]`: what the controller compensates. Zero where it is not known: nothing is compensated then.
-#[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
-#[serde(default, deny_unknown_fields)]
-pub struct ConfiguredFriction {
-    /// Coulomb friction of each motor, N cm of commanded torque.
-    pub motor_coulomb: [f64; 4],
-    /// Conduit friction: this part of the tension torque adds to `motor_coulomb`.
-    pub conduit: [f64; 4],
-    /// Coulomb friction of each joint, N cm.
-    pub joint_coulomb: [f64; 3],
-}
-
 impl Default for ConfiguredZeroing {
     fn default() -> Self {
         Self {

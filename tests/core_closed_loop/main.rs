@@ -4,3 +4,4 @@ mod adjustment;
 mod behaviour;
 mod rig;
 mod robustness;
+mod state_feedback;

@@ -140,7 +140,12 @@ pub fn spring(joints: Vector3<f64>, stiffness: f64) -> Activity {
 
 /// 24 poses, rad: joint 0 within +-30, joint 1 -10 to 70, joint 2 30 to 100 degrees.
 pub fn poses() -> Vec<Vector3<f64>> {
-    let mut random = Pcg64::seed_from_u64(24);
+    poses_of(24)
+}
+
+/// The same from another seed.
+pub fn poses_of(seed: u64) -> Vec<Vector3<f64>> {
+    let mut random = Pcg64::seed_from_u64(seed);
     let mut within =
         |low: f64, high: f64| (low + (high - low) * f64::from(random.next_u32()) / 4294967296.0).to_radians();
     (0..24).map(|_| Vector3::new(within(-30.0, 30.0), within(-10.0, 70.0), within(30.0, 100.0))).collect()

@@ -71,9 +71,9 @@ proptest! {
         replies in prop::collection::vec(
             prop::option::of((prop::array::uniform4(any::<i32>()), prop::array::uniform4(0u16..4096))), 1..40),
         activities in prop::collection::vec(0..3usize, 40),
-        joints in prop::array::uniform3(-3.0..3.0f64), stiffness in 0.0..6.0f64, figure_9: bool,
+        joints in prop::array::uniform3(-3.0..3.0f64), stiffness in 0.0..6.0f64, scheme in 0..3usize,
     ) {
-        let finger = finger_with(if figure_9 { Scheme::Figure9 } else { Scheme::Figure10 });
+        let finger = finger_with([Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback][scheme]);
         let controller = Controller::new(&finger, 1000.0).unwrap();
         let mut state = controller.start(&Feedback::default());
         let follow = spring(Vector3::from(joints), stiffness);
