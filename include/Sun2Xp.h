@@ -571,6 +571,7 @@ int IdentifyFinger(int i);
    EFAULT   Force is null
    ENODEV   no hand is open
    EINVAL   no such finger; an entry is NaN or infinite
+   ERANGE   a component is beyond 1000 N
    ENOTSUP  the finger is on a real port
    EPERM    forked child
 

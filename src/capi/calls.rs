@@ -367,6 +367,7 @@ pub extern "C" fn IdentifyFinger(i: c_int) -> c_int {
 ///   EFAULT   Force is null
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; an entry is NaN or infinite
+///   ERANGE   a component is beyond 1000 N
 ///   ENOTSUP  the finger is on a real port
 ///   EPERM    forked child
 ///

@@ -3,7 +3,7 @@
 use crate::capi::process;
 use crate::capi::refusal::{self, Refusal};
 use crate::control::calibration::Task;
-use crate::hand::{Calibrating, Hand, HandError, Standing};
+use crate::hand::{self, Calibrating, Hand, HandError, Standing};
 use parking_lot::{Mutex, RwLock};
 use std::thread::sleep;
 use std::time::Duration;
@@ -18,6 +18,9 @@ static HAND: RwLock<Option<Hand>> = RwLock::new(None);
 /// signal handler that calls exit: then it would wait for ever.
 const PATIENCE_AT_EXIT: Duration = Duration::from_millis(100);
 
+/// How long exit waits for the fingers to reach their end state: longer than any configured ramp.
+const LONGEST_END: Duration = Duration::from_secs(6);
+
 /// How often a calibration is looked at.
 const LOOKING: Duration = Duration::from_millis(5);
 
@@ -27,8 +30,9 @@ pub(super) fn open() -> Result<(), Refusal> {
         return Err(Refusal::AlreadyOpen);
     }
     process::watch();
-    let hand = Hand::open_configured()?;
-    refusal::set_printing(hand.print_refusals());
+    let configured = hand::configured()?;
+    refusal::set_printing(configured.0.hand.print_refusals);
+    let hand = Hand::open_as(configured)?;
     *HAND.write() = Some(hand);
     Ok(())
 }
@@ -43,7 +47,12 @@ pub(super) fn close() -> Result<(), Refusal> {
 
 pub(super) fn close_at_exit() {
     let Some(_closing) = LIFE.try_lock_for(PATIENCE_AT_EXIT) else { return };
-    drop(HAND.try_write_for(PATIENCE_AT_EXIT).and_then(|mut hand| hand.take()));
+    // Ended and not closed: a signal handler may have called exit in the middle of malloc, and then freeing would wait for ever.
+    if let Some(hand) = HAND.try_read_for(PATIENCE_AT_EXIT)
+        && let Some(hand) = &*hand
+    {
+        hand.end(LONGEST_END);
+    }
 }
 
 /// Runs `call` on the open hand.

@@ -92,6 +92,8 @@ impl Controller {
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
         let gains = Gains::new(&finger.controller, rate)?;
         let motor_torque = MotorTorque::new(finger, &tendons)?;
+        // A tendon is pulled no harder than its motor can: clamping there would turn the joint torque.
+        let strongest = motor_torque.limit.map(|limit| limit.min(finger.tendon.maximum));
         let state_feedback = match finger.controller.scheme {
             Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
             Scheme::Figure9 | Scheme::Figure10 => None,
@@ -104,7 +106,7 @@ impl Controller {
             joint_positions: JointPositions::new(finger, &tendons)?,
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
-            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, finger.tendon.maximum)?,
+            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, strongest)?,
             tendons: TendonController::new(finger.controller.scheme, &gains, rate, motor_torque.limit),
             motor_torque,
             motor_damping: gains.motor_damping,

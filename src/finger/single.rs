@@ -21,6 +21,9 @@ const SIMULATION_PATIENCE_MS: f64 = 1000.0;
 /// nobody watches winds a tendon up, or off its motor, within some ms, and the watchdog does not see it, as commands go on.
 const BLIND_MS: f64 = 10.0;
 
+/// At slow rates so many lost replies in a row are let pass all the same.
+const LEAST_BLIND: u32 = 3;
+
 /// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
 const BEYOND_LIMITS: f64 = 0.5;
 
@@ -138,7 +141,7 @@ impl FingerServo {
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
                 lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
-                blind: cycles(BLIND_MS),
+                blind: cycles(BLIND_MS).max(LEAST_BLIND),
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
@@ -287,6 +290,10 @@ impl FingerServo {
 
     fn count_replies(&mut self) {
         if self.answered {
+            if self.lost_in_a_row >= self.limits.blind {
+                // The motors were let go: begin with what the tendons pull now, and not with what was commanded then.
+                self.state = self.adjustable.controller.start(&self.feedback);
+            }
             self.lost_in_a_row = 0;
             return;
         }
@@ -370,7 +377,8 @@ impl FingerServo {
         self.stage_cycles += 1;
         match self.report.stage {
             Stage::Opening if self.report.cycle.under_tension => {
-                self.settled_cycles += 1;
+                // Without a reply it says what was, not what is.
+                self.settled_cycles += u32::from(self.answered);
                 if self.settled_cycles >= self.limits.settled {
                     self.check_pose();
                     if !self.under_control() {

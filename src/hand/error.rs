@@ -210,6 +210,18 @@ pub enum HandError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A push beyond what any finger bears.
+    #[error(
+        "a force of {force:.3e} N on finger {finger} is beyond the {strongest} N that a simulated finger is pushed with at most"
+    )]
+    TooMuchForce {
+        /// 1 to 3.
+        finger: i32,
+        /// The largest component, N.
+        force: f64,
+        /// The bound, N.
+        strongest: f64,
+    },
     /// Pushing a finger that is not simulated.
     #[error("finger {0} is on a real port: only a finger with `port = \"simulated\"` can be pushed by a call")]
     NotSimulated(i32),
@@ -222,7 +234,7 @@ impl HandError {
             Self::NoSuchFinger(_) | Self::NotFinite { .. } => libc::EINVAL,
             Self::Configuration { .. } | Self::Unusable { .. } => libc::EINVAL,
             Self::NoSuchContact(_) | Self::Adjustment { .. } => libc::EINVAL,
-            Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
+            Self::TooMuchForce { .. } | Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
             Self::OutOfReach { .. } | Self::Damping { .. } => libc::ERANGE,
             Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
             Self::Contact { .. } => libc::EDOM,

@@ -3,6 +3,7 @@
 
 mod adjustment;
 mod admission;
+mod announcement;
 mod calibrating;
 mod calibration_file;
 mod configuration_file;

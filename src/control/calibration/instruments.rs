@@ -47,7 +47,11 @@ impl Instruments {
                 / f64::from(finger.encoder.counts_per_revolution[motor])
         };
         Ok(Self {
-            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, finger.tendon.maximum)?,
+            distribution: TensionDistribution::new(
+                &tendons,
+                finger.tendon.minimum,
+                Vector4::repeat(finger.tendon.maximum),
+            )?,
             pretension: tendons.pretension(finger.tendon.minimum),
             compliance: Vector4::from(finger.tendon.stiffness).map(f64::recip),
             newton_per_count: finger.gauge.newton_per_count.into(),
