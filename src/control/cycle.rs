@@ -153,6 +153,11 @@ impl Controller {
         let mut before = *state;
         previous.cycle(&mut before, feedback, activity);
         state.goes_on_from = Some(before.pulls);
+        if let (Some(law), Some(old), Some(elastic)) =
+            (&self.state_feedback, &previous.state_feedback, &mut state.state_feedback)
+        {
+            law.take_over(old, elastic);
+        }
         self.cycle(state, feedback, activity)
     }
 

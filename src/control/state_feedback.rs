@@ -191,6 +191,15 @@ impl StateFeedback {
         }
     }
 
+    /// Goes on from the state of another controller of the same finger.
+    pub fn take_over(&self, previous: &Self, state: &mut StateFeedbackState) {
+        let ratio = self.radius.component_div(&previous.radius);
+        for tendon in 0..4 {
+            let estimate = &mut state.estimates[tendon];
+            self.observers[tendon].take_over(&previous.observers[tendon], estimate, ratio[tendon]);
+        }
+    }
+
     /// Whether so many replies are lost in a row that nothing can be decided.
     pub fn blind(&self, state: &StateFeedbackState) -> bool {
         state.lost > BLIND
