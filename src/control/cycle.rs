@@ -1,14 +1,18 @@
 //! One servo cycle: the boxes of Figure 9 connected, or state feedback in the place of most of them.
 
+use super::admissible_stiffness::AdmissibleStiffness;
 use super::gains::Gains;
+use super::gravity_compensation::GravityCompensation;
 use super::joint_positions::JointPositions;
 use super::joint_stiffness::JointStiffness;
 use super::low_pass::LowPass;
+use super::motor_heating::{Heat, MotorHeating};
 use super::motor_torque::MotorTorque;
 use super::release::Release;
 use super::sensors::Sensors;
 use super::signals::{Activity, Command, Feedback, Report, SetPoint};
 use super::slew::Slew;
+use super::soft_limits::SoftLimits;
 use super::state_feedback::{Decision, StateFeedback, StateFeedbackState};
 use super::stillness::Stillness;
 use super::tendon_controller::TendonController;
@@ -21,6 +25,9 @@ use nalgebra::{Vector3, Vector4};
 
 /// A tendon counts as tight from this part of t_min on.
 const TIGHT: f64 = 0.8;
+
+/// Damping over stiffness of the soft limits with Figures 9 and 10, s.
+const LIMIT_DAMPING: f64 = 0.015;
 
 /// Below this part of its desired tension a tendon counts as slack while slack is taken up: well under what a motor with
 /// the friction and the error of its torque constant reaches without the integral.
@@ -42,6 +49,10 @@ pub struct Controller {
     /// K_delta at the tendon, N s/m.
     motor_damping: f64,
     state_feedback: Option<StateFeedback>,
+    admissible: AdmissibleStiffness,
+    soft_limits: SoftLimits,
+    gravity: GravityCompensation,
+    heating: MotorHeating,
     /// Motor radii, m.
     radius: Vector4<f64>,
     /// N.
@@ -69,6 +80,7 @@ pub struct State {
     /// The part of `pulls` that is fed forward against friction.
     against_friction: Vector4<f64>,
     state_feedback: Option<StateFeedbackState>,
+    heat: Heat,
     report: Report,
 }
 
@@ -88,6 +100,11 @@ impl Controller {
     /// The controller of `finger` at `rate` cycles a second. Gains that are not configured come from the nearest of 500,
     /// 1000 and 2000 Hz. Refused with the key that cannot be used, where the numbers make no controller.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
+        Self::in_gravity(finger, &Vector3::zeros(), rate)
+    }
+
+    /// The same with gravity, m/s^2 in the finger's frame, to be compensated.
+    pub fn in_gravity(finger: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Result<Self, Unusable> {
         positive("rate", &[rate])?;
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
         let gains = Gains::new(&finger.controller, rate)?;
@@ -98,7 +115,14 @@ impl Controller {
             Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
             Scheme::Figure9 | Scheme::Figure10 => None,
         };
+        positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
+        positive("motor.thermal_time", &[finger.motor.thermal_time])?;
+        let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
         Ok(Self {
+            admissible: AdmissibleStiffness::new(&tendons, &finger.tendon.stiffness.into(), rate).ok_or_else(soft)?,
+            soft_limits: SoftLimits::new(finger),
+            gravity: GravityCompensation::new(finger, gravity),
+            heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
             period: 1.0 / rate,
             sensors: Sensors::new(finger)?,
             speed_filter: LowPass::new(gains.speed_filter, rate),
@@ -126,6 +150,7 @@ impl Controller {
             joints: self.joint_positions.joints(&motor_angles, &tensions),
             tensions,
             torque_scale: 1.0,
+            stiffness_scale: 1.0,
             ..Report::default()
         };
         State {
@@ -141,6 +166,7 @@ impl Controller {
             pulls,
             against_friction: Vector4::zeros(),
             state_feedback: self.state_feedback.as_ref().map(|law| law.start(&self.sensors, feedback)),
+            heat: Heat::default(),
             report,
         }
     }
@@ -160,6 +186,11 @@ impl Controller {
         let mut before = *state;
         previous.cycle(&mut before, feedback, activity);
         state.goes_on_from = Some(before.pulls);
+        if let (Some(law), Some(old), Some(elastic)) =
+            (&self.state_feedback, &previous.state_feedback, &mut state.state_feedback)
+        {
+            law.take_over(old, elastic);
+        }
         self.cycle(state, feedback, activity)
     }
 
@@ -179,9 +210,15 @@ impl Controller {
         }
         match *activity {
             Activity::Release { ramp } => self.let_go(state, ramp),
-            Activity::Follow(set_point) if observed => self.follow_by_state(state, &set_point),
+            Activity::Follow(set_point) if observed => {
+                let set_point = self.carried(state, set_point);
+                self.follow_by_state(state, &set_point);
+            }
             Activity::TakeUpSlack if feedback.is_some() => self.take_up_slack(state),
-            Activity::Follow(set_point) if feedback.is_some() => self.follow(state, set_point),
+            Activity::Follow(set_point) if feedback.is_some() => {
+                let set_point = self.carried(state, set_point);
+                self.follow(state, set_point);
+            }
             Activity::Tense(desired) if feedback.is_some() => self.tense(state, desired),
             Activity::Pull(pulls) if feedback.is_some() => self.pull_freely(state, pulls),
             Activity::Turn(torques) => self.turn(state, torques),
@@ -190,9 +227,18 @@ impl Controller {
         if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
             law.commanded(elastic, &state.pulls, &state.against_friction);
         }
+        self.heating.advance(&mut state.heat, &state.pulls);
         let motor_torques = self.motor_torque.torques(&state.pulls);
         state.report.motor_torques = motor_torques;
         (Command { motor_torques }, state.report)
+    }
+
+    /// The set point with as much of its stiffness as the pose can carry.
+    fn carried(&self, state: &mut State, set_point: SetPoint) -> SetPoint {
+        let k_theta = self.joint_stiffness.joint_stiffness(&set_point, &state.report.joints);
+        let scale = self.admissible.scale(&k_theta);
+        state.report.stiffness_scale = scale;
+        SetPoint { stiffness: set_point.stiffness * scale, ..set_point }
     }
 
     /// Keeps the observers of state feedback going in every activity; whether it can decide.
@@ -251,6 +297,9 @@ impl Controller {
         state.doing = Doing::Following(anchor);
         let spring = SetPoint { joints: anchor, ..set_point };
         let torques = self.joint_stiffness.torques(&spring, &state.report.joints, &state.report.joint_rates);
+        let push = self.soft_limits.push(&state.report.joints);
+        let damped = push.stiffness.component_mul(&state.report.joint_rates) * LIMIT_DAMPING;
+        let torques = torques + push.torque - damped + self.gravity.torques(&state.report.joints);
         self.pull(state, torques, [false; 4], begins);
     }
 
@@ -265,7 +314,7 @@ impl Controller {
         }
         state.doing = Doing::Following(elastic.joints);
         let Decision { pulls, against_friction, joint_torques, distribution } =
-            law.decide(elastic, set_point, &self.distribution);
+            law.decide(elastic, set_point, &self.soft_limits, &self.gravity, &self.distribution);
         state.against_friction = against_friction;
         self.give(state, &pulls, begins);
         state.report.joint_torques = joint_torques;
@@ -328,7 +377,7 @@ impl Controller {
         if let Some(before) = goes_on_from.or(begins.then_some(state.pulls)) {
             state.transition.begin(&before, asked);
         }
-        let limit = &self.motor_torque.limit;
+        let limit = &self.heating.limit(&state.heat);
         let pulls = asked + state.transition.advance(self.period);
         state.pulls = pulls.zip_map(limit, |pull, limit| pull.clamp(-limit, limit));
     }

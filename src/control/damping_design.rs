@@ -1,7 +1,7 @@
 //! The damping that a spring of several dimensions needs on a given inertia.
 
+use super::eigenvalues::eigenvalues;
 use nalgebra::Matrix3;
-use std::f64::consts::TAU;
 
 /// D = 2 zeta (W # (K + f^2 W)) + lag sym(H W^-1 K).
 ///
@@ -44,24 +44,11 @@ fn inverse(matrix: &Matrix3<f64>) -> Matrix3<f64> {
         / a.dot(&b.cross(&c))
 }
 
-/// The root of a matrix with positive eigenvalues: these by the cosine formula, the root by Cayley and Hamilton. No iteration,
+/// The root of a matrix with positive eigenvalues, by the theorem of Cayley and Hamilton. No iteration,
 /// so it always takes the same time.
 fn square_root(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let square = matrix * matrix;
-    let first = matrix.trace();
-    let second = 0.5 * (first * first - square.trace());
-    let third = first / 3.0;
-    let spread = (third * third - second / 3.0).max(0.0);
-    let root_of_spread = spread.sqrt();
-    let mut eigenvalues = [third; 3];
-    if root_of_spread > 1e-12 * third {
-        let cubic = third * third * third - 0.5 * third * second + 0.5 * matrix.determinant();
-        let angle = (cubic / (spread * root_of_spread)).clamp(-1.0, 1.0).acos() / 3.0;
-        for (index, eigenvalue) in eigenvalues.iter_mut().enumerate() {
-            *eigenvalue = third + 2.0 * root_of_spread * (angle - TAU / 3.0 * index as f64).cos();
-        }
-    }
-    let [a, b, c] = eigenvalues.map(|eigenvalue| eigenvalue.max(0.0).sqrt());
+    let [a, b, c] = eigenvalues(matrix).map(|eigenvalue| eigenvalue.max(0.0).sqrt());
     let (sum, pairs, product) = (a + b + c, a * b + b * c + c * a, a * b * c);
     (matrix * (sum * sum - pairs) - square + Matrix3::identity() * (sum * product)) / (sum * pairs - product)
 }

@@ -85,6 +85,8 @@ pub struct Report {
     pub joint_torques: Vector3<f64>,
     /// The part of `joint_torques` that the tension limits let through, 0 to 1; its direction is kept.
     pub torque_scale: f64,
+    /// The part of the set point's stiffness that the pose can carry, 0 to 1.
+    pub stiffness_scale: f64,
     /// Every tendon has at least 0.8 t_min, and the motors are at rest: slack is taken up.
     pub under_tension: bool,
     /// The command, N cm.

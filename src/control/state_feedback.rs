@@ -6,11 +6,13 @@
 use super::damping_design::DampingDesign;
 use super::dither::{Dither, DitherState};
 use super::friction_feed_forward::FrictionFeedForward;
+use super::gravity_compensation::GravityCompensation;
 use super::joint_stiffness::JointStiffness;
 use super::reference::{Reference, ReferenceState};
 use super::sensors::Sensors;
 use super::signals::{Feedback, SetPoint};
 use super::slew::Slew;
+use super::soft_limits::SoftLimits;
 use super::state_feedback_numbers::Numbers;
 use super::tendon_observer::{ElasticTendon, ObserverDesign, TendonEstimate, TendonMotion, TendonObserver};
 use super::tension_distribution::{Distribution, TensionDistribution};
@@ -191,6 +193,15 @@ impl StateFeedback {
         }
     }
 
+    /// Goes on from the state of another controller of the same finger.
+    pub fn take_over(&self, previous: &Self, state: &mut StateFeedbackState) {
+        let ratio = self.radius.component_div(&previous.radius);
+        for tendon in 0..4 {
+            let estimate = &mut state.estimates[tendon];
+            self.observers[tendon].take_over(&previous.observers[tendon], estimate, ratio[tendon]);
+        }
+    }
+
     /// Whether so many replies are lost in a row that nothing can be decided.
     pub fn blind(&self, state: &StateFeedbackState) -> bool {
         state.lost > BLIND
@@ -243,6 +254,8 @@ impl StateFeedback {
         &self,
         state: &mut StateFeedbackState,
         set_point: &SetPoint,
+        limits: &SoftLimits,
+        gravity: &GravityCompensation,
         distribution: &TensionDistribution,
     ) -> Decision {
         let motion: [TendonMotion; 4] = std::array::from_fn(|tendon| self.motion(state, tendon));
@@ -258,12 +271,15 @@ impl StateFeedback {
 
         // The torque of the spring, its damper and the reference's motion.
         let spring = SetPoint { joints: reference.joints, ..*set_point };
-        let k_theta = self.joint_stiffness.joint_stiffness(&spring, &joints) * 0.01;
+        let push = limits.push(&joints);
+        let k_theta = self.joint_stiffness.joint_stiffness(&spring, &joints) + Matrix3::from_diagonal(&push.stiffness);
+        let k_theta = k_theta * 0.01;
         let inertia = self.dynamics.inertia(&state.joints);
         let felt = self.felt_motors + inertia;
         let damping = self.damping.damping(&felt, &inertia, &k_theta, set_point.damping);
         let moving = reference.rates.map(|rate| (rate / JOINT_CREEP).clamp(-1.0, 1.0));
-        let torque = self.joint_stiffness.spring(&spring, &joints) * 0.01 - damping * (rates - reference.rates)
+        let held = self.joint_stiffness.spring(&spring, &joints) + push.torque + gravity.torques(&joints);
+        let torque = held * 0.01 - damping * (rates - reference.rates)
             + felt * reference.accelerations
             + self.dynamics.coriolis(&joints, &reference.rates)
             + self.joint_viscous.component_mul(&reference.rates)

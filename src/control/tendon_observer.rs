@@ -143,6 +143,15 @@ impl TendonObserver {
         TendonEstimate { x, since_loss: RECOVERY }
     }
 
+    /// Goes on from the estimate of another observer of the same tendon, whose motor travels `ratio` times less: position and
+    /// tension stay, whatever the two believe of stiffness and homing pretension.
+    pub fn take_over(&self, previous: &Self, estimate: &mut TendonEstimate, ratio: f64) {
+        let tension = previous.tension(&estimate.x);
+        estimate.x[0] *= ratio;
+        estimate.x[1] *= ratio;
+        estimate.x[2] = estimate.x[0] - (tension - self.tendon.home) / self.tendon.stiffness;
+    }
+
     /// Takes in what was measured: travel of the motor, m; tension, N.
     pub fn correct(&self, estimate: &mut TendonEstimate, motor_travel: f64, tension: f64) {
         let error = Vector2::new(motor_travel - estimate.x[0], tension - self.tension(&estimate.x));

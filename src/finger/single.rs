@@ -6,7 +6,7 @@ use crate::control::calibration::{Calibration, Sample, Verdict};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Adjustable, Mailbox, Order, ServoEnd, mailbox};
 use crate::finger::{Fault, FingerReport, Stage};
-use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState, Unusable};
+use crate::model::configuration::{Configuration, EndState, Unusable};
 use crate::realtime::{self, CycleTiming};
 use nalgebra::{Matrix3, Vector3, Vector4};
 use rtrb::Producer;
@@ -76,10 +76,12 @@ impl Adjustable {
     ///
     /// # Errors
     /// A configuration that no controller can be made from.
-    pub fn new(hand: &ConfiguredHand, finger: &ConfiguredFinger) -> Result<Self, Unusable> {
+    pub fn new(configuration: &Configuration, index: usize) -> Result<Self, Unusable> {
+        let finger = &configuration.fingers[index];
         let (low, high) = finger.joint_limits();
         let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
-        Ok(Self { controller: Controller::new(finger, hand.rate)?, pose })
+        let controller = Controller::in_gravity(finger, &configuration.gravity(index), configuration.hand.rate)?;
+        Ok(Self { controller, pose })
     }
 }
 
@@ -92,15 +94,16 @@ impl FingerServo {
     /// # Errors
     /// A configuration that no controller can be made from.
     pub fn new(
-        hand: &ConfiguredHand,
-        finger: &ConfiguredFinger,
-        address: u8,
+        configuration: &Configuration,
+        index: usize,
         stiffness: Matrix3<f64>,
         identity: &Identity,
         configured: &Configured,
         timings: Producer<CycleTiming>,
     ) -> Result<(Self, Mailbox), Unusable> {
-        let adjustable = Adjustable::new(hand, finger)?;
+        let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
+        let address = configuration.address(index);
+        let adjustable = Adjustable::new(configuration, index)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;

@@ -66,7 +66,7 @@ impl Dispatcher {
 
     /// In a forked child, which has no such thread.
     pub fn forget_collector(&mut self) {
-        self.collector.take().map(std::mem::forget);
+        std::mem::forget(self.collector.take());
     }
 
     /// theta_d, rad.

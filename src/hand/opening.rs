@@ -130,7 +130,7 @@ fn shake_hands(
     let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;
     let (producer, timings) = RingBuffer::new(TIMINGS);
     let (servo, mailbox) =
-        FingerServo::new(hand, finger, address, stiffness, &identity, &configured, producer).map_err(unusable)?;
+        FingerServo::new(configuration, index, stiffness, &identity, &configured, producer).map_err(unusable)?;
     Ok((servo, Reached { index, mailbox, admission: admission(configuration, index), timings }))
 }
 

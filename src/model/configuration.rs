@@ -140,6 +140,10 @@ pub struct ConfiguredMotor {
     pub inertia: [f64; 4],
     /// Viscous friction of each motor, N m s/rad.
     pub viscous_friction: [f64; 4],
+    /// Torque that each motor can give for ever, N cm.
+    pub continuous_torque: [f64; 4],
+    /// Thermal time constant of the motors, s.
+    pub thermal_time: f64,
 }
 
 /// `[finger.encoder]`
@@ -223,13 +227,15 @@ pub enum Law {
 }
 
 /// `[finger.controller]`. What is left out is chosen for the rate.
-#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredController {
     /// The tendon controller.
     pub scheme: Scheme,
     /// The stiffness law behind SendPos. A fingertip set point always has the exact one.
     pub law: Law,
+    /// Whether the torques of gravity on the links are compensated.
+    pub gravity_compensation: bool,
     /// K_T, dimensionless: tension commanded for a tension error.
     pub tension_gain: Option<f64>,
     /// K_TI, 1/s.
@@ -363,6 +369,8 @@ impl Default for ConfiguredMotor {
             torque_constant: [2.34; 4],
             inertia: [6e-7; 4],
             viscous_friction: [2e-6; 4],
+            continuous_torque: [2.5; 4],
+            thermal_time: 15.0,
         }
     }
 }
@@ -394,6 +402,27 @@ impl Default for ConfiguredJoints {
 impl Default for ConfiguredStiffness {
     fn default() -> Self {
         Self { initial: [[3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]], bound: None }
+    }
+}
+
+impl Default for ConfiguredController {
+    fn default() -> Self {
+        Self {
+            scheme: Scheme::default(),
+            law: Law::default(),
+            gravity_compensation: true,
+            tension_gain: None,
+            tension_integral: None,
+            motor_damping: None,
+            rate_time: None,
+            speed_filter: None,
+            stretch_filter: None,
+            set_point_speed: None,
+            inertia_gain: None,
+            damping_ratio: None,
+            set_point_time: None,
+            dither: None,
+        }
     }
 }
 

@@ -203,6 +203,8 @@ impl ConfiguredFinger {
     fn check_mechanics(&self) -> Result<(), Unusable> {
         each("motor.inertia", &self.motor.inertia, 1e-8, 1.0, "kg m^2")?;
         each("motor.viscous_friction", &self.motor.viscous_friction, 0.0, 1.0, "N m s/rad")?;
+        each("motor.continuous_torque", &self.motor.continuous_torque, 1e-3, 6000.0, "N cm")?;
+        within("motor.thermal_time", self.motor.thermal_time, 0.1, 1e4, "s")?;
         each("links.masses", &self.links.masses, 1e-6, 10.0, "kg")?;
         each("links.radii", &self.links.radii, 1e-4, 1.0, "m")?;
         each("friction.motor_coulomb", &self.friction.motor_coulomb, 0.0, 1000.0, "N cm")?;

@@ -66,13 +66,16 @@ fn an_adjustment_takes_effect() {
     let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
     let mut servo = Loop::new(&quiet(), 1000.0);
     servo.run(1.5, &activity);
+    servo.forget();
+    servo.run(0.5, &activity);
+    let at_rest = servo.largest_jump;
     let joints = servo.plant.joints();
     let mut finger = quiet();
     finger.tendon.minimum = 12.0;
     servo.forget();
     servo.adjust(&finger);
     servo.run(1.0, &activity);
-    assert!(servo.largest_jump < 6.0, "{} N", servo.largest_jump);
+    assert!(servo.largest_jump < at_rest + 6.0, "{} N, {at_rest} N at rest", servo.largest_jump);
     servo.forget();
     servo.run(0.2, &activity);
     assert!(servo.least_commanded > 12.0 - 1e-9 && servo.least_true > 11.0, "{}", servo.least_true);

@@ -34,9 +34,14 @@ impl Loop {
 
     /// A finger whose controller believes something else of it.
     pub fn with_belief(finger: &ConfiguredFinger, belief: &ConfiguredFinger, rate: f64) -> Self {
-        let plant = Plant::new(finger, Vector3::zeros()).unwrap();
+        Self::in_gravity(finger, belief, &Vector3::zeros(), rate)
+    }
+
+    /// With gravity in the finger's frame, m/s^2, of which the controller knows.
+    pub fn in_gravity(finger: &ConfiguredFinger, belief: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Self {
+        let plant = Plant::new(finger, *gravity).unwrap();
         let mut sensors = Sensors::new(finger);
-        let controller = Controller::new(belief, rate).unwrap();
+        let controller = Controller::in_gravity(belief, gravity, rate).unwrap();
         let state = controller.start(&read(&mut sensors, &plant));
         let signs = Vector4::from(finger.motor.sign.map(f64::from));
         let motor_torques = plant.tensions().component_mul(&signs) * 0.0475;
