@@ -10,13 +10,13 @@ fn main() {
     divan::main();
 }
 
-#[divan::bench(args = [Scheme::Figure9, Scheme::Figure10])]
+#[divan::bench(args = [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback])]
 fn follow(bencher: Bencher, scheme: Scheme) {
     cycle(bencher, scheme, 1.0);
 }
 
 /// A torque beyond the tension limits: the scale has to be found.
-#[divan::bench(args = [Scheme::Figure10])]
+#[divan::bench(args = [Scheme::Figure10, Scheme::StateFeedback])]
 fn follow_over_limit(bencher: Bencher, scheme: Scheme) {
     cycle(bencher, scheme, 40.0);
 }

@@ -4,7 +4,9 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use rand_distr::{Distribution, UnitSphere};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
+use serde::Serialize;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+use toml_edit::ser::ValueSerializer;
 
 /// One column of the table.
 #[derive(Clone, Copy)]
@@ -28,7 +30,13 @@ pub const USUAL: [[f64; 2]; 3] = [[-30.0, 30.0], [-10.0, 70.0], [30.0, 100.0]];
 
 impl Case {
     pub fn name(&self) -> String {
-        format!("{:?}, {} Hz", self.scheme, self.rate)
+        format!("{}, {} Hz", self.controller(), self.rate)
+    }
+
+    /// As the configuration names it.
+    pub fn controller(&self) -> String {
+        let value = self.scheme.serialize(ValueSerializer::new()).expect("a name");
+        value.as_str().unwrap_or_default().to_owned()
     }
 
     /// The admissible bound on the largest eigenvalue of Kx, N/cm.
@@ -36,7 +44,8 @@ impl Case {
         ConfiguredFinger::default().stiffness_bound(self.rate)
     }
 
-    /// A finger with this controller, at `pose`. Set points are not slowed down: steps are steps.
+    /// A finger with this controller, at `pose`, that knows its own friction as identification finds it. Set points are not
+    /// slowed down: steps are steps.
     pub fn finger(&self, pose: &Vector3<f64>, friction: Friction) -> ConfiguredFinger {
         let mut finger = ConfiguredFinger::default();
         finger.controller.scheme = self.scheme;
@@ -48,9 +57,15 @@ impl Case {
                 finger.simulation.joint_coulomb_friction = [0.0; 3];
                 finger.simulation.motor_coulomb_friction = [0.0; 4];
                 finger.simulation.conduit_friction = 0.0;
+                finger.friction.motor_coulomb = [0.0; 4];
+                finger.friction.conduit = [0.0; 4];
+                finger.friction.joint_coulomb = [0.0; 3];
             }
             Friction::Default => {}
-            Friction::Harsh => finger.simulation.joint_coulomb_friction = [2e-3; 3],
+            Friction::Harsh => {
+                finger.simulation.joint_coulomb_friction = [2e-3; 3];
+                finger.friction.joint_coulomb = [0.2; 3];
+            }
         }
         finger
     }

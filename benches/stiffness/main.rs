@@ -1,6 +1,6 @@
 //! How well a finger is the spring that it is told to be: the figures of `docs/stiffness.md`.
 //!
-//!     cargo bench --bench stiffness -- [--quick] [--poses N] [--seed N] [--rates 500,1000,2000] [--controllers "figure 9,figure 10"]
+//!     cargo bench --bench stiffness -- [--quick] [--poses N] [--seed N] [--rates 500,1000,2000] [--controllers "figure 9,state feedback"]
 //!                                      [--only TEXT] [--out FOLDER] [--write docs/stiffness.md]
 //!
 //! The pure core against the simulated finger, in memory and on simulated time, with one cycle between sample and torque.
@@ -43,7 +43,7 @@ struct Arguments {
     rates: Option<Vec<f64>>,
     /// Tendon controllers, as in the configuration, separated by commas. Figure 10 is measured first in any case: it is what the
     /// others are compared with.
-    #[arg(long, value_delimiter = ',', value_parser = scheme, default_values = ["figure 10"])]
+    #[arg(long, value_delimiter = ',', value_parser = scheme, default_values = ["figure 10", "state feedback"])]
     controllers: Vec<Scheme>,
     /// Only rows whose names contain this.
     #[arg(long, default_value = "")]

@@ -58,7 +58,7 @@ fn ellipses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
         let (forces, deflections) = statics::pushed_about(case, &finger, &finger, &pose, &kx, Senses::Counts);
         let found = fits::apparent_stiffness(&forces, &deflections);
         let degrees = pose.map(f64::to_degrees);
-        let caption = format!("{:?} ({:.0}, {:.0}, {:.0})", case.scheme, degrees[0], degrees[1], degrees[2]);
+        let caption = format!("{} ({:.0}, {:.0}, {:.0})", case.controller(), degrees[0], degrees[1], degrees[2]);
         let mut chart = ChartBuilder::on(panel)
             .caption(caption, (FONT, 11))
             .margin(6)

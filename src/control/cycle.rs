@@ -1,25 +1,33 @@
-//! One servo cycle: the boxes of Figure 9 connected.
+//! One servo cycle: the boxes of Figure 9 connected, or state feedback in the place of most of them.
 
+use super::admissible_stiffness::AdmissibleStiffness;
 use super::gains::Gains;
+use super::gravity_compensation::GravityCompensation;
 use super::joint_positions::JointPositions;
 use super::joint_stiffness::JointStiffness;
 use super::low_pass::LowPass;
+use super::motor_heating::{Heat, MotorHeating};
 use super::motor_torque::MotorTorque;
 use super::release::Release;
 use super::sensors::Sensors;
 use super::signals::{Activity, Command, Feedback, Measured, Report, SetPoint};
 use super::slew::Slew;
+use super::soft_limits::SoftLimits;
+use super::state_feedback::{Decision, StateFeedback, StateFeedbackState};
 use super::stillness::Stillness;
 use super::tendon_controller::TendonController;
 use super::tension_distribution::{Distribution, TensionDistribution};
 use super::tension_integral::{TendonInput, TendonState};
 use super::transition::Transition;
 use super::usable::positive;
-use crate::model::configuration::{ConfiguredFinger, Unusable};
+use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
 use nalgebra::{Vector3, Vector4};
 
 /// A tendon counts as tight from this part of t_min on.
 const TIGHT: f64 = 0.8;
+
+/// Damping over stiffness of the soft limits with Figures 9 and 10, s.
+const LIMIT_DAMPING: f64 = 0.015;
 
 /// Below this part of its desired tension a tendon counts as slack while slack is taken up: well under what a motor with
 /// the friction and the error of its torque constant reaches without the integral.
@@ -38,6 +46,13 @@ pub struct Controller {
     distribution: TensionDistribution,
     tendons: TendonController,
     motor_torque: MotorTorque,
+    /// K_delta at the tendon, N s/m.
+    motor_damping: f64,
+    state_feedback: Option<StateFeedback>,
+    admissible: AdmissibleStiffness,
+    soft_limits: SoftLimits,
+    gravity: GravityCompensation,
+    heating: MotorHeating,
     /// Motor radii, m.
     radius: Vector4<f64>,
     /// N.
@@ -57,11 +72,15 @@ pub struct State {
     tensions: Vector4<f64>,
     tendons: TendonState,
     transition: Transition,
-    /// Another controller computes the next pulls than the last.
-    taken_over: bool,
+    /// What the controller before this one would pull next, N at the tendon.
+    goes_on_from: Option<Vector4<f64>>,
     stillness: Stillness,
     /// N at the tendon.
     pulls: Vector4<f64>,
+    /// The part of `pulls` that is fed forward against friction.
+    against_friction: Vector4<f64>,
+    state_feedback: Option<StateFeedbackState>,
+    heat: Heat,
     report: Report,
 }
 
@@ -73,17 +92,37 @@ enum Doing {
     /// With the spring's anchor on its way to the set point, rad.
     Following(Vector3<f64>),
     Releasing(Release),
+    Tensing,
+    PullingFreely,
 }
 
 impl Controller {
     /// The controller of `finger` at `rate` cycles a second. Gains that are not configured come from the nearest of 500,
     /// 1000 and 2000 Hz. Refused with the key that cannot be used, where the numbers make no controller.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
+        Self::in_gravity(finger, &Vector3::zeros(), rate)
+    }
+
+    /// The same with gravity, m/s^2 in the finger's frame, to be compensated.
+    pub fn in_gravity(finger: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Result<Self, Unusable> {
         positive("rate", &[rate])?;
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
         let gains = Gains::new(&finger.controller, rate)?;
         let motor_torque = MotorTorque::new(finger, &tendons)?;
+        // A tendon is pulled no harder than its motor can: clamping there would turn the joint torque.
+        let strongest = motor_torque.limit.map(|limit| limit.min(finger.tendon.maximum));
+        let state_feedback = match finger.controller.scheme {
+            Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
+            Scheme::Figure9 | Scheme::Figure10 => None,
+        };
+        positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
+        positive("motor.thermal_time", &[finger.motor.thermal_time])?;
+        let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
         Ok(Self {
+            admissible: AdmissibleStiffness::new(&tendons, &finger.tendon.stiffness.into(), rate).ok_or_else(soft)?,
+            soft_limits: SoftLimits::new(finger),
+            gravity: GravityCompensation::new(finger, gravity),
+            heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
             period: 1.0 / rate,
             sensors: Sensors::new(finger)?,
             speed_filter: LowPass::new(gains.speed_filter, rate),
@@ -91,9 +130,11 @@ impl Controller {
             joint_positions: JointPositions::new(finger, &tendons)?,
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
-            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, finger.tendon.maximum)?,
+            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, strongest)?,
             tendons: TendonController::new(finger.controller.scheme, &gains, rate, motor_torque.limit),
             motor_torque,
+            motor_damping: gains.motor_damping,
+            state_feedback,
             radius: tendons.radius * 0.01,
             tight: TIGHT * finger.tendon.minimum,
         })
@@ -101,13 +142,15 @@ impl Controller {
 
     /// The state before the first cycle of a finger at rest. Its first command will pull as much as the tendons do.
     pub fn start(&self, feedback: &Feedback) -> State {
-        let Measured { motor_angles, tensions } = self.sensors.measured(feedback);
+        let measured = self.sensors.measured(feedback);
+        let Measured { motor_angles, tensions } = measured;
         let limit = &self.motor_torque.limit;
         let pulls = tensions.zip_map(limit, |tension, limit| tension.clamp(0.0, limit));
         let report = Report {
             joints: self.joint_positions.joints(&motor_angles, &tensions),
             tensions,
             torque_scale: 1.0,
+            stiffness_scale: 1.0,
             ..Report::default()
         };
         State {
@@ -118,21 +161,41 @@ impl Controller {
             tensions,
             tendons: TendonState::default(),
             transition: Transition::default(),
-            taken_over: false,
+            goes_on_from: None,
             stillness: Stillness::new(motor_angles),
             pulls,
+            against_friction: Vector4::zeros(),
+            state_feedback: self.state_feedback.as_ref().map(|law| law.start(&measured)),
+            heat: Heat::default(),
             report,
         }
     }
 
-    /// Goes on from the state of another controller of the same finger, with the same sensors and at the same rate, without a
-    /// jump in torque.
-    pub fn take_over(&self, state: &mut State) {
-        state.taken_over = true;
+    /// One cycle that goes on from the state of another controller of the same finger, with the same encoders and at the same
+    /// rate, without a jump in torque.
+    ///
+    /// It goes on from what `previous` would command in this very cycle, and not from its last command: so a planner that adjusts
+    /// in every cycle neither stops the feedback nor delays it.
+    pub fn take_over(
+        &self,
+        previous: &Self,
+        state: &mut State,
+        feedback: Option<&Feedback>,
+        activity: &Activity,
+    ) -> (Command, Report) {
+        let mut before = *state;
+        previous.cycle(&mut before, feedback, activity);
+        state.goes_on_from = Some(before.pulls);
+        if let (Some(law), Some(old), Some(elastic)) =
+            (&self.state_feedback, &previous.state_feedback, &mut state.state_feedback)
+        {
+            law.take_over(old, elastic);
+        }
+        self.cycle(state, feedback, activity)
     }
 
     /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates rests,
-    /// but a release goes on.
+    /// but a release goes on, and so does state feedback for some cycles, from what it predicts.
     pub fn cycle(&self, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) -> (Command, Report) {
         let measured = feedback.map(|feedback| self.sensors.measured(feedback));
         self.cycle_measured(state, measured.as_ref(), activity)
@@ -150,15 +213,61 @@ impl Controller {
         if let Some(measured) = measured {
             self.measure(state, measured);
         }
+        let observed = self.observe(state, measured);
+        if !matches!(activity, Activity::Follow(_)) {
+            state.against_friction = Vector4::zeros();
+            if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
+                law.idle(elastic);
+            }
+        }
         match *activity {
             Activity::Release { ramp } => self.let_go(state, ramp),
+            Activity::Follow(set_point) if observed => {
+                let set_point = self.carried(state, set_point);
+                self.follow_by_state(state, &set_point);
+            }
             Activity::TakeUpSlack if measured.is_some() => self.take_up_slack(state),
-            Activity::Follow(set_point) if measured.is_some() => self.follow(state, set_point),
-            Activity::TakeUpSlack | Activity::Follow(_) => {}
+            Activity::Follow(set_point) if measured.is_some() => {
+                let set_point = self.carried(state, set_point);
+                self.follow(state, set_point);
+            }
+            Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
+            Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),
+            Activity::Turn(torques) => self.turn(state, torques),
+            Activity::TakeUpSlack | Activity::Follow(_) | Activity::Tense(_) | Activity::Pull(_) => {}
         }
+        if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
+            law.commanded(elastic, &state.pulls, &state.against_friction);
+        }
+        self.heating.advance(&mut state.heat, &state.pulls);
         let motor_torques = self.motor_torque.torques(&state.pulls);
         state.report.motor_torques = motor_torques;
         (Command { motor_torques }, state.report)
+    }
+
+    /// The set point with as much of its stiffness as the pose can carry.
+    fn carried(&self, state: &mut State, set_point: SetPoint) -> SetPoint {
+        let k_theta = self.joint_stiffness.joint_stiffness(&set_point, &state.report.joints);
+        let scale = self.admissible.scale(&k_theta);
+        state.report.stiffness_scale = scale;
+        SetPoint { stiffness: set_point.stiffness * scale, ..set_point }
+    }
+
+    /// Keeps the observers of state feedback going in every activity; whether it can decide.
+    fn observe(&self, state: &mut State, measured: Option<&Measured>) -> bool {
+        let Some(law) = &self.state_feedback else {
+            state.state_feedback = None;
+            return false;
+        };
+        let Some(elastic) = &mut state.state_feedback else {
+            // Another scheme was in charge until now.
+            state.state_feedback = measured.map(|measured| law.start(measured));
+            return state.state_feedback.is_some();
+        };
+        law.observe(elastic, measured);
+        state.report.joints = elastic.joints;
+        state.report.joint_rates = elastic.joint_rates;
+        !law.blind(elastic)
     }
 
     /// Motor angles and tensions to joint angles and rates.
@@ -199,24 +308,89 @@ impl Controller {
         state.doing = Doing::Following(anchor);
         let spring = SetPoint { joints: anchor, ..set_point };
         let torques = self.joint_stiffness.torques(&spring, &state.report.joints, &state.report.joint_rates);
+        let push = self.soft_limits.push(&state.report.joints);
+        let damped = push.stiffness.component_mul(&state.report.joint_rates) * LIMIT_DAMPING;
+        let torques = torques + push.torque - damped + self.gravity.torques(&state.report.joints);
         self.pull(state, torques, [false; 4], begins);
+    }
+
+    /// The spring by state feedback. It begins without deflection.
+    fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
+        let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
+            return;
+        };
+        let begins = !matches!(state.doing, Doing::Following(_));
+        if begins {
+            law.begin(elastic);
+        }
+        state.doing = Doing::Following(elastic.joints);
+        let Decision { pulls, against_friction, joint_torques, distribution } =
+            law.decide(elastic, set_point, &self.soft_limits, &self.gravity, &self.distribution);
+        state.against_friction = against_friction;
+        self.give(state, &pulls, begins);
+        state.report.joint_torques = joint_torques;
+        state.report.desired_tensions = distribution.tensions;
+        state.report.torque_scale = distribution.scale;
     }
 
     /// Joint torques to pulls: R^-1 and the tendon controller.
     fn pull(&self, state: &mut State, joint_torques: Vector3<f64>, slack: [bool; 4], begins: bool) {
         let Distribution { tensions: desired, scale } = self.distribution.distribute(&joint_torques);
+        self.bring(state, desired, slack, begins);
+        state.report.joint_torques = joint_torques;
+        state.report.torque_scale = scale;
+    }
+
+    /// Tensions as they are asked for.
+    fn tense(&self, state: &mut State, desired: Vector4<f64>) {
+        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
+        let begins = !matches!(state.doing, Doing::Tensing);
+        state.doing = Doing::Tensing;
+        self.bring(state, desired, slack, begins);
+        state.report.joint_torques = Vector3::zeros();
+        state.report.torque_scale = 1.0;
+    }
+
+    /// Pulls without tension feedback.
+    fn pull_freely(&self, state: &mut State, pulls: Vector4<f64>) {
+        let speed = state.motor_speeds.component_mul(&self.radius);
+        self.pull_with(state, pulls - speed * self.motor_damping);
+    }
+
+    /// Motor torques without any feedback.
+    fn turn(&self, state: &mut State, torques: Vector4<f64>) {
+        self.pull_with(state, self.motor_torque.pulls(&torques));
+    }
+
+    fn pull_with(&self, state: &mut State, pulls: Vector4<f64>) {
+        let limit = &self.motor_torque.limit;
+        state.pulls = pulls.zip_map(limit, |pull, limit| pull.clamp(-limit, limit));
+        state.doing = Doing::PullingFreely;
+        // Whatever follows begins anew.
+        state.tendons = TendonState::default();
+        state.report.joint_torques = Vector3::zeros();
+        state.report.desired_tensions = state.pulls;
+        state.report.torque_scale = 1.0;
+    }
+
+    /// Desired tensions to pulls: the tendon controller.
+    fn bring(&self, state: &mut State, desired: Vector4<f64>, slack: [bool; 4], begins: bool) {
         let measured = state.report.tensions;
         let speed = state.motor_speeds.component_mul(&self.radius);
         let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
-        if begins || std::mem::take(&mut state.taken_over) {
-            state.transition.begin(&state.pulls, &asked);
+        self.give(state, &asked, begins);
+        state.report.desired_tensions = desired;
+    }
+
+    /// Pulls to the motors: without a jump where something begins, and within their limits.
+    fn give(&self, state: &mut State, asked: &Vector4<f64>, begins: bool) {
+        let goes_on_from = state.goes_on_from.take();
+        if let Some(before) = goes_on_from.or(begins.then_some(state.pulls)) {
+            state.transition.begin(&before, asked);
         }
-        let limit = &self.motor_torque.limit;
+        let limit = &self.heating.limit(&state.heat);
         let pulls = asked + state.transition.advance(self.period);
         state.pulls = pulls.zip_map(limit, |pull, limit| pull.clamp(-limit, limit));
-        state.report.joint_torques = joint_torques;
-        state.report.desired_tensions = desired;
-        state.report.torque_scale = scale;
     }
 
     /// Motor torques in a ramp to zero.

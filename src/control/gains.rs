@@ -19,6 +19,9 @@ pub(super) struct Gains {
 /// three rates, and no tension fell under 1.6 N; at half as much again two poses missed, and a tendon went slack.
 const SET_POINT_SPEED: f64 = 2.0;
 
+/// rad/s. State feedback follows its reference, which therefore may move as fast as the tensions can carry it: from 1000 Hz up.
+const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 10.0;
+
 /// Rate, Hz, then the fields of [`Gains`] in their order but the last. Found by experiment with the finger of the default configuration.
 type Row = (f64, [f64; 6]);
 
@@ -39,7 +42,8 @@ impl Gains {
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
         let table = match configured.scheme {
             Scheme::Figure9 => &FIGURE_9,
-            Scheme::Figure10 => &FIGURE_10,
+            // Slack is taken up with Figure 10.
+            Scheme::Figure10 | Scheme::StateFeedback => &FIGURE_10,
         };
         let apart = |row: &Row| (row.0 / rate).ln().abs();
         let nearest = table.iter().fold(&table[0], |best, row| if apart(row) < apart(best) { row } else { best });
@@ -56,7 +60,10 @@ impl Gains {
             rate_time: configured.rate_time.unwrap_or(rate_time),
             speed_filter: configured.speed_filter.unwrap_or(speed_filter),
             stretch_filter: configured.stretch_filter.unwrap_or(stretch_filter),
-            set_point_speed: configured.set_point_speed.unwrap_or(SET_POINT_SPEED),
+            set_point_speed: configured.set_point_speed.unwrap_or(match configured.scheme {
+                Scheme::StateFeedback => STATE_FEEDBACK_SET_POINT_SPEED * (rate / 1000.0).min(1.0),
+                Scheme::Figure9 | Scheme::Figure10 => SET_POINT_SPEED,
+            }),
         };
         not_negative("controller.tension_gain", gains.tension_gain)?;
         not_negative("controller.tension_integral", gains.tension_integral)?;

@@ -1,23 +1,36 @@
 //! The pure core: one servo cycle is a function of feedback, set point and controller state. It knows neither threads nor
 //! ports nor clocks, and allocates nothing.
 //!
-//! One file is one box of Figure 9 (or of Figure 10); [`Controller::cycle`] connects them.
+//! One file is one box of Figure 9 (or of Figure 10), or one part of the state feedback that can stand in their place; [`Controller::cycle`] connects them.
 
+mod admissible_stiffness;
+pub mod calibration;
 mod cycle;
+mod damping_design;
+mod dither;
+mod eigenvalues;
 mod figure10;
 mod figure9;
+mod friction_feed_forward;
 mod gains;
+mod gravity_compensation;
 mod inverse_kinematics;
 mod joint_positions;
 mod joint_stiffness;
 mod low_pass;
+mod motor_heating;
 mod motor_torque;
+mod reference;
 mod release;
 mod sensors;
 mod signals;
 mod slew;
+mod soft_limits;
+mod state_feedback;
+mod state_feedback_numbers;
 mod stillness;
 mod tendon_controller;
+mod tendon_observer;
 mod tension_distribution;
 mod tension_integral;
 mod transition;

@@ -64,6 +64,12 @@ pub enum Activity {
         /// Length of the ramp, s.
         ramp: f64,
     },
+    /// Every tendon is brought to a tension of its own, N, from whatever slack there is. For calibration.
+    Tense(Vector4<f64>),
+    /// Every motor pulls so much at its tendon, N, against its damper only; negative lets out. For calibration.
+    Pull(Vector4<f64>),
+    /// Every motor gets this torque, N cm, as the board takes it: no sign, no feedback. For calibration.
+    Turn(Vector4<f64>),
 }
 
 /// What the motors shall do.
@@ -88,6 +94,8 @@ pub struct Report {
     pub joint_torques: Vector3<f64>,
     /// The part of `joint_torques` that the tension limits let through, 0 to 1; its direction is kept.
     pub torque_scale: f64,
+    /// The part of the set point's stiffness that the pose can carry, 0 to 1.
+    pub stiffness_scale: f64,
     /// Every tendon has at least 0.8 t_min, and the motors are at rest: slack is taken up.
     pub under_tension: bool,
     /// The command, N cm.

@@ -21,7 +21,9 @@ impl TendonController {
         let motor_damping = gains.motor_damping;
         match scheme {
             Scheme::Figure9 => Self::Figure9(Figure9 { integral, motor_damping }),
-            Scheme::Figure10 => Self::Figure10(Figure10 { integral, tension_gain: gains.tension_gain, motor_damping }),
+            Scheme::Figure10 | Scheme::StateFeedback => {
+                Self::Figure10(Figure10 { integral, tension_gain: gains.tension_gain, motor_damping })
+            }
         }
     }
 

@@ -48,7 +48,7 @@ impl Hand {
         changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys)?;
         check(&changed)?;
         let unusable = |unusable: Unusable| HandError::Unusable { section: format!("finger.{finger}"), unusable };
-        let adjustable = Adjustable::new(&changed.hand, &changed.fingers[index]).map_err(unusable)?;
+        let adjustable = Adjustable::new(&changed, index).map_err(unusable)?;
         adjust_member(member, admission(&changed, index), adjustable)?;
         *configuration = changed;
         Ok(())

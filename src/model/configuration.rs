@@ -1,7 +1,8 @@
 //! The types of a hand's configuration, with defaults for everything: the finger of the report and plausible values for
 //! what the report leaves out. Reading them from a file is the business of the hand; checking them is done here.
 
-use crate::model::{ConfiguredSimulation, Links, Tendons, TendonsError};
+pub use crate::model::calibrated::{ConfiguredZeroing, ZeroingMethod};
+use crate::model::{ConfiguredFriction, ConfiguredLinks, ConfiguredSimulation, Links, Tendons, TendonsError};
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
@@ -97,6 +98,12 @@ pub struct ConfiguredFinger {
     pub tendon: ConfiguredTendon,
     /// `[finger.joints]`
     pub joints: ConfiguredJoints,
+    /// `[finger.links]`
+    pub links: ConfiguredLinks,
+    /// `[finger.friction]`
+    pub friction: ConfiguredFriction,
+    /// `[finger.zeroing]`
+    pub zeroing: ConfiguredZeroing,
     /// `[finger.stiffness]`
     pub stiffness: ConfiguredStiffness,
     /// `[finger.controller]`
@@ -129,6 +136,14 @@ pub struct ConfiguredMotor {
     pub torque_limit: [f64; 4],
     /// Torque constant, N cm/A. The board is told, so that it can turn torque into current.
     pub torque_constant: [f64; 4],
+    /// Inertia of each rotor, gear included, kg m^2.
+    pub inertia: [f64; 4],
+    /// Viscous friction of each motor, N m s/rad.
+    pub viscous_friction: [f64; 4],
+    /// Torque that each motor can give for ever, N cm.
+    pub continuous_torque: [f64; 4],
+    /// Thermal time constant of the motors, s.
+    pub thermal_time: f64,
 }
 
 /// `[finger.encoder]`
@@ -192,9 +207,12 @@ pub enum Scheme {
     #[serde(rename = "figure 9")]
     Figure9,
     /// Figure 10 (Salisbury): proportional and integral on the tension error, and a damper on the motor.
-    #[default]
     #[serde(rename = "figure 10")]
     Figure10,
+    /// Feedback of the whole state of links, elastic tendons and motors.
+    #[default]
+    #[serde(rename = "state feedback")]
+    StateFeedback,
 }
 
 /// How the torque of the fingertip's spring is found.
@@ -209,13 +227,15 @@ pub enum Law {
 }
 
 /// `[finger.controller]`. What is left out is chosen for the rate.
-#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredController {
     /// The tendon controller.
     pub scheme: Scheme,
     /// The stiffness law behind SendPos. A fingertip set point always has the exact one.
     pub law: Law,
+    /// Whether the torques of gravity on the links are compensated.
+    pub gravity_compensation: bool,
     /// K_T, dimensionless: tension commanded for a tension error.
     pub tension_gain: Option<f64>,
     /// K_TI, 1/s.
@@ -231,6 +251,14 @@ pub struct ConfiguredController {
     pub stretch_filter: Option<f64>,
     /// Bound on the speed of every joint of the set point, rad/s: a step becomes a straight line in joint space.
     pub set_point_speed: Option<f64>,
+    /// State feedback: alpha, tension commanded for a tension error; the motors then feel 1/alpha of their inertia.
+    pub inertia_gain: Option<f64>,
+    /// State feedback: damping ratio of the spring.
+    pub damping_ratio: Option<f64>,
+    /// State feedback: time constant of each of the five poles that the set point passes, s.
+    pub set_point_time: Option<f64>,
+    /// State feedback: amplitude of the dither over the Coulomb friction of the joints; 0: none.
+    pub dither: Option<f64>,
 }
 
 /// A whole hand.
@@ -311,6 +339,9 @@ impl Default for ConfiguredFinger {
             gauge: Default::default(),
             tendon: Default::default(),
             joints: Default::default(),
+            links: Default::default(),
+            friction: Default::default(),
+            zeroing: Default::default(),
             stiffness: Default::default(),
             controller: Default::default(),
             simulation: Default::default(),
@@ -332,7 +363,15 @@ impl Default for ConfiguredGeometry {
 
 impl Default for ConfiguredMotor {
     fn default() -> Self {
-        Self { sign: [1; 4], torque_limit: [4.75; 4], torque_constant: [2.34; 4] }
+        Self {
+            sign: [1; 4],
+            torque_limit: [4.75; 4],
+            torque_constant: [2.34; 4],
+            inertia: [6e-7; 4],
+            viscous_friction: [2e-6; 4],
+            continuous_torque: [2.5; 4],
+            thermal_time: 15.0,
+        }
     }
 }
 
@@ -363,6 +402,27 @@ impl Default for ConfiguredJoints {
 impl Default for ConfiguredStiffness {
     fn default() -> Self {
         Self { initial: [[3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]], bound: None }
+    }
+}
+
+impl Default for ConfiguredController {
+    fn default() -> Self {
+        Self {
+            scheme: Scheme::default(),
+            law: Law::default(),
+            gravity_compensation: true,
+            tension_gain: None,
+            tension_integral: None,
+            motor_damping: None,
+            rate_time: None,
+            speed_filter: None,
+            stretch_filter: None,
+            set_point_speed: None,
+            inertia_gain: None,
+            damping_ratio: None,
+            set_point_time: None,
+            dither: None,
+        }
     }
 }
 

@@ -1,15 +1,21 @@
 //! What a finger is: geometry, kinematics, tendons and the types of its configuration. Lengths in cm, forces in N,
 //! torques in N cm, angles in rad, as in the report, unless a name says otherwise.
 
+mod calibrated;
 pub mod configuration;
 mod contact;
 mod kinematics;
+mod link_dynamics;
+mod mechanics;
 mod simulation;
 mod tendons;
 mod validation;
 
+pub(crate) use contact::symmetrised;
 pub use contact::{Contact, ContactError, spring};
 pub use kinematics::Links;
+pub use link_dynamics::LinkDynamics;
+pub use mechanics::{ConfiguredFriction, ConfiguredLinks};
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use tendons::{Tendons, TendonsError};
 pub use validation::Refusal;

@@ -101,6 +101,8 @@ impl ConfiguredFinger {
         self.check_sensors_and_motors()?;
         self.check_limits()?;
         self.check_controller()?;
+        self.check_mechanics()?;
+        self.check_calibration()?;
         self.check_simulation()
     }
 
@@ -191,7 +193,47 @@ impl ConfiguredFinger {
         optional("controller.rate_time", controller.rate_time, 0.0, 1.0, "s")?;
         optional("controller.speed_filter", controller.speed_filter, 1.0, 1e4, "Hz")?;
         optional("controller.stretch_filter", controller.stretch_filter, 0.1, 1e4, "Hz")?;
-        optional("controller.set_point_speed", controller.set_point_speed, 1e-3, 1e3, "rad/s")
+        optional("controller.set_point_speed", controller.set_point_speed, 1e-3, 1e3, "rad/s")?;
+        optional("controller.inertia_gain", controller.inertia_gain, 0.1, 20.0, "")?;
+        optional("controller.damping_ratio", controller.damping_ratio, 0.05, 3.0, "")?;
+        optional("controller.set_point_time", controller.set_point_time, 1e-3, 1.0, "s")?;
+        optional("controller.dither", controller.dither, 0.0, 10.0, "")
+    }
+
+    fn check_mechanics(&self) -> Result<(), Unusable> {
+        each("motor.inertia", &self.motor.inertia, 1e-8, 1.0, "kg m^2")?;
+        each("motor.viscous_friction", &self.motor.viscous_friction, 0.0, 1.0, "N m s/rad")?;
+        each("motor.continuous_torque", &self.motor.continuous_torque, 1e-3, 6000.0, "N cm")?;
+        within("motor.thermal_time", self.motor.thermal_time, 0.1, 1e4, "s")?;
+        each("links.masses", &self.links.masses, 1e-6, 10.0, "kg")?;
+        each("links.radii", &self.links.radii, 1e-4, 1.0, "m")?;
+        each("friction.motor_coulomb", &self.friction.motor_coulomb, 0.0, 1000.0, "N cm")?;
+        each("friction.conduit", &self.friction.conduit, 0.0, 1.0, "")?;
+        each("friction.joint_coulomb", &self.friction.joint_coulomb, 0.0, 1000.0, "N cm")?;
+        each("friction.joint_viscous", &self.friction.joint_viscous, 0.0, 100.0, "N cm s/rad")
+    }
+
+    fn check_calibration(&self) -> Result<(), Unusable> {
+        let zeroing = &self.zeroing;
+        each("zeroing.pose_degrees", &zeroing.pose_degrees, -180.0, 180.0, "degrees")?;
+        each("zeroing.lower_stop_degrees", &zeroing.lower_stop_degrees.unwrap_or_default(), -270.0, 270.0, "degrees")?;
+        each("zeroing.upper_stop_degrees", &zeroing.upper_stop_degrees.unwrap_or_default(), -270.0, 270.0, "degrees")?;
+        let ((lower, upper), (low, high)) = (self.stops(), self.joint_limits());
+        for joint in 0..3 {
+            let inside = |key, stop: f64, limit: f64| {
+                let (stop, limit) = (stop.to_degrees(), limit.to_degrees());
+                unusable(key, format!("joint {joint}: a stop at {stop:.1} degrees is inside its limit of {limit:.1}"))
+            };
+            if lower[joint] > low[joint] {
+                return inside("zeroing.lower_stop_degrees", lower[joint], low[joint]);
+            }
+            if upper[joint] < high[joint] {
+                return inside("zeroing.upper_stop_degrees", upper[joint], high[joint]);
+            }
+        }
+        within("zeroing.torque", zeroing.torque, 1e-3, 100.0, "N cm")?;
+        within("zeroing.speed", zeroing.speed, 1e-2, 10.0, "rad/s")?;
+        within("zeroing.time_limit_s", zeroing.time_limit_s, 1.0, 3600.0, "s")
     }
 
     fn check_simulation(&self) -> Result<(), Unusable> {

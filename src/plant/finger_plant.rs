@@ -1,13 +1,12 @@
 //! One finger as a physical system: joints, tendons, motors, and what the tip meets.
 
 use super::contact;
-use super::finger_dynamics::FingerDynamics;
 use super::joint_friction::stop_by_friction;
 use super::joint_stops::JointStops;
 use super::motors::Motors;
 use super::tendon::ElasticTendons;
 use crate::model::configuration::ConfiguredFinger;
-use crate::model::{Links, Surface, TendonsError};
+use crate::model::{LinkDynamics, Links, Surface, TendonsError};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// Simulated time of one [`Plant::step`], s.
@@ -20,7 +19,7 @@ pub const PLANT_STEP_SECONDS: f64 = 1e-4;
 #[derive(Clone, Debug)]
 pub struct Plant {
     links: Links,
-    dynamics: FingerDynamics,
+    dynamics: LinkDynamics,
     stops: JointStops,
     tendons: ElasticTendons,
     motors: Motors,
@@ -45,7 +44,12 @@ impl Plant {
         let theta = Vector3::from(simulation.start_degrees.map(f64::to_radians));
         Ok(Self {
             links: finger.links(),
-            dynamics: FingerDynamics::new(finger, gravity_in_finger_frame),
+            dynamics: LinkDynamics::new(
+                finger.links(),
+                simulation.masses,
+                simulation.link_radii,
+                gravity_in_finger_frame,
+            ),
             stops: JointStops::new(finger),
             motors: Motors::new(finger),
             joint_viscous: simulation.joint_viscous_friction.into(),

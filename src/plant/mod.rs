@@ -2,7 +2,6 @@
 //! configuration is converted once, at construction.
 
 mod contact;
-mod finger_dynamics;
 mod finger_plant;
 mod joint_friction;
 mod joint_stops;

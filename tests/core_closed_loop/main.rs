@@ -2,5 +2,7 @@
 
 mod adjustment;
 mod behaviour;
+mod limits;
 mod rig;
 mod robustness;
+mod state_feedback;

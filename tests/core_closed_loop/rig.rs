@@ -12,6 +12,8 @@ pub struct Loop {
     pub rate: f64,
     sensors: Sensors,
     controller: Controller,
+    /// Whom the controller takes over from in the next cycle.
+    previous: Option<Controller>,
     state: State,
     command: Command,
     /// Part of the replies that are lost, and their source of chance.
@@ -32,9 +34,14 @@ impl Loop {
 
     /// A finger whose controller believes something else of it.
     pub fn with_belief(finger: &ConfiguredFinger, belief: &ConfiguredFinger, rate: f64) -> Self {
-        let plant = Plant::new(finger, Vector3::zeros()).unwrap();
+        Self::in_gravity(finger, belief, &Vector3::zeros(), rate)
+    }
+
+    /// With gravity in the finger's frame, m/s^2, of which the controller knows.
+    pub fn in_gravity(finger: &ConfiguredFinger, belief: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Self {
+        let plant = Plant::new(finger, *gravity).unwrap();
         let mut sensors = Sensors::new(finger);
-        let controller = Controller::new(belief, rate).unwrap();
+        let controller = Controller::in_gravity(belief, gravity, rate).unwrap();
         let state = controller.start(&read(&mut sensors, &plant));
         let signs = Vector4::from(finger.motor.sign.map(f64::from));
         let motor_torques = plant.tensions().component_mul(&signs) * 0.0475;
@@ -43,6 +50,7 @@ impl Loop {
             rate,
             sensors,
             controller,
+            previous: None,
             state,
             command: Command { motor_torques },
             loss: 0.0,
@@ -67,8 +75,8 @@ impl Loop {
 
     /// Another controller goes on from here.
     pub fn adjust(&mut self, belief: &ConfiguredFinger) {
-        self.replace(belief);
-        self.controller.take_over(&mut self.state);
+        let controller = Controller::new(belief, self.rate).unwrap();
+        self.previous = Some(std::mem::replace(&mut self.controller, controller));
     }
 
     /// Another controller, without telling it so.
@@ -96,7 +104,10 @@ impl Loop {
         }
         let lost = (self.random.next_u32() as f64) < self.loss * 4294967296.0;
         let feedback = if lost { None } else { Some(&feedback) };
-        let (command, report) = self.controller.cycle(&mut self.state, feedback, activity);
+        let (command, report) = match self.previous.take() {
+            None => self.controller.cycle(&mut self.state, feedback, activity),
+            Some(previous) => self.controller.take_over(&previous, &mut self.state, feedback, activity),
+        };
         let jump = (command.motor_torques - self.command.motor_torques).amax() / 0.0475;
         self.largest_jump = self.largest_jump.max(jump);
         self.least_commanded = self.least_commanded.min(report.desired_tensions.min());
@@ -134,7 +145,12 @@ pub fn spring(joints: Vector3<f64>, stiffness: f64) -> Activity {
 
 /// 24 poses, rad: joint 0 within +-30, joint 1 -10 to 70, joint 2 30 to 100 degrees.
 pub fn poses() -> Vec<Vector3<f64>> {
-    let mut random = Pcg64::seed_from_u64(24);
+    poses_of(24)
+}
+
+/// The same from another seed.
+pub fn poses_of(seed: u64) -> Vec<Vector3<f64>> {
+    let mut random = Pcg64::seed_from_u64(seed);
     let mut within =
         |low: f64, high: f64| (low + (high - low) * f64::from(random.next_u32()) / 4294967296.0).to_radians();
     (0..24).map(|_| Vector3::new(within(-30.0, 30.0), within(-10.0, 70.0), within(30.0, 100.0))).collect()

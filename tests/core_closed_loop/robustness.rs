@@ -71,9 +71,9 @@ proptest! {
         replies in prop::collection::vec(
             prop::option::of((prop::array::uniform4(any::<i32>()), prop::array::uniform4(0u16..4096))), 1..40),
         activities in prop::collection::vec(0..3usize, 40),
-        joints in prop::array::uniform3(-3.0..3.0f64), stiffness in 0.0..6.0f64, figure_9: bool,
+        joints in prop::array::uniform3(-3.0..3.0f64), stiffness in 0.0..6.0f64, scheme in 0..3usize,
     ) {
-        let finger = finger_with(if figure_9 { Scheme::Figure9 } else { Scheme::Figure10 });
+        let finger = finger_with([Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback][scheme]);
         let controller = Controller::new(&finger, 1000.0).unwrap();
         let mut state = controller.start(&Feedback::default());
         let follow = spring(Vector3::from(joints), stiffness);
@@ -83,6 +83,7 @@ proptest! {
             let (command, report) = controller.cycle(&mut state, feedback.as_ref(), &choice[activity]);
             prop_assert!(command.motor_torques.iter().all(|torque| torque.abs() <= 4.75 + 1e-9));
             prop_assert!((0.0..=1.0).contains(&report.torque_scale));
+            prop_assert!((0.0..=1.0).contains(&report.stiffness_scale));
             if activity != 2 && feedback.is_some() {
                 prop_assert!(report.desired_tensions.min() >= 5.0 && report.desired_tensions.max() <= 60.0 + 1e-6);
             }

@@ -4,7 +4,6 @@
 //! finger's plane. The two directions are principal for every link, so joint 0 has no inertia in common with the others.
 
 use crate::model::Links;
-use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Matrix3, Vector3};
 
 /// A link as a rigid body.
@@ -27,7 +26,7 @@ impl Cylinder {
 
 /// The rigid bodies of a finger, and the gravity that acts on them.
 #[derive(Clone, Debug)]
-pub(super) struct FingerDynamics {
+pub struct LinkDynamics {
     length: [f64; 3],
     link: [Cylinder; 3],
     tip_mass: f64,
@@ -37,13 +36,12 @@ pub(super) struct FingerDynamics {
     centres: [(f64, Links); 4],
 }
 
-impl FingerDynamics {
-    pub fn new(finger: &ConfiguredFinger, gravity: Vector3<f64>) -> Self {
-        let length = finger.geometry.links.map(|cm| cm * 0.01);
+impl LinkDynamics {
+    /// Masses of the links and of the tip, kg; radii, m; gravity in the finger's frame, m/s^2.
+    pub fn new(links: Links, mass: [f64; 4], radii: [f64; 3], gravity: Vector3<f64>) -> Self {
+        let length = links.0.map(|cm| cm * 0.01);
         let [l0, l1, l2] = length;
-        let simulation = &finger.simulation;
-        let mass = simulation.masses;
-        let link = std::array::from_fn(|i| Cylinder::new(mass[i], simulation.link_radii[i], length[i]));
+        let link = std::array::from_fn(|i| Cylinder::new(mass[i], radii[i], length[i]));
         let centres = [
             (mass[0], Links([l0 / 2.0, 0.0, 0.0])),
             (mass[1], Links([l0, l1 / 2.0, 0.0])),
@@ -140,7 +138,7 @@ struct Pose {
 }
 
 impl Pose {
-    fn new(finger: &FingerDynamics, theta: &Vector3<f64>) -> Self {
+    fn new(finger: &LinkDynamics, theta: &Vector3<f64>) -> Self {
         let [l0, l1, l2] = finger.length;
         let (s1, c1) = theta[1].sin_cos();
         let (s12, c12) = (theta[1] + theta[2]).sin_cos();

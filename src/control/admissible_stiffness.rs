@@ -1,0 +1,33 @@
+//! What a pose can carry: a finger is never stiffer than its tendons.
+
+use super::eigenvalues::eigenvalues;
+use crate::model::Tendons;
+use nalgebra::{Matrix3, Matrix3x4, Vector4};
+
+/// The part of the stiffness of the locked tendons that K_theta may have, below 750 Hz and from there on: as far as the loops
+/// of all schemes were found stable.
+const SHARES: [f64; 2] = [0.7, 0.95];
+
+/// Locked tendons hold the joints with R k R^T = L L^T. The largest eigenvalue of L^-1 K_theta L^-T is the largest part of
+/// that, over all directions, which K_theta asks for.
+#[derive(Clone, Debug)]
+pub(super) struct AdmissibleStiffness {
+    /// L^-1, (N cm/rad)^(-1/2).
+    inverse: Matrix3<f64>,
+    share: f64,
+}
+
+impl AdmissibleStiffness {
+    /// Tendon stiffness, N/cm; cycles a second. None where R has no rank of 3.
+    pub fn new(tendons: &Tendons, stiffness: &Vector4<f64>, rate: f64) -> Option<Self> {
+        let stretched = Matrix3x4::from_fn(|joint, tendon| tendons.r[(joint, tendon)] * stiffness[tendon]);
+        let inverse = (stretched * tendons.r.transpose()).cholesky()?.l().try_inverse()?;
+        Some(Self { inverse, share: SHARES[usize::from(rate >= 750.0)] })
+    }
+
+    /// The factor, 0 to 1, that K_theta (N cm/rad) has to be scaled by.
+    pub fn scale(&self, k_theta: &Matrix3<f64>) -> f64 {
+        let [largest, ..] = eigenvalues(&(self.inverse * k_theta * self.inverse.transpose()));
+        if largest > self.share { self.share / largest } else { 1.0 }
+    }
+}

@@ -1,0 +1,326 @@
+//! Feedback of the whole state of a finger on elastic tendons: joint angles and rates, tensions and their rates.
+//!
+//! The report's loops see the joints through the motors. Between the two lies a spring, and what it swings with must be
+//! damped by what the loops do not measure: here it is observed, and every motor is made a force source of little inertia.
+
+use super::damping_design::DampingDesign;
+use super::dither::{Dither, DitherState};
+use super::friction_feed_forward::FrictionFeedForward;
+use super::gravity_compensation::GravityCompensation;
+use super::joint_stiffness::JointStiffness;
+use super::reference::{Reference, ReferenceState};
+use super::signals::{Measured, SetPoint};
+use super::slew::Slew;
+use super::soft_limits::SoftLimits;
+use super::state_feedback_numbers::Numbers;
+use super::tendon_observer::{ElasticTendon, ObserverDesign, TendonEstimate, TendonMotion, TendonObserver};
+use super::tension_distribution::{Distribution, TensionDistribution};
+use super::usable::positive;
+use crate::model::configuration::{ConfiguredFinger, Unusable};
+use crate::model::{LinkDynamics, Tendons};
+use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
+
+/// Noise of a gauge that the observers reckon with, N rms.
+const GAUGE_NOISE: f64 = 0.03;
+
+/// Speed of the reference from which the friction of the joints is fed forward whole, rad/s.
+const JOINT_CREEP: f64 = 0.05;
+
+/// After so many lost replies in a row what is predicted says nothing any more: the command stays as it is.
+const BLIND: u32 = 20;
+
+/// The law. SI units inside; the tension distribution and the spring speak N cm.
+#[derive(Clone, Debug)]
+pub(super) struct StateFeedback {
+    observers: [TendonObserver; 4],
+    joint_stiffness: JointStiffness,
+    dynamics: LinkDynamics,
+    damping: DampingDesign,
+    reference: Reference,
+    slew: Slew,
+    dither: Dither,
+    friction: FrictionFeedForward,
+    /// R, m.
+    r: Matrix3x4<f64>,
+    /// R^T (R R^T)^-1, 1/m: its transpose turns the travel of tendons into joint angles, and a common stretch into nothing.
+    pseudo_inverse: Matrix4x3<f64>,
+    /// R m R^T / alpha, kg m^2: what the joints feel of the motors.
+    felt_motors: Matrix3<f64>,
+    /// kg, N s/m and N/m at the tendon.
+    mass: Vector4<f64>,
+    viscous: Vector4<f64>,
+    stiffness: Vector4<f64>,
+    /// alpha.
+    inertia_gain: f64,
+    /// c, N s/m.
+    relative_damping: f64,
+    /// N m s/rad and N m.
+    joint_viscous: Vector3<f64>,
+    joint_coulomb: Vector3<f64>,
+    /// s beyond the next sample.
+    ahead: f64,
+    /// Radius of each motor, m, and half a count of its encoder, rad: a count is rounded down.
+    radius: Vector4<f64>,
+    half_count: Vector4<f64>,
+}
+
+/// What it remembers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StateFeedbackState {
+    estimates: [TendonEstimate; 4],
+    /// The pull that acts until the next sample, but for what was fed forward against friction, N.
+    acting: Vector4<f64>,
+    /// Jerk of the reference, rad/s^3.
+    jerk: Vector3<f64>,
+    lost: u32,
+    anchor: Vector3<f64>,
+    reference: ReferenceState,
+    dither: DitherState,
+    /// Measured joint angles, rad, and joint rates, rad/s.
+    pub joints: Vector3<f64>,
+    pub joint_rates: Vector3<f64>,
+}
+
+/// What a cycle decides.
+pub(super) struct Decision {
+    /// N.
+    pub pulls: Vector4<f64>,
+    /// The part of them that is fed forward against friction, N.
+    pub against_friction: Vector4<f64>,
+    /// N cm.
+    pub joint_torques: Vector3<f64>,
+    pub distribution: Distribution,
+}
+
+impl StateFeedback {
+    /// All numbers from the configuration.
+    pub fn new(
+        finger: &ConfiguredFinger,
+        tendons: &Tendons,
+        set_point_speed: f64,
+        rate: f64,
+    ) -> Result<Self, Unusable> {
+        let numbers = Numbers::new(&finger.controller, rate)?;
+        positive("motor.inertia", &finger.motor.inertia)?;
+        positive("tendon.stiffness", &finger.tendon.stiffness)?;
+        positive("links.masses", &finger.links.masses)?;
+        positive("links.radii", &finger.links.radii)?;
+        let radius = tendons.radius * 0.01;
+        let squared = radius.component_mul(&radius);
+        let mass = Vector4::from(finger.motor.inertia).component_div(&squared);
+        let viscous = Vector4::from(finger.motor.viscous_friction).component_div(&squared);
+        let stiffness = Vector4::from(finger.tendon.stiffness) * 100.0;
+        let home = tendons.pretension(finger.tendon.minimum);
+        let r = tendons.r * 0.01;
+        let gram = r * r.transpose();
+        let singular = || Unusable { key: "geometry.r", reason: "has no right inverse: is a sign wrong?".into() };
+        let pseudo_inverse = r.transpose() * gram.try_inverse().ok_or_else(singular)?;
+
+        let count = finger.encoder.counts_per_revolution.map(|counts| std::f64::consts::TAU / f64::from(counts));
+        let observer = |index: usize| {
+            let design = ObserverDesign {
+                link: numbers.link_bandwidth,
+                disturbance: numbers.disturbance_bandwidth,
+                encoder_step: count[index] * radius[index],
+                gauge_step: finger.gauge.newton_per_count[index].abs(),
+                gauge_noise: GAUGE_NOISE,
+            };
+            let tendon = ElasticTendon {
+                mass: mass[index],
+                viscous: viscous[index],
+                stiffness: stiffness[index],
+                home: home[index],
+            };
+            TendonObserver::new(tendon, &design, 1.0 / rate)
+        };
+        let dynamics = LinkDynamics::new(finger.links(), finger.links.masses, finger.links.radii, Vector3::zeros());
+        // The frequency of motors against links, for the inertia of a finger bent like at its homing pose.
+        let alpha = numbers.inertia_gain;
+        let joint_coulomb = Vector3::from(finger.friction.joint_coulomb) * 0.01;
+        let bent = Vector3::new(0.0, 0.5, 1.0);
+        let link_mass = (dynamics.inertia(&bent).determinant() / gram.determinant()).cbrt();
+        let (mean_mass, mean_stiffness) = (mass.mean(), stiffness.mean());
+        let frequency = (mean_stiffness / link_mass + alpha * mean_stiffness / mean_mass).sqrt();
+        let relative_damping = 2.0 * numbers.relative_damping * mean_mass * frequency;
+        Ok(Self {
+            observers: std::array::from_fn(observer),
+            joint_stiffness: JointStiffness::new(finger.links(), 0.0),
+            dynamics,
+            damping: DampingDesign {
+                ratio: numbers.damping_ratio,
+                least_frequency: numbers.least_frequency,
+                lag: relative_damping / (alpha * mean_stiffness),
+            },
+            reference: Reference::new(numbers.reference_time, rate),
+            slew: Slew::new(set_point_speed, rate),
+            dither: Dither::new(joint_coulomb * numbers.dither, numbers.dither_frequency, rate),
+            friction: FrictionFeedForward {
+                coulomb: Vector4::from(finger.friction.motor_coulomb).component_div(&tendons.radius),
+                conduit: finger.friction.conduit.into(),
+            },
+            r,
+            pseudo_inverse,
+            felt_motors: r * Matrix4x3::from_fn(|tendon, joint| mass[tendon] * r[(joint, tendon)]) / alpha,
+            mass,
+            viscous,
+            stiffness,
+            inertia_gain: alpha,
+            relative_damping,
+            joint_viscous: Vector3::from(finger.friction.joint_viscous) * 0.01,
+            joint_coulomb,
+            ahead: numbers.ahead / rate,
+            radius,
+            half_count: Vector4::from_fn(|motor, _| 0.5 * count[motor] * f64::from(finger.encoder.sign[motor])),
+        })
+    }
+
+    /// A finger at rest, under the pull of its tendons.
+    pub fn start(&self, measured: &Measured) -> StateFeedbackState {
+        let (travel, tensions) = (self.travel(measured), measured.tensions);
+        let estimates = std::array::from_fn(|tendon| self.observers[tendon].start(travel[tendon], tensions[tendon]));
+        let joints = self.pose(&estimates);
+        StateFeedbackState {
+            estimates,
+            acting: tensions,
+            jerk: Vector3::zeros(),
+            lost: 0,
+            anchor: joints,
+            reference: self.reference.start(&joints),
+            dither: self.dither.start(),
+            joints,
+            joint_rates: Vector3::zeros(),
+        }
+    }
+
+    /// Goes on from the state of another controller of the same finger.
+    pub fn take_over(&self, previous: &Self, state: &mut StateFeedbackState) {
+        let ratio = self.radius.component_div(&previous.radius);
+        for tendon in 0..4 {
+            let estimate = &mut state.estimates[tendon];
+            self.observers[tendon].take_over(&previous.observers[tendon], estimate, ratio[tendon]);
+        }
+    }
+
+    /// Whether so many replies are lost in a row that nothing can be decided.
+    pub fn blind(&self, state: &StateFeedbackState) -> bool {
+        state.lost > BLIND
+    }
+
+    /// Takes in a reply, or that it was lost, and goes on to the next sample.
+    pub fn observe(&self, state: &mut StateFeedbackState, measured: Option<&Measured>) {
+        let was_blind = self.blind(state);
+        state.lost = if measured.is_some() { 0 } else { state.lost.saturating_add(1) };
+        if self.blind(state) {
+            return;
+        }
+        let measured = measured.map(|measured| (self.travel(measured), measured.tensions));
+        let travel_jerk = self.r.tr_mul(&state.jerk);
+        for (tendon, observer) in self.observers.iter().enumerate() {
+            let estimate = &mut state.estimates[tendon];
+            match &measured {
+                Some((travel, tensions)) if was_blind => *estimate = observer.start(travel[tendon], tensions[tendon]),
+                Some((travel, tensions)) => observer.correct(estimate, travel[tendon], tensions[tendon]),
+                None => observer.miss(estimate),
+            }
+        }
+        state.joints = self.pose(&state.estimates);
+        for (tendon, observer) in self.observers.iter().enumerate() {
+            observer.predict(&mut state.estimates[tendon], state.acting[tendon], travel_jerk[tendon]);
+        }
+        let speeds = Vector4::from_fn(|tendon, _| self.motion(state, tendon).speed);
+        state.joint_rates = self.pseudo_inverse.tr_mul(&speeds);
+    }
+
+    /// What was commanded in the end, N, and what of it was against friction.
+    pub fn commanded(&self, state: &mut StateFeedbackState, pulls: &Vector4<f64>, against_friction: &Vector4<f64>) {
+        state.acting = pulls - against_friction;
+    }
+
+    /// No reference moves the finger.
+    pub fn idle(&self, state: &mut StateFeedbackState) {
+        state.jerk = Vector3::zeros();
+    }
+
+    /// The spring begins here, without deflection.
+    pub fn begin(&self, state: &mut StateFeedbackState) {
+        state.anchor = state.joints;
+        state.reference = self.reference.start(&state.joints);
+        state.dither = self.dither.start();
+    }
+
+    /// The pulls that make the fingertip the spring of `set_point`, from the next sample on.
+    pub fn decide(
+        &self,
+        state: &mut StateFeedbackState,
+        set_point: &SetPoint,
+        limits: &SoftLimits,
+        gravity: &GravityCompensation,
+        distribution: &TensionDistribution,
+    ) -> Decision {
+        let motion: [TendonMotion; 4] = std::array::from_fn(|tendon| self.motion(state, tendon));
+        let of = |part: fn(&TendonMotion) -> f64| Vector4::from_fn(|tendon, _| part(&motion[tendon]));
+        let (tensions, motor_speeds) = (of(|motion| motion.tension), of(|motion| motion.motor_speed));
+        let (speeds, disturbances) = (of(|motion| motion.speed), of(|motion| motion.disturbance));
+        let joints = self.pseudo_inverse.tr_mul(&of(|motion| motion.travel));
+        let rates = self.pseudo_inverse.tr_mul(&speeds);
+
+        self.slew.advance(&mut state.anchor, &set_point.joints);
+        let reference = self.reference.advance(&mut state.reference, &state.anchor);
+        state.jerk = reference.jerk;
+
+        // The torque of the spring, its damper and the reference's motion.
+        let spring = SetPoint { joints: reference.joints, ..*set_point };
+        let push = limits.push(&joints);
+        let k_theta = self.joint_stiffness.joint_stiffness(&spring, &joints) + Matrix3::from_diagonal(&push.stiffness);
+        let k_theta = k_theta * 0.01;
+        let inertia = self.dynamics.inertia(&state.joints);
+        let felt = self.felt_motors + inertia;
+        let damping = self.damping.damping(&felt, &inertia, &k_theta, set_point.damping);
+        let moving = reference.rates.map(|rate| (rate / JOINT_CREEP).clamp(-1.0, 1.0));
+        let held = self.joint_stiffness.spring(&spring, &joints) + push.torque + gravity.torques(&joints);
+        let torque = held * 0.01 - damping * (rates - reference.rates)
+            + felt * reference.accelerations
+            + self.dynamics.coriolis(&joints, &reference.rates)
+            + self.joint_viscous.component_mul(&reference.rates)
+            + self.joint_coulomb.component_mul(&moving);
+        let joint_torques = torque * 100.0;
+        let distribution = distribution.distribute(&joint_torques);
+
+        // The tendons as force sources: what the reference and the dither ask of the motors is fed forward.
+        let tension_rates = self.pseudo_inverse * (inertia * reference.jerk);
+        let tension_accelerations = self.pseudo_inverse * (inertia * reference.snap);
+        let motor_rates = self.r.tr_mul(&reference.rates);
+        let (shake, quarter_ahead) = self.dither.advance(&mut state.dither);
+        let (shake, shake_rates) =
+            (self.pseudo_inverse * shake, self.pseudo_inverse * quarter_ahead * self.dither.frequency);
+        let omega_squared = self.dither.frequency * self.dither.frequency;
+        let pulls = Vector4::from_fn(|tendon, _| {
+            let stretching = (tension_rates[tendon] + shake_rates[tendon]) / self.stiffness[tendon];
+            let yielding = self.mass[tendon] / self.stiffness[tendon];
+            tensions[tendon]
+                + self.inertia_gain * (distribution.tensions[tendon] + shake[tendon] - tensions[tendon])
+                // The share of the joints' speed must be exactly 1: with 0.94 it was a drag of three times D.
+                - self.relative_damping * (motor_speeds[tendon] - speeds[tendon] - stretching)
+                - disturbances[tendon]
+                + self.viscous[tendon] * motor_rates[tendon]
+                + yielding * (tension_accelerations[tendon] - omega_squared * shake[tendon])
+        });
+        let against_friction = self.friction.pulls(&motor_speeds, &tensions);
+        Decision { pulls: pulls + against_friction, against_friction, joint_torques, distribution }
+    }
+
+    fn motion(&self, state: &StateFeedbackState, tendon: usize) -> TendonMotion {
+        self.observers[tendon].motion(&state.estimates[tendon], state.acting[tendon], self.ahead)
+    }
+
+    /// theta, rad.
+    fn pose(&self, estimates: &[TendonEstimate; 4]) -> Vector3<f64> {
+        let travel = Vector4::from_fn(|tendon, _| self.observers[tendon].travel(&estimates[tendon]));
+        self.pseudo_inverse.tr_mul(&travel)
+    }
+
+    /// Travel of the motors, m.
+    fn travel(&self, measured: &Measured) -> Vector4<f64> {
+        (measured.motor_angles + self.half_count).component_mul(&self.radius)
+    }
+}

@@ -1,0 +1,72 @@
+//! From a configuration to the numbers of state feedback: one procedure, nothing tuned for a finger by hand.
+//!
+//! What has a unit follows from the configuration: masses from rotor inertias, the observers' gains from the sizes of a count
+//! and a bandwidth. What remains has no unit, or is one in cycles, and was searched on the eigenvalues of the exact one-cycle
+//! map of the default finger, never for a pose.
+
+use super::usable::{not_negative, positive};
+use crate::model::configuration::{ConfiguredController, Unusable};
+
+/// Frequencies are those of `rate`, and scale with the rate of the finger.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Numbers {
+    /// alpha: tension commanded for a tension error; the motors feel 1/alpha of their inertia.
+    pub inertia_gain: f64,
+    /// zeta of the spring.
+    pub damping_ratio: f64,
+    /// zeta of motors against links.
+    pub relative_damping: f64,
+    /// rad/s, of the observed disturbance.
+    pub disturbance_bandwidth: f64,
+    /// rad/s, of the observed links.
+    pub link_bandwidth: f64,
+    /// Cycles beyond the next sample that the law looks ahead.
+    pub ahead: f64,
+    /// Least frequency that is damped, rad/s.
+    pub least_frequency: f64,
+    /// s, of each pole of the reference.
+    pub reference_time: f64,
+    /// Amplitude of the dither over the joints' Coulomb friction, and its frequency, Hz. 50 Hz is near a mode of the fingers.
+    pub dither: f64,
+    pub dither_frequency: f64,
+}
+
+/// rad/s, damped however soft the finger.
+const LEAST_FREQUENCY: f64 = 4.0;
+
+/// alpha, zeta, relative zeta, disturbance and link bandwidth (rad/s), ahead, reference time (s).
+type Row = (f64, [f64; 7]);
+
+const TABLE: [Row; 3] = [
+    (500.0, [0.45, 0.4, 0.12, 40.0, 800.0, 0.0, 0.012]),
+    (1000.0, [4.0, 0.5, 0.8, 200.0, 2000.0, 0.3, 0.008]),
+    (2000.0, [4.0, 0.5, 0.8, 200.0, 2000.0, 0.3, 0.008]),
+];
+
+impl Numbers {
+    /// What is configured; the rest from the tabulated rate nearest to `rate` (by ratio).
+    pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
+        let apart = |row: &Row| (row.0 / rate).ln().abs();
+        let nearest = TABLE.iter().fold(&TABLE[0], |best, row| if apart(row) < apart(best) { row } else { best });
+        let [inertia_gain, damping_ratio, relative_damping, disturbance, link, ahead, reference_time] = nearest.1;
+        // A bandwidth is a number of radians in a cycle.
+        let scale = rate / nearest.0;
+        let numbers = Self {
+            inertia_gain: configured.inertia_gain.unwrap_or(inertia_gain),
+            damping_ratio: configured.damping_ratio.unwrap_or(damping_ratio),
+            relative_damping,
+            disturbance_bandwidth: disturbance * scale,
+            link_bandwidth: link * scale,
+            ahead,
+            least_frequency: LEAST_FREQUENCY,
+            reference_time: configured.set_point_time.unwrap_or(reference_time / scale.min(1.0)),
+            dither: configured.dither.unwrap_or(2.0),
+            dither_frequency: (80.0 * scale.min(1.0)).min(rate / 6.0),
+        };
+        positive("controller.inertia_gain", &[numbers.inertia_gain])?;
+        positive("controller.damping_ratio", &[numbers.damping_ratio])?;
+        positive("controller.set_point_time", &[numbers.reference_time])?;
+        not_negative("controller.dither", numbers.dither)?;
+        Ok(numbers)
+    }
+}
