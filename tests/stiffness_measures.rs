@@ -91,6 +91,9 @@ fn a_known_decay_shows_its_slowest_mode() {
         assert!((found - slowest).abs() < 2e-4, "{found} for {slowest}");
     }
     assert!(fits::growth(&[]).is_nan());
+    let mut lost = decay(&[(0.9, 0.1)], 100);
+    lost[50][3] = f64::NAN;
+    assert!(fits::growth(&lost).is_nan());
     assert!(fits::growth(&vec![DVector::zeros(3); 100]).is_nan());
 }
 

@@ -37,8 +37,7 @@ impl Residual {
     pub fn lasts(&self) -> bool {
         const NOISE: f64 = 0.005;
         const PERCEPTIBLE: f64 = 0.001;
-        // Written so that NaN lasts.
-        !(self.late < NOISE) || (self.late > PERCEPTIBLE && self.late > 1.5 * self.early)
+        self.late.is_nan() || self.late > NOISE || (self.late > PERCEPTIBLE && self.late > 1.5 * self.early)
     }
 }
 

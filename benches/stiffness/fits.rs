@@ -31,7 +31,7 @@ pub fn slope(points: &[(f64, f64)]) -> f64 {
     above / points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>()
 }
 
-/// Below this part of its largest value a channel is rounding.
+/// Below this part of the largest sample one is rounding.
 const ROUNDING: f64 = 1e-6;
 /// Samples that a recurrence is fitted to.
 const WINDOW: usize = 80;
@@ -40,19 +40,19 @@ const EXPLAINED: f64 = 1e-3;
 const LARGEST_ORDER: usize = 8;
 
 /// By which factor the slowest mode of a freely decaying (or growing) linear system changes from one sample to the next: its
-/// largest eigenvalue's modulus. `samples`: one vector of channels an instant, equally spaced.
+/// largest eigenvalue's modulus. `samples`: one vector of channels an instant, equally
+/// spaced, the channels in proportion to one another.
 ///
 /// After the fast modes have gone the last samples obey a short recurrence y[k] = a1 y[k-1] + ... + ap y[k-p], the same in
 /// every channel, and its roots are the eigenvalues left (Prony). The shortest one that explains them has no others.
 pub fn growth(samples: &[DVector<f64>]) -> f64 {
-    let Some(first) = samples.first() else { return f64::NAN };
-    let largest = samples.iter().fold(first.abs(), |largest, sample| largest.sup(&sample.abs()));
-    let scaled: Vec<DVector<f64>> = samples
-        .iter()
-        .map(|sample| sample.zip_map(&largest, |value, largest| if largest > 0.0 { value / largest } else { 0.0 }))
-        .collect();
-    let end = scaled.iter().rposition(|sample| sample.amax() > ROUNDING).map_or(0, |last| last + 1);
-    let window = &scaled[end.saturating_sub(WINDOW)..end];
+    if samples.iter().any(|sample| !sample.norm().is_finite()) {
+        return f64::NAN;
+    }
+    let largest = samples.iter().map(|sample| sample.norm()).fold(0.0, f64::max);
+    // What comes after the first sample that is lost in rounding is lost too.
+    let end = samples.iter().position(|sample| sample.norm() <= ROUNDING * largest).unwrap_or(samples.len());
+    let window = &samples[end.saturating_sub(WINDOW)..end];
     let mut found = f64::NAN;
     for order in 1..=LARGEST_ORDER.min(window.len().saturating_sub(2)) {
         let Some((coefficients, missed)) = recurrence(window, order) else { break };
@@ -72,12 +72,10 @@ fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f6
     for k in order..window.len() {
         // Every instant counts alike, however far the decay has gone.
         let weight = window[k - order..=k].iter().map(|sample| sample.norm()).fold(0.0, f64::max).recip();
-        for channel in 0..channels {
-            let row = (k - order) * channels + channel;
-            now[row] = window[k][channel] * weight;
-            for back in 0..order {
-                before[(row, back)] = window[k - 1 - back][channel] * weight;
-            }
+        let row = (k - order) * channels;
+        now.rows_mut(row, channels).copy_from(&(&window[k] * weight));
+        for back in 0..order {
+            before.view_mut((row, back), (channels, 1)).copy_from(&(&window[k - 1 - back] * weight));
         }
     }
     let coefficients = before.clone().svd(true, true).solve(&now, 1e-12).ok()?;

@@ -7,18 +7,16 @@ use crate::{fits, statics};
 use nalgebra::Matrix3;
 use sun2xp::model::configuration::ConfiguredFinger;
 
-/// Error of the apparent stiffness at Kx 3 and at the bound where the true finger is not what the controller believes. No friction,
-/// exact sensors: what is left is the belief's fault.
-pub fn believing_otherwise(case: &Case, differ: impl Fn(&mut ConfiguredFinger) + Sync) -> f64 {
+/// Error of the apparent stiffness where the true finger is not what the controller believes. No friction, exact sensors: what
+/// is left is the belief's fault.
+fn believing_otherwise(case: &Case, stiffness: f64, differ: impl Fn(&mut ConfiguredFinger) + Sync) -> f64 {
     worst(each(&case.poses(), |_, pose| {
-        worst([3.0, case.bound()].map(|stiffness| {
-            let kx = Matrix3::identity() * stiffness;
-            let belief = case.finger(pose, Friction::None);
-            let mut finger = belief.clone();
-            differ(&mut finger);
-            let (forces, deflections) = statics::pushed_about(case, &finger, &belief, pose, &kx, Senses::Exact);
-            fits::spring_error(&forces, &deflections, &kx)
-        }))
+        let kx = Matrix3::identity() * stiffness;
+        let belief = case.finger(pose, Friction::None);
+        let mut finger = belief.clone();
+        differ(&mut finger);
+        let (forces, deflections) = statics::pushed_about(case, &finger, &belief, pose, &kx, Senses::Exact);
+        fits::spring_error(&forces, &deflections, &kx)
     }))
 }
 
@@ -33,16 +31,18 @@ pub const CALIBRATED_TENDONS: [[f64; 4]; 4] =
     [[1.02; 4], [0.98; 4], [1.02, 0.98, 1.02, 0.98], [1.02, 0.98, 0.98, 1.02]];
 
 /// Worst error with motors that are off by each of these.
-pub fn motor_constants(case: &Case, ratios: &[[f64; 4]]) -> f64 {
+pub fn motor_constants(case: &Case, stiffness: f64, ratios: &[[f64; 4]]) -> f64 {
     worst(
-        ratios.iter().map(|ratio| believing_otherwise(case, |finger| finger.simulation.motor_constant_ratio = *ratio)),
+        ratios.iter().map(|ratio| {
+            believing_otherwise(case, stiffness, |finger| finger.simulation.motor_constant_ratio = *ratio)
+        }),
     )
 }
 
 /// Worst error with tendons that are off by each of these.
-pub fn tendon_stiffness(case: &Case, ratios: &[[f64; 4]]) -> f64 {
+pub fn tendon_stiffness(case: &Case, stiffness: f64, ratios: &[[f64; 4]]) -> f64 {
     worst(ratios.iter().map(|ratio| {
-        believing_otherwise(case, |finger| {
+        believing_otherwise(case, stiffness, |finger| {
             for (stiffness, ratio) in finger.simulation.tendon_stiffness.iter_mut().zip(ratio) {
                 *stiffness *= ratio;
             }
