@@ -132,7 +132,14 @@ impl StateFeedback {
                 stiffness: stiffness[index],
                 home: home[index],
             };
-            TendonObserver::new(tendon, &design, 1.0 / rate)
+            let too_far = || Unusable {
+                key: "tendon.stiffness",
+                reason: format!(
+                    "of {} N/m with {} kg of motor cannot be observed at {rate} Hz",
+                    tendon.stiffness, tendon.mass
+                ),
+            };
+            TendonObserver::new(tendon, &design, 1.0 / rate).ok_or_else(too_far)
         };
         let dynamics = LinkDynamics::new(finger.links(), finger.links.masses, finger.links.radii, Vector3::zeros());
         // The frequency of motors against links, for the inertia of a finger bent like at its homing pose.
@@ -144,7 +151,7 @@ impl StateFeedback {
         let frequency = (mean_stiffness / link_mass + alpha * mean_stiffness / mean_mass).sqrt();
         let relative_damping = 2.0 * numbers.relative_damping * mean_mass * frequency;
         Ok(Self {
-            observers: std::array::from_fn(observer),
+            observers: [observer(0)?, observer(1)?, observer(2)?, observer(3)?],
             joint_stiffness: JointStiffness::new(finger.links(), 0.0),
             dynamics,
             damping: DampingDesign {
