@@ -201,6 +201,19 @@ extern "C" {
 #define FINGER_FAULTED 2
 
 /*
+ FingerStatus.State: the motors are off, after a calibration that was refused (which
+ says why). Set points have no effect. Another calibration, or CloseHand and OpenHand,
+ make it a spring again.
+ */
+#define FINGER_LIMP 3
+
+/*
+ FingerStatus.State: ZeroFinger or IdentifyFinger moves the finger, or its tendons are
+ brought under tension. Set points have no effect.
+ */
+#define FINGER_CALIBRATING 4
+
+/*
  What GetStatus tells of a finger. Set Size = sizeof (struct FingerStatus) before the
  call: later versions add members at the end, and a program never gets more than it
  has room for.
@@ -211,7 +224,7 @@ struct FingerStatus {
      */
     unsigned int Size;
     /*
-     FINGER_RUNNING or FINGER_FAULTED.
+     FINGER_RUNNING, FINGER_FAULTED, FINGER_LIMP or FINGER_CALIBRATING.
      */
     int State;
     /*
@@ -261,6 +274,10 @@ struct FingerStatus {
      Damaged or foreign frames on the finger's port.
      */
     unsigned long DamagedFrames;
+    /*
+     The part of the calibration under way that is done, 0 to 1; 0 where there is none.
+     */
+    double Calibration;
 };
 
 /*
@@ -483,6 +500,64 @@ int GetStatus(int i,
               struct FingerStatus *Status);
 
 /*
+ ZeroFinger - find the zeros of a finger's gauges and encoders
+
+     int ZeroFinger(int i);
+
+   i        finger, 1 to 3
+
+ Lets the tendons out and reads the gauges, then finds the zero of the encoders as
+ finger.zeroing.method says: "pose" - the finger stands in the configured pose when the
+ call begins; "stops" - each joint is led slowly against both of its stops, for which
+ the finger needs room; "kept" - the configured zero stays, if the board says that its
+ counts are still good. What was found is in force at once, and is written into the
+ configuration file if OpenHand has read one: only the keys that changed, comments stay.
+ Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
+ free finger has moved, by up to some tenths of a radian.
+
+ Waits until it is done: seconds, up to a minute with "stops". Meanwhile GetStatus tells
+ the part that is done (FingerStatus.Calibration), other calls go on, and set points for
+ this finger have no effect.
+
+ Returns 0, or -1 with
+   ECANCELED  something stood in the way (a tendon is slack, a gauge dead, a joint meets
+              no stop or meets it early ...): the finger is limp, nothing was changed,
+              and HandError says what to do
+   ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
+   EBUSY      the finger is being calibrated already
+   ENODEV     no hand is open, or it was closed meanwhile
+   EINVAL     no such finger
+   EIO        the finger is faulted
+   EPERM      forked child
+   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
+              until CloseHand
+
+ Threads: any.
+
+     if (ZeroFinger(1) != 0) fprintf(stderr, "%s\n", HandError());
+ */
+int ZeroFinger(int i);
+
+/*
+ IdentifyFinger - measure friction and tendon stiffness of a finger
+
+     int IdentifyFinger(int i);
+
+   i        finger, 1 to 3; it must have been zeroed
+
+ Leads the finger to its lower stops, moves each joint to and fro, presses against the
+ stops with up to 0.6 of the largest tension, and returns to where it began. Finds the
+ stiffness of each tendon and the friction of motors, conduits and joints. What was
+ found is in force at once and is written into the configuration file, as by
+ ZeroFinger. Takes about a minute, and the room that the joints can reach.
+
+ Returns and waits as ZeroFinger.
+
+ Threads: any.
+ */
+int IdentifyFinger(int i);
+
+/*
  PushFinger - push the fingertip of a simulated finger
 
      int PushFinger(int i, const double *Force);
@@ -496,6 +571,7 @@ int GetStatus(int i,
    EFAULT   Force is null
    ENODEV   no hand is open
    EINVAL   no such finger; an entry is NaN or infinite
+   ERANGE   a component is beyond 1000 N
    ENOTSUP  the finger is on a real port
    EPERM    forked child
 

@@ -110,6 +110,11 @@ fn dlclose_leaves_the_hand() {
 }
 
 #[test]
+fn a_finger_is_zeroed() {
+    succeed(&strict(&[]), &["zero.c"]);
+}
+
+#[test]
 fn the_status_tells_of_the_servo() {
     succeed(&strict(&[]), &["status.c"]);
 }
@@ -309,6 +314,7 @@ fn the_library_exports_the_calls_and_nothing_else() {
         "GetStatus",
         "GetTip",
         "HandError",
+        "IdentifyFinger",
         "OpenHand",
         "PushFinger",
         "SendContact",
@@ -318,6 +324,7 @@ fn the_library_exports_the_calls_and_nothing_else() {
         "SendPos",
         "SendPosD",
         "SendTip",
+        "ZeroFinger",
     ];
     assert_eq!(exported, calls);
 }

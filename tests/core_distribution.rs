@@ -33,7 +33,7 @@ proptest! {
     ) {
         let tendons = tendons(ghost);
         let torque = Vector3::from(direction) * size;
-        let found = TensionDistribution::new(&tendons, MINIMUM, MAXIMUM).unwrap().distribute(&torque);
+        let found = TensionDistribution::new(&tendons, MINIMUM, Vector4::repeat(MAXIMUM)).unwrap().distribute(&torque);
         prop_assert!((tendons.r * found.tensions - torque * found.scale).amax() < 1e-9 * (1.0 + size));
         prop_assert!(found.tensions.min() >= MINIMUM);
         prop_assert!(found.tensions.max() <= MAXIMUM + 1e-9);
@@ -58,7 +58,7 @@ proptest! {
     fn tensions_are_the_least(direction in prop::array::uniform3(-1.0..1.0f64), more in 1e-6..10.0f64) {
         let tendons = tendons(None);
         let torque = Vector3::from(direction) * 20.0;
-        let tensions = TensionDistribution::new(&tendons, MINIMUM, MAXIMUM).unwrap().distribute(&torque).tensions;
+        let tensions = TensionDistribution::new(&tendons, MINIMUM, Vector4::repeat(MAXIMUM)).unwrap().distribute(&torque).tensions;
         let home = tendons.pretension(1.0);
         prop_assert!((tendons.r * home).amax() < 1e-12 && home.min() > 0.0);
         prop_assert!((tensions - home * more).min() < MINIMUM);
@@ -71,7 +71,7 @@ proptest! {
         direction in prop::array::uniform3(-60.0..60.0f64), ghost in prop::array::uniform4(0.2..3.0f64),
     ) {
         let torque = Vector3::from(direction);
-        let by = |ghost| TensionDistribution::new(&tendons(ghost), MINIMUM, MAXIMUM).unwrap().distribute(&torque);
+        let by = |ghost| TensionDistribution::new(&tendons(ghost), MINIMUM, Vector4::repeat(MAXIMUM)).unwrap().distribute(&torque);
         let (with, without) = (by(Some(ghost)), by(None));
         prop_assert!((with.tensions - without.tensions).amax() < 1e-9);
         prop_assert!((with.scale - without.scale).abs() < 1e-9);
@@ -138,8 +138,8 @@ fn printed_r_is_refused() {
 fn bounds_without_a_pretension_between_them_are_refused() {
     // R's null vector is (0.62, 1.09, 1.09, 0.62): t_max must exceed 1.758 t_min.
     let tendons = tendons(None);
-    assert!(TensionDistribution::new(&tendons, 5.0, 8.8).is_ok());
-    let refusal = TensionDistribution::new(&tendons, 5.0, 8.7).unwrap_err();
+    assert!(TensionDistribution::new(&tendons, 5.0, Vector4::repeat(8.8)).is_ok());
+    let refusal = TensionDistribution::new(&tendons, 5.0, Vector4::repeat(8.7)).unwrap_err();
     assert_eq!(refusal.key, "tendon.maximum");
     assert!(refusal.reason.contains("8.79"), "{}", refusal.reason);
 }

@@ -72,4 +72,8 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     }
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads while a finger is adjusted");
     assert!(cycles(2) > 500 && cycles(3) > 500, "all fingers ran");
+
+    // Nor while a finger is calibrated and its controller replaced.
+    hand.zero(2, |_| {}).expect("zeroed");
+    assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads, calibrating");
 }

@@ -33,7 +33,7 @@ impl Case {
         ConfiguredFinger::default().stiffness_bound(self.rate)
     }
 
-    /// A finger with this controller, at `pose`, that knows its own friction. Set points are not slowed down: steps are steps.
+    /// A finger with this controller, at `pose`, that knows its own friction as identification finds it. Set points are not slowed down: steps are steps.
     pub fn finger(&self, pose: &Vector3<f64>, friction: Friction) -> ConfiguredFinger {
         let mut finger = ConfiguredFinger::default();
         finger.controller.scheme = self.scheme;
@@ -45,9 +45,15 @@ impl Case {
                 finger.simulation.joint_coulomb_friction = [0.0; 3];
                 finger.simulation.motor_coulomb_friction = [0.0; 4];
                 finger.simulation.conduit_friction = 0.0;
+                finger.friction.motor_coulomb = [0.0; 4];
+                finger.friction.conduit = [0.0; 4];
+                finger.friction.joint_coulomb = [0.0; 3];
             }
             Friction::Default => {}
-            Friction::Harsh => finger.simulation.joint_coulomb_friction = [2e-3; 3],
+            Friction::Harsh => {
+                finger.simulation.joint_coulomb_friction = [2e-3; 3];
+                finger.friction.joint_coulomb = [0.2; 3];
+            }
         }
         finger
     }

@@ -146,6 +146,9 @@ impl<T: Transport> Link<T> {
             attempts = attempts.saturating_add(1);
             let Some(answer) = self.ask(asked, hello, deadline)? else { continue };
             match answer.frame {
+                Frame::Identity(Identity { version, .. }) if version != VERSION => {
+                    return Err(LinkError::WrongVersion { lowest: version, highest: version });
+                }
                 Frame::Identity(identity) if answer.address == address => return Ok(identity),
                 Frame::Identity(identity) if identity.addresses & 1 << address == 0 => {
                     return Err(LinkError::WrongAddress { address, addresses: identity.addresses });

@@ -7,6 +7,7 @@
 
 use crate::capi::default_hand;
 use crate::capi::refusal::{self, Refusal, guarded};
+use crate::control::calibration::Task;
 use crate::finger::Stage;
 use crate::hand;
 use std::ffi::{c_char, c_int, c_uint, c_ulong};
@@ -20,6 +21,15 @@ pub const FINGER_RUNNING: c_int = 1;
 /// and OpenHand start again.
 pub const FINGER_FAULTED: c_int = 2;
 
+/// FingerStatus.State: the motors are off, after a calibration that was refused (which
+/// says why). Set points have no effect. Another calibration, or CloseHand and OpenHand,
+/// make it a spring again.
+pub const FINGER_LIMP: c_int = 3;
+
+/// FingerStatus.State: ZeroFinger or IdentifyFinger moves the finger, or its tendons are
+/// brought under tension. Set points have no effect.
+pub const FINGER_CALIBRATING: c_int = 4;
+
 /// What GetStatus tells of a finger. Set Size = sizeof (struct FingerStatus) before the
 /// call: later versions add members at the end, and a program never gets more than it
 /// has room for.
@@ -28,7 +38,7 @@ pub const FINGER_FAULTED: c_int = 2;
 pub struct FingerStatus {
     /// In: bytes of room, sizeof *Status. Out: bytes that were filled, never more.
     pub Size: c_uint,
-    /// FINGER_RUNNING or FINGER_FAULTED.
+    /// FINGER_RUNNING, FINGER_FAULTED, FINGER_LIMP or FINGER_CALIBRATING.
     pub State: c_int,
     /// 1: the servo thread runs under SCHED_FIFO. 0: it does not, and shares its core with
     /// everybody.
@@ -55,6 +65,8 @@ pub struct FingerStatus {
     pub LostReplies: c_ulong,
     /// Damaged or foreign frames on the finger's port.
     pub DamagedFrames: c_ulong,
+    /// The part of the calibration under way that is done, 0 to 1; 0 where there is none.
+    pub Calibration: f64,
 }
 
 /// OpenHand - start the hand
@@ -282,6 +294,66 @@ pub unsafe extern "C" fn GetStatus(i: c_int, Status: *mut FingerStatus) -> c_int
     })
 }
 
+/// ZeroFinger - find the zeros of a finger's gauges and encoders
+///
+///     int ZeroFinger(int i);
+///
+///   i        finger, 1 to 3
+///
+/// Lets the tendons out and reads the gauges, then finds the zero of the encoders as
+/// finger.zeroing.method says: "pose" - the finger stands in the configured pose when the
+/// call begins; "stops" - each joint is led slowly against both of its stops, for which
+/// the finger needs room; "kept" - the configured zero stays, if the board says that its
+/// counts are still good. What was found is in force at once, and is written into the
+/// configuration file if OpenHand has read one: only the keys that changed, comments stay.
+/// Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
+/// free finger has moved, by up to some tenths of a radian.
+///
+/// Waits until it is done: seconds, up to a minute with "stops". Meanwhile GetStatus tells
+/// the part that is done (FingerStatus.Calibration), other calls go on, and set points for
+/// this finger have no effect.
+///
+/// Returns 0, or -1 with
+///   ECANCELED  something stood in the way (a tendon is slack, a gauge dead, a joint meets
+///              no stop or meets it early ...): the finger is limp, nothing was changed,
+///              and HandError says what to do
+///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
+///   EBUSY      the finger is being calibrated already
+///   ENODEV     no hand is open, or it was closed meanwhile
+///   EINVAL     no such finger
+///   EIO        the finger is faulted
+///   EPERM      forked child
+///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
+///              until CloseHand
+///
+/// Threads: any.
+///
+///     if (ZeroFinger(1) != 0) fprintf(stderr, "%s\n", HandError());
+#[unsafe(no_mangle)]
+pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
+    guarded("ZeroFinger", || default_hand::calibrate(i, Task::Zero))
+}
+
+/// IdentifyFinger - measure friction and tendon stiffness of a finger
+///
+///     int IdentifyFinger(int i);
+///
+///   i        finger, 1 to 3; it must have been zeroed
+///
+/// Leads the finger to its lower stops, moves each joint to and fro, presses against the
+/// stops with up to 0.6 of the largest tension, and returns to where it began. Finds the
+/// stiffness of each tendon and the friction of motors, conduits and joints. What was
+/// found is in force at once and is written into the configuration file, as by
+/// ZeroFinger. Takes about a minute, and the room that the joints can reach.
+///
+/// Returns and waits as ZeroFinger.
+///
+/// Threads: any.
+#[unsafe(no_mangle)]
+pub extern "C" fn IdentifyFinger(i: c_int) -> c_int {
+    guarded("IdentifyFinger", || default_hand::calibrate(i, Task::Identify))
+}
+
 /// PushFinger - push the fingertip of a simulated finger
 ///
 ///     int PushFinger(int i, const double *Force);
@@ -295,6 +367,7 @@ pub unsafe extern "C" fn GetStatus(i: c_int, Status: *mut FingerStatus) -> c_int
 ///   EFAULT   Force is null
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; an entry is NaN or infinite
+///   ERANGE   a component is beyond 1000 N
 ///   ENOTSUP  the finger is on a real port
 ///   EPERM    forked child
 ///
@@ -317,7 +390,12 @@ fn told(status: &hand::FingerStatus, filled: usize) -> FingerStatus {
     let count = |count: u64| c_ulong::try_from(count).unwrap_or(c_ulong::MAX);
     FingerStatus {
         Size: filled as c_uint,
-        State: if matches!(status.stage, Stage::Faulted(_)) { FINGER_FAULTED } else { FINGER_RUNNING },
+        State: match status.stage {
+            Stage::Faulted(_) => FINGER_FAULTED,
+            Stage::Limp => FINGER_LIMP,
+            Stage::Calibrating | Stage::Opening => FINGER_CALIBRATING,
+            Stage::Running | Stage::Closing | Stage::Closed => FINGER_RUNNING,
+        },
         Realtime: status.realtime.into(),
         Rate: status.rate,
         MeasuredRate: status.measured_rate,
@@ -329,6 +407,7 @@ fn told(status: &hand::FingerStatus, filled: usize) -> FingerStatus {
         LateCycles: count(status.skipped_periods),
         LostReplies: count(status.lost_replies),
         DamagedFrames: count(status.damaged_frames),
+        Calibration: status.calibration,
     }
 }
 

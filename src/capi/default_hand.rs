@@ -2,8 +2,10 @@
 
 use crate::capi::process;
 use crate::capi::refusal::{self, Refusal};
-use crate::hand::{Hand, HandError};
+use crate::control::calibration::Task;
+use crate::hand::{self, Calibrating, Hand, HandError, Standing};
 use parking_lot::{Mutex, RwLock};
+use std::thread::sleep;
 use std::time::Duration;
 
 /// Locked while a hand is being opened or closed, which takes long; the calls to a finger never wait for it.
@@ -16,14 +18,21 @@ static HAND: RwLock<Option<Hand>> = RwLock::new(None);
 /// signal handler that calls exit: then it would wait for ever.
 const PATIENCE_AT_EXIT: Duration = Duration::from_millis(100);
 
+/// How long exit waits for the fingers to reach their end state: longer than any configured ramp.
+const LONGEST_END: Duration = Duration::from_secs(6);
+
+/// How often a calibration is looked at.
+const LOOKING: Duration = Duration::from_millis(5);
+
 pub(super) fn open() -> Result<(), Refusal> {
     let Some(_opening) = LIFE.try_lock() else { return Err(Refusal::Busy) };
     if HAND.read().is_some() {
         return Err(Refusal::AlreadyOpen);
     }
     process::watch();
-    let hand = Hand::open_configured()?;
-    refusal::set_printing(hand.print_refusals());
+    let configured = hand::configured()?;
+    refusal::set_printing(configured.0.hand.print_refusals);
+    let hand = Hand::open_as(configured)?;
     *HAND.write() = Some(hand);
     Ok(())
 }
@@ -38,7 +47,12 @@ pub(super) fn close() -> Result<(), Refusal> {
 
 pub(super) fn close_at_exit() {
     let Some(_closing) = LIFE.try_lock_for(PATIENCE_AT_EXIT) else { return };
-    drop(HAND.try_write_for(PATIENCE_AT_EXIT).and_then(|mut hand| hand.take()));
+    // Ended and not closed: a signal handler may have called exit in the middle of malloc, and then freeing would wait for ever.
+    if let Some(hand) = HAND.try_read_for(PATIENCE_AT_EXIT)
+        && let Some(hand) = &*hand
+    {
+        hand.end(LONGEST_END);
+    }
 }
 
 /// Runs `call` on the open hand.
@@ -46,4 +60,15 @@ pub(super) fn with<T>(call: impl FnOnce(&Hand) -> Result<T, HandError>) -> Resul
     let hand = HAND.read();
     let hand = hand.as_ref().ok_or(Refusal::NoHand)?;
     Ok(call(hand)?)
+}
+
+/// Calibrates a finger of the open hand and stores what was found. The hand is looked at from time to time and not kept from
+/// being closed, nor other calls from being made.
+pub(super) fn calibrate(finger: i32, task: Task) -> Result<(), Refusal> {
+    let mut calibrating = with(|hand| Calibrating::begin(hand, finger, task))?;
+    while let Standing::Going(_) = with(|hand| calibrating.poll(hand))? {
+        sleep(LOOKING);
+    }
+    with(|hand| hand.store_calibration())?;
+    Ok(())
 }

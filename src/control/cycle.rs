@@ -46,6 +46,8 @@ pub struct Controller {
     distribution: TensionDistribution,
     tendons: TendonController,
     motor_torque: MotorTorque,
+    /// K_delta at the tendon, N s/m.
+    motor_damping: f64,
     state_feedback: Option<StateFeedback>,
     admissible: AdmissibleStiffness,
     soft_limits: SoftLimits,
@@ -90,6 +92,8 @@ enum Doing {
     /// With the spring's anchor on its way to the set point, rad.
     Following(Vector3<f64>),
     Releasing(Release),
+    Tensing,
+    PullingFreely,
 }
 
 impl Controller {
@@ -105,6 +109,8 @@ impl Controller {
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
         let gains = Gains::new(&finger.controller, rate)?;
         let motor_torque = MotorTorque::new(finger, &tendons)?;
+        // A tendon is pulled no harder than its motor can: clamping there would turn the joint torque.
+        let strongest = motor_torque.limit.map(|limit| limit.min(finger.tendon.maximum));
         let state_feedback = match finger.controller.scheme {
             Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
             Scheme::Figure9 | Scheme::Figure10 => None,
@@ -124,9 +130,10 @@ impl Controller {
             joint_positions: JointPositions::new(finger, &tendons)?,
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
-            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, finger.tendon.maximum)?,
+            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, strongest)?,
             tendons: TendonController::new(finger.controller.scheme, &gains, rate, motor_torque.limit),
             motor_torque,
+            motor_damping: gains.motor_damping,
             state_feedback,
             radius: tendons.radius * 0.01,
             tight: TIGHT * finger.tendon.minimum,
@@ -212,7 +219,10 @@ impl Controller {
                 let set_point = self.carried(state, set_point);
                 self.follow(state, set_point);
             }
-            Activity::TakeUpSlack | Activity::Follow(_) => {}
+            Activity::Tense(desired) if feedback.is_some() => self.tense(state, desired),
+            Activity::Pull(pulls) if feedback.is_some() => self.pull_freely(state, pulls),
+            Activity::Turn(torques) => self.turn(state, torques),
+            Activity::TakeUpSlack | Activity::Follow(_) | Activity::Tense(_) | Activity::Pull(_) => {}
         }
         if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
             law.commanded(elastic, &state.pulls, &state.against_friction);
@@ -315,13 +325,50 @@ impl Controller {
     /// Joint torques to pulls: R^-1 and the tendon controller.
     fn pull(&self, state: &mut State, joint_torques: Vector3<f64>, slack: [bool; 4], begins: bool) {
         let Distribution { tensions: desired, scale } = self.distribution.distribute(&joint_torques);
+        self.bring(state, desired, slack, begins);
+        state.report.joint_torques = joint_torques;
+        state.report.torque_scale = scale;
+    }
+
+    /// Tensions as they are asked for.
+    fn tense(&self, state: &mut State, desired: Vector4<f64>) {
+        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
+        let begins = !matches!(state.doing, Doing::Tensing);
+        state.doing = Doing::Tensing;
+        self.bring(state, desired, slack, begins);
+        state.report.joint_torques = Vector3::zeros();
+        state.report.torque_scale = 1.0;
+    }
+
+    /// Pulls without tension feedback.
+    fn pull_freely(&self, state: &mut State, pulls: Vector4<f64>) {
+        let speed = state.motor_speeds.component_mul(&self.radius);
+        self.pull_with(state, pulls - speed * self.motor_damping);
+    }
+
+    /// Motor torques without any feedback.
+    fn turn(&self, state: &mut State, torques: Vector4<f64>) {
+        self.pull_with(state, self.motor_torque.pulls(&torques));
+    }
+
+    fn pull_with(&self, state: &mut State, pulls: Vector4<f64>) {
+        let limit = &self.motor_torque.limit;
+        state.pulls = pulls.zip_map(limit, |pull, limit| pull.clamp(-limit, limit));
+        state.doing = Doing::PullingFreely;
+        // Whatever follows begins anew.
+        state.tendons = TendonState::default();
+        state.report.joint_torques = Vector3::zeros();
+        state.report.desired_tensions = state.pulls;
+        state.report.torque_scale = 1.0;
+    }
+
+    /// Desired tensions to pulls: the tendon controller.
+    fn bring(&self, state: &mut State, desired: Vector4<f64>, slack: [bool; 4], begins: bool) {
         let measured = state.report.tensions;
         let speed = state.motor_speeds.component_mul(&self.radius);
         let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
         self.give(state, &asked, begins);
-        state.report.joint_torques = joint_torques;
         state.report.desired_tensions = desired;
-        state.report.torque_scale = scale;
     }
 
     /// Pulls to the motors: without a jump where something begins, and within their limits.

@@ -4,6 +4,7 @@
 //! One file is one box of Figure 9 (or of Figure 10), or one part of the state feedback that can stand in their place; [`Controller::cycle`] connects them.
 
 mod admissible_stiffness;
+pub mod calibration;
 mod cycle;
 mod damping_design;
 mod dither;

@@ -29,4 +29,9 @@ impl MotorTorque {
     pub fn torques(&self, pulls: &Vector4<f64>) -> Vector4<f64> {
         pulls.component_mul(&self.signed_radius)
     }
+
+    /// The other way round: N at the tendon.
+    pub fn pulls(&self, torques: &Vector4<f64>) -> Vector4<f64> {
+        torques.component_div(&self.signed_radius)
+    }
 }

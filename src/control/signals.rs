@@ -55,6 +55,12 @@ pub enum Activity {
         /// Length of the ramp, s.
         ramp: f64,
     },
+    /// Every tendon is brought to a tension of its own, N, from whatever slack there is. For calibration.
+    Tense(Vector4<f64>),
+    /// Every motor pulls so much at its tendon, N, against its damper only; negative lets out. For calibration.
+    Pull(Vector4<f64>),
+    /// Every motor gets this torque, N cm, as the board takes it: no sign, no feedback. For calibration.
+    Turn(Vector4<f64>),
 }
 
 /// What the motors shall do.

@@ -30,15 +30,18 @@ pub struct TensionDistribution {
 }
 
 impl TensionDistribution {
-    /// Bounds in N. Refused unless there are tensions within them that leave the joints without torque.
-    pub fn new(tendons: &Tendons, minimum: f64, maximum: f64) -> Result<Self, Unusable> {
+    /// Bounds in N: `minimum` of all tendons, `maximum` of each, by its own strength and its motor's. Refused unless there are tensions within them that leave the joints without torque.
+    pub fn new(tendons: &Tendons, minimum: f64, maximum: Vector4<f64>) -> Result<Self, Unusable> {
         super::usable::positive("tendon.minimum", &[minimum])?;
-        super::usable::positive("tendon.maximum", &[maximum])?;
-        let largest = tendons.pretension(minimum).max();
-        if maximum <= largest {
+        super::usable::positive("tendon.maximum", maximum.as_slice())?;
+        let at_rest = tendons.pretension(minimum);
+        if let Some(tendon) = (0..4).find(|&tendon| maximum[tendon] <= at_rest[tendon]) {
             let reason = format!(
-                "is {maximum} N, but with no tendon under {minimum} N a finger without joint torque already has one at \
-                 {largest:.2} N: raise tendon.maximum or lower tendon.minimum"
+                "allows tendon {} {:.2} N, but with no tendon under {minimum} N a finger without joint torque already has \
+                 {:.2} N there: raise tendon.maximum or motor.torque_limit, or lower tendon.minimum",
+                tendon + 1,
+                maximum[tendon],
+                at_rest[tendon]
             );
             return Err(Unusable { key: "tendon.maximum", reason });
         }
@@ -49,7 +52,7 @@ impl TensionDistribution {
             ghost,
             inverse_ghost: ghost.map(f64::recip),
             ratio,
-            headroom: ratio.map(|ratio| maximum - minimum * ratio),
+            headroom: Matrix4::from_fn(|i, j| maximum[i] - minimum * ratio[(i, j)]),
             minimum,
         })
     }

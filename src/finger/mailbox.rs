@@ -4,6 +4,7 @@
 //! inheritance), and a channel is not lock-free when a real-time thread shares a core with a preempted sender. The planners'
 //! own side is locked among themselves only.
 
+use crate::control::calibration::{Calibration, Verdict};
 use crate::control::{Controller, Report, SetPoint};
 use crate::finger::Fault;
 use nalgebra::Vector3;
@@ -18,6 +19,10 @@ pub enum Stage {
     /// Tendons are brought under tension.
     #[default]
     Opening,
+    /// The motors are off: opened that way, or after a calibration.
+    Limp,
+    /// A calibration moves the finger.
+    Calibrating,
     /// The fingertip is a spring.
     Running,
     /// On the way to the configured end state.
@@ -26,6 +31,23 @@ pub enum Stage {
     Closed,
     /// Stopped by itself.
     Faulted(Fault),
+}
+
+/// What a finger is asked for besides set points. Plain values: the servo neither allocates nor frees.
+#[allow(clippy::large_enum_variant)]
+#[derive(Clone, Debug)]
+pub enum Order {
+    /// Nothing, as in the beginning.
+    Nothing,
+    /// To be calibrated; the finger is limp afterwards, whatever comes of it.
+    Calibrate(Calibration),
+    /// To be controlled by another controller from now on.
+    Adopt {
+        /// The controller.
+        controller: Controller,
+        /// With the motors off; else slack is taken up, as after open.
+        limp: bool,
+    },
 }
 
 /// What a servo tells of its finger, each cycle.
@@ -37,6 +59,10 @@ pub struct FingerReport {
     pub set_point: SetPoint,
     /// What the last cycle found and decided.
     pub cycle: Report,
+    /// How many orders have been taken.
+    pub orders: u32,
+    /// What became of the last calibration, if there was one.
+    pub calibration: Option<Verdict>,
     /// Cycles since open.
     pub cycles: u64,
     /// Cycles without a valid reply.
@@ -73,6 +99,8 @@ struct PlannersEnd {
     sent: SetPoint,
     set_points: Input<SetPoint>,
     adjustments: Input<Adjustable>,
+    orders: Input<Order>,
+    ordered: u32,
     reports: Output<FingerReport>,
 }
 
@@ -80,6 +108,7 @@ struct PlannersEnd {
 pub(super) struct ServoEnd {
     set_points: Output<SetPoint>,
     adjustments: Output<Adjustable>,
+    orders: Output<Order>,
     reports: Input<FingerReport>,
     closing: Arc<AtomicBool>,
 }
@@ -89,16 +118,20 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
     let (set_points_in, set_points_out) = triple_buffer(&report.set_point);
     let (adjustments_in, adjustments_out) = triple_buffer(adjustable);
     let (reports_in, reports_out) = triple_buffer(&report);
+    let (orders_in, orders_out) = triple_buffer(&Order::Nothing);
     let closing = Arc::new(AtomicBool::new(false));
     let planners = PlannersEnd {
         sent: report.set_point,
         set_points: set_points_in,
         adjustments: adjustments_in,
+        orders: orders_in,
+        ordered: 0,
         reports: reports_out,
     };
     let servo = ServoEnd {
         set_points: set_points_out,
         adjustments: adjustments_out,
+        orders: orders_out,
         reports: reports_in,
         closing: closing.clone(),
     };
@@ -144,6 +177,24 @@ impl Mailbox {
         Ok(())
     }
 
+    /// Gives an order and its number, which is that of [`FingerReport::orders`] as soon as it is taken; none while another
+    /// order is being carried out.
+    ///
+    /// # Errors
+    /// The fault; nothing is ordered then.
+    pub fn order(&self, order: Order) -> Result<Option<u32>, Fault> {
+        let mut planners = self.planners.lock();
+        let report = *planners.reports.read();
+        match report.stage {
+            Stage::Faulted(fault) => return Err(fault),
+            Stage::Running | Stage::Limp if report.orders == planners.ordered => {}
+            _ => return Ok(None),
+        }
+        planners.ordered += 1;
+        planners.orders.write(order);
+        Ok(Some(planners.ordered))
+    }
+
     /// Takes over the set point that the servo has found for itself at open, as what the next change starts from.
     pub fn adopt(&self) {
         let mut planners = self.planners.lock();
@@ -165,6 +216,11 @@ impl ServoEnd {
     /// What the servo shall compute with, if a planner has changed it since the last call.
     pub fn new_adjustable(&mut self) -> Option<&Adjustable> {
         self.adjustments.update().then(|| self.adjustments.output_buffer())
+    }
+
+    /// The order, if a planner has given one since the last call.
+    pub fn new_order(&mut self) -> Option<Order> {
+        self.orders.update().then(|| self.orders.output_buffer().clone())
     }
 
     /// Whether the finger shall be brought to its end state.

@@ -6,6 +6,6 @@ mod servo;
 mod single;
 
 pub use fault::Fault;
-pub use mailbox::{Adjustable, FingerReport, Mailbox, Stage};
+pub use mailbox::{Adjustable, FingerReport, Mailbox, Order, Stage};
 pub use servo::{ServedPort, Servo};
 pub use single::FingerServo;

@@ -2,12 +2,13 @@
 
 use crate::board::protocol::{Command as BoardCommand, Configured, Identity, Status};
 use crate::board::{OutgoingCommand, Received};
+use crate::control::calibration::{Calibration, Sample, Verdict};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
-use crate::finger::mailbox::{Adjustable, Mailbox, ServoEnd, mailbox};
+use crate::finger::mailbox::{Adjustable, Mailbox, Order, ServoEnd, mailbox};
 use crate::finger::{Fault, FingerReport, Stage};
 use crate::model::configuration::{Configuration, EndState, Unusable};
 use crate::realtime::{self, CycleTiming};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector4};
 use rtrb::Producer;
 
 /// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
@@ -20,6 +21,9 @@ const SIMULATION_PATIENCE_MS: f64 = 1000.0;
 /// nobody watches winds a tendon up, or off its motor, within some ms, and the watchdog does not see it, as commands go on.
 const BLIND_MS: f64 = 10.0;
 
+/// At slow rates so many lost replies in a row are let pass all the same.
+const LEAST_BLIND: u32 = 3;
+
 /// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
 const BEYOND_LIMITS: f64 = 0.5;
 
@@ -31,6 +35,9 @@ pub struct FingerServo {
     adjustable: Adjustable,
     state: State,
     activity: Activity,
+    calibration: Option<Calibration>,
+    /// Whether the board says that its encoder counts are still good.
+    zero_valid: bool,
     feedback: Feedback,
     command: Command,
     mailbox: ServoEnd,
@@ -106,6 +113,8 @@ impl FingerServo {
             stage: Stage::Opening,
             set_point: initial,
             cycle: Default::default(),
+            orders: 0,
+            calibration: None,
             cycles: 0,
             lost_replies: 0,
             skipped_periods: 0,
@@ -118,6 +127,8 @@ impl FingerServo {
             adjustable,
             state,
             activity: Activity::TakeUpSlack,
+            calibration: None,
+            zero_valid: configured.status.has(Status::ZERO_VALID),
             feedback,
             command: Command::default(),
             mailbox: servo,
@@ -133,7 +144,7 @@ impl FingerServo {
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
                 lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
-                blind: cycles(BLIND_MS),
+                blind: cycles(BLIND_MS).max(LEAST_BLIND),
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
@@ -145,6 +156,12 @@ impl FingerServo {
             end_state: hand.end_state,
         };
         Ok((this, planners))
+    }
+
+    /// The same finger with its motors off until it is told to take up slack.
+    pub fn limp(mut self) -> Self {
+        self.go_limp();
+        self
     }
 
     /// The address of the finger on its port.
@@ -197,6 +214,7 @@ impl FingerServo {
         let reply = &received.reply;
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
+        self.zero_valid = reply.status.has(Status::ZERO_VALID);
         if reply.status.has(Status::WATCHDOG_TRIPPED) {
             self.fault(Fault::WatchdogTripped);
         } else if reply.status.has(Status::FAULTS | Status::ENDED) {
@@ -220,6 +238,7 @@ impl FingerServo {
             self.take_commands();
             let new = self.mailbox.new_adjustable();
             let previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
+            self.calibrate();
             let feedback = self.answered.then_some(&self.feedback);
             let controller = &self.adjustable.controller;
             (self.command, self.report.cycle) = match &previous {
@@ -274,6 +293,10 @@ impl FingerServo {
 
     fn count_replies(&mut self) {
         if self.answered {
+            if self.lost_in_a_row >= self.limits.blind {
+                // The motors were let go: begin with what the tendons pull now, and not with what was commanded then.
+                self.state = self.adjustable.controller.start(&self.feedback);
+            }
             self.lost_in_a_row = 0;
             return;
         }
@@ -287,6 +310,10 @@ impl FingerServo {
     }
 
     fn take_commands(&mut self) {
+        if let Some(order) = self.mailbox.new_order() {
+            self.report.orders += 1;
+            self.carry_out(order);
+        }
         if let Some(set_point) = self.mailbox.new_set_point()
             && let Activity::Follow(_) = self.activity
         {
@@ -295,6 +322,7 @@ impl FingerServo {
         }
         if self.mailbox.closing() && self.report.stage != Stage::Closing {
             self.enter(Stage::Closing);
+            self.calibration = None;
             if self.end_state == EndState::Hold {
                 self.enter(Stage::Closed);
             } else {
@@ -304,12 +332,56 @@ impl FingerServo {
         }
     }
 
+    fn carry_out(&mut self, order: Order) {
+        match order {
+            Order::Nothing => {}
+            Order::Calibrate(calibration) => {
+                self.calibration = Some(calibration);
+                self.report.calibration = None;
+                self.enter(Stage::Calibrating);
+            }
+            Order::Adopt { controller, limp } => {
+                self.adjustable.controller = controller;
+                self.state = self.adjustable.controller.start(&self.feedback);
+                if limp {
+                    self.go_limp();
+                } else {
+                    self.activity = Activity::TakeUpSlack;
+                    self.settled_cycles = 0;
+                    self.enter(Stage::Opening);
+                }
+            }
+        }
+    }
+
+    /// One step of the calibration, if there is one: it decides what the finger does.
+    fn calibrate(&mut self) {
+        let Some(calibration) = &mut self.calibration else { return };
+        if !self.answered {
+            return;
+        }
+        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid: self.zero_valid };
+        let (activity, verdict) = calibration.cycle(&sample);
+        self.activity = activity;
+        self.report.calibration = Some(verdict);
+        if !matches!(verdict, Verdict::Going(_)) {
+            self.calibration = None;
+            self.go_limp();
+        }
+    }
+
+    fn go_limp(&mut self) {
+        self.activity = Activity::Turn(Vector4::zeros());
+        self.enter(Stage::Limp);
+    }
+
     /// Decides what the finger does next by what the cycle has found.
     fn move_on(&mut self) {
         self.stage_cycles += 1;
         match self.report.stage {
             Stage::Opening if self.report.cycle.under_tension => {
-                self.settled_cycles += 1;
+                // Without a reply it says what was, not what is.
+                self.settled_cycles += u32::from(self.answered);
                 if self.settled_cycles >= self.limits.settled {
                     self.check_pose();
                     if !self.under_control() {

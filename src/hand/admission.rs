@@ -3,7 +3,7 @@
 use crate::control::InverseKinematics;
 use crate::hand::HandError;
 use crate::model::configuration::{Law, OutOfRange};
-use crate::model::{Contact, Links};
+use crate::model::{Contact, Links, symmetrised};
 use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};
 
 /// Kx may be asymmetric, or have a negative eigenvalue, by so much of its largest entry or eigenvalue: the rounding of a
@@ -63,9 +63,7 @@ impl Admission {
                 return Err(HandError::NotSymmetric { finger: self.finger, row, column, difference });
             }
         }
-        // Halved before they are added: the sum of two finite entries may be infinite, and its eigenvalues NaN, which no
-        // comparison below would stop.
-        let symmetric = asked * 0.5 + asked.transpose() * 0.5;
+        let symmetric = symmetrised(&asked);
         let mut eigen = symmetric.symmetric_eigen();
         let (smallest, largest) = (eigen.eigenvalues.min(), eigen.eigenvalues.max());
         // An eigenvalue may be infinite where no entry is.
@@ -131,6 +129,7 @@ impl Admission {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn admission(out_of_range: OutOfRange) -> Admission {
         let joint_limits = (Vector3::new(-1.0, -0.5, 0.1), Vector3::new(1.0, 1.7, 2.0));
@@ -234,5 +233,22 @@ mod tests {
         assert!(sent > refuse.joint_limits.1[2], "the case must be one of rounding up");
         assert_eq!(refuse.joints([0.0, 0.0, sent]).expect("admitted")[2], refuse.joint_limits.1[2]);
         assert!(matches!(refuse.joints([0.0, 0.0, sent + 1e-3]), Err(HandError::BeyondJointLimit { joint: 2, .. })));
+    }
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..Default::default() })]
+
+        #[test]
+        fn whatever_is_asked_what_is_admitted_is_a_spring_within_the_bound(
+            mantissas in prop::array::uniform6(-1.0f64..1.0), exponents in prop::array::uniform6(-320i32..308),
+        ) {
+            let [a, b, c, d, e, f] = std::array::from_fn(|i| mantissas[i] * 10f64.powi(exponents[i]));
+            for out_of_range in [OutOfRange::Clamp, OutOfRange::Refuse] {
+                let Ok(kx) = admission(out_of_range).stiffness([[a, b, c], [b, d, e], [c, e, f]]) else { continue };
+                prop_assert_eq!(kx, kx.transpose());
+                let eigenvalues = kx.symmetric_eigenvalues();
+                let within = |&value: &f64| (-1e-9..=6.0 * (1.0 + 1e-6)).contains(&value);
+                prop_assert!(eigenvalues.iter().all(within), "{kx}{eigenvalues}");
+            }
+        }
     }
 }

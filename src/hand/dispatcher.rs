@@ -64,6 +64,11 @@ impl Dispatcher {
         Ok(())
     }
 
+    /// In a forked child, which has no such thread.
+    pub fn forget_collector(&mut self) {
+        self.collector.take().map(std::mem::forget);
+    }
+
     /// theta_d, rad.
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
         self.send(finger, |admission| {

@@ -2,6 +2,7 @@
 
 use crate::board::LinkError;
 use crate::control::OutOfReach;
+use crate::control::calibration::Obstacle;
 use crate::finger::Fault;
 use crate::model::configuration::Unusable;
 use crate::model::{ContactError, Refusal};
@@ -187,6 +188,40 @@ pub enum HandError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A calibration gave up.
+    #[error("finger {finger} is limp, and its calibration as it was: {obstacle}")]
+    Calibration {
+        /// 1 to 3.
+        finger: i32,
+        /// What stood in the way.
+        obstacle: Obstacle,
+    },
+    /// A finger that is doing something else.
+    #[error("finger {0} is being opened, calibrated or closed: wait until that is done")]
+    Busy(i32),
+    /// A servo that takes no order.
+    #[error("finger {0} takes no orders: its hand was closed or opened anew, or its servo does not run")]
+    NoAnswer(i32),
+    /// A calibration that cannot be written.
+    #[error("cannot store the calibration in {}: {source}. It is in force until the hand is closed", path.display())]
+    Store {
+        /// The configuration file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A push beyond what any finger bears.
+    #[error(
+        "a force of {force:.3e} N on finger {finger} is beyond the {strongest} N that a simulated finger is pushed with at most"
+    )]
+    TooMuchForce {
+        /// 1 to 3.
+        finger: i32,
+        /// The largest component, N.
+        force: f64,
+        /// The bound, N.
+        strongest: f64,
+    },
     /// Pushing a finger that is not simulated.
     #[error("finger {0} is on a real port: only a finger with `port = \"simulated\"` can be pushed by a call")]
     NotSimulated(i32),
@@ -199,7 +234,7 @@ impl HandError {
             Self::NoSuchFinger(_) | Self::NotFinite { .. } => libc::EINVAL,
             Self::Configuration { .. } | Self::Unusable { .. } => libc::EINVAL,
             Self::NoSuchContact(_) | Self::Adjustment { .. } => libc::EINVAL,
-            Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
+            Self::TooMuchForce { .. } | Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
             Self::OutOfReach { .. } | Self::Damping { .. } => libc::ERANGE,
             Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
             Self::Contact { .. } => libc::EDOM,
@@ -210,6 +245,10 @@ impl HandError {
             Self::ConfigurationFile { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
             Self::System { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
             Self::Link { source, .. } => source.errno(),
+            Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } | Self::NoAnswer(_) => libc::ETIMEDOUT,
+            Self::Calibration { .. } => libc::ECANCELED,
+            Self::Busy(_) => libc::EBUSY,
+            Self::Store { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
             Self::NotSimulated(_) => libc::ENOTSUP,
         }
     }

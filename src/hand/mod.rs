@@ -3,6 +3,9 @@
 
 mod adjustment;
 mod admission;
+mod announcement;
+mod calibrating;
+mod calibration_file;
 mod configuration_file;
 mod dispatcher;
 mod error;
@@ -10,6 +13,7 @@ mod fingertip;
 mod opening;
 mod root;
 
+pub use calibrating::{Calibrating, Standing};
 pub use configuration_file::{configured, read};
 pub use error::HandError;
 pub use fingertip::FingerTip;

@@ -5,6 +5,7 @@ use crate::control::InverseKinematics;
 use crate::finger::{FingerServo, Mailbox, ServedPort};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
+use crate::hand::announcement::say;
 use crate::model::Refusal;
 use crate::model::configuration::{Configuration, FINGERS, Unusable};
 use crate::realtime::{CycleTiming, Priority, now};
@@ -67,10 +68,11 @@ pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<Simulate
     Ok(ports)
 }
 
-/// Opens every port and shakes hands with every finger on it.
+/// Opens every port and shakes hands with every finger on it. `limp`: the motors shall stay off.
 pub(super) fn reach(
     configuration: &Configuration,
     simulated: &[Option<SimulatedPort>; FINGERS],
+    limp: bool,
 ) -> Result<(Vec<Line>, Vec<Reached>), HandError> {
     let path = |index: usize| match &simulated[index] {
         Some(port) => port.path().to_path_buf(),
@@ -84,16 +86,28 @@ pub(super) fn reach(
         }
         let failed = |index| move |source| HandError::Link { finger: index + 1, source };
         let mut link = Link::open(&path(first), configuration.fingers[first].baud).map_err(failed(first))?;
+        warn_of_latency(link.transport());
         let mut fingers = Vec::new();
         for index in sharing {
             let (servo, finger) = shake_hands(configuration, index, &mut link)?;
-            fingers.push(servo);
+            fingers.push(if limp { servo.limp() } else { servo });
             reached.push(finger);
         }
         lines.push(Line { thread: configuration.thread(first), port: ServedPort::new(link, fingers) });
     }
     reached.sort_by_key(|finger| finger.index);
     Ok((lines, reached))
+}
+
+/// A USB bridge that holds replies back makes every cycle lose its reply.
+fn warn_of_latency(port: &Port) {
+    if let Some(milliseconds) = port.latency_timer_ms().filter(|&milliseconds| milliseconds > 1) {
+        say(&format!(
+            "{} holds bytes back for {milliseconds} ms (its latency timer): write 1 to latency_timer under /sys/bus/usb-serial/devices, \
+             or let a udev rule do so",
+            port.path().display()
+        ));
+    }
 }
 
 fn shake_hands(
@@ -108,6 +122,11 @@ fn shake_hands(
     let (identity, configured) = link
         .shake_hands(address, &Terms::new(hand, finger), deadline)
         .map_err(|source| HandError::Link { finger: index + 1, source })?;
+    let counts = identity.counts_per_revolution;
+    if counts != 0 && finger.encoder.counts_per_revolution.iter().any(|&configured| configured != counts) {
+        let reason = format!("the board of finger {} says that its encoders have {counts}", index + 1);
+        return Err(unusable(Unusable { key: "encoder.counts_per_revolution", reason }));
+    }
     let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;
     let (producer, timings) = RingBuffer::new(TIMINGS);
     let (servo, mailbox) =

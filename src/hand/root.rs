@@ -1,7 +1,9 @@
 //! Root: opens and closes a hand, owns its threads and ports, reports its status.
 
 use crate::board::{Port, SimulatedFinger, SimulatedPort};
+use crate::control::calibration::Verdict;
 use crate::finger::{FingerReport, Servo, Stage};
+use crate::hand::announcement::say;
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::opening::{Line, check, reach, simulate};
 use crate::hand::{HandError, configured};
@@ -10,8 +12,9 @@ use crate::realtime::{self, Distribution, MonotonicClock, Priority, Realtime, Sc
 use crossbeam_channel::bounded;
 use nalgebra::Vector3;
 use parking_lot::RwLock;
-use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::process::id;
 use std::thread::{JoinHandle, sleep};
 use std::time::Duration;
 
@@ -19,6 +22,9 @@ type PortServo = Servo<Port, MonotonicClock>;
 
 /// The first cycle begins so long after the threads are started, ns: they have their priorities and cores by then.
 const HEAD_START: u64 = 10_000_000;
+
+/// Bound on the components of a push, N: far beyond what tears a finger off, and not beyond what can be simulated.
+const STRONGEST_PUSH: f64 = 1000.0;
 
 /// How often OpenHand looks whether every finger holds its pose.
 const LOOKING: Duration = Duration::from_millis(1);
@@ -30,9 +36,13 @@ pub struct Hand {
     pub(super) dispatcher: Dispatcher,
     servos: Vec<JoinHandle<PortServo>>,
     simulated: [Option<SimulatedPort>; FINGERS],
-    /// As it is now: planners may adjust it.
+    /// As it is now: planners may adjust it, and calibration changes what it finds.
     pub(super) configuration: RwLock<Configuration>,
+    /// Where the configuration was read from, and where calibration is stored.
+    pub(super) file: Option<PathBuf>,
     realtime: bool,
+    /// The process that has the threads. A forked child inherits this value, but not them.
+    process: u32,
 }
 
 /// What is known of a finger and of the thread that serves it.
@@ -40,7 +50,7 @@ pub struct Hand {
 pub struct FingerStatus {
     /// Where the finger is between open and close.
     pub stage: Stage,
-    /// Whether every servo thread has the real-time priority and the core that the configuration asks for.
+    /// Whether every servo thread runs under SCHED_FIFO.
     pub realtime: bool,
     /// Configured cycles in a second, Hz.
     pub rate: f64,
@@ -58,6 +68,8 @@ pub struct FingerStatus {
     pub damaged_frames: u64,
     /// The part of the wanted joint torque that the tension limits let through in the last cycle, 0 to 1.
     pub torque_scale: f64,
+    /// The part of the calibration under way that is done, 0 to 1; 0 where there is none.
+    pub calibration: f64,
 }
 
 impl Hand {
@@ -67,11 +79,18 @@ impl Hand {
     /// # Errors
     /// As [`Hand::open`], and a configuration file that cannot be read or used.
     pub fn open_configured() -> Result<Self, HandError> {
-        let (configuration, file) = configured()?;
+        Self::open_as(configured()?)
+    }
+
+    /// Opens the hand that [`configured`] has found.
+    ///
+    /// # Errors
+    /// As [`Hand::open`].
+    pub fn open_as((configuration, file): (Configuration, Option<PathBuf>)) -> Result<Self, HandError> {
         if file.is_none() {
             say("no configuration file: this is the simulated hand (SUN2XP_CONFIG or sun2xp.toml names a real one)");
         }
-        Self::open(configuration)
+        Self::open_from(configuration, file, false)
     }
 
     /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons and returns when every finger holds the
@@ -81,16 +100,30 @@ impl Hand {
     /// A configuration that cannot be used, a port or board that does not serve, a finger that faults. Everything that was
     /// opened is closed again then, and every motor is in its end state.
     pub fn open(configuration: Configuration) -> Result<Self, HandError> {
+        Self::open_from(configuration, None, false)
+    }
+
+    /// Opens the hand with its motors off: to find signs and zeros before anything pulls. `file`: where calibration shall
+    /// be stored. A finger becomes a spring when it has been calibrated by [`Hand::zero`] or [`Hand::identify`].
+    ///
+    /// # Errors
+    /// As [`Hand::open`].
+    pub fn open_limp(configuration: Configuration, file: Option<PathBuf>) -> Result<Self, HandError> {
+        Self::open_from(configuration, file, true)
+    }
+
+    fn open_from(configuration: Configuration, file: Option<PathBuf>, limp: bool) -> Result<Self, HandError> {
         check(&configuration)?;
         let simulated = simulate(&configuration)?;
-        let (lines, reached) = reach(&configuration, &simulated)?;
+        let (lines, reached) = reach(&configuration, &simulated, limp)?;
         let mut threads: Vec<u8> = lines.iter().map(|line| line.thread).collect();
         threads.sort_unstable();
         threads.dedup();
 
         let dispatcher = Dispatcher::new(reached);
         let configuration = RwLock::new(configuration);
-        let mut hand = Self { dispatcher, servos: Vec::new(), simulated, configuration, realtime: true };
+        let servos = Vec::new();
+        let mut hand = Self { dispatcher, servos, simulated, configuration, file, realtime: true, process: id() };
         // From here on, dropping the hand closes it.
         hand.start(&threads, lines)?;
         hand.wait_for_every_finger()?;
@@ -148,6 +181,10 @@ impl Hand {
             skipped_periods: report.skipped_periods,
             damaged_frames: report.damaged_frames,
             torque_scale: report.cycle.torque_scale,
+            calibration: match report.calibration {
+                Some(Verdict::Going(progress)) => progress.part,
+                _ => 0.0,
+            },
         })
     }
 
@@ -175,15 +212,26 @@ impl Hand {
         self.dispatcher.member(finger)?.admission.read().finite("Force", &force)?;
         let index = finger as usize - 1; // the member is there: 1 to 3
         let port = self.simulated[index].as_ref().ok_or(HandError::NotSimulated(finger))?;
+        let largest = Vector3::from(force).amax();
+        if largest > STRONGEST_PUSH {
+            return Err(HandError::TooMuchForce { finger, force: largest, strongest: STRONGEST_PUSH });
+        }
         let push = |finger: &mut SimulatedFinger| finger.plant().set_external_force(Vector3::from(force));
         // The board was made with this one address.
         port.with_finger(self.configuration.read().address(index), push);
         Ok(())
     }
 
-    /// Whether the first refusal of each kind is to be printed on standard error.
-    pub fn print_refusals(&self) -> bool {
-        self.configuration.read().hand.print_refusals
+    /// Asks every finger to go to its end state, and waits for that, at most `patience`. Frees nothing and takes no lock but those of
+    /// the mailboxes, so that it serves where a process is about to end. The hand is of no use afterwards.
+    pub fn end(&self, patience: Duration) {
+        let members = self.dispatcher.members();
+        members.iter().for_each(|member| member.mailbox.close());
+        let limit = now() + patience.as_nanos() as u64;
+        let ended = |stage| matches!(stage, Stage::Closed | Stage::Faulted(_));
+        while now() < limit && !members.iter().all(|member| ended(member.mailbox.report().stage)) {
+            sleep(LOOKING);
+        }
     }
 
     /// Brings every finger to its end state, as configured, and ends the threads. The same as dropping the hand.
@@ -210,8 +258,11 @@ impl Hand {
             });
             self.servos.push(handle.map_err(system("start a servo thread"))?);
         }
+        // Ours would keep the channel open where a thread died before it could tell.
+        drop(told);
         let had: Vec<Realtime> = hear.iter().take(threads.len()).collect();
-        self.realtime = had.iter().all(|had| had.scheduling.is_none() && had.core.is_none());
+        let asked = threads.iter().all(|&thread| self.priority(thread).fifo > 0);
+        self.realtime = asked && had.len() == threads.len() && had.iter().all(|had| had.scheduling.is_none());
         announce(&had);
         Ok(())
     }
@@ -247,6 +298,12 @@ impl Hand {
 
 impl Drop for Hand {
     fn drop(&mut self) {
+        if self.process != id() {
+            // A forked child: the threads and the motors are its parent's.
+            self.servos.drain(..).for_each(std::mem::forget);
+            self.dispatcher.forget_collector();
+            return;
+        }
         self.dispatcher.members().iter().for_each(|member| member.mailbox.close());
         for servo in self.servos.drain(..) {
             // A servo thread catches its own panics. Its ports are closed here, not in the servo: it may take long.
@@ -275,9 +332,4 @@ fn announce(had: &[Realtime]) {
     if let Some(error) = had.iter().find_map(|had| had.core.as_ref()) {
         say(&format!("a servo thread is not bound to its core ({error}): see `finger.core`"));
     }
-}
-
-/// One line on standard error. Not with `eprintln!`, which panics where nobody reads it.
-fn say(text: &str) {
-    let _ = writeln!(std::io::stderr(), "sun2xp: {text}");
 }

@@ -1,6 +1,7 @@
 //! The types of a hand's configuration, with defaults for everything: the finger of the report and plausible values for
 //! what the report leaves out. Reading them from a file is the business of the hand; checking them is done here.
 
+pub use crate::model::calibrated::{ConfiguredZeroing, ZeroingMethod};
 use crate::model::{ConfiguredFriction, ConfiguredLinks, ConfiguredSimulation, Links, Tendons, TendonsError};
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
@@ -101,6 +102,8 @@ pub struct ConfiguredFinger {
     pub links: ConfiguredLinks,
     /// `[finger.friction]`
     pub friction: ConfiguredFriction,
+    /// `[finger.zeroing]`
+    pub zeroing: ConfiguredZeroing,
     /// `[finger.stiffness]`
     pub stiffness: ConfiguredStiffness,
     /// `[finger.controller]`
@@ -338,6 +341,7 @@ impl Default for ConfiguredFinger {
             joints: Default::default(),
             links: Default::default(),
             friction: Default::default(),
+            zeroing: Default::default(),
             stiffness: Default::default(),
             controller: Default::default(),
             simulation: Default::default(),

@@ -101,7 +101,7 @@ impl Contact {
         // Finite factors may have an infinite product.
         finite(spatial.as_slice())?;
         // Symmetric but for rounding; the servo takes symmetry for granted.
-        Ok(Self(spatial * 0.5 + spatial.transpose() * 0.5))
+        Ok(Self(symmetrised(&spatial)))
     }
 
     /// The 6 x 6 stiffness.
@@ -112,16 +112,16 @@ impl Contact {
     /// The largest eigenvalue of the stiffness, N/cm, with a rotation measured by the way it moves a point at `lever` (cm)
     /// from the tip. With the length of the last link it is comparable with that of a Kx: turning joint 2 does both.
     pub fn largest_eigenvalue(&self, lever: f64) -> f64 {
-        scaled(&self.0, 1.0 / lever).symmetric_eigenvalues().max()
+        symmetrised(&scaled(&self.0, 1.0 / lever)).symmetric_eigenvalues().max()
     }
 
     /// The nearest contact without an eigenvalue, in the sense of [`Contact::largest_eigenvalue`], above `bound` or below
     /// zero: it keeps its principal directions.
     pub fn clamped(&self, bound: f64, lever: f64) -> Self {
-        let mut eigen = scaled(&self.0, 1.0 / lever).symmetric_eigen();
+        let mut eigen = symmetrised(&scaled(&self.0, 1.0 / lever)).symmetric_eigen();
         eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
         let recomposed = scaled(&eigen.recompose(), lever);
-        Self((recomposed + recomposed.transpose()) * 0.5)
+        Self(symmetrised(&recomposed))
     }
 }
 
@@ -151,8 +151,7 @@ where
             }
         }
     }
-    // Halved before they are added: the sum of two finite entries may be infinite, and its eigenvalues NaN.
-    let symmetric = asked * 0.5 + asked.transpose() * 0.5;
+    let symmetric = symmetrised(asked);
     let eigenvalues = symmetric.symmetric_eigenvalues();
     let (smallest, largest) = (eigenvalues.min(), eigenvalues.max());
     // An eigenvalue may be infinite where no entry is.
@@ -160,6 +159,15 @@ where
         return Err(ContactError::Negative { smallest });
     }
     Ok(symmetric)
+}
+
+/// A matrix that is symmetric but for rounding, averaged so that its eigenvalues can be computed whatever its finite entries
+/// are. Halved before they are added, because a sum may be infinite. Entries that are rounding errors of the largest become
+/// zeros, because the squares of much smaller ones underflow in the iteration. Either would make eigenvalues NaN, which
+/// pass every comparison with a bound.
+pub(crate) fn symmetrised<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
+    let negligible = f64::EPSILON * matrix.amax();
+    (matrix * 0.5 + matrix.transpose() * 0.5).map(|entry| if entry.abs() < negligible { 0.0 } else { entry })
 }
 
 fn finite(values: &[f64]) -> Result<(), ContactError> {

@@ -1,6 +1,7 @@
 //! What a finger is: geometry, kinematics, tendons and the types of its configuration. Lengths in cm, forces in N,
 //! torques in N cm, angles in rad, as in the report, unless a name says otherwise.
 
+mod calibrated;
 pub mod configuration;
 mod contact;
 mod kinematics;
@@ -10,6 +11,7 @@ mod simulation;
 mod tendons;
 mod validation;
 
+pub(crate) use contact::symmetrised;
 pub use contact::{Contact, ContactError, spring};
 pub use kinematics::Links;
 pub use link_dynamics::LinkDynamics;

@@ -102,6 +102,7 @@ impl ConfiguredFinger {
         self.check_limits()?;
         self.check_controller()?;
         self.check_mechanics()?;
+        self.check_calibration()?;
         self.check_simulation()
     }
 
@@ -210,6 +211,29 @@ impl ConfiguredFinger {
         each("friction.conduit", &self.friction.conduit, 0.0, 1.0, "")?;
         each("friction.joint_coulomb", &self.friction.joint_coulomb, 0.0, 1000.0, "N cm")?;
         each("friction.joint_viscous", &self.friction.joint_viscous, 0.0, 100.0, "N cm s/rad")
+    }
+
+    fn check_calibration(&self) -> Result<(), Unusable> {
+        let zeroing = &self.zeroing;
+        each("zeroing.pose_degrees", &zeroing.pose_degrees, -180.0, 180.0, "degrees")?;
+        each("zeroing.lower_stop_degrees", &zeroing.lower_stop_degrees.unwrap_or_default(), -270.0, 270.0, "degrees")?;
+        each("zeroing.upper_stop_degrees", &zeroing.upper_stop_degrees.unwrap_or_default(), -270.0, 270.0, "degrees")?;
+        let ((lower, upper), (low, high)) = (self.stops(), self.joint_limits());
+        for joint in 0..3 {
+            let inside = |key, stop: f64, limit: f64| {
+                let (stop, limit) = (stop.to_degrees(), limit.to_degrees());
+                unusable(key, format!("joint {joint}: a stop at {stop:.1} degrees is inside its limit of {limit:.1}"))
+            };
+            if lower[joint] > low[joint] {
+                return inside("zeroing.lower_stop_degrees", lower[joint], low[joint]);
+            }
+            if upper[joint] < high[joint] {
+                return inside("zeroing.upper_stop_degrees", upper[joint], high[joint]);
+            }
+        }
+        within("zeroing.torque", zeroing.torque, 1e-3, 100.0, "N cm")?;
+        within("zeroing.speed", zeroing.speed, 1e-2, 10.0, "rad/s")?;
+        within("zeroing.time_limit_s", zeroing.time_limit_s, 1.0, 3600.0, "s")
     }
 
     fn check_simulation(&self) -> Result<(), Unusable> {

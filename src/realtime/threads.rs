@@ -5,7 +5,7 @@ use std::io;
 use std::mem::MaybeUninit;
 use std::thread::{Builder, JoinHandle};
 
-/// Small, because what a thread may touch is locked in memory; many times what a servo cycle uses.
+/// Small, so that a planner that locks its memory (mlockall) locks little of ours; many times what a servo cycle uses.
 const STACK_BYTES: usize = 256 * 1024;
 
 /// How a thread is scheduled.
@@ -59,11 +59,13 @@ fn apply(priority: Priority) -> Realtime {
     // An ordinary thread's timers are 50 us late by default; real-time threads have no slack.
     // SAFETY: PR_SET_TIMERSLACK takes ns as a number and changes the calling thread only.
     unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1 as libc::c_ulong) };
-    if priority.fifo > 0 {
-        let parameters = libc::sched_param { sched_priority: priority.fifo.into() };
-        // SAFETY: the calling thread, a valid parameter block.
-        let refused = unsafe { libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &parameters) };
-        had.scheduling = (refused != 0).then(|| io::Error::from_raw_os_error(refused));
+    // An ordinary thread is made one, because a thread inherits: a real-time planner's would all be real-time.
+    let policy = if priority.fifo > 0 { libc::SCHED_FIFO } else { libc::SCHED_OTHER };
+    let parameters = libc::sched_param { sched_priority: priority.fifo.into() };
+    // SAFETY: the calling thread, a valid parameter block.
+    let refused = unsafe { libc::pthread_setschedparam(libc::pthread_self(), policy, &parameters) };
+    if refused != 0 && priority.fifo > 0 {
+        had.scheduling = Some(io::Error::from_raw_os_error(refused));
     }
     if let Some(core) = priority.core {
         had.core = bind(core).err();
@@ -102,6 +104,15 @@ mod tests {
         let inside = spawn("quiet", Priority::default(), move |_| signals.map(blocked)).expect("a thread").join();
         assert_eq!(inside.expect("no panic"), [true; 5]);
         assert_eq!(signals.map(blocked), [false; 5]);
+    }
+
+    #[test]
+    fn an_ordinary_thread_is_ordinary_also_where_its_starter_is_real_time() {
+        // SAFETY: 0 is the calling thread.
+        let policy = |_| unsafe { libc::sched_getscheduler(0) };
+        let nested = move |_| spawn("inner", Priority::default(), policy).expect("a thread").join().expect("no panic");
+        let inner = spawn("outer", Priority { fifo: 1, core: None }, nested).expect("a thread").join();
+        assert_eq!(inner.expect("no panic"), libc::SCHED_OTHER);
     }
 
     #[test]

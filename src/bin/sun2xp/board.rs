@@ -68,7 +68,7 @@ pub struct Arguments {
     patient: bool,
 }
 
-type Failure = Box<dyn Error>;
+pub type Failure = Box<dyn Error>;
 
 /// Starts the board, and carries out orders until `quit`.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {

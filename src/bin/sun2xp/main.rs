@@ -3,6 +3,7 @@
 #![deny(unsafe_code)]
 
 mod board;
+mod calibrate;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -15,14 +16,18 @@ struct Arguments {
     tool: Tool,
 }
 
+// There is one of it in a process.
+#[allow(clippy::large_enum_variant)]
 #[derive(Subcommand)]
 enum Tool {
     Board(board::Arguments),
+    Calibrate(calibrate::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().tool {
         Tool::Board(arguments) => board::run(&arguments),
+        Tool::Calibrate(arguments) => calibrate::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

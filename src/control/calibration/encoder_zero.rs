@@ -1,0 +1,52 @@
+//! m_0 of eq. 28 from one pose that is known.
+
+use super::average::Average;
+use super::instruments::Instruments;
+use super::routine::Sample;
+use nalgebra::{Vector3, Vector4};
+
+/// s.
+const READING: f64 = 0.3;
+
+/// Counts and tensions of a finger at rest.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Reading {
+    seconds: f64,
+    travel: Average,
+    tensions: Average,
+}
+
+impl Reading {
+    /// Whether it is complete.
+    pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> bool {
+        self.seconds += instruments.period;
+        self.travel.add(instruments.travel(sample.feedback));
+        self.tensions.add(instruments.tensions(sample.feedback));
+        self.seconds >= READING
+    }
+
+    /// N, by the offsets known when it was read.
+    pub fn tensions(&self) -> Vector4<f64> {
+        self.tensions.mean()
+    }
+
+    /// theta by the configured zero, rad; `offset`: what the tensions turned out to be too high by, N.
+    pub fn joints(&self, instruments: &Instruments, offset: &Vector4<f64>) -> Vector3<f64> {
+        instruments.joints(&self.travel.mean(), &(self.tensions() - offset))
+    }
+
+    /// The zeros with which the finger was at `joints`, rad.
+    pub fn zeros(
+        &self,
+        instruments: &Instruments,
+        offset: &Vector4<f64>,
+        joints: &Vector3<f64>,
+        configured: [i32; 4],
+    ) -> [i32; 4] {
+        let too_far = self.travel.mean() - instruments.travel_at(joints, &(self.tensions() - offset));
+        let cm_per_count = instruments.radius.component_mul(&instruments.radians_per_count);
+        // A counter shows whole counts, rounded down: on the average half a count too few.
+        let counts = too_far.component_div(&cm_per_count).add_scalar(0.5);
+        std::array::from_fn(|motor| configured[motor].wrapping_add(counts[motor].round() as i32))
+    }
+}

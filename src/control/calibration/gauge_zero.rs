@@ -1,0 +1,87 @@
+//! Gauge offsets with the motors off. Friction in motor and conduit keeps a tendon under tension though its motor is off, so
+//! every motor first lets its tendon out.
+
+use super::average::Average;
+use super::instruments::Instruments;
+use super::obstacle::Obstacle;
+use super::routine::Sample;
+use crate::control::signals::Activity;
+use nalgebra::Vector4;
+use std::ops::ControlFlow::{self, Break, Continue};
+
+/// How far every tendon is let out, cm: several times the stretch of the pretension.
+const LET_OUT: f64 = 0.15;
+/// Part of t_min that a motor pushes with to let out: more than its friction, which a motor that shall control t_min has.
+const PUSH: f64 = 0.8;
+/// s.
+const LETTING_OUT_LIMIT: f64 = 5.0;
+const SETTLING: f64 = 0.2;
+const AVERAGING: f64 = 0.5;
+/// N rms. Gauge noise is a tenth of it.
+const LARGEST_SPREAD: f64 = 0.3;
+/// N.
+const LARGEST_OFFSET: f64 = 10.0;
+/// Part of t_min that a gauge must fall by.
+const LEAST_FALL: f64 = 0.5;
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct GaugeZero {
+    seconds: f64,
+    /// Travel at the beginning, cm.
+    start: Option<Vector4<f64>>,
+    /// Tensions at the beginning, N, by the configured zero, where the tendons were under tension.
+    tight: Option<Vector4<f64>>,
+    slack: Average,
+    out_at: Option<f64>,
+}
+
+impl GaugeZero {
+    /// `tight`: tensions while the tendons were under tension, N, by the configured zeros, if they were.
+    pub fn new(tight: Option<Vector4<f64>>) -> Self {
+        Self { seconds: 0.0, start: None, tight, slack: Average::default(), out_at: None }
+    }
+
+    /// The activity, or the offsets, N, when done.
+    pub fn step(
+        &mut self,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Result<ControlFlow<Vector4<f64>, Activity>, Obstacle> {
+        self.seconds += instruments.period;
+        let travel = instruments.travel(sample.feedback);
+        let start = *self.start.get_or_insert(travel);
+        let inside = (travel - start).map(|way| way > -LET_OUT);
+        let Some(out_at) = self.out_at else {
+            if inside.iter().all(|inside| !inside) {
+                self.out_at = Some(self.seconds);
+            } else if self.seconds > LETTING_OUT_LIMIT {
+                let motor = inside.iter().position(|&inside| inside).unwrap_or(0) as u8 + 1;
+                return Err(Obstacle::MotorStuck { motor });
+            }
+            let push = -PUSH * instruments.minimum;
+            return Ok(Continue(Activity::Pull(inside.map(|inside| if inside { push } else { 0.0 }))));
+        };
+        let since = self.seconds - out_at;
+        if since > SETTLING {
+            self.slack.add(instruments.tensions(sample.feedback));
+        }
+        if since < SETTLING + AVERAGING {
+            return Ok(Continue(Activity::Turn(Vector4::zeros())));
+        }
+        let (offsets, spread) = (self.slack.mean(), self.slack.spread());
+        for index in 0..4 {
+            let tendon = index as u8 + 1;
+            if spread[index] > LARGEST_SPREAD {
+                return Err(Obstacle::Restless { tendon, newton: spread[index] });
+            }
+            let fall = self.tight.map(|tight| tight[index] - offsets[index]);
+            if let Some(fall) = fall.filter(|&fall| fall < LEAST_FALL * instruments.minimum) {
+                return Err(Obstacle::DeadGauge { tendon, newton: fall });
+            }
+            if offsets[index].abs() > LARGEST_OFFSET {
+                return Err(Obstacle::GaugeOffset { tendon, newton: offsets[index] });
+            }
+        }
+        Ok(Break(offsets))
+    }
+}

@@ -1,0 +1,85 @@
+//! Friction of the joints: the torque R t that it takes to move one to and fro, slowly and less slowly.
+//!
+//! (R t)_j = g + s (C + b |v|): Coulomb and viscous friction are told apart by the two speeds, and what does not change with
+//! direction (gravity) is left out.
+
+use super::instruments::Instruments;
+use super::joint_lead::JointLead;
+use super::least_squares::LeastSquares;
+use super::obstacle::Obstacle;
+use super::routine::Sample;
+use nalgebra::Vector3;
+
+/// Speeds, rad/s, and how far each goes, rad.
+const SWINGS: [(f64, f64); 2] = [(0.15, 0.4), (0.6, 0.8)];
+/// Distance kept from the stop, rad.
+const CLEAR: f64 = 0.1;
+/// Left out after every change of direction, s: an extended finger swings for so long, and its inertia takes as much torque as
+/// its friction.
+const RUN_UP: f64 = 0.5;
+/// A joint that pulls at its limit for so long is blocked, s.
+const BLOCKED: f64 = 0.3;
+/// rad/s.
+const IN_BETWEEN: f64 = 0.7;
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JointFriction {
+    joint: usize,
+    /// Its lower stop, rad by the configured zero.
+    stop: f64,
+    /// Which leg of the way: clear of the stop, to and fro slowly, to and fro faster, back to the stop.
+    leg: usize,
+    /// Where the anchor was at the beginning of the leg.
+    from: Option<f64>,
+    strained: f64,
+    fit: LeastSquares<3>,
+}
+
+impl JointFriction {
+    pub fn new(joint: usize, stop: f64) -> Self {
+        Self { joint, stop, leg: 0, from: None, strained: 0.0, fit: LeastSquares::new() }
+    }
+
+    /// Leads the joint on; C (N cm) and b (N cm s/rad) when done.
+    pub fn step(
+        &mut self,
+        instruments: &Instruments,
+        sample: &Sample,
+        lead: &mut JointLead,
+    ) -> Result<Option<(f64, f64)>, Obstacle> {
+        let joint = self.joint;
+        let clear = self.stop + CLEAR;
+        let (speed, target) = match self.leg {
+            0 => (IN_BETWEEN, clear),
+            leg @ 1..=4 => {
+                let (speed, way) = SWINGS[(leg - 1) / 2];
+                (speed, if leg % 2 == 1 { clear + way } else { clear })
+            }
+            _ => (IN_BETWEEN, self.stop - CLEAR),
+        };
+        let from = *self.from.get_or_insert(lead.anchor[joint]);
+        lead.advance(joint, target, speed * instruments.period);
+        let anchor = lead.anchor[joint];
+        if (1..=4).contains(&self.leg) && (anchor - from).abs() > RUN_UP * speed && anchor != target {
+            let torque = instruments.tendons.r.row(joint).transpose().dot(&instruments.tensions(sample.feedback));
+            let sign = (target - from).signum();
+            self.fit.add(&Vector3::new(1.0, sign, sign * speed), torque);
+        }
+        let strained = lead.strained(joint);
+        self.strained = if strained { self.strained + instruments.period } else { 0.0 };
+        let last = self.leg == 5;
+        if self.strained > BLOCKED && !last {
+            return Err(Obstacle::JointBlocked { joint: joint as u8 });
+        }
+        if last && strained {
+            let implausible =
+                |value| Obstacle::Implausible { tendon: joint as u8 + 1, what: "the friction of its joint", value };
+            let (found, _) = self.fit.solve().ok_or(implausible(f64::NAN))?;
+            return Ok(Some((found[1].max(0.0), found[2])));
+        }
+        if anchor == target && !last {
+            (self.leg, self.from) = (self.leg + 1, None);
+        }
+        Ok(None)
+    }
+}

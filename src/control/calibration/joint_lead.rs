@@ -1,0 +1,69 @@
+//! Leading the joints: a soft spring in joint space whose torque is bounded, and whose anchor does not run away from a joint
+//! that is held.
+
+use super::instruments::Instruments;
+use super::routine::Sample;
+use crate::control::signals::Activity;
+use nalgebra::{Vector3, Vector4};
+
+/// N cm/rad: less than the softest spring that the tendon controllers are tuned for gives a bent finger.
+const STIFFNESS: f64 = 30.0;
+/// N cm s/rad for every cm of finger beyond the joint, whose inertia must not swing on the spring.
+const DAMPING: f64 = 0.2;
+/// Time constant of the low-pass on the joints, s: for supervision, not for the loop.
+const SMOOTHING: f64 = 0.02;
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JointLead {
+    pub anchor: Vector3<f64>,
+    /// How far the anchor moved in this cycle, rad.
+    moved: Vector3<f64>,
+    /// Smoothed, rad, by the configured zero.
+    pub joints: Vector3<f64>,
+    /// Smoothed, N.
+    tensions: Vector4<f64>,
+    /// Largest torque, N cm.
+    limit: f64,
+}
+
+impl JointLead {
+    /// Holds the pose that the finger is in.
+    pub fn new(instruments: &Instruments, sample: &Sample, limit: f64) -> Self {
+        let tensions = instruments.tensions(sample.feedback);
+        let joints = instruments.joints(&instruments.travel(sample.feedback), &tensions);
+        Self { anchor: joints, moved: Vector3::zeros(), joints, tensions, limit }
+    }
+
+    /// Takes a measurement in.
+    pub fn measure(&mut self, instruments: &Instruments, sample: &Sample) {
+        self.moved = Vector3::zeros();
+        let gain = (instruments.period / SMOOTHING).min(1.0);
+        self.tensions += (instruments.tensions(sample.feedback) - self.tensions) * gain;
+        let joints = instruments.joints(&instruments.travel(sample.feedback), &self.tensions);
+        self.joints += (joints - self.joints) * gain;
+    }
+
+    /// Moves the anchor of one joint toward `target`, rad, by at most `step`.
+    pub fn advance(&mut self, joint: usize, target: f64, step: f64) {
+        let farthest = self.limit / STIFFNESS;
+        let anchor = self.anchor[joint] + (target - self.anchor[joint]).clamp(-step, step);
+        let before = self.anchor[joint];
+        self.anchor[joint] = anchor.clamp(self.joints[joint] - farthest, self.joints[joint] + farthest);
+        self.moved[joint] = self.anchor[joint] - before;
+    }
+
+    /// Whether the torque of a joint is at its limit: it lags as far behind as it may.
+    pub fn strained(&self, joint: usize) -> bool {
+        (self.anchor[joint] - self.joints[joint]).abs() > 0.95 * self.limit / STIFFNESS
+    }
+
+    /// What holds the joints at their anchors.
+    pub fn activity(&self, instruments: &Instruments, sample: &Sample) -> Activity {
+        let spring = (self.anchor - self.joints) * STIFFNESS;
+        let spring = spring.map(|torque| torque.clamp(-self.limit, self.limit));
+        // Against the anchor's own speed, so that a moving joint does not lag.
+        let slip = sample.report.joint_rates - self.moved / instruments.period;
+        let torques = spring - slip.component_mul(&instruments.beyond) * DAMPING;
+        Activity::Tense(instruments.ask(instruments.distribution.distribute(&torques).tensions))
+    }
+}

@@ -1,0 +1,27 @@
+//! Zeroing and identification of a finger: routines that move it and learn from what it does.
+//!
+//! Each is a state machine of the pure core: measurement in, activity out, one step a servo cycle. It knows no clock and
+//! allocates nothing. What it found, or why it gave up, is its verdict; storing and applying that is the hand's business.
+
+mod average;
+mod encoder_zero;
+mod findings;
+mod gauge_zero;
+mod identification;
+mod instruments;
+mod joint_friction;
+mod joint_lead;
+mod least_squares;
+mod motor_friction;
+mod obstacle;
+mod pressing;
+mod routine;
+mod signs;
+mod stop_search;
+mod take_up;
+mod tendon_stiffness;
+mod zeroing;
+
+pub use findings::{Findings, Identified, Signs, Zeros};
+pub use obstacle::Obstacle;
+pub use routine::{Calibration, Progress, Sample, Step, Task, Verdict};

@@ -1,0 +1,65 @@
+//! Friction of the motors: what they pull more than their tension while they wind in, and less while they let out.
+//!
+//! u = a t + s (C + mu t), s = +1 winding in and -1 letting out, u the commanded pull.
+
+use super::instruments::Instruments;
+use super::least_squares::LeastSquares;
+use super::obstacle::Obstacle;
+use super::routine::Sample;
+use nalgebra::{Vector3, Vector4};
+
+/// Time constant of the smoothed travel, s, and the speed from which a motor counts as turning, cm/s at the tendon.
+const SMOOTHING: f64 = 0.03;
+const TURNING: f64 = 0.02;
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MotorFriction {
+    fits: [LeastSquares<3>; 4],
+    /// Low-passed once and twice, cm: their difference over the time constant is the speed.
+    smooth: Option<(Vector4<f64>, Vector4<f64>)>,
+}
+
+/// Per motor: C, N at the tendon; mu; a.
+pub(super) type Friction = [Vector4<f64>; 3];
+
+impl MotorFriction {
+    pub fn new() -> Self {
+        Self { fits: [LeastSquares::new(); 4], smooth: None }
+    }
+
+    pub fn add(&mut self, instruments: &Instruments, sample: &Sample) {
+        let travel = instruments.travel(sample.feedback);
+        let (once, twice) = self.smooth.get_or_insert((travel, travel));
+        let gain = (instruments.period / SMOOTHING).min(1.0);
+        *once += (travel - *once) * gain;
+        *twice += (*once - *twice) * gain;
+        let speeds = (*once - *twice) / SMOOTHING;
+        let tensions = instruments.tensions(sample.feedback);
+        let pulls = sample.report.motor_torques.component_div(&instruments.signed_radius);
+        for motor in 0..4 {
+            if speeds[motor].abs() > TURNING {
+                let (sign, tension) = (speeds[motor].signum(), tensions[motor]);
+                self.fits[motor].add(&Vector3::new(tension, sign, sign * tension), pulls[motor]);
+            }
+        }
+    }
+
+    pub fn solve(&self) -> Result<Friction, Obstacle> {
+        let mut friction = [Vector4::zeros(); 3];
+        for (motor, fit) in self.fits.iter().enumerate() {
+            let implausible = |what, value| Obstacle::Implausible { tendon: motor as u8 + 1, what, value };
+            let (found, _) = fit.solve().ok_or(implausible("the friction of its motor", f64::NAN))?;
+            let [a, coulomb, conduit]: [f64; 3] = found.into();
+            if !(0.2..5.0).contains(&a) {
+                return Err(implausible("commanded pull over tension", a));
+            }
+            if coulomb < -0.5 || conduit < -0.1 {
+                return Err(implausible("the friction of its motor, N,", coulomb));
+            }
+            friction[0][motor] = coulomb.max(0.0);
+            friction[1][motor] = conduit.max(0.0);
+            friction[2][motor] = a;
+        }
+        Ok(friction)
+    }
+}

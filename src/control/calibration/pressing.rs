@@ -1,0 +1,71 @@
+//! Tensions that vary independently while the finger presses against its lower stops.
+
+use super::instruments::Instruments;
+use nalgebra::{Vector3, Vector4};
+
+/// Part of t_max that is pressed with at most.
+const HARDEST: f64 = 0.6;
+/// N/s: a tendon that tightens at this speed turns its motor well above the quantisation of its encoder.
+const SPEED: f64 = 20.0;
+/// Rest at each end, s.
+const DWELL: f64 = 0.15;
+/// Torque on every joint that keeps it at its stop, N cm.
+const HOLDING: f64 = 2.0;
+/// Every pattern so many times.
+const ROUNDS: usize = 2;
+
+/// To and fro between a base and four patterns: all tendons together, and each joint by itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pressing {
+    base: Vector4<f64>,
+    patterns: [Vector4<f64>; 4],
+    leg: usize,
+    /// Seconds on this leg.
+    seconds: f64,
+    begun: Option<Vector4<f64>>,
+}
+
+impl Pressing {
+    pub fn new(instruments: &Instruments) -> Self {
+        let hardest = HARDEST * instruments.maximum.min(instruments.strongest);
+        let holding = Vector3::repeat(-HOLDING);
+        let distribute = |torques: &Vector3<f64>| instruments.distribution.distribute(torques).tensions;
+        let base = distribute(&holding);
+        let common = base + instruments.pretension * ((hardest - base.max()) / instruments.pretension.max()).max(0.0);
+        let press = |joint: usize| {
+            // The largest of whole N cm: the tensions rise with the torque.
+            let tensions = (0..100).map(|more| {
+                let mut torques = holding;
+                torques[joint] -= f64::from(more);
+                distribute(&torques)
+            });
+            tensions.take_while(|tensions| tensions.max() <= hardest).last().unwrap_or(base)
+        };
+        Self { base, patterns: [common, press(0), press(1), press(2)], leg: 0, seconds: 0.0, begun: None }
+    }
+
+    /// The tensions of this cycle, N; none when every pattern has been there. Begins at `now`, N.
+    pub fn step(&mut self, instruments: &Instruments, now: &Vector4<f64>) -> Option<Vector4<f64>> {
+        let begun = *self.begun.get_or_insert(*now);
+        let pattern = |leg: usize| if leg.is_multiple_of(2) { self.base } else { self.patterns[leg / 2 % 4] };
+        let from = if self.leg == 0 { begun } else { pattern(self.leg - 1) };
+        let to = pattern(self.leg);
+        let duration = (to - from).amax() / SPEED;
+        self.seconds += instruments.period;
+        let part = if duration > 0.0 { (self.seconds / duration).min(1.0) } else { 1.0 };
+        if self.seconds > duration + DWELL {
+            (self.leg, self.seconds) = (self.leg + 1, 0.0);
+        }
+        (self.leg <= 8 * ROUNDS).then(|| from + (to - from) * part)
+    }
+
+    /// The part of it that is done, 0 to 1.
+    pub fn part(&self) -> f64 {
+        self.leg as f64 / (8 * ROUNDS) as f64
+    }
+
+    /// Whether the first ramp, from wherever the finger was, is over.
+    pub fn under_way(&self) -> bool {
+        self.leg > 0
+    }
+}

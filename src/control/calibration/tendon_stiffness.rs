@@ -1,0 +1,50 @@
+//! The stiffness of every tendon from motor travel against tension.
+//!
+//! x_i = R_i^T theta + t_i / k_i + const for every tendon. The null vector n of R takes the joints out, whatever they do:
+//! n . x = sum n_i t_i / k_i + const, four unknown compliances in one equation a sample. They are told apart where the four
+//! tensions vary independently, which takes joint torques, and so something that holds the finger.
+
+use super::instruments::Instruments;
+use super::least_squares::LeastSquares;
+use super::obstacle::Obstacle;
+use super::routine::Sample;
+use nalgebra::{SVector, Vector4};
+
+/// N/cm, outside which no tendon is.
+const SOFTEST: f64 = 10.0;
+const STIFFEST: f64 = 1e5;
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TendonStiffness {
+    fit: LeastSquares<5>,
+    null: Vector4<f64>,
+    /// Travel of the first sample, cm: only differences count, and large counts would lose digits.
+    first: Option<Vector4<f64>>,
+}
+
+impl TendonStiffness {
+    pub fn new(instruments: &Instruments) -> Self {
+        // The ghost column of Q spans what R sends to zero.
+        let null = instruments.tendons.q.column(3).into_owned().normalize();
+        Self { fit: LeastSquares::new(), null, first: None }
+    }
+
+    pub fn add(&mut self, instruments: &Instruments, sample: &Sample) {
+        let travel = instruments.travel(sample.feedback);
+        let first = *self.first.get_or_insert(travel);
+        let weighted = self.null.component_mul(&instruments.tensions(sample.feedback));
+        let [a, b, c, d]: [f64; 4] = weighted.into();
+        self.fit.add(&SVector::from([a, b, c, d, 1.0]), self.null.dot(&(travel - first)));
+    }
+
+    /// N/cm, and the rms residual in travel, cm.
+    pub fn solve(&self) -> Result<(Vector4<f64>, f64), Obstacle> {
+        let what = "the stiffness, N/cm,";
+        let (found, residual) = self.fit.solve().ok_or(Obstacle::Implausible { tendon: 1, what, value: f64::NAN })?;
+        let stiffness = found.fixed_rows::<4>(0).map(f64::recip);
+        match stiffness.iter().position(|k| !(SOFTEST..=STIFFEST).contains(k)) {
+            Some(index) => Err(Obstacle::Implausible { tendon: index as u8 + 1, what, value: stiffness[index] }),
+            None => Ok((stiffness, residual)),
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Calibrating a finger of an open hand: asks its servo, waits for the verdict, puts what was found in force.
+
+use crate::control::Controller;
+use crate::control::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
+use crate::finger::{Order, Stage};
+use crate::hand::calibration_file::store;
+use crate::hand::{Hand, HandError};
+use crate::model::Refusal;
+use crate::model::configuration::{Configuration, ConfiguredFinger};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// How often the verdict is looked for.
+const LOOKING: Duration = Duration::from_millis(5);
+
+/// A servo takes an order within a cycle; one that has not after so long never will.
+const ANSWER: Duration = Duration::from_secs(5);
+
+/// A calibration under way. It goes on by itself; [`Calibrating::poll`] follows it.
+#[derive(Clone, Copy, Debug)]
+pub struct Calibrating {
+    finger: i32,
+    order: u32,
+    /// What was found, once the finger is about to be controlled with it.
+    found: Option<Findings>,
+    asked: Instant,
+}
+
+/// How a calibration stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Standing {
+    /// It goes on.
+    Going(Progress),
+    /// Done, and in force.
+    Done(Findings),
+}
+
+impl Calibrating {
+    /// Begins. With [`Task::Identify`] the finger moves to its lower stops and presses; with [`Task::Zero`] its tendons
+    /// become slack for a second. The space that its joints can reach must be free. Set points are ignored meanwhile.
+    ///
+    /// # Errors
+    /// No such finger, finger faulted or busy, a configuration that no routine can work with.
+    pub fn begin(hand: &Hand, finger: i32, task: Task) -> Result<Self, HandError> {
+        let configured = hand.calibrated(finger)?;
+        let rate = hand.rate();
+        let calibration = Calibration::new(task, &configured, rate).map_err(|unusable| refusal(finger, unusable))?;
+        Self::order(hand, finger, Order::Calibrate(calibration), None)
+    }
+
+    fn order(hand: &Hand, finger: i32, order: Order, found: Option<Findings>) -> Result<Self, HandError> {
+        let given = hand.dispatcher.member(finger)?.mailbox.order(order);
+        let order = given.map_err(|fault| HandError::Faulted { finger, fault })?.ok_or(HandError::Busy(finger))?;
+        Ok(Self { finger, order, found, asked: Instant::now() })
+    }
+
+    /// How it stands now. What was found is put in force first: tendons are brought under tension, and the finger is a
+    /// spring that holds its pose at its initial stiffness; but after [`Task::Signs`] it stays limp, because its zeros may
+    /// be anywhere. Not to be called again after it is done.
+    ///
+    /// # Errors
+    /// A routine that gave up, and left the finger limp; a finger that faults.
+    pub fn poll(&mut self, hand: &Hand) -> Result<Standing, HandError> {
+        let finger = self.finger;
+        let report = hand.dispatcher.report(finger)?;
+        if report.orders != self.order {
+            // Counted from open, so a hand that was opened anew never gets there.
+            if self.asked.elapsed() > ANSWER {
+                return Err(HandError::NoAnswer(finger));
+            }
+            return Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 0.0 }));
+        }
+        if let Some(found) = self.found {
+            if report.stage == Stage::Opening {
+                return Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }));
+            }
+            hand.dispatcher.member(finger)?.mailbox.adopt();
+            return Ok(Standing::Done(found));
+        }
+        match report.calibration {
+            None => Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 0.0 })),
+            Some(Verdict::Going(progress)) => Ok(Standing::Going(progress)),
+            Some(Verdict::Refused(obstacle)) => Err(HandError::Calibration { finger, obstacle }),
+            Some(Verdict::Found(found)) => {
+                let mut configured = hand.calibrated(finger)?;
+                found.apply(&mut configured);
+                let controller =
+                    Controller::new(&configured, hand.rate()).map_err(|unusable| refusal(finger, unusable))?;
+                let limp = matches!(found, Findings::Signs(_));
+                *self = Self::order(hand, finger, Order::Adopt { controller, limp }, Some(found))?;
+                hand.configuration.write().fingers[finger as usize - 1] = configured; // 1 to 3: it has reported
+                Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))
+            }
+        }
+    }
+}
+
+impl Hand {
+    /// Finds which way motors, encoders and gauges of finger 1, 2 or 3 count. The finger stays limp.
+    ///
+    /// `progress` is told how far it is, 200 times a second.
+    ///
+    /// # Errors
+    /// As [`Calibrating::begin`] and [`Calibrating::poll`].
+    pub fn find_signs(&self, finger: i32, progress: impl FnMut(Progress)) -> Result<Findings, HandError> {
+        self.calibrate(finger, Task::Signs, progress)
+    }
+
+    /// Zeroes gauges and encoders of finger 1, 2 or 3, the latter as `zeroing.method` says.
+    ///
+    /// # Errors
+    /// As [`Calibrating::begin`] and [`Calibrating::poll`].
+    pub fn zero(&self, finger: i32, progress: impl FnMut(Progress)) -> Result<Findings, HandError> {
+        self.calibrate(finger, Task::Zero, progress)
+    }
+
+    /// Measures friction and tendon stiffness of finger 1, 2 or 3, which must have been zeroed.
+    ///
+    /// # Errors
+    /// As [`Calibrating::begin`] and [`Calibrating::poll`].
+    pub fn identify(&self, finger: i32, progress: impl FnMut(Progress)) -> Result<Findings, HandError> {
+        self.calibrate(finger, Task::Identify, progress)
+    }
+
+    fn calibrate(&self, finger: i32, task: Task, mut progress: impl FnMut(Progress)) -> Result<Findings, HandError> {
+        let mut calibrating = Calibrating::begin(self, finger, task)?;
+        loop {
+            match calibrating.poll(self)? {
+                Standing::Going(going) => progress(going),
+                Standing::Done(findings) => return Ok(findings),
+            }
+            sleep(LOOKING);
+        }
+    }
+
+    /// The configuration of finger 1, 2 or 3 with everything that was found since open.
+    ///
+    /// # Errors
+    /// No such finger.
+    pub fn calibrated(&self, finger: i32) -> Result<ConfiguredFinger, HandError> {
+        self.dispatcher.member(finger)?;
+        Ok(self.configuration.read().fingers[finger as usize - 1].clone()) // the member is there: 1 to 3
+    }
+
+    /// Writes what was found since open into the configuration file that the hand was opened with, keys that changed only:
+    /// comments and layout stay. The file is replaced as a whole. Whether there is such a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read or written, or can no longer be used.
+    pub fn store_calibration(&self) -> Result<bool, HandError> {
+        let Some(file) = &self.file else { return Ok(false) };
+        let calibrated: Configuration = self.configuration.read().clone();
+        store(file, &calibrated)?;
+        Ok(true)
+    }
+
+    fn rate(&self) -> f64 {
+        self.configuration.read().hand.rate
+    }
+}
+
+fn refusal(finger: i32, unusable: crate::model::configuration::Unusable) -> HandError {
+    Refusal { finger: Some(finger as usize - 1), unusable }.into() // 1 to 3: the finger was found
+}

@@ -1,0 +1,65 @@
+//! What calibration needs to know beforehand, and the friction that it finds.
+
+use crate::model::configuration::ConfiguredFinger;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// How far beyond the soft limits a mechanical stop is where none is configured, degrees.
+const STOP_MARGIN: f64 = 3.0;
+
+/// How the zero of the encoders is found.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum ZeroingMethod {
+    /// The finger stands in `zeroing.pose_degrees` when zeroing begins.
+    #[default]
+    Pose,
+    /// Every joint is led against both of its mechanical stops.
+    Stops,
+    /// The configured zero stays, if the board says that its counts are still good.
+    Kept,
+}
+
+/// `[finger.zeroing]`
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredZeroing {
+    /// Which way.
+    pub method: ZeroingMethod,
+    /// Joint angles of the pose, degrees.
+    pub pose_degrees: [f64; 3],
+    /// Where the lower stops are, degrees; none: 3 degrees beyond the soft limits.
+    pub lower_stop_degrees: Option<[f64; 3]>,
+    /// Where the upper stops are, degrees; none: 3 degrees beyond the soft limits.
+    pub upper_stop_degrees: Option<[f64; 3]>,
+    /// Largest torque that leads a joint to its stop, N cm: several times its friction.
+    pub torque: f64,
+    /// Speed at which a joint is led, rad/s.
+    pub speed: f64,
+    /// After so many seconds a routine gives up.
+    pub time_limit_s: f64,
+}
+
+impl Default for ConfiguredZeroing {
+    fn default() -> Self {
+        Self {
+            method: ZeroingMethod::Pose,
+            pose_degrees: [0.0, 30.0, 60.0],
+            lower_stop_degrees: None,
+            upper_stop_degrees: None,
+            torque: 2.0,
+            speed: 0.7,
+            time_limit_s: 120.0,
+        }
+    }
+}
+
+impl ConfiguredFinger {
+    /// Angles of the mechanical stops, rad: lower, upper.
+    pub fn stops(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let beyond = |limits: [f64; 3], margin: f64| limits.map(|limit| limit + margin);
+        let lower = self.zeroing.lower_stop_degrees.unwrap_or(beyond(self.joints.minimum_degrees, -STOP_MARGIN));
+        let upper = self.zeroing.upper_stop_degrees.unwrap_or(beyond(self.joints.maximum_degrees, STOP_MARGIN));
+        (Vector3::from(lower.map(f64::to_radians)), Vector3::from(upper.map(f64::to_radians)))
+    }
+}

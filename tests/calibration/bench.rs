@@ -1,0 +1,142 @@
+//! A finger and a controller that believes something else of it, with a calibration in charge.
+
+use nalgebra::{Vector3, Vector4};
+use sun2xp::control::calibration::{Calibration, Findings, Obstacle, Sample, Task, Verdict};
+use sun2xp::control::{Activity, Command, Controller, Feedback, Report, SetPoint, State};
+use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
+
+pub struct Bench {
+    pub plant: Plant,
+    pub belief: ConfiguredFinger,
+    rate: f64,
+    sensors: Sensors,
+    controller: Controller,
+    state: State,
+    command: Command,
+    pub report: Report,
+    /// A gauge that shows always the same count.
+    pub dead_gauge: Option<(usize, u16)>,
+    /// What the board says of its counts.
+    pub zero_valid: bool,
+    /// Largest true tension, N.
+    pub largest_tension: f64,
+}
+
+impl Bench {
+    pub fn new(truth: &ConfiguredFinger, belief: &ConfiguredFinger, rate: f64) -> Self {
+        let mut plant = Plant::new(truth, Vector3::zeros()).unwrap();
+        let mut sensors = Sensors::new(truth);
+        let controller = Controller::new(belief, rate).unwrap();
+        let state = controller.start(&read(&mut sensors, &plant));
+        plant.release_brake();
+        Self {
+            plant,
+            belief: belief.clone(),
+            rate,
+            sensors,
+            controller,
+            state,
+            command: Command::default(),
+            report: Report::default(),
+            dead_gauge: None,
+            zero_valid: true,
+            largest_tension: 0.0,
+        }
+    }
+
+    fn feedback(&mut self) -> Feedback {
+        let mut feedback = read(&mut self.sensors, &self.plant);
+        if let Some((gauge, count)) = self.dead_gauge {
+            feedback.gauge_counts[gauge] = count;
+        }
+        feedback
+    }
+
+    fn advance(&mut self, feedback: &Feedback, activity: &Activity) {
+        let steps = (1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize;
+        for _ in 0..steps {
+            self.plant.step((self.command.motor_torques * 0.01).into());
+            self.largest_tension = self.largest_tension.max(self.plant.tensions().max());
+        }
+        let (command, report) = self.controller.cycle(&mut self.state, Some(feedback), activity);
+        (self.command, self.report) = (command, report);
+    }
+
+    pub fn run(&mut self, seconds: f64, activity: &Activity) {
+        for _ in 0..(seconds * self.rate) as usize {
+            let feedback = self.feedback();
+            self.advance(&feedback, activity);
+        }
+    }
+
+    /// Slack is taken up and the pose held, as after OpenHand.
+    pub fn open(mut self) -> Self {
+        self.run(0.3, &Activity::TakeUpSlack);
+        let stiffness = nalgebra::Matrix3::identity() * 3.0;
+        let joints = self.report.joints;
+        self.run(0.5, &Activity::Follow(SetPoint::hard_finger(joints, stiffness)));
+        self
+    }
+
+    /// Runs a routine to its verdict.
+    pub fn calibrate(&mut self, task: Task) -> Result<Findings, Obstacle> {
+        self.calibrate_with(task, |_, _| {})
+    }
+
+    /// The same, with something happening every cycle: seconds since the beginning, the plant.
+    pub fn calibrate_with(
+        &mut self,
+        task: Task,
+        mut happen: impl FnMut(f64, &mut Plant),
+    ) -> Result<Findings, Obstacle> {
+        let mut calibration = Calibration::new(task, &self.belief, self.rate).unwrap();
+        self.largest_tension = 0.0;
+        let mut last = 0.0;
+        for cycle in 0.. {
+            happen(cycle as f64 / self.rate, &mut self.plant);
+            let feedback = self.feedback();
+            let report = self.report;
+            let sample = Sample { feedback: &feedback, report: &report, zero_valid: self.zero_valid };
+            let (activity, verdict) = calibration.cycle(&sample);
+            if std::env::var_os("TRACE").is_some() && cycle % 200 == 0 {
+                eprintln!(
+                    "{:.1} {:?} j {:.3?} t {:.2?} {verdict:?}",
+                    cycle as f64 / self.rate,
+                    task,
+                    self.plant.joints().as_slice(),
+                    self.plant.tensions().as_slice()
+                );
+            }
+            match verdict {
+                Verdict::Going(progress) => {
+                    assert!((0.0..=1.0).contains(&progress.part) && progress.part >= last - 0.3, "{progress:?}");
+                    last = progress.part;
+                }
+                Verdict::Found(findings) => {
+                    findings.apply(&mut self.belief);
+                    return Ok(findings);
+                }
+                Verdict::Refused(obstacle) => {
+                    assert!(matches!(activity, Activity::Turn(torques) if torques == Vector4::zeros()));
+                    return Err(obstacle);
+                }
+            }
+            self.advance(&feedback, &activity);
+        }
+        unreachable!("a routine ends by its time limit at the latest")
+    }
+
+    /// A new controller with what has been found, and the finger a spring again.
+    pub fn adopt(mut self) -> Self {
+        self.controller = Controller::new(&self.belief, self.rate).unwrap();
+        let feedback = self.feedback();
+        self.state = self.controller.start(&feedback);
+        self.open()
+    }
+}
+
+fn read(sensors: &mut Sensors, plant: &Plant) -> Feedback {
+    let (motor_counts, gauge_counts) = sensors.read(plant);
+    Feedback { motor_counts, gauge_counts }
+}

@@ -1,0 +1,113 @@
+//! What stands in the way is named.
+
+use crate::bench::Bench;
+use sun2xp::control::calibration::{Obstacle, Task};
+use sun2xp::model::Surface;
+use sun2xp::model::configuration::{ConfiguredFinger, ZeroingMethod};
+
+fn with_stops() -> ConfiguredFinger {
+    let mut finger = ConfiguredFinger::default();
+    finger.zeroing.method = ZeroingMethod::Stops;
+    finger
+}
+
+#[test]
+fn a_cut_tendon() {
+    for task in [Task::Zero, Task::Identify] {
+        let finger = with_stops();
+        let mut bench = Bench::new(&finger, &finger, 1000.0);
+        // So slack that it never comes taut.
+        bench.plant.turn_motor(2, -1e3);
+        let refused = bench.calibrate(task);
+        assert!(matches!(refused, Err(Obstacle::Slack { tendon: 3, .. })), "{task:?}: {refused:?}");
+    }
+}
+
+#[test]
+fn a_tendon_that_breaks_on_the_way() {
+    let finger = with_stops();
+    let mut bench = Bench::new(&finger, &finger, 1000.0).open();
+    let refused = bench.calibrate_with(Task::Zero, |seconds, plant| {
+        if seconds > 3.0 {
+            let slack = plant.motor_angles()[1];
+            plant.turn_motor(1, -1e3 - slack);
+        }
+    });
+    let expected =
+        matches!(refused, Err(Obstacle::NoStop { .. } | Obstacle::EarlyStop { .. } | Obstacle::TimeLimit { .. }));
+    assert!(expected, "{refused:?}");
+}
+
+#[test]
+fn a_dead_gauge() {
+    let finger = ConfiguredFinger::default();
+    let mut bench = Bench::new(&finger, &finger, 1000.0).open();
+    bench.dead_gauge = Some((3, 220));
+    let refused = bench.calibrate(Task::Zero);
+    assert!(matches!(refused, Err(Obstacle::DeadGauge { tendon: 4, .. })), "{refused:?}");
+    let mut bench = Bench::new(&finger, &finger, 1000.0);
+    bench.dead_gauge = Some((1, 0));
+    let refused = bench.calibrate(Task::Signs);
+    assert_eq!(refused, Err(Obstacle::SenselessGauge { tendon: 2 }));
+}
+
+#[test]
+fn a_joint_that_something_blocks() {
+    let mut finger = with_stops();
+    // Across the way of joint 0.
+    finger.simulation.surface =
+        Some(Surface::Wall { point: [3.0, 0.0, 0.0], normal: [-1.0, 0.0, 0.0], stiffness: 300.0 });
+    let mut bench = Bench::new(&finger, &finger, 1000.0).open();
+    let refused = bench.calibrate(Task::Zero);
+    assert!(matches!(refused, Err(Obstacle::EarlyStop { joint: 0, .. })), "{refused:?}");
+}
+
+#[test]
+fn a_stop_that_is_not_where_it_is_configured() {
+    let finger = with_stops();
+    let mut belief = finger.clone();
+    belief.zeroing.upper_stop_degrees = Some([63.0, 110.0, 123.0]);
+    let refused = Bench::new(&finger, &belief, 1000.0).open().calibrate(Task::Zero);
+    assert!(matches!(refused, Err(Obstacle::EarlyStop { joint: 1, .. })), "{refused:?}");
+    let mut truth = finger.clone();
+    truth.simulation.stop_margin_degrees = 30.0;
+    let refused = Bench::new(&truth, &finger, 1000.0).open().calibrate(Task::Zero);
+    assert!(matches!(refused, Err(Obstacle::NoStop { joint: 0, .. })), "{refused:?}");
+}
+
+#[test]
+fn a_board_that_lost_its_counts_keeps_no_zero() {
+    let mut finger = ConfiguredFinger::default();
+    finger.zeroing.method = ZeroingMethod::Kept;
+    let mut bench = Bench::new(&finger, &finger, 1000.0).open();
+    bench.zero_valid = false;
+    assert_eq!(bench.calibrate(Task::Zero), Err(Obstacle::NotKept));
+}
+
+#[test]
+fn a_finger_that_is_shaken_while_its_gauges_are_read() {
+    let finger = ConfiguredFinger::default();
+    let mut bench = Bench::new(&finger, &finger, 1000.0).open();
+    let refused = bench.calibrate_with(Task::Zero, |seconds, plant| {
+        let push = 3.0 * (seconds * 30.0).sin();
+        plant.set_external_force(nalgebra::Vector3::new(push, push, push));
+    });
+    assert!(refused.is_err(), "{refused:?}");
+}
+
+#[test]
+fn a_routine_that_takes_too_long() {
+    let mut finger = with_stops();
+    finger.zeroing.time_limit_s = 2.0;
+    let refused = Bench::new(&finger, &finger, 1000.0).open().calibrate(Task::Zero);
+    assert_eq!(refused, Err(Obstacle::TimeLimit { seconds: 2.0 }));
+}
+
+#[test]
+fn a_motor_that_does_not_turn() {
+    let mut finger = ConfiguredFinger::default();
+    let belief = finger.clone();
+    finger.simulation.motor_coulomb_friction[2] = 0.02;
+    let refused = Bench::new(&finger, &belief, 1000.0).calibrate(Task::Signs);
+    assert_eq!(refused, Err(Obstacle::MotorStuck { motor: 3 }));
+}

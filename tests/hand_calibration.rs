@@ -1,0 +1,77 @@
+//! Calibration of an open hand on a simulated board: real threads, a real pseudo terminal, real time.
+
+use std::fs;
+use sun2xp::control::calibration::{Findings, Obstacle, Step};
+use sun2xp::finger::Stage;
+use sun2xp::hand::{Calibrating, Hand, HandError, read};
+
+const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.encoder]\nzero = [700, -20, 30, 4000] # last year\n\
+                    [finger.2.gauge]\nzero = [ 204.0, 200.0, 200.0,  # tendon 3 was exchanged\n 190.0 ]\n";
+
+#[test]
+fn a_finger_is_calibrated_and_its_file_rewritten() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.toml");
+    fs::write(&path, FILE).expect("written");
+    let hand = Hand::open_limp(read(&path).expect("usable"), Some(path.clone())).expect("open");
+    let stage = |finger| hand.report(finger).expect("a report").stage;
+    assert_eq!([1, 2, 3].map(stage), [Stage::Limp; 3]);
+
+    let mut steps = Vec::new();
+    let signs = hand.find_signs(2, |progress| steps.push(progress.step)).expect("signs");
+    let Findings::Signs(signs) = signs else { panic!("{signs:?}") };
+    assert_eq!((signs.motor, signs.encoder, signs.gauge), ([1; 4], [1; 4], [1; 4]));
+    assert!(steps.contains(&Step::TryingMotors));
+    assert_eq!(stage(2), Stage::Limp);
+
+    // The simulated finger starts in the pose that is configured by default, and stays near there: slack is not taken up evenly.
+    let zeros = hand.zero(2, |_| {}).expect("zeros");
+    let Findings::Zeros(zeros) = zeros else { panic!("{zeros:?}") };
+    for tendon in 0..4 {
+        let (found, there) = (zeros.gauge[tendon], [204.0, 200.0, 200.0, 190.0][tendon]);
+        assert!((found - there).abs() < 1.0, "{zeros:?}");
+    }
+    assert_eq!(stage(2), Stage::Running);
+    assert_eq!([stage(1), stage(3)], [Stage::Limp; 2]);
+    let joints = hand.position(2).expect("position");
+    let pose = [0.0, 30f64.to_radians(), 60f64.to_radians()];
+    assert!(joints.iter().zip(pose).all(|(is, was)| (is - was).abs() < 0.3), "{joints:?}");
+    hand.send_position(2, joints).expect("a finger that is zeroed takes set points");
+
+    assert!(hand.store_calibration().expect("stored"));
+    let text = fs::read_to_string(&path).expect("there");
+    assert!(text.starts_with("# The hand on the desk.\n[hand]\nrate = 500\n"), "{text}");
+    assert!(text.contains("# last year") && text.contains("# tendon 3 was exchanged"), "{text}");
+    assert!(text.contains("[finger.2.encoder]\nzero = ["), "{text}");
+    let (again, found) = (read(&path).expect("usable"), hand.calibrated(2).expect("there"));
+    assert_eq!(again.fingers[1].encoder.zero, found.encoder.zero);
+    assert_eq!(again.fingers[0].encoder.zero, [700, -20, 30, 4000]);
+}
+
+#[test]
+fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
+    let mut configuration = read_default();
+    configuration.fingers[0].zeroing.method = sun2xp::model::configuration::ZeroingMethod::Stops;
+    configuration.fingers[0].zeroing.time_limit_s = 1.0;
+    let hand = Hand::open(configuration.clone()).expect("open");
+    let mut calibrating = Calibrating::begin(&hand, 1, sun2xp::control::calibration::Task::Zero).expect("begun");
+    let second = Calibrating::begin(&hand, 1, sun2xp::control::calibration::Task::Zero);
+    assert!(matches!(second, Err(HandError::Busy(1))), "{second:?}");
+    let refused = loop {
+        match calibrating.poll(&hand) {
+            Ok(_) => std::thread::sleep(std::time::Duration::from_millis(5)),
+            Err(error) => break error,
+        }
+    };
+    let expected = matches!(refused, HandError::Calibration { finger: 1, obstacle: Obstacle::TimeLimit { .. } });
+    assert!(expected, "{refused}");
+    assert_eq!(refused.errno(), libc::ETIMEDOUT);
+    assert_eq!(hand.report(1).expect("a report").stage, Stage::Limp);
+    assert_eq!(hand.calibrated(1).expect("there"), configuration.fingers[0]);
+    assert!(!hand.store_calibration().expect("nowhere to store"));
+    assert!(matches!(hand.zero(4, |_| {}), Err(HandError::NoSuchFinger(4))));
+}
+
+fn read_default() -> sun2xp::model::configuration::Configuration {
+    sun2xp::model::configuration::Configuration::default()
+}
