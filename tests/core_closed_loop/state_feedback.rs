@@ -189,6 +189,24 @@ fn friction_does_not_hold_the_finger_and_does_without_dither() {
 }
 
 #[test]
+fn the_spring_begins_where_the_finger_is() {
+    for rate in RATES {
+        for pose in poses_of(SEED).into_iter().step_by(4) {
+            let finger = finger_at(&pose);
+            let mut servo = Loop::new(&finger, rate);
+            servo.run(0.3, &Activity::TakeUpSlack);
+            let target = spring(servo.report.joints, 3.0);
+            let mut farthest = 0.0f64;
+            for _ in 0..(rate as usize / 2) {
+                servo.cycle(&target);
+                farthest = farthest.max((servo.plant.joints() - pose).amax());
+            }
+            assert!(farthest < 0.02, "{rate} Hz: {farthest} rad from {pose}");
+        }
+    }
+}
+
+#[test]
 fn a_reply_that_never_comes_leaves_the_command_where_it_was() {
     let mut servo = Loop::new(&finger(), 1000.0);
     let target = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
