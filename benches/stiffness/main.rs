@@ -33,7 +33,7 @@ struct Arguments {
     #[arg(long, value_delimiter = ',', default_values_t = [500.0, 1000.0, 2000.0])]
     rates: Vec<f64>,
     /// Tendon controllers, as in the configuration.
-    #[arg(long, value_delimiter = ',', value_parser = scheme, default_values = ["figure 10"])]
+    #[arg(long, value_delimiter = ',', value_parser = scheme, default_values = ["figure 10", "state feedback"])]
     schemes: Vec<Scheme>,
     /// Replaces the table in this file, between its two marks.
     #[arg(long)]
