@@ -320,14 +320,11 @@ impl Controller {
             return;
         };
         let begins = !matches!(state.doing, Doing::Following(_));
-        if begins {
-            law.begin(elastic);
-        }
         state.doing = Doing::Following(elastic.joints);
         let Decision { pulls, against_friction, joint_torques, distribution } =
-            law.decide(elastic, set_point, &self.soft_limits, &self.gravity, &self.distribution);
+            law.decide(elastic, set_point, begins, &self.soft_limits, &self.gravity, &self.distribution);
         state.against_friction = against_friction;
-        self.give(state, &pulls, begins);
+        self.give(state, &pulls, false);
         state.report.joint_torques = joint_torques;
         state.report.desired_tensions = distribution.tensions;
         state.report.torque_scale = distribution.scale;

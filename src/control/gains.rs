@@ -20,7 +20,7 @@ pub(super) struct Gains {
 const SET_POINT_SPEED: f64 = 2.0;
 
 /// rad/s. State feedback follows its reference, which therefore may move as fast as the tensions can carry it: from 1000 Hz up.
-const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 10.0;
+const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 5.0;
 
 /// Rate, Hz, then the fields of [`Gains`] in their order but the last. Found by experiment with the finger of the default configuration.
 type Row = (f64, [f64; 6]);

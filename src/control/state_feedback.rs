@@ -15,6 +15,7 @@ use super::soft_limits::SoftLimits;
 use super::state_feedback_numbers::Numbers;
 use super::tendon_observer::{ElasticTendon, ObserverDesign, TendonEstimate, TendonMotion, TendonObserver};
 use super::tension_distribution::{Distribution, TensionDistribution};
+use super::transition::Transition;
 use super::usable::positive;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::model::{LinkDynamics, Tendons};
@@ -32,6 +33,8 @@ const BLIND: u32 = 20;
 /// The law. SI units inside; the tension distribution and the spring speak N cm.
 #[derive(Clone, Debug)]
 pub(super) struct StateFeedback {
+    /// s.
+    period: f64,
     observers: [TendonObserver; 4],
     joint_stiffness: JointStiffness,
     dynamics: LinkDynamics,
@@ -74,6 +77,9 @@ pub(super) struct StateFeedbackState {
     jerk: Vector3<f64>,
     lost: u32,
     anchor: Vector3<f64>,
+    /// What the tensions still differ by from what the spring asks for. Of tensions, not of pulls: these are noisy, and the
+    /// noise of one cycle must not be kept.
+    transition: Transition,
     reference: ReferenceState,
     dither: DitherState,
     /// Measured joint angles, rad, and joint rates, rad/s.
@@ -131,7 +137,14 @@ impl StateFeedback {
                 stiffness: stiffness[index],
                 home: home[index],
             };
-            TendonObserver::new(tendon, &design, 1.0 / rate)
+            let too_far = || Unusable {
+                key: "tendon.stiffness",
+                reason: format!(
+                    "of {} N/m with {} kg of motor cannot be observed at {rate} Hz",
+                    tendon.stiffness, tendon.mass
+                ),
+            };
+            TendonObserver::new(tendon, &design, 1.0 / rate).ok_or_else(too_far)
         };
         let dynamics = LinkDynamics::new(finger.links(), finger.links.masses, finger.links.radii, Vector3::zeros());
         // The frequency of motors against links, for the inertia of a finger bent like at its homing pose.
@@ -143,7 +156,8 @@ impl StateFeedback {
         let frequency = (mean_stiffness / link_mass + alpha * mean_stiffness / mean_mass).sqrt();
         let relative_damping = 2.0 * numbers.relative_damping * mean_mass * frequency;
         Ok(Self {
-            observers: std::array::from_fn(observer),
+            period: 1.0 / rate,
+            observers: [observer(0)?, observer(1)?, observer(2)?, observer(3)?],
             joint_stiffness: JointStiffness::new(finger.links(), 0.0),
             dynamics,
             damping: DampingDesign {
@@ -185,6 +199,7 @@ impl StateFeedback {
             jerk: Vector3::zeros(),
             lost: 0,
             anchor: joints,
+            transition: Transition::default(),
             reference: self.reference.start(&joints),
             dither: self.dither.start(),
             joints,
@@ -241,22 +256,22 @@ impl StateFeedback {
         state.jerk = Vector3::zeros();
     }
 
-    /// The spring begins here, without deflection.
-    pub fn begin(&self, state: &mut StateFeedbackState) {
-        state.anchor = state.joints;
-        state.reference = self.reference.start(&state.joints);
-        state.dither = self.dither.start();
-    }
-
-    /// The pulls that make the fingertip the spring of `set_point`, from the next sample on.
+    /// The pulls that make the fingertip the spring of `set_point`, from the next sample on. It `begins` where the finger is.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
         set_point: &SetPoint,
+        begins: bool,
         limits: &SoftLimits,
         gravity: &GravityCompensation,
         distribution: &TensionDistribution,
     ) -> Decision {
+        if begins {
+            // Without deflection.
+            state.anchor = state.joints;
+            state.reference = self.reference.start(&state.joints);
+            state.dither = self.dither.start();
+        }
         let motion: [TendonMotion; 4] = std::array::from_fn(|tendon| self.motion(state, tendon));
         let of = |part: fn(&TendonMotion) -> f64| Vector4::from_fn(|tendon, _| part(&motion[tendon]));
         let (tensions, motor_speeds) = (of(|motion| motion.tension), of(|motion| motion.motor_speed));
@@ -285,6 +300,10 @@ impl StateFeedback {
             + self.joint_coulomb.component_mul(&moving);
         let joint_torques = torque * 100.0;
         let distribution = distribution.distribute(&joint_torques);
+        if begins {
+            state.transition.begin(&tensions, &distribution.tensions);
+        }
+        let desired = distribution.tensions + state.transition.advance(self.period);
 
         // The tendons as force sources: what the reference and the dither ask of the motors is fed forward.
         let tension_rates = self.pseudo_inverse * (inertia * reference.jerk);
@@ -298,7 +317,7 @@ impl StateFeedback {
             let stretching = (tension_rates[tendon] + shake_rates[tendon]) / self.stiffness[tendon];
             let yielding = self.mass[tendon] / self.stiffness[tendon];
             tensions[tendon]
-                + self.inertia_gain * (distribution.tensions[tendon] + shake[tendon] - tensions[tendon])
+                + self.inertia_gain * (desired[tendon] + shake[tendon] - tensions[tendon])
                 // The share of the joints' speed must be exactly 1: with 0.94 it was a drag of three times D.
                 - self.relative_damping * (motor_speeds[tendon] - speeds[tendon] - stretching)
                 - disturbances[tendon]

@@ -177,10 +177,10 @@ mod tests {
     fn inline_tables_take_it_too() {
         let text = stored("finger.3 = { encoder = { zero = [0, 0, 0, 0] } }\n", |hand| {
             hand.fingers[2].encoder.zero = [9, 0, 0, 0];
-            hand.fingers[2].friction.conduit = [0.05; 4];
+            hand.fingers[2].friction.conduit = [0.07; 4];
         });
         assert!(text.contains("zero = [9, 0, 0, 0]"), "{text}");
-        assert!(text.contains("conduit = [0.05, 0.05, 0.05, 0.05]"), "{text}");
+        assert!(text.contains("conduit = [0.07, 0.07, 0.07, 0.07]"), "{text}");
     }
 
     #[test]

@@ -207,10 +207,10 @@ pub enum Scheme {
     #[serde(rename = "figure 9")]
     Figure9,
     /// Figure 10 (Salisbury): proportional and integral on the tension error, and a damper on the motor.
+    #[default]
     #[serde(rename = "figure 10")]
     Figure10,
     /// Feedback of the whole state of links, elastic tendons and motors.
-    #[default]
     #[serde(rename = "state feedback")]
     StateFeedback,
 }

@@ -70,13 +70,18 @@ fn a_motor_that_is_warm_is_limited_to_what_it_can_give_for_ever() {
     finger.motor.thermal_time = 0.5;
     let mut servo = Loop::new(&finger, 1000.0);
     let far = spring(Vector3::new(3.0, 0.3, 0.6), 6.0);
-    let mut largest = [0.0f64; 2];
-    for (phase, largest) in largest.iter_mut().enumerate() {
-        servo.run([0.0, 3.0][phase], &far);
-        for _ in 0..300 {
-            servo.cycle(&far);
-            *largest = largest.max(servo.report.motor_torques.amax());
-        }
+    let mut first = 0.0f64;
+    for _ in 0..400 {
+        servo.cycle(&far);
+        first = first.max(servo.report.motor_torques.amax());
     }
-    assert!(largest[0] > 2.0 && largest[1] < 1.7, "{largest:?} N cm");
+    assert!(first > 2.5, "{first} N cm");
+    servo.run(3.0, &far);
+    let mut squares = nalgebra::Vector4::zeros();
+    for _ in 0..1000 {
+        servo.cycle(&far);
+        squares += servo.report.motor_torques.component_mul(&servo.report.motor_torques) / 1000.0;
+    }
+    assert!(squares.max() < 1.001, "{:?} N^2 cm^2", squares.as_slice());
+    assert!(squares.max() > 0.8, "{:?} N^2 cm^2: blind", squares.as_slice());
 }

@@ -42,7 +42,9 @@ fn motor_constants_a_fifth_off_do_not_matter() {
 #[test]
 fn a_jammed_motor_does_not_wind_up_the_integral() {
     // A tendon that is held at 5 N while 20 N are wanted, for long; then let go.
-    let finger = ConfiguredFinger::default();
+    let mut finger = ConfiguredFinger::default();
+    // A motor that never gets too warm.
+    finger.motor.continuous_torque = finger.motor.torque_limit;
     let controller = Controller::new(&finger, 1000.0).unwrap();
     let count = |newton: f64| (newton * 4095.0 / 100.0).round() as u16;
     let held = Feedback { motor_counts: [0; 4], gauge_counts: [count(5.0); 4] };
