@@ -18,9 +18,6 @@ static HAND: RwLock<Option<Hand>> = RwLock::new(None);
 /// signal handler that calls exit: then it would wait for ever.
 const PATIENCE_AT_EXIT: Duration = Duration::from_millis(100);
 
-/// How long exit waits for the fingers to reach their end state: longer than any configured ramp.
-const LONGEST_END: Duration = Duration::from_secs(6);
-
 /// How often a calibration is looked at.
 const LOOKING: Duration = Duration::from_millis(5);
 
@@ -51,7 +48,7 @@ pub(super) fn close_at_exit() {
     if let Some(hand) = HAND.try_read_for(PATIENCE_AT_EXIT)
         && let Some(hand) = &*hand
     {
-        hand.end(LONGEST_END);
+        hand.end();
     }
 }
 

@@ -144,6 +144,13 @@ impl Mailbox {
         *self.planners.lock().reports.read()
     }
 
+    /// Whether the servo has nothing more to do for the finger; none where a planner's call is just using the mailbox, perhaps one
+    /// that the calling thread has left for a signal handler, so that waiting for it would be for ever.
+    pub fn ended(&self) -> Option<bool> {
+        let mut planners = self.planners.try_lock()?;
+        Some(matches!(planners.reports.read().stage, Stage::Closed | Stage::Faulted(_)))
+    }
+
     /// Changes the set point that was sent last and sends it whole, unless the finger is faulted.
     ///
     /// # Errors

@@ -26,6 +26,12 @@ const HEAD_START: u64 = 10_000_000;
 /// Bound on the components of a push, N: far beyond what tears a finger off, and not beyond what can be simulated.
 const STRONGEST_PUSH: f64 = 1000.0;
 
+/// A board takes no longer than this, ns, to confirm that it has stopped.
+const STOPPING: u64 = 300_000_000;
+
+/// A servo's last frames are on the line after this.
+const LAST_WORDS: Duration = Duration::from_millis(20);
+
 /// How often OpenHand looks whether every finger holds its pose.
 const LOOKING: Duration = Duration::from_millis(1);
 
@@ -41,6 +47,8 @@ pub struct Hand {
     /// Where the configuration was read from, and where calibration is stored.
     pub(super) file: Option<PathBuf>,
     realtime: bool,
+    /// Within this time, ns, every finger reaches its end state.
+    ending: u64,
     /// The process that has the threads. A forked child inherits this value, but not them.
     process: u32,
 }
@@ -121,9 +129,11 @@ impl Hand {
         threads.dedup();
 
         let dispatcher = Dispatcher::new(reached);
+        let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOPPING;
         let configuration = RwLock::new(configuration);
         let servos = Vec::new();
-        let mut hand = Self { dispatcher, servos, simulated, configuration, file, realtime: true, process: id() };
+        let mut hand =
+            Self { dispatcher, servos, simulated, configuration, file, realtime: true, ending, process: id() };
         // From here on, dropping the hand closes it.
         hand.start(&threads, lines)?;
         hand.wait_for_every_finger()?;
@@ -222,16 +232,17 @@ impl Hand {
         Ok(())
     }
 
-    /// Asks every finger to go to its end state, and waits for that, at most `patience`. Frees nothing and takes no lock but those of
-    /// the mailboxes, so that it serves where a process is about to end. The hand is of no use afterwards.
-    pub fn end(&self, patience: Duration) {
+    /// Asks every finger to go to its end state, and waits until that should be done. Waits for no lock and frees nothing, so that it
+    /// serves where a process is about to end, even in a signal handler. The hand is of no use afterwards.
+    pub fn end(&self) {
         let members = self.dispatcher.members();
         members.iter().for_each(|member| member.mailbox.close());
-        let limit = now() + patience.as_nanos() as u64;
-        let ended = |stage| matches!(stage, Stage::Closed | Stage::Faulted(_));
-        while now() < limit && !members.iter().all(|member| ended(member.mailbox.report().stage)) {
+        let limit = now() + self.ending;
+        while now() < limit && !members.iter().all(|member| member.mailbox.ended() == Some(true)) {
             sleep(LOOKING);
         }
+        // The servo says so a moment before it has told the board.
+        sleep(LAST_WORDS);
     }
 
     /// Brings every finger to its end state, as configured, and ends the threads. The same as dropping the hand.
