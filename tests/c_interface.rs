@@ -272,6 +272,30 @@ fn a_configuration_that_cannot_be_used_is_told_with_its_line() {
     }
 }
 
+/// The working directory's before the user's, the user's before the system's. None of them can be used, so the refusal names it.
+#[test]
+fn the_nearest_configuration_file_counts() {
+    let bench = Bench::new();
+    let program = bench.build(c_compilers()[0], STRICT, &["opens.c"]);
+    let (user, system) = (bench.path().join("user"), bench.path().join("system"));
+    let files = [bench.path().to_path_buf(), user.join("sun2xp"), system.join("sun2xp")];
+    for folder in &files {
+        fs::create_dir_all(folder).expect("a folder");
+        fs::write(folder.join("sun2xp.toml"), "[hand]\nrat = 1\n").expect("a configuration file");
+    }
+    for (folder, named) in
+        files.iter().zip(["sun2xp.toml:2: ", "user/sun2xp/sun2xp.toml:2: ", "system/sun2xp/sun2xp.toml:2: "])
+    {
+        let mut command = Command::new("env");
+        command.args(["-u", "SUN2XP_CONFIG"]);
+        command.arg(format!("XDG_CONFIG_HOME={}", user.display()));
+        command.arg(format!("XDG_CONFIG_DIRS={}", system.display())).arg(&program);
+        let told = said(&bench.run(command));
+        assert!(told.contains(named), "{named}: {told}");
+        fs::remove_file(folder.join("sun2xp.toml")).expect("removed");
+    }
+}
+
 #[test]
 fn a_named_configuration_must_exist() {
     let bench = Bench::new();
