@@ -1,0 +1,131 @@
+//! From the joints to the counts on the wire: geometry, motors, sensors, tendons, joint limits.
+
+use serde::{Deserialize, Serialize};
+
+/// `[finger.geometry]`
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredGeometry {
+    /// l0, l1, l2, cm.
+    pub links: [f64; 3],
+    /// R of eq. 14, cm: three rows (joints) of four entries (tendons).
+    pub r: [[f64; 4]; 3],
+    /// The ghost row of eq. 15; none: the null vector of R.
+    pub ghost_row: Option<[f64; 4]>,
+    /// Equivalent shaft radius of each motor, cm: tension = torque / radius.
+    pub motor_radius: [f64; 4],
+}
+
+impl Default for ConfiguredGeometry {
+    fn default() -> Self {
+        Self {
+            links: [3.556, 5.080, 4.000],
+            // Entry (2, 4) is -1.09: the report prints +1.09, with which R is singular; eq. 14 has -r24.
+            r: [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, -1.09], [0.0, 0.62, -0.62, 0.0]],
+            ghost_row: None,
+            motor_radius: [0.0475; 4],
+        }
+    }
+}
+
+/// `[finger.motor]`
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredMotor {
+    /// +1 where a positive command pulls the tendon, else -1.
+    pub sign: [i8; 4],
+    /// Largest torque of each motor, N cm.
+    pub torque_limit: [f64; 4],
+    /// Torque constant, N cm/A. The board is told, so that it can turn torque into current.
+    pub torque_constant: [f64; 4],
+    /// Inertia of each rotor, gear included, kg m^2.
+    pub inertia: [f64; 4],
+    /// Viscous friction of each motor, N m s/rad.
+    pub viscous_friction: [f64; 4],
+    /// Torque that each motor can give for ever, N cm.
+    pub continuous_torque: [f64; 4],
+    /// Thermal time constant of the motors, s.
+    pub thermal_time: f64,
+}
+
+impl Default for ConfiguredMotor {
+    fn default() -> Self {
+        Self {
+            sign: [1; 4],
+            torque_limit: [4.75; 4],
+            torque_constant: [2.34; 4],
+            inertia: [6e-7; 4],
+            viscous_friction: [2e-6; 4],
+            continuous_torque: [2.5; 4],
+            thermal_time: 15.0,
+        }
+    }
+}
+
+/// `[finger.encoder]`
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredEncoder {
+    /// Counts a revolution of the motor.
+    pub counts_per_revolution: [u32; 4],
+    /// +1 where the count rises as the tendon is pulled in, else -1.
+    pub sign: [i8; 4],
+    /// m_0 of eq. 28: the count at theta = 0 with the homing pretension.
+    pub zero: [i32; 4],
+}
+
+impl Default for ConfiguredEncoder {
+    fn default() -> Self {
+        Self { counts_per_revolution: [2000; 4], sign: [1; 4], zero: [0; 4] }
+    }
+}
+
+/// `[finger.gauge]`
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredGauge {
+    /// Tension of one count, N.
+    pub newton_per_count: [f64; 4],
+    /// Count without tension.
+    pub zero: [f64; 4],
+}
+
+impl Default for ConfiguredGauge {
+    fn default() -> Self {
+        Self { newton_per_count: [100.0 / 4095.0; 4], zero: [0.0; 4] }
+    }
+}
+
+/// `[finger.tendon]`
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredTendon {
+    /// t_min of eq. 19, N. Also the homing pretension.
+    pub minimum: f64,
+    /// t_max, N.
+    pub maximum: f64,
+    /// Stiffness between motor pulley and joint, N/cm, for the stretch that the encoders do not see.
+    pub stiffness: [f64; 4],
+}
+
+impl Default for ConfiguredTendon {
+    fn default() -> Self {
+        Self { minimum: 5.0, maximum: 60.0, stiffness: [300.0; 4] }
+    }
+}
+
+/// `[finger.joints]`
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredJoints {
+    /// Lower soft limits, degrees.
+    pub minimum_degrees: [f64; 3],
+    /// Upper soft limits, degrees.
+    pub maximum_degrees: [f64; 3],
+}
+
+impl Default for ConfiguredJoints {
+    fn default() -> Self {
+        Self { minimum_degrees: [-60.0, -30.0, 5.0], maximum_degrees: [60.0, 100.0, 120.0] }
+    }
+}

@@ -1,0 +1,68 @@
+//! `[hand]`: what all fingers share.
+
+use serde::{Deserialize, Serialize};
+
+/// What happens to the motors when commands stop: by CloseHand, by exit, or by the planner's death.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EndState {
+    /// Torque goes to zero: in a ramp while the servo lives, at once where only the board is left to do it.
+    #[default]
+    Release,
+    /// The board keeps the last torque, within `hold_torque_limit`, for `hold_time_ms`; then it releases.
+    Hold,
+}
+
+/// What happens to a command outside the limits.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OutOfRange {
+    /// ERANGE, and nothing changes.
+    #[default]
+    Refuse,
+    /// The nearest admissible value is taken.
+    Clamp,
+}
+
+/// `[hand]`: what all fingers share.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredHand {
+    /// Cycles of every finger servo in a second, Hz: 100 to 5000.
+    pub rate: f64,
+    /// What the board does when commands stop.
+    pub end_state: EndState,
+    /// How long *hold* holds, ms: 1 to 60 000.
+    pub hold_time_ms: u16,
+    /// Largest motor torque that *hold* keeps, N cm.
+    pub hold_torque_limit: f64,
+    /// How long CloseHand takes to ramp the torque down with *release*, ms: 0 to 5000.
+    pub release_ramp_ms: u16,
+    /// Silence after which the board goes to its end state, ms: 2 to 1000.
+    pub watchdog_ms: u16,
+    /// How long a board may take to answer, and a finger to come under tension, at open, ms.
+    pub open_timeout_ms: u32,
+    /// What happens to a command outside the limits.
+    pub out_of_range: OutOfRange,
+    /// One line on standard error at the first refusal of each kind.
+    pub print_refusals: bool,
+    /// Gravity in palm coordinates, m/s^2.
+    pub gravity: [f64; 3],
+}
+
+impl Default for ConfiguredHand {
+    fn default() -> Self {
+        Self {
+            rate: 1000.0,
+            end_state: EndState::Release,
+            hold_time_ms: 2000,
+            hold_torque_limit: 1.0,
+            release_ramp_ms: 200,
+            watchdog_ms: 20,
+            open_timeout_ms: 5000,
+            out_of_range: OutOfRange::Refuse,
+            print_refusals: true,
+            gravity: [0.0; 3],
+        }
+    }
+}
