@@ -283,13 +283,16 @@ fn the_nearest_configuration_file_counts() {
         fs::create_dir_all(folder).expect("a folder");
         fs::write(folder.join("sun2xp.toml"), "[hand]\nrat = 1\n").expect("a configuration file");
     }
+    // A relative folder of the system's is to be ignored.
+    fs::create_dir_all(bench.path().join("relative/sun2xp")).expect("a folder");
+    fs::write(bench.path().join("relative/sun2xp/sun2xp.toml"), "[hand]\nrat = 1\n").expect("a configuration file");
     for (folder, named) in
         files.iter().zip(["sun2xp.toml:2: ", "user/sun2xp/sun2xp.toml:2: ", "system/sun2xp/sun2xp.toml:2: "])
     {
         let mut command = Command::new("env");
         command.args(["-u", "SUN2XP_CONFIG"]);
         command.arg(format!("XDG_CONFIG_HOME={}", user.display()));
-        command.arg(format!("XDG_CONFIG_DIRS={}", system.display())).arg(&program);
+        command.arg(format!("XDG_CONFIG_DIRS=relative:{}", system.display())).arg(&program);
         let told = said(&bench.run(command));
         assert!(told.contains(named), "{named}: {told}");
         fs::remove_file(folder.join("sun2xp.toml")).expect("removed");
