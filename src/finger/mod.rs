@@ -1,11 +1,19 @@
 //! One finger's servo thread and its mailboxes: the shell around the pure core.
 
+mod black_box;
+mod control_input;
 mod fault;
 mod mailbox;
+mod recording;
+mod replay;
 mod servo;
 mod single;
 
+pub use black_box::{BlackBox, ControlRecord, ControllerSource, CycleRecord, Recorder};
+pub use control_input::ControlInput;
 pub use fault::Fault;
 pub use mailbox::{Adjustable, FingerReport, Mailbox, Order, Stage};
+pub use recording::{Origin, Recording, RecordingError};
+pub use replay::{Difference, NotReplayable, Replayed};
 pub use servo::{ServedPort, Servo};
 pub use single::FingerServo;

@@ -79,7 +79,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
                 let computed = self.clock.now();
                 finger.note(Stage::Compute, computing, computed);
                 finger.note(Stage::Whole, beginning, computed);
-                finger.tell_timing();
+                finger.tell();
                 computing = computed;
             }
         }
@@ -90,6 +90,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         for finger in self.ports.iter_mut().flat_map(|port| &mut port.fingers) {
             finger.fault(Fault::Internal);
             finger.end(0, 0, 0);
+            finger.tell();
         }
         self.confirm_stops();
     }

@@ -1,8 +1,7 @@
 //! Calibrating a finger of an open hand: asks its servo, waits for the verdict, puts what was found in force.
 
-use crate::control::Controller;
 use crate::control::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
-use crate::finger::{Order, Stage};
+use crate::finger::{Adjustable, Order, Stage};
 use crate::hand::calibration_file::store;
 use crate::hand::{Hand, HandError};
 use crate::model::Refusal;
@@ -84,11 +83,16 @@ impl Calibrating {
             Some(Verdict::Found(found)) => {
                 let mut configured = hand.calibrated(finger)?;
                 found.apply(&mut configured);
-                let controller =
-                    Controller::new(&configured, hand.rate()).map_err(|unusable| refusal(finger, unusable))?;
+                let index = finger as usize - 1; // 1 to 3: it has reported
+                let mut configuration = hand.configuration.write();
+                let mut changed = configuration.clone();
+                changed.fingers[index] = configured;
+                let number = hand.dispatcher.announce(finger, &changed)?;
+                let adjustable =
+                    Adjustable::new(&changed, index, number).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = matches!(found, Findings::Signs(_));
-                *self = Self::order(hand, finger, Order::Adopt { controller, limp }, Some(found))?;
-                hand.configuration.write().fingers[finger as usize - 1] = configured; // 1 to 3: it has reported
+                *self = Self::order(hand, finger, Order::Adopt { adjustable, limp }, Some(found))?;
+                *configuration = changed;
                 Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))
             }
         }

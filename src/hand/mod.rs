@@ -4,6 +4,7 @@
 mod adjustment;
 mod admission;
 mod announcement;
+mod black_box;
 mod calibrating;
 mod calibration_file;
 mod configuration_file;
@@ -13,6 +14,7 @@ mod fingertip;
 mod opening;
 mod root;
 
+pub use black_box::save;
 pub use calibrating::{Calibrating, Standing};
 pub use configuration_file::{configured, read};
 pub use error::HandError;

@@ -5,7 +5,7 @@ use crate::control::calibration::Verdict;
 use crate::finger::{FingerReport, Servo, Stage};
 use crate::hand::announcement::say;
 use crate::hand::dispatcher::Dispatcher;
-use crate::hand::opening::{Line, check, reach, simulate};
+use crate::hand::opening::{Line, check, check_folder, reach, simulate};
 use crate::hand::{HandError, configured};
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{self, Distribution, MonotonicClock, Priority, Realtime, Schedule, now, spawn};
@@ -122,6 +122,7 @@ impl Hand {
 
     fn open_from(configuration: Configuration, file: Option<PathBuf>, limp: bool) -> Result<Self, HandError> {
         check(&configuration)?;
+        check_folder(&configuration)?;
         let simulated = simulate(&configuration)?;
         let (lines, reached) = reach(&configuration, &simulated, limp)?;
         let mut threads: Vec<u8> = lines.iter().map(|line| line.thread).collect();
@@ -250,7 +251,10 @@ impl Hand {
 
     fn start(&mut self, threads: &[u8], lines: Vec<Line>) -> Result<(), HandError> {
         let system = |doing| move |source| HandError::System { doing, source };
-        self.dispatcher.start_collecting().map_err(system("start the thread that collects reports"))?;
+        let folder = self.configuration.read().hand.black_box.clone();
+        self.dispatcher
+            .start_collecting(folder.map(PathBuf::from))
+            .map_err(system("start the thread that collects reports"))?;
         let period = (1e9 / self.configuration.read().hand.rate).round() as u64;
         let first = now() + HEAD_START;
         let mut lines: Vec<Option<Line>> = lines.into_iter().map(Some).collect();
