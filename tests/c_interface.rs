@@ -170,8 +170,17 @@ impl Drop for Board {
 
 #[test]
 fn a_finger_whose_board_dies_is_faulted() {
+    succeed_while_the_board_dies("faulted.c");
+}
+
+#[test]
+fn faults_are_told_by_number_and_in_words() {
+    succeed_while_the_board_dies("faults.c");
+}
+
+fn succeed_while_the_board_dies(source: &str) {
     let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], &strict(&["-std=c99"]), &["faulted.c"]);
+    let program = bench.build(c_compilers()[0], &strict(&["-std=c99"]), &[source]);
     let board = Board::start(&bench);
     let mut command = Command::new(&program);
     command.arg(board.process.id().to_string());
