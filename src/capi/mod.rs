@@ -12,6 +12,7 @@
 mod black_box_calls;
 mod calls;
 mod default_hand;
+mod fault_calls;
 mod fingertip_calls;
 mod process;
 mod refusal;

@@ -2,7 +2,7 @@
 
 mod black_box;
 mod control_input;
-mod fault;
+mod faults;
 mod mailbox;
 mod recording;
 mod replay;
@@ -11,7 +11,7 @@ mod single;
 
 pub use black_box::{BlackBox, ControlRecord, ControllerSource, CycleRecord, Recorder};
 pub use control_input::ControlInput;
-pub use fault::Fault;
+pub use faults::{Description, Fault, FaultKind, Part, Quantity, Severity, Warnings};
 pub use mailbox::{Adjustable, FingerReport, Mailbox, Order, Stage};
 pub use recording::{Origin, Recording, RecordingError};
 pub use replay::{Difference, NotReplayable, Replayed};

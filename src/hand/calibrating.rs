@@ -81,12 +81,10 @@ impl Calibrating {
             Some(Verdict::Going(progress)) => Ok(Standing::Going(progress)),
             Some(Verdict::Refused(obstacle)) => Err(HandError::Calibration { finger, obstacle }),
             Some(Verdict::Found(found)) => {
-                let mut configured = hand.calibrated(finger)?;
-                found.apply(&mut configured);
                 let index = finger as usize - 1; // 1 to 3: it has reported
                 let mut configuration = hand.configuration.write();
                 let mut changed = configuration.clone();
-                changed.fingers[index] = configured;
+                found.apply(&mut changed.fingers[index]);
                 let number = hand.dispatcher.announce(finger, &changed)?;
                 let adjustable =
                     Adjustable::new(&changed, index, number).map_err(|unusable| refusal(finger, unusable))?;
