@@ -7,6 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
 use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
+use sun2xp::control::calibration::Progress;
 use sun2xp::finger::{CycleRecord, Recording, RecordingError};
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::{Configuration, Scheme};
@@ -147,12 +148,19 @@ fn opening_calibrating_and_closing_are_replayed() {
     let hand = Hand::open(configuration).expect("the simulated hand");
     let opened = hand.recording(1).expect("a recording");
     assert_eq!(opened.cycles[0].stage, "opening");
-    hand.zero(1, |_| {}).expect("zeroed");
+    let mut calibrating = None;
+    let half_way = |progress: Progress| {
+        if progress.part > 0.5 && calibrating.is_none() {
+            calibrating = Some(hand.recording(1).expect("a recording"));
+        }
+    };
+    hand.zero(1, half_way).expect("zeroed");
+    let calibrating = calibrating.expect("taken half way");
+    assert!(calibrating.cycles.iter().any(|cycle| cycle.stage == "calibrating"));
     let calibrated = hand.recording(1).expect("a recording");
-    assert!(calibrated.cycles.iter().any(|cycle| cycle.stage == "calibrating"));
     let adopted = calibrated.origin.controllers.last().expect("a controller");
     assert!(adopted.number == 1 && adopted.gravity.norm() > 0.0, "{adopted:?}");
-    for recording in [&opened, &calibrated] {
+    for recording in [&opened, &calibrating, &calibrated] {
         let replayed = recording.replay().expect("replayable");
         assert_eq!((replayed.different, replayed.first), (0, None));
         assert!(replayed.cycles > 10);
