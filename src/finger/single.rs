@@ -396,7 +396,7 @@ impl FingerServo {
             Stage::Opening => {
                 self.settled_cycles = 0;
                 if self.stage_cycles >= self.limits.tension {
-                    let tendon = self.report.cycle.tensions.imin() as u8 + 1;
+                    let tendon = self.report.cycle.slackest as u8 + 1;
                     let milliseconds = (f64::from(self.stage_cycles) * self.limits.period_ms).round() as u32;
                     self.fault(Fault::SlackTendon { tendon, milliseconds });
                 }
