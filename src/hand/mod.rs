@@ -10,11 +10,14 @@ mod configuration_file;
 mod dispatcher;
 mod error;
 mod fingertip;
+mod missing;
 mod opening;
 mod root;
+mod servo_threads;
 
 pub use calibrating::{Calibrating, Standing};
 pub use configuration_file::{configured, read};
 pub use error::HandError;
 pub use fingertip::FingerTip;
+pub use missing::Missing;
 pub use root::{FingerStatus, Hand};

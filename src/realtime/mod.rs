@@ -1,11 +1,15 @@
-//! Clock, periods, priorities and timing figures of the servo threads.
+//! Clock, periods, priorities, locked memory and timing figures of the servo threads.
 
 mod clock;
+mod follower;
+mod memory;
 mod period;
 mod threads;
 mod timing;
 
 pub use clock::{Clock, MonotonicClock, now};
+pub use follower::Follower;
+pub use memory::Memory;
 pub use period::Schedule;
-pub use threads::{Priority, Realtime, spawn};
+pub use threads::{Priority, Realtime, lock_stack, spawn, touch_stack};
 pub use timing::{CycleTiming, Distribution, Histograms, Stage};
