@@ -8,6 +8,7 @@ mod calibrating;
 mod calibration_file;
 mod configuration_file;
 mod dispatcher;
+mod doctor;
 mod error;
 mod fingertip;
 mod missing;
@@ -17,6 +18,7 @@ mod servo_threads;
 
 pub use calibrating::{Calibrating, Standing};
 pub use configuration_file::{configured, read};
+pub use doctor::{Finding, Verdict, examine};
 pub use error::HandError;
 pub use fingertip::FingerTip;
 pub use missing::Missing;

@@ -6,6 +6,7 @@ mod memory;
 mod period;
 mod threads;
 mod timing;
+mod wake_up;
 
 pub use clock::{Clock, MonotonicClock, now};
 pub use follower::Follower;
@@ -13,3 +14,4 @@ pub use memory::Memory;
 pub use period::Schedule;
 pub use threads::{Priority, Realtime, lock_stack, spawn, touch_stack};
 pub use timing::{CycleTiming, Distribution, Histograms, Stage};
+pub use wake_up::{WakeUp, measure_wake_up};
