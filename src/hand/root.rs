@@ -46,7 +46,7 @@ pub struct Hand {
     pub(super) configuration: RwLock<Configuration>,
     /// Where the configuration was read from, and where calibration is stored.
     pub(super) file: Option<PathBuf>,
-    realtime: bool,
+    pub(super) realtime: bool,
     /// Within this time, ns, every finger reaches its end state.
     ending: u64,
     /// The process that has the threads. A forked child inherits this value, but not them.
