@@ -10,7 +10,7 @@
        2. Return values, errno    7. Servo and real time
        3. Units, frames, order    8. Configuration
        4. float and double        9. The calls
-       5. Planners of 1990
+       5. Planners of 1990       10. Faults
 
 
    1. QUICK START
@@ -173,7 +173,18 @@
        port = "/dev/ttyUSB0"
 
 
-   9. THE CALLS */
+   9. THE CALLS: below, each with its manual
+
+
+   10. FAULTS
+
+   What goes wrong with a finger has a number that never changes (FAULT_..., below), a
+   text, a likely cause and a remedy: FaultText. A fault stops the finger: its motors go
+   to the configured end state, its calls are refused with EIO, and HandError says why,
+   until CloseHand and OpenHand. A warning is told and the finger goes on: it stays for
+   a second after it was last seen. GetFault tells both. Some faults make OpenHand
+   refuse; their numbers stand in the text of HandError. docs/faults.md lists all, with
+   how and how fast each is found. */
 
 #ifndef SUN2XP_H
 #define SUN2XP_H
@@ -190,6 +201,53 @@
 #error "SUN2XP_REAL must be float or double: compile with -DSUN2XP_REAL=float or -DSUN2XP_REAL=double"
 #endif
 #endif
+
+/* The faults (chapter 10). Numbers never change. */
+#define FAULT_SLACK_TENDON            1 /* slack tendon */
+#define FAULT_BROKEN_TENDON           2 /* broken tendon */
+#define FAULT_OVER_TENSION            3 /* over-tension */
+#define FAULT_GAUGE_STUCK             4 /* gauge stuck */
+#define FAULT_GAUGE_OUT_OF_RANGE      5 /* gauge out of range */
+#define FAULT_GAUGE_DISAGREES         6 /* gauge against encoders */
+#define FAULT_ENCODER_JUMP            7 /* encoder jump */
+#define FAULT_STALLED_MOTOR           8 /* stalled motor */
+#define FAULT_OVERHEATED_MOTOR        9 /* over-heated motor */
+#define FAULT_JOINT_AT_STOP          10 /* joint at its stop */
+#define FAULT_IMPOSSIBLE_POSE        11 /* impossible pose */
+#define FAULT_SLACK_IN_MOTION        12 /* slack in motion */
+#define FAULT_LOST_REPLIES           13 /* lost replies */
+#define FAULT_DAMAGED_REPLIES        14 /* damaged replies */
+#define FAULT_LINE_NOISE             15 /* noise on the line */
+#define FAULT_WATCHDOG               16 /* watchdog */
+#define FAULT_BOARD_STOPPED          17 /* board stopped */
+#define FAULT_EMERGENCY_STOP_INPUT   18 /* emergency stop, input */
+#define FAULT_EMERGENCY_STOP_CALL    19 /* emergency stop, call */
+#define FAULT_SUPPLY_FAULT           20 /* motor supply */
+#define FAULT_DRIVER_FAULT           21 /* motor driver */
+#define FAULT_SENSOR_FAULT           22 /* sensor, by the board */
+#define FAULT_BOARD_RESET            23 /* board reset */
+#define FAULT_COMMAND_REFUSED        24 /* command refused */
+#define FAULT_PORT_VANISHED          25 /* port vanished */
+#define FAULT_PORT_FAILED            26 /* port failed */
+#define FAULT_PORT_MISSING           27 /* port missing */
+#define FAULT_PORT_BUSY              28 /* port busy */
+#define FAULT_PORT_PERMISSION        29 /* port forbidden */
+#define FAULT_PORT_UNUSABLE          30 /* port unusable */
+#define FAULT_BOARD_SILENT           31 /* board silent */
+#define FAULT_UNINTELLIGIBLE         32 /* no protocol */
+#define FAULT_UNANSWERED             33 /* finger silent */
+#define FAULT_WRONG_VERSION          34 /* wrong protocol version */
+#define FAULT_WRONG_FINGER           35 /* wrong finger */
+#define FAULT_UNSUITABLE_BOARD       36 /* wrong board */
+#define FAULT_IDENTITY_CHANGED       37 /* identity changed */
+#define FAULT_ZERO_LOST              38 /* zero lost */
+#define FAULT_OVERRUN                39 /* overrun */
+#define FAULT_REALTIME_REFUSED       40 /* no real time */
+#define FAULT_SERVO_PANIC            41 /* servo failed */
+#define FAULT_CURRENT_LIMIT          42 /* current limit */
+#define FAULT_TORQUE_NOT_ADMITTED    43 /* torque not admitted */
+#define FAULT_CALIBRATION_FAILED     44 /* calibration failed */
+#define FAULT_WARM_MOTOR             45 /* warm motor */
 
 #ifdef __cplusplus
 extern "C" {
@@ -439,6 +497,47 @@ struct FingerTip {
 };
 
 /*
+ What GetFault tells of a finger. Set Size = sizeof (struct Fault) before the call:
+ later versions add members at the end.
+ */
+struct Fault {
+    /*
+     In: bytes of room, sizeof *Fault. Out: bytes that were filled, never more.
+     */
+    unsigned int Size;
+    /*
+     The fault that has stopped the finger: FAULT_...; 0 none.
+     */
+    int Number;
+    /*
+     Its joint (0 to 2), tendon, motor, gauge or encoder (1 to 4), as its text says;
+     0 where it is of the whole finger.
+     */
+    int Part;
+    /*
+     What the finger is warned of, up to a second ago: FAULT_...; 0 nothing.
+     */
+    int Warning;
+    /*
+     Its joint, tendon, motor, gauge or encoder.
+     */
+    int WarningPart;
+    /*
+     How much: N, ms, degrees, counts, per cent, errno or status bits, as
+     docs/faults.md says.
+     */
+    double Value;
+    /*
+     How much, of the warning.
+     */
+    double WarningValue;
+    /*
+     How many warnings have been given since OpenHand; one that goes on counts once.
+     */
+    unsigned long Warnings;
+};
+
+/*
  OpenHand - start the hand
 
      int OpenHand(void);
@@ -528,7 +627,8 @@ int SendPosD(int i, const double *Pos);
          row (x, y, z of the finger's frame, chapter 3) for a displacement of 1 cm
          along axis column, N/cm. Read during the call only
 
- Takes effect whole, from the next cycle on. Kx must be symmetric: a difference of up
+ Taken over whole, from the next cycle on and without a jump in torque: 95 % of the
+ change is there after 50 ms. Kx must be symmetric: a difference of up
  to 1e-3 of the largest entry is averaged away. No eigenvalue may be below -1e-3 of
  the largest one. Kx of lower rank is fine, and so is zero: the finger is limp along
  those directions, still damped. The largest eigenvalue may be up to the configured
@@ -749,7 +849,7 @@ int GetTip(int i, struct FingerTip *Tip);
    Normal   Normal[3]: direction of the contact's normal in the finger's frame, of any
             length but zero. Not used for D = 3, and may be null there
 
- Always double. Read during the calls only. Takes effect whole, from the next cycle on,
+ Always double. Read during the calls only. Taken over whole, without a jump in torque,
  and takes the place of the stiffness sent last, as a later SendKx takes its. In the
  directions that a contact does not have the finger is limp, still damped. K must be
  symmetric and without a negative eigenvalue, as for SendKx; for its bound a rotation
@@ -784,7 +884,8 @@ int SendContact(int i,
    Ratio   damping relative to what the controller chooses from the stiffness: 0.2 to
            3; 1 is that, and is so after OpenHand
 
- Stays until it is sent again, whatever the stiffness.
+ Taken over without a jump in torque. Stays until it is sent again, whatever the
+ stiffness.
 
  Returns 0, or -1 with
    ENODEV   no hand is open
@@ -910,6 +1011,45 @@ int ZeroFinger(int i);
  Threads: any.
  */
 int IdentifyFinger(int i);
+
+/*
+ GetFault - what is wrong with a finger
+
+     int GetFault(int i, struct Fault *Fault);
+
+   i        finger, 1 to 3
+   Fault    Fault->Size is set by the caller, all else is filled in. Written only if
+            the call returns 0
+
+ Returns 0, whether something is wrong or not, or -1 with
+   EFAULT   Fault is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo.
+
+     struct Fault Fault;
+     Fault.Size = sizeof Fault;
+     if (GetFault(1, &Fault) == 0 && Fault.Number != 0)
+         fprintf(stderr, "finger 1: %s\n", FaultText(Fault.Number));
+ */
+int GetFault(int i, struct Fault *Fault);
+
+/*
+ FaultText - a fault in words
+
+     const char *FaultText(int Number);
+
+   Number   FAULT_...
+
+ Its name, what is the case, the likely cause and the remedy, in one line. An empty
+ string for a number that is no fault. Never null, valid for ever. HandError tells the
+ same of a fault that refused a call, with part and figures.
+
+ Threads: any.
+ */
+const char *FaultText(int Number);
 
 #ifdef __cplusplus
 }

@@ -12,6 +12,7 @@
 mod calibration_calls;
 mod calls;
 mod default_hand;
+mod fault_calls;
 mod fingertip_calls;
 mod memory;
 mod process;

@@ -13,6 +13,7 @@ use super::sensors::Sensors;
 use super::signals::{Activity, Command, Feedback, Measured, Report, SetPoint};
 use super::slew::Slew;
 use super::soft_limits::SoftLimits;
+use super::spring_transition::{Spring, SpringTransition};
 use super::state_feedback::{Decision, StateFeedback, StateFeedbackState};
 use super::stillness::Stillness;
 use super::tendon_controller::TendonController;
@@ -72,6 +73,8 @@ pub struct State {
     tensions: Vector4<f64>,
     tendons: TendonState,
     transition: Transition,
+    /// The spring that is followed.
+    spring: Option<SpringTransition>,
     /// What the controller before this one would pull next, N at the tendon.
     goes_on_from: Option<Vector4<f64>>,
     stillness: Stillness,
@@ -161,6 +164,7 @@ impl Controller {
             tensions,
             tendons: TendonState::default(),
             transition: Transition::default(),
+            spring: None,
             goes_on_from: None,
             stillness: Stillness::new(motor_angles),
             pulls,
@@ -216,6 +220,7 @@ impl Controller {
         let observed = self.observe(state, measured);
         if !matches!(activity, Activity::Follow(_)) {
             state.against_friction = Vector4::zeros();
+            state.spring = None;
             if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
                 law.idle(elastic);
             }
@@ -223,13 +228,13 @@ impl Controller {
         match *activity {
             Activity::Release { ramp } => self.let_go(state, ramp),
             Activity::Follow(set_point) if observed => {
-                let set_point = self.carried(state, set_point);
-                self.follow_by_state(state, &set_point);
+                let spring = self.carried(state, set_point);
+                self.follow_by_state(state, &spring);
             }
             Activity::TakeUpSlack if measured.is_some() => self.take_up_slack(state),
             Activity::Follow(set_point) if measured.is_some() => {
-                let set_point = self.carried(state, set_point);
-                self.follow(state, set_point);
+                let spring = self.carried(state, set_point);
+                self.follow(state, &spring);
             }
             Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
             Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),
@@ -245,12 +250,14 @@ impl Controller {
         (Command { motor_torques }, state.report)
     }
 
-    /// The set point with as much of its stiffness as the pose can carry.
-    fn carried(&self, state: &mut State, set_point: SetPoint) -> SetPoint {
-        let k_theta = self.joint_stiffness.joint_stiffness(&set_point, &state.report.joints);
+    /// The spring of this cycle, with as much of its stiffness as the pose can carry.
+    fn carried(&self, state: &mut State, set_point: SetPoint) -> Spring {
+        let target = Spring::from(set_point);
+        let spring = state.spring.get_or_insert_with(|| SpringTransition::new(target)).advance(&target, self.period);
+        let k_theta = self.joint_stiffness.joint_stiffness(&spring, &state.report.joints);
         let scale = self.admissible.scale(&k_theta);
         state.report.stiffness_scale = scale;
-        SetPoint { stiffness: set_point.stiffness * scale, ..set_point }
+        Spring { stiffness: spring.stiffness * scale, ..spring }
     }
 
     /// Keeps the observers of state feedback going in every activity; whether it can decide.
@@ -299,14 +306,14 @@ impl Controller {
     }
 
     /// The spring, from its anchor to the joints. It begins without deflection.
-    fn follow(&self, state: &mut State, set_point: SetPoint) {
+    fn follow(&self, state: &mut State, spring: &Spring) {
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
             _ => (state.report.joints, true),
         };
-        self.slew.advance(&mut anchor, &set_point.joints);
+        self.slew.advance(&mut anchor, &spring.joints);
         state.doing = Doing::Following(anchor);
-        let spring = SetPoint { joints: anchor, ..set_point };
+        let spring = Spring { joints: anchor, ..*spring };
         let torques = self.joint_stiffness.torques(&spring, &state.report.joints, &state.report.joint_rates);
         let push = self.soft_limits.push(&state.report.joints);
         let damped = push.stiffness.component_mul(&state.report.joint_rates) * LIMIT_DAMPING;
@@ -315,14 +322,14 @@ impl Controller {
     }
 
     /// The spring by state feedback. It begins without deflection.
-    fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
+    fn follow_by_state(&self, state: &mut State, spring: &Spring) {
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };
         let begins = !matches!(state.doing, Doing::Following(_));
         state.doing = Doing::Following(elastic.joints);
         let Decision { pulls, against_friction, joint_torques, distribution } =
-            law.decide(elastic, set_point, begins, &self.soft_limits, &self.gravity, &self.distribution);
+            law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &self.distribution);
         state.against_friction = against_friction;
         self.give(state, &pulls, false);
         state.report.joint_torques = joint_torques;

@@ -6,7 +6,7 @@
 
 use crate::control::calibration::{Calibration, Verdict};
 use crate::control::{Controller, Report, SetPoint};
-use crate::finger::Fault;
+use crate::finger::{Fault, Warnings};
 use crate::realtime::Memory;
 use nalgebra::Vector3;
 use parking_lot::Mutex;
@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use triple_buffer::{Input, Output, triple_buffer};
 
 /// Where a finger is between open and close.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Stage {
     /// Tendons are brought under tension.
     #[default]
@@ -76,6 +76,8 @@ pub struct FingerReport {
     pub late_replies: u64,
     /// Damaged or foreign frames on the finger's port.
     pub damaged_frames: u64,
+    /// What the finger is warned of.
+    pub warnings: Warnings,
     /// When the first cycle began, ns of the monotonic clock.
     pub first: u64,
     /// When the last cycle began, ns of the monotonic clock.

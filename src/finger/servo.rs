@@ -1,7 +1,7 @@
 //! A servo thread: periods by absolute deadlines, one transaction a finger and period.
 
 use crate::board::{Link, LinkError, OutgoingCommand, Transport};
-use crate::finger::{Fault, FingerServo};
+use crate::finger::{Fault, FaultKind, FingerServo};
 use crate::model::configuration::FINGERS;
 use crate::realtime::{Clock, Follower, Memory, Schedule, Stage};
 
@@ -118,7 +118,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     /// The last thing to do when a cycle panicked: every finger faulted, every board told to stop.
     pub fn fail(&mut self) {
         for finger in self.ports.iter_mut().flat_map(|port| &mut port.fingers) {
-            finger.fault(Fault::Internal);
+            finger.fault(Fault::new(FaultKind::ServoPanic));
             finger.end(0, None, 0);
         }
         self.confirm_stops();
@@ -185,7 +185,7 @@ impl<T: Transport> ServedPort<T> {
                 // The other fingers of the board may be as they were.
                 Err(LinkError::Refused { address, refused }) => {
                     let addressed = self.fingers.iter_mut().filter(|finger| finger.address() == address);
-                    addressed.for_each(|finger| finger.fault(Fault::CommandRefused { refused }));
+                    addressed.for_each(|finger| finger.fault((&refused).into()));
                 }
                 Err(error) => {
                     self.fail(&error);
@@ -200,7 +200,6 @@ impl<T: Transport> ServedPort<T> {
     }
 
     fn fail(&mut self, error: &LinkError) {
-        let errno = error.errno();
-        self.fingers.iter_mut().for_each(|finger| finger.fault(Fault::PortFailed { errno }));
+        self.fingers.iter_mut().for_each(|finger| finger.fault(error.into()));
     }
 }

@@ -5,7 +5,7 @@ use crate::board::{OutgoingCommand, Received};
 use crate::control::calibration::{Calibration, Sample, Verdict};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Adjustable, Mailbox, Order, ServoEnd, mailbox};
-use crate::finger::{Fault, FingerReport, Stage};
+use crate::finger::{Fault, FaultKind, FingerReport, Stage};
 use crate::model::configuration::{Configuration, EndState, Unusable};
 use crate::realtime::{self, CycleTiming, Memory};
 use nalgebra::{Matrix3, Vector3, Vector4};
@@ -130,6 +130,7 @@ impl FingerServo {
             lost_replies: 0,
             late_replies: 0,
             damaged_frames: 0,
+            warnings: Default::default(),
             first: 0,
             last: 0,
         };
@@ -259,10 +260,8 @@ impl FingerServo {
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
         self.zero_valid = reply.status.has(Status::ZERO_VALID);
-        if reply.status.has(Status::WATCHDOG_TRIPPED) {
-            self.fault(Fault::WatchdogTripped);
-        } else if reply.status.has(Status::FAULTS | Status::ENDED) {
-            self.fault(Fault::BoardStopped { status: reply.status.0 });
+        if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
+            self.fault(Fault::stopped(reply.status));
         }
     }
 
@@ -334,8 +333,8 @@ impl FingerServo {
         let (low, high) = self.adjustable.pose;
         let joints = self.report.cycle.joints;
         if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
-            let degrees = joints[joint].to_degrees() as i32;
-            self.fault(Fault::ImpossiblePose { joint: joint as u8, degrees });
+            let value = joints[joint].to_degrees();
+            self.fault(Fault { kind: FaultKind::ImpossiblePose, part: joint as u8, value });
         }
     }
 
@@ -352,8 +351,8 @@ impl FingerServo {
         self.lost_in_a_row += 1;
         // Counted in attempts, not in time: a machine that pauses everything has lost no reply.
         if self.lost_in_a_row >= self.limits.lost {
-            let milliseconds = (f64::from(self.lost_in_a_row) * self.limits.period_ms).round() as u32;
-            self.fault(Fault::LinkLost { milliseconds });
+            let milliseconds = f64::from(self.lost_in_a_row) * self.limits.period_ms;
+            self.fault(Fault::of(FaultKind::LostReplies, milliseconds));
         }
     }
 
@@ -444,9 +443,8 @@ impl FingerServo {
             Stage::Opening => {
                 self.settled_cycles = 0;
                 if self.stage_cycles >= self.limits.tension {
-                    let tendon = self.report.cycle.tensions.imin() as u8 + 1;
-                    let milliseconds = (f64::from(self.stage_cycles) * self.limits.period_ms).round() as u32;
-                    self.fault(Fault::SlackTendon { tendon, milliseconds });
+                    let (slackest, value) = self.report.cycle.tensions.argmin();
+                    self.fault(Fault { kind: FaultKind::SlackTendon, part: slackest as u8 + 1, value });
                 }
             }
             Stage::Running => self.check_pose(),

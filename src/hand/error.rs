@@ -140,7 +140,7 @@ pub enum HandError {
         key: String,
     },
     /// A finger has stopped by itself.
-    #[error("finger {finger} is faulted: {fault}")]
+    #[error("finger {finger} is faulted: {fault} (fault {})", fault.kind.number())]
     Faulted {
         /// 1 to 3.
         finger: i32,
@@ -177,7 +177,7 @@ pub enum HandError {
         unusable: Unusable,
     },
     /// A port or board that does not serve.
-    #[error("finger {finger}: {source}")]
+    #[error("finger {finger}: {source} (fault {})", Fault::from(source).kind.number())]
     Link {
         /// 1 to 3.
         finger: usize,

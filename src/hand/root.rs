@@ -40,7 +40,7 @@ pub struct Hand {
     pub(super) configuration: RwLock<Configuration>,
     /// Where the configuration was read from, and where calibration is stored.
     pub(super) file: Option<PathBuf>,
-    given: Given,
+    pub(super) given: Given,
     /// Within this time, ns, every finger reaches its end state.
     ending: u64,
     /// The process that has the threads. A forked child inherits this value, but not them.
@@ -138,7 +138,8 @@ impl Hand {
         self.dispatcher.send_position(finger, joints)
     }
 
-    /// Kx of finger 1, 2 or 3 in the finger's frame, N/cm: `rows[row][column]`. Takes effect whole, within a cycle.
+    /// Kx of finger 1, 2 or 3 in the finger's frame, N/cm: `rows[row][column]`. Taken over whole, without a
+    /// jump in torque: 95 % of the change is there after 50 ms.
     ///
     /// # Errors
     /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, finger faulted.

@@ -6,3 +6,4 @@ mod limits;
 mod rig;
 mod robustness;
 mod state_feedback;
+mod switching;
