@@ -955,45 +955,6 @@ int AdjustFinger(int i,
 int PushFinger(int i, const double *Force);
 
 /*
- GetFault - what is wrong with a finger
-
-     int GetFault(int i, struct Fault *Fault);
-
-   i        finger, 1 to 3
-   Fault    Fault->Size is set by the caller, all else is filled in. Written only if
-            the call returns 0
-
- Returns 0, whether something is wrong or not, or -1 with
-   EFAULT   Fault is null
-   EINVAL   Size is too small; no such finger
-   ENODEV   no hand is open
-   EPERM    forked child
-
- Threads: any. Never waits for a servo.
-
-     struct Fault Fault;
-     Fault.Size = sizeof Fault;
-     if (GetFault(1, &Fault) == 0 && Fault.Number != 0)
-         fprintf(stderr, "finger 1: %s\n", FaultText(Fault.Number));
- */
-int GetFault(int i, struct Fault *Fault);
-
-/*
- FaultText - a fault in words
-
-     const char *FaultText(int Number);
-
-   Number   FAULT_...
-
- Its name, what is the case, the likely cause and the remedy, in one line. An empty
- string for a number that is no fault. Never null, valid for ever. HandError tells the
- same of a fault that refused a call, with part and figures.
-
- Threads: any.
- */
-const char *FaultText(int Number);
-
-/*
  ZeroFinger - find the zeros of a finger's gauges and encoders
 
      int ZeroFinger(int i);
@@ -1050,6 +1011,45 @@ int ZeroFinger(int i);
  Threads: any.
  */
 int IdentifyFinger(int i);
+
+/*
+ GetFault - what is wrong with a finger
+
+     int GetFault(int i, struct Fault *Fault);
+
+   i        finger, 1 to 3
+   Fault    Fault->Size is set by the caller, all else is filled in. Written only if
+            the call returns 0
+
+ Returns 0, whether something is wrong or not, or -1 with
+   EFAULT   Fault is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo.
+
+     struct Fault Fault;
+     Fault.Size = sizeof Fault;
+     if (GetFault(1, &Fault) == 0 && Fault.Number != 0)
+         fprintf(stderr, "finger 1: %s\n", FaultText(Fault.Number));
+ */
+int GetFault(int i, struct Fault *Fault);
+
+/*
+ FaultText - a fault in words
+
+     const char *FaultText(int Number);
+
+   Number   FAULT_...
+
+ Its name, what is the case, the likely cause and the remedy, in one line. An empty
+ string for a number that is no fault. Never null, valid for ever. HandError tells the
+ same of a fault that refused a call, with part and figures.
+
+ Threads: any.
+ */
+const char *FaultText(int Number);
 
 #ifdef __cplusplus
 }
