@@ -9,7 +9,7 @@ use crate::control::{Command, Feedback, Report, State};
 use crate::finger::recording::{Origin, Recording};
 use crate::finger::{ControlInput, Stage};
 use crate::model::configuration::{ConfiguredFinger, ConfiguredHand};
-use crate::realtime::CycleTiming;
+use crate::realtime::{CycleTiming, Memory};
 use nalgebra::Vector3;
 use rtrb::{Consumer, Producer, RingBuffer};
 use serde::{Deserialize, Serialize};
@@ -19,7 +19,7 @@ use std::collections::VecDeque;
 const KEPT: f64 = 2.0;
 
 /// How long nobody may collect before records are lost, s.
-const UNCOLLECTED: f64 = 1.0;
+const UNCOLLECTED: f64 = 0.5;
 
 /// Keyframes in a second.
 const KEYFRAMES: f64 = 8.0;
@@ -187,6 +187,16 @@ impl Recorder {
         }
     }
 
+    /// What its end of the rings touches.
+    pub fn memory(&mut self) -> Memory {
+        let mut memory = Memory::default();
+        memory.add(self.records.buffer());
+        memory.add(self.keyframes.buffer());
+        add_room(&mut self.records, &mut memory);
+        add_room(&mut self.keyframes, &mut memory);
+        memory
+    }
+
     /// Leaves a record.
     pub fn record(&mut self, record: CycleRecord) {
         let _ = self.records.push(record);
@@ -198,6 +208,15 @@ impl CycleRecord {
     fn in_words(&self) -> CycleRecord<String> {
         let Self { cycle, began, stage, timing, feedback, status, control } = *self;
         CycleRecord { cycle, began, stage: stage.to_string(), timing, feedback, status, control }
+    }
+}
+
+fn add_room<T>(ring: &mut Producer<T>, memory: &mut Memory) {
+    let every = ring.slots();
+    if let Ok(mut room) = ring.write_chunk_uninit(every) {
+        let (first, second) = room.as_mut_slices();
+        memory.add(first);
+        memory.add(second);
     }
 }
 

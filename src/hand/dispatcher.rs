@@ -1,7 +1,7 @@
 //! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
 
 use crate::control::{SetPoint, spatial};
-use crate::finger::{self, BlackBox, FingerReport, Mailbox, Recording};
+use crate::finger::{self, BlackBox, FingerReport, Losses, Mailbox, Recording};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::black_box::keep;
@@ -37,6 +37,8 @@ pub(super) struct Dispatcher {
 struct Collected {
     arriving: Consumer<CycleTiming>,
     histograms: Histograms,
+    /// Up to the last reset.
+    losses_before: Losses,
     black_box: BlackBox,
 }
 
@@ -55,8 +57,12 @@ impl Dispatcher {
         let (mut members, mut collected) = (Vec::new(), Vec::new());
         for finger in fingers {
             members.push(Member { admission: RwLock::new(finger.admission), mailbox: finger.mailbox });
-            let Reached { timings: arriving, black_box, .. } = finger;
-            collected.push(Mutex::new(Collected { arriving, histograms: Histograms::new(), black_box }));
+            collected.push(Mutex::new(Collected {
+                arriving: finger.timings,
+                histograms: Histograms::new(),
+                losses_before: Losses::default(),
+                black_box: finger.black_box,
+            }));
         }
         Self { members, collected: Arc::new(collected), collector: None }
     }
@@ -126,11 +132,21 @@ impl Dispatcher {
         Ok(collected.histograms.distribution(stage))
     }
 
-    /// Begins to count anew.
+    /// What went wrong.
+    pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
+        let index = self.index(finger)?;
+        // The report is read under the lock: a reset of another thread's is then before both or after both.
+        let collected = self.collected(finger)?;
+        Ok(Losses::of(&self.members[index].mailbox.report()).since(&collected.losses_before))
+    }
+
+    /// Begins to count timings and losses anew.
     pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
+        let index = self.index(finger)?;
         let mut collected = self.collected(finger)?;
         collected.collect();
         collected.histograms.reset();
+        collected.losses_before = Losses::of(&self.members[index].mailbox.report());
         Ok(())
     }
 

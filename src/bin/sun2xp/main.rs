@@ -4,6 +4,7 @@
 
 mod board;
 mod calibrate;
+mod doctor;
 mod replay;
 
 use clap::{Parser, Subcommand};
@@ -23,6 +24,7 @@ struct Arguments {
 enum Tool {
     Board(board::Arguments),
     Calibrate(calibrate::Arguments),
+    Doctor(doctor::Arguments),
     Replay(replay::Arguments),
 }
 
@@ -30,6 +32,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().tool {
         Tool::Board(arguments) => board::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Doctor(arguments) => doctor::run(&arguments),
         Tool::Replay(arguments) => replay::run(&arguments),
     };
     match result {
