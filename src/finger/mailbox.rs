@@ -75,6 +75,8 @@ pub struct FingerReport {
     pub late_replies: u64,
     /// Damaged or foreign frames on the finger's port.
     pub damaged_frames: u64,
+    /// How often it has gone on after a fault.
+    pub recoveries: u32,
     /// What the finger is warned of.
     pub warnings: Warnings,
     /// When the first cycle began, ns of the monotonic clock.

@@ -15,9 +15,11 @@ mod faults;
 mod fingertip;
 mod missing;
 mod opening;
+mod recovery;
 mod root;
 mod servo_threads;
 
+pub use crate::finger::stop_all;
 pub use black_box::save;
 pub use calibrating::{Calibrating, Standing};
 pub use configuration_file::{configured, read};
@@ -26,4 +28,5 @@ pub use error::HandError;
 pub use faults::FingerFault;
 pub use fingertip::FingerTip;
 pub use missing::Missing;
+pub use recovery::Recovering;
 pub use root::{FingerStatus, Hand};
