@@ -196,6 +196,10 @@ impl<T: Transport> Link<T> {
     /// Sends the Commands of all fingers on the port, 15 at most, in one write. What the port does not take at once is
     /// lost and counted: the missing Reply will tell the same.
     pub fn send(&mut self, commands: &[OutgoingCommand]) -> Result<(), LinkError> {
+        // Half a Reply of the last period is of no use any more, and must not take the next one with it.
+        if self.unread.is_empty() {
+            self.decoder.abandon();
+        }
         let mut bytes = [0; 1 + MOST_FINGERS * Kind::Command.wire_length()];
         // The first byte is left for a delimiter.
         let mut length = 1;
