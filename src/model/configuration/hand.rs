@@ -75,6 +75,8 @@ pub struct ConfiguredHand {
     pub out_of_range: OutOfRange,
     /// One line on standard error at the first refusal of each kind.
     pub print_refusals: bool,
+    /// Folder into which the last two seconds of a finger that faults are written; none: nowhere.
+    pub black_box: Option<String>,
     /// Gravity in palm coordinates, m/s^2.
     pub gravity: [f64; 3],
 }
@@ -93,6 +95,7 @@ impl Default for ConfiguredHand {
             open_timeout_ms: 5000,
             out_of_range: OutOfRange::Refuse,
             print_refusals: true,
+            black_box: None,
             gravity: [0.0; 3],
         }
     }
