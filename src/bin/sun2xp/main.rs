@@ -4,6 +4,7 @@
 
 mod board;
 mod calibrate;
+mod doctor;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -22,15 +23,17 @@ struct Arguments {
 enum Tool {
     Board(board::Arguments),
     Calibrate(calibrate::Arguments),
+    Doctor(doctor::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().tool {
-        Tool::Board(arguments) => board::run(&arguments),
-        Tool::Calibrate(arguments) => calibrate::run(&arguments),
+        Tool::Board(arguments) => board::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Doctor(arguments) => doctor::run(&arguments),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(status) => status,
         Err(error) => {
             eprintln!("sun2xp: {error}");
             ExitCode::FAILURE

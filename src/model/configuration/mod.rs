@@ -10,7 +10,7 @@ pub use drive::{
     ConfiguredEncoder, ConfiguredGauge, ConfiguredGeometry, ConfiguredJoints, ConfiguredMotor, ConfiguredTendon,
     GaugeReference,
 };
-pub use hand::{ConfiguredHand, EndState, OutOfRange};
+pub use hand::{ConfiguredHand, EndState, OutOfRange, PeriodClock, RealTime};
 
 pub use crate::model::calibrated::{ConfiguredZeroing, ZeroingMethod};
 use crate::model::{ConfiguredFriction, ConfiguredLinks, ConfiguredSimulation, Links, Tendons, TendonsError};
