@@ -5,6 +5,7 @@
 mod board;
 mod calibrate;
 mod doctor;
+mod replay;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -24,6 +25,7 @@ enum Tool {
     Board(board::Arguments),
     Calibrate(calibrate::Arguments),
     Doctor(doctor::Arguments),
+    Replay(replay::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
         Tool::Board(arguments) => board::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
+        Tool::Replay(arguments) => replay::run(&arguments),
     };
     match result {
         Ok(status) => status,
