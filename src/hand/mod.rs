@@ -15,6 +15,7 @@ mod opening;
 mod root;
 
 pub use calibrating::{Calibrating, Standing};
+pub use calibration_file::store;
 pub use configuration_file::{configured, read};
 pub use error::HandError;
 pub use faults::FingerFault;

@@ -3,6 +3,7 @@
 #![deny(unsafe_code)]
 
 mod board;
+mod bound;
 mod calibrate;
 
 use clap::{Parser, Subcommand};
@@ -21,12 +22,14 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Tool {
     Board(board::Arguments),
+    Bound(bound::Arguments),
     Calibrate(calibrate::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().tool {
         Tool::Board(arguments) => board::run(&arguments),
+        Tool::Bound(arguments) => bound::run(&arguments),
         Tool::Calibrate(arguments) => calibrate::run(&arguments),
     };
     match result {
