@@ -120,6 +120,11 @@ fn the_status_tells_of_the_servo() {
 }
 
 #[test]
+fn the_timing_tells_where_the_time_goes() {
+    succeed(&strict(&["-std=c99"]), &["timing.c"]);
+}
+
+#[test]
 fn a_fingertip_is_sent_read_and_made_a_contact() {
     succeed(&strict(&["-ansi"]), &["tip.c"]);
 }

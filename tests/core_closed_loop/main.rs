@@ -6,5 +6,6 @@ mod figure11;
 mod limits;
 mod rig;
 mod robustness;
+mod slack;
 mod state_feedback;
 mod switching;

@@ -5,6 +5,7 @@
 mod board;
 mod bound;
 mod calibrate;
+mod doctor;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -24,16 +25,18 @@ enum Tool {
     Board(board::Arguments),
     Bound(bound::Arguments),
     Calibrate(calibrate::Arguments),
+    Doctor(doctor::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().tool {
-        Tool::Board(arguments) => board::run(&arguments),
-        Tool::Bound(arguments) => bound::run(&arguments),
-        Tool::Calibrate(arguments) => calibrate::run(&arguments),
+        Tool::Board(arguments) => board::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Bound(arguments) => bound::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Doctor(arguments) => doctor::run(&arguments),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(status) => status,
         Err(error) => {
             eprintln!("sun2xp: {error}");
             ExitCode::FAILURE
