@@ -955,6 +955,35 @@ int AdjustFinger(int i,
 int PushFinger(int i, const double *Force);
 
 /*
+ WriteBlackBox - write the last seconds of a finger into a file
+
+     int WriteBlackBox(int i, const char *Path);
+
+   i       finger, 1 to 3
+   Path    the file, new or to be written over. Read during the call only
+
+ The library keeps the last two seconds of every finger: feedback, set points, motor
+ commands, timing, state. Of a faulted finger they are the last two before the fault.
+ docs/black-box.md describes the file; `sun2xp replay Path` computes it again. With
+ hand.black_box the library writes such a file by itself whenever a finger faults.
+
+ Takes about 50 ms, in which the servos go on.
+
+ Returns 0, or -1 with
+   EFAULT   Path is null
+   EINVAL   no such finger
+   ENODEV   no hand is open
+   EPERM    forked child
+   ENOENT, EACCES, ENOSPC ...  the file cannot be written
+
+ Threads: any, but not two at once with the same Path.
+
+     WriteBlackBox(1, "/tmp/finger-1.jsonl");
+ */
+int WriteBlackBox(int i,
+                  const char *Path);
+
+/*
  ZeroFinger - find the zeros of a finger's gauges and encoders
 
      int ZeroFinger(int i);

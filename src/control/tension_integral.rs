@@ -2,6 +2,7 @@
 //! anti-windup.
 
 use nalgebra::Vector4;
+use serde::{Deserialize, Serialize};
 
 /// What a tendon controller sees in one cycle.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +22,7 @@ pub(super) struct TendonInput {
 }
 
 /// The memory of a tendon controller.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct TendonState {
     /// N.
     pub integral: Vector4<f64>,

@@ -6,6 +6,7 @@ mod board;
 mod bound;
 mod calibrate;
 mod doctor;
+mod replay;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -26,6 +27,7 @@ enum Tool {
     Bound(bound::Arguments),
     Calibrate(calibrate::Arguments),
     Doctor(doctor::Arguments),
+    Replay(replay::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
         Tool::Bound(arguments) => bound::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
+        Tool::Replay(arguments) => replay::run(&arguments),
     };
     match result {
         Ok(status) => status,
