@@ -21,7 +21,7 @@ use super::tension_integral::{TendonInput, TendonState};
 use super::transition::Transition;
 use super::usable::positive;
 use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// A tendon counts as tight from this part of t_min on.
 const TIGHT: f64 = 0.8;
@@ -220,20 +220,14 @@ impl Controller {
                 law.idle(elastic);
             }
         }
-        match *activity {
-            Activity::Release { ramp } => self.let_go(state, ramp),
-            Activity::Follow(set_point) if observed => {
-                let set_point = self.carried(state, set_point);
-                self.follow_by_state(state, &set_point);
-            }
+        match activity {
+            &Activity::Release { ramp } => self.let_go(state, ramp),
+            Activity::Follow(set_point) if observed => self.follow_by_state(state, set_point),
             Activity::TakeUpSlack if measured.is_some() => self.take_up_slack(state),
-            Activity::Follow(set_point) if measured.is_some() => {
-                let set_point = self.carried(state, set_point);
-                self.follow(state, set_point);
-            }
-            Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
-            Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),
-            Activity::Turn(torques) => self.turn(state, torques),
+            Activity::Follow(set_point) if measured.is_some() => self.follow(state, set_point),
+            &Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
+            &Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),
+            &Activity::Turn(torques) => self.turn(state, torques),
             Activity::TakeUpSlack | Activity::Follow(_) | Activity::Tense(_) | Activity::Pull(_) => {}
         }
         if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
@@ -245,12 +239,10 @@ impl Controller {
         (Command { motor_torques }, state.report)
     }
 
-    /// The set point with as much of its stiffness as the pose can carry.
-    fn carried(&self, state: &mut State, set_point: SetPoint) -> SetPoint {
-        let k_theta = self.joint_stiffness.joint_stiffness(&set_point, &state.report.joints);
-        let scale = self.admissible.scale(&k_theta);
-        state.report.stiffness_scale = scale;
-        SetPoint { stiffness: set_point.stiffness * scale, ..set_point }
+    /// The part of a spring's K_theta, N cm/rad, that the pose can carry.
+    fn carried(&self, state: &mut State, k_theta: &Matrix3<f64>) -> f64 {
+        state.report.stiffness_scale = self.admissible.scale(k_theta);
+        state.report.stiffness_scale
     }
 
     /// Keeps the observers of state feedback going in every activity; whether it can decide.
@@ -299,28 +291,32 @@ impl Controller {
     }
 
     /// The spring, from its anchor to the joints. It begins without deflection.
-    fn follow(&self, state: &mut State, set_point: SetPoint) {
+    fn follow(&self, state: &mut State, set_point: &SetPoint) {
+        let mut spring = self.joint_stiffness.posed(set_point, &state.report.joints);
+        spring.soften(self.carried(state, &spring.k_theta));
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
             _ => (state.report.joints, true),
         };
         self.slew.advance(&mut anchor, &set_point.joints);
         state.doing = Doing::Following(anchor);
-        let spring = SetPoint { joints: anchor, ..set_point };
-        let torques = self.joint_stiffness.torques(&spring, &state.report.joints, &state.report.joint_rates);
-        let push = self.soft_limits.push(&state.report.joints);
-        let damped = push.stiffness.component_mul(&state.report.joint_rates) * LIMIT_DAMPING;
-        let torques = torques + push.torque - damped + self.gravity.torques(&state.report.joints);
+        let Report { joints, joint_rates, .. } = &state.report;
+        let torques = spring.torques(&anchor) - spring.damper(joint_rates);
+        let push = self.soft_limits.push(joints);
+        let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
+        let torques = torques + push.torque - damped + self.gravity.torques(joints);
         self.pull(state, torques, [false; 4], begins);
     }
 
     /// The spring by state feedback. It begins without deflection.
     fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
+        let scale = self.carried(state, &self.joint_stiffness.joint_stiffness(set_point, &state.report.joints));
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };
         let begins = !matches!(state.doing, Doing::Following(_));
         state.doing = Doing::Following(elastic.joints);
+        let set_point = &SetPoint { stiffness: set_point.stiffness * scale, ..*set_point };
         let Decision { pulls, against_friction, joint_torques, distribution } =
             law.decide(elastic, set_point, begins, &self.soft_limits, &self.gravity, &self.distribution);
         state.against_friction = against_friction;

@@ -2,7 +2,7 @@
 
 use super::signals::{Law, SetPoint};
 use crate::model::Links;
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6x3, Vector3, Vector6};
 
 /// Kx at which `rate_time` holds, N/cm.
 const REFERENCE_STIFFNESS: f64 = 3.0;
@@ -25,6 +25,20 @@ pub struct JointStiffness {
     damping: Vector3<f64>,
 }
 
+/// The spring of a set point at a pose: found once a cycle, because its sines and products are what a cycle spends most on.
+#[derive(Clone, Debug)]
+pub(super) struct PosedSpring<'a> {
+    of: &'a JointStiffness,
+    set_point: &'a SetPoint,
+    joints: Vector3<f64>,
+    /// K J, before any scaling.
+    stiffened: Matrix6x3<f64>,
+    /// The part of the set point's stiffness that the spring has.
+    scale: f64,
+    /// K_theta of eq. 6, N cm/rad.
+    pub k_theta: Matrix3<f64>,
+}
+
 impl JointStiffness {
     /// `rate_time`: beta at 3 N/cm, s.
     pub fn new(links: Links, rate_time: f64) -> Self {
@@ -35,25 +49,27 @@ impl JointStiffness {
 
     /// tau of spring and damper, N cm, at joint angles (rad) and rates (rad/s).
     pub fn torques(&self, set_point: &SetPoint, joints: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64> {
-        let damping = self.damping(&self.joint_stiffness(set_point, joints), set_point.damping);
-        self.spring(set_point, joints) - damping * rates
+        let spring = self.posed(set_point, joints);
+        spring.torques(&set_point.joints) - spring.damper(rates)
     }
 
     /// K_theta of eq. 6, N cm/rad.
     pub fn joint_stiffness(&self, set_point: &SetPoint, joints: &Vector3<f64>) -> Matrix3<f64> {
-        let jacobian = self.links.spatial_jacobian(joints);
-        jacobian.tr_mul(&(set_point.stiffness * jacobian))
+        self.posed(set_point, joints).k_theta
     }
 
     /// tau of the spring alone, N cm: K_theta (theta_d - theta) by eqs. 3 and 6, or J^T f by eqs. 1 and 2 with the deflection
     /// of the tip itself.
     pub fn spring(&self, set_point: &SetPoint, joints: &Vector3<f64>) -> Vector3<f64> {
+        self.posed(set_point, joints).torques(&set_point.joints)
+    }
+
+    /// The spring at joint angles, rad.
+    pub(super) fn posed<'a>(&'a self, set_point: &'a SetPoint, joints: &Vector3<f64>) -> PosedSpring<'a> {
         let jacobian = self.links.spatial_jacobian(joints);
-        let deflection = match set_point.law {
-            Law::Report => jacobian * (set_point.joints - joints),
-            Law::Exact => self.deflection(&set_point.joints, joints),
-        };
-        jacobian.tr_mul(&(set_point.stiffness * deflection))
+        let stiffened = set_point.stiffness * jacobian;
+        let k_theta = jacobian.tr_mul(&stiffened);
+        PosedSpring { of: self, set_point, joints: *joints, stiffened, scale: 1.0, k_theta }
     }
 
     /// Translation (cm) and rotation vector (rad) from the tip's pose at `joints` to that at `desired`.
@@ -69,12 +85,31 @@ impl JointStiffness {
         deflection.fixed_rows_mut::<3>(3).copy_from(&rotation);
         deflection
     }
+}
 
-    /// The damper of a finger with `k_theta`, N cm s/rad: symmetric, positive definite, in proportion to `ratio`.
-    pub fn damping(&self, k_theta: &Matrix3<f64>, ratio: f64) -> Matrix3<f64> {
+impl PosedSpring<'_> {
+    /// Leaves this part of the stiffness.
+    pub fn soften(&mut self, part: f64) {
+        self.scale *= part;
+        self.k_theta *= part;
+    }
+
+    /// tau, N cm, of the spring between `desired`, rad, and the joints.
+    pub fn torques(&self, desired: &Vector3<f64>) -> Vector3<f64> {
+        match self.set_point.law {
+            Law::Report => self.k_theta * (desired - self.joints),
+            // K is symmetric: J^T K d = (K J)^T d.
+            Law::Exact => self.stiffened.tr_mul(&self.of.deflection(desired, &self.joints)) * self.scale,
+        }
+    }
+
+    /// tau of the damper, N cm, at joint rates, rad/s: its matrix is symmetric, positive definite, and in proportion to the set
+    /// point's relative damping.
+    pub fn damper(&self, rates: &Vector3<f64>) -> Vector3<f64> {
         // beta^2 K_ref / K_jj to the power 1/4; without stiffness in a joint there is nothing to damp it with.
-        let root = k_theta.diagonal().zip_map(&self.damping, |k, damping| (damping / k.max(1e-6)).sqrt().sqrt());
-        let b = Matrix3::from_diagonal(&root);
-        (b * k_theta * b + Matrix3::identity() * LIMP_DAMPING) * ratio
+        let stiffness = self.k_theta.diagonal();
+        let b = stiffness.zip_map(&self.of.damping, |k, damping| (damping / k.max(1e-6)).sqrt().sqrt());
+        let damped = (self.k_theta * rates.component_mul(&b)).component_mul(&b) + rates * LIMP_DAMPING;
+        damped * self.set_point.damping
     }
 }
