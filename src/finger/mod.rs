@@ -7,5 +7,5 @@ mod single;
 
 pub use fault::Fault;
 pub use mailbox::{Adjustable, FingerReport, Mailbox, Order, Stage};
-pub use servo::{ServedPort, Servo};
+pub use servo::{REPLY_WINDOW, ServedPort, Servo};
 pub use single::FingerServo;

@@ -6,7 +6,7 @@ use crate::model::configuration::FINGERS;
 use crate::realtime::{Clock, Schedule, Stage};
 
 /// The part of a period, from the thread's awakening, in which replies are awaited; the rest is for computing.
-const REPLY_WINDOW: f64 = 0.85;
+pub const REPLY_WINDOW: f64 = 0.85;
 
 /// A port with the fingers behind it.
 pub struct ServedPort<T> {

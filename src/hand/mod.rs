@@ -10,6 +10,7 @@ mod configuration_file;
 mod dispatcher;
 mod error;
 mod fingertip;
+mod off_line_schedule;
 mod opening;
 mod root;
 
@@ -17,4 +18,5 @@ pub use calibrating::{Calibrating, Standing};
 pub use configuration_file::{configured, read};
 pub use error::HandError;
 pub use fingertip::FingerTip;
+pub use off_line_schedule::{Costs, Limit, Scheduled, Sensor, fastest_rate, off_line_schedule};
 pub use root::{FingerStatus, Hand};

@@ -4,6 +4,7 @@
 
 mod board;
 mod calibrate;
+mod schedule;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -22,12 +23,14 @@ struct Arguments {
 enum Tool {
     Board(board::Arguments),
     Calibrate(calibrate::Arguments),
+    Schedule(schedule::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().tool {
         Tool::Board(arguments) => board::run(&arguments),
         Tool::Calibrate(arguments) => calibrate::run(&arguments),
+        Tool::Schedule(arguments) => schedule::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
