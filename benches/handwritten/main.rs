@@ -6,15 +6,15 @@
 //! turn. Statistics are off in both: what is timed is from counts to motor torques and report.
 
 mod by_hand;
-mod recording;
+#[path = "../recorded_run/mod.rs"]
+mod recorded_run;
 
-use by_hand::{ByHand, Parameters, PlainFeedback, PlainReport, PlainSetPoint, PlainState, Step};
-use recording::{CYCLES_A_SET_POINT, RATE, Recording};
+use by_hand::{ByHand, Gains, Parameters, PlainFeedback, PlainReport, PlainSetPoint, PlainState, Step};
+use recorded_run::{CYCLES, CYCLES_A_SET_POINT, RATE, Recording, lost};
 use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
-use sun2xp::control::{Activity, SetPoint};
-use sun2xp::model::configuration::Scheme;
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
 /// How often both repeat the recorded run.
 const ROUNDS: usize = 301;
@@ -25,19 +25,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (scheme, name, step) in
         [(Scheme::Figure9, "Figure 9", by_hand.figure9), (Scheme::Figure10, "Figure 10", by_hand.figure10)]
     {
-        let (gains, recording) = (by_hand::Gains::new(scheme), Recording::new(scheme)?);
-        let parameters = Parameters::new(&recording.finger, &gains, RATE)?;
+        let gains = Gains::new(scheme);
+        let mut finger = ConfiguredFinger::default();
+        finger.controller.scheme = scheme;
+        gains.configure(&mut finger);
+        let parameters = Parameters::new(&finger, &gains, RATE)?;
+        let recording = Recording::new(finger)?;
         let plain = Plain::new(&recording, &parameters, by_hand.start, step);
         plain.check(&recording)?;
         let (ours, theirs) = time(&recording, &plain);
         println!("| {name} | {ours:.1} ns | {theirs:.1} ns | {:.3} |", ours / theirs);
     }
-    println!(
-        "\nMedians of {ROUNDS} runs of {} cycles each, in turn; {}, {}.",
-        recording::CYCLES,
-        rustc(),
-        by_hand.compiler
-    );
+    println!("\nMedians of {ROUNDS} runs of {} cycles each, in turn; {}, {}.", CYCLES, rustc(), by_hand.compiler);
     Ok(())
 }
 
@@ -84,7 +83,7 @@ impl<'a> Plain<'a> {
 
     fn check(&self, recording: &Recording) -> Result<(), String> {
         let mut worst: f64 = 0.0;
-        self.run(recording::lost, |cycle, torques| {
+        self.run(lost, |cycle, torques| {
             let theirs = &recording.torques[cycle];
             let largest = theirs.amax();
             let apart = (0..4).map(|motor| (torques[motor] - theirs[motor]).abs()).fold(0.0, f64::max);
@@ -100,21 +99,16 @@ impl<'a> Plain<'a> {
 
 /// ns a step: ours, C by hand.
 fn time(recording: &Recording, plain: &Plain) -> (f64, f64) {
-    let per_step = |begun: Instant| begun.elapsed().as_secs_f64() * 1e9 / recording::CYCLES as f64;
+    let per_step = |begun: Instant| begun.elapsed().as_secs_f64() * 1e9 / CYCLES as f64;
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
-    let activities: Vec<Activity> =
-        recording.set_points.iter().map(|point: &SetPoint| Activity::Follow(*point)).collect();
     for _ in 0..ROUNDS {
         let begun = Instant::now();
-        let mut state = recording.controller.start(&recording.feedback[0]);
-        for (cycle, feedback) in recording.feedback.iter().enumerate() {
-            let activity = &activities[cycle / CYCLES_A_SET_POINT];
-            let feedback = if recording::lost(cycle) { None } else { Some(feedback) };
-            black_box(recording.controller.cycle(&mut state, feedback, activity));
-        }
+        recording.repeat(|controller, state, feedback, activity| {
+            black_box(controller.cycle(state, feedback, activity));
+        });
         ours.push(per_step(begun));
         let begun = Instant::now();
-        plain.run(recording::lost, |_, _| {});
+        plain.run(lost, |_, _| {});
         theirs.push(per_step(begun));
     }
     (median(ours), median(theirs))

@@ -1,10 +1,9 @@
 //! A closed loop of controller and simulated finger that passes through what a finger meets, recorded.
 
-use crate::by_hand::Gains;
 use nalgebra::{Matrix3, Vector3, Vector4};
 use std::error::Error;
-use sun2xp::control::{Activity, Controller, Feedback, Report, SetPoint};
-use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+use sun2xp::control::{Activity, Controller, Feedback, Report, SetPoint, State};
+use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{Plant, Sensors};
 
 pub const RATE: f64 = 1000.0;
@@ -43,19 +42,17 @@ pub fn lost(cycle: usize) -> bool {
 }
 
 pub struct Recording {
-    pub finger: ConfiguredFinger,
+    finger: ConfiguredFinger,
     pub controller: Controller,
     pub set_points: Vec<SetPoint>,
+    activities: Vec<Activity>,
     pub feedback: Vec<Feedback>,
     pub torques: Vec<Vector4<f64>>,
     reports: Vec<Report>,
 }
 
 impl Recording {
-    pub fn new(scheme: Scheme) -> Result<Self, Box<dyn Error>> {
-        let mut finger = ConfiguredFinger::default();
-        finger.controller.scheme = scheme;
-        Gains::new(scheme).configure(&mut finger);
+    pub fn new(finger: ConfiguredFinger) -> Result<Self, Box<dyn Error>> {
         let controller = Controller::new(&finger, RATE).map_err(|unusable| unusable.reason)?;
         let mut plant = Plant::new(&finger, Vector3::zeros())?;
         let mut sensors = Sensors::new(&finger);
@@ -64,6 +61,7 @@ impl Recording {
             .iter()
             .map(|&(joints, stiffness)| SetPoint::hard_finger(joints.into(), STIFFNESS * stiffness))
             .collect();
+        let activities: Vec<Activity> = set_points.iter().copied().map(Activity::Follow).collect();
         let (mut feedback, mut torques, mut reports) = (Vec::new(), Vec::new(), Vec::new());
         let mut read = |plant: &Plant| {
             let (motor_counts, gauge_counts) = sensors.read(plant);
@@ -80,14 +78,22 @@ impl Recording {
             for _ in 0..10 {
                 plant.step((acting * 0.01).into());
             }
-            let activity = Activity::Follow(set_points[set_point]);
             let state = state.get_or_insert_with(|| controller.start(&now));
-            let (command, report) = controller.cycle(state, (!lost(cycle)).then_some(&now), &activity);
+            let (command, report) = controller.cycle(state, (!lost(cycle)).then_some(&now), &activities[set_point]);
             acting = command.motor_torques;
             torques.push(acting);
             reports.push(report);
         }
-        Ok(Self { finger, controller, set_points, feedback, torques, reports })
+        Ok(Self { finger, controller, set_points, activities, feedback, torques, reports })
+    }
+
+    /// The run once more; `cycle` is given what a cycle is given, and whether it has a reply.
+    pub fn repeat(&self, mut cycle: impl FnMut(&Controller, &mut State, Option<&Feedback>, &Activity)) {
+        let mut state = self.controller.start(&self.feedback[0]);
+        for (number, feedback) in self.feedback.iter().enumerate() {
+            let activity = &self.activities[number / CYCLES_A_SET_POINT];
+            cycle(&self.controller, &mut state, (!lost(number)).then_some(feedback), activity);
+        }
     }
 
     /// What the run has passed through: a comparison on a run where nothing happens would say nothing.
