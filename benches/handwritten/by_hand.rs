@@ -56,6 +56,7 @@ pub struct Parameters {
     from_tensions: [[f64; 4]; 3],
     home: [f64; 4],
     tight: f64,
+    spring_part: f64,
     slew_step: f64,
     links: [f64; 3],
     joint_damping: [f64; 3],
@@ -112,6 +113,7 @@ impl Parameters {
             from_tensions: from_fn(|j| from_fn(|i| -travel[(j, i)] / finger.tendon.stiffness[i])),
             home: home.into(),
             tight: 0.8 * minimum,
+            spring_part: 1.0 - (-1.0 / (0.01 * rate)).exp(),
             slew_step: gains.set_point_speed / rate,
             links: [l0, l1, l2],
             joint_damping: levers.map(|lever| lever * 3.0 * gains.rate_time * gains.rate_time),
@@ -171,6 +173,15 @@ pub struct PlainReport {
     pub under_tension: i32,
 }
 
+/// `struct spring`.
+#[derive(Clone, Copy, Default)]
+#[repr(C)]
+pub struct PlainSpring {
+    stiffness: [[f64; 6]; 6],
+    exact: f64,
+    damping: f64,
+}
+
 /// `struct state`.
 #[derive(Clone, Copy, Default)]
 #[repr(C)]
@@ -179,6 +190,7 @@ pub struct PlainState {
     still_seconds: f64,
     pulls_and_heat: [[f64; 4]; 2],
     anchor: [f64; 3],
+    springs: [PlainSpring; 2],
     report: PlainReport,
     age: u32,
     following: i32,

@@ -22,6 +22,7 @@ struct parameters {
     double from_tensions[JOINTS][TENDONS];
     double home[TENDONS];
     double tight;
+    double spring_part;
     double slew_step;
     double links[JOINTS];
     double joint_damping[JOINTS];
@@ -47,6 +48,12 @@ struct set_point {
     double damping;
 };
 
+/* What is between two set points. */
+struct spring {
+    double stiffness[TIP][TIP];
+    double exact, damping;
+};
+
 struct report {
     double joints[JOINTS], joint_rates[JOINTS];
     double tensions[TENDONS], desired_tensions[TENDONS];
@@ -64,6 +71,7 @@ struct state {
     double pulls[TENDONS];
     double heat[TENDONS];
     double anchor[JOINTS];
+    struct spring first, second;
     struct report report;
     uint32_t age;
     int32_t following;
@@ -228,13 +236,24 @@ static double distribute(const struct parameters *p, const double torques[JOINTS
     return scale;
 }
 
+static void approach(struct spring *spring, const double stiffness[TIP][TIP], double exact, double damping, double part)
+{
+    for (int row = 0; row < TIP; row++)
+        for (int column = 0; column < TIP; column++)
+            spring->stiffness[row][column] += (stiffness[row][column] - spring->stiffness[row][column]) * part;
+    spring->exact += (exact - spring->exact) * part;
+    spring->damping += (damping - spring->damping) * part;
+}
+
 /* tau of the spring, its damper and the soft limits; advances the anchor. */
 static void joint_torques(const struct parameters *p, struct state *s, const struct set_point *set_point, double torques[JOINTS])
 {
     const double *joints = s->report.joints, *rates = s->report.joint_rates;
     double j[TIP][JOINTS], k_theta[JOINTS][JOINTS], way[JOINTS], farthest = 0.0, b[JOINTS];
+    approach(&s->first, set_point->stiffness, 0.0, set_point->damping, p->spring_part);
+    approach(&s->second, (const double (*)[TIP])s->first.stiffness, s->first.exact, s->first.damping, p->spring_part);
     spatial_jacobian(p->links, joints, j);
-    joint_stiffness(set_point->stiffness, j, k_theta);
+    joint_stiffness((const double (*)[TIP])s->second.stiffness, j, k_theta);
     double carried = admissible(p, k_theta);
     s->report.stiffness_scale = carried;
 
@@ -263,7 +282,7 @@ static void joint_torques(const struct parameters *p, struct state *s, const str
         }
         double beyond = clamp(joints[row], p->low[row], p->high[row]) - joints[row];
         double limit_stiffness = beyond == 0.0 ? 0.0 : SOFT_LIMIT_STIFFNESS;
-        torques[row] = spring - damper * set_point->damping + beyond * SOFT_LIMIT_STIFFNESS
+        torques[row] = spring * (1.0 - s->second.exact) - damper * s->second.damping + beyond * SOFT_LIMIT_STIFFNESS
             - limit_stiffness * rates[row] * SOFT_LIMIT_DAMPING;
     }
 }
@@ -274,6 +293,10 @@ static inline void follow(const struct parameters *p, struct state *s, const str
     int begins = !s->following;
     if (begins) {
         memcpy(s->anchor, s->report.joints, sizeof s->anchor);
+        memcpy(s->first.stiffness, set_point->stiffness, sizeof s->first.stiffness);
+        s->first.exact = 0.0;
+        s->first.damping = set_point->damping;
+        s->second = s->first;
         s->following = 1;
     }
     joint_torques(p, s, set_point, torques);

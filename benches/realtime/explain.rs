@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread::JoinHandle;
+use sun2xp::finger::REPLY_WINDOW;
 use sun2xp::realtime::{Clock, MonotonicClock, Priority, Schedule, now, spawn};
 
 /// How many late cycles, and how many pauses of a core, are kept.
@@ -99,7 +100,6 @@ const LOOKING: u64 = 250_000;
 const PAUSE: u64 = 50_000;
 
 impl Watchers {
-    /// `priority` 0: ordinary threads.
     pub fn start(priority: u8) -> std::io::Result<Self> {
         let ended = Arc::new(AtomicBool::new(false));
         let cores = std::thread::available_parallelism()?.get();
@@ -140,7 +140,7 @@ impl Pauses {
         self.0.iter().map(Vec::len).sum()
     }
 
-    /// Whether they explain why a cycle was late. On any core: a servo, or a worker, may have been on any.
+    /// Whether they explain why a cycle was late. On any core: a servo may have been on any.
     fn explain(&self, cycle: &LateCycle, period: u64) -> bool {
         let excess = cycle.done - (cycle.beginning + period);
         let overlap = |&(from, to): &Pause| to.min(cycle.done).saturating_sub(from.max(cycle.beginning));
@@ -157,9 +157,9 @@ pub enum Cause {
     WakeUp,
     /// A core stood still meanwhile to a thread above all servos, for as long as the cycle was late.
     Pause,
-    /// It waited in the system for longer than it had asked for, while ordinary threads had no core: the kernel's workers, which
-    /// carry the bytes of a terminal and for which poll and read wait, are such threads.
-    Worker,
+    /// Poll or read on the terminal returned so long after the deadline that they were given: the kernel's workers, which carry the
+    /// bytes, and for which poll and read wait, had no core.
+    Terminal,
     /// None of these: the library itself.
     Library,
 }
@@ -167,13 +167,15 @@ pub enum Cause {
 /// A computation that took no longer than this part of a period has not made the cycle late.
 const COMPUTING: f64 = 0.1;
 
-/// `above`: pauses seen by watchers above all servos; `ordinary`: by ordinary ones.
-pub fn cause(cycle: &LateCycle, period: u64, above: &Pauses, ordinary: &Pauses) -> Cause {
-    let waited_long = (cycle.done - cycle.computing) as f64 <= COMPUTING * period as f64;
-    match cycle {
-        _ if cycle.done - cycle.woken <= period => Cause::WakeUp,
-        _ if above.explain(cycle, period) => Cause::Pause,
-        _ if waited_long && ordinary.explain(cycle, period) => Cause::Worker,
+/// `pauses`: of threads above all servos.
+pub fn cause(cycle: &LateCycle, period: u64, pauses: &Pauses) -> Cause {
+    let &LateCycle { woken, computing, done, .. } = cycle;
+    let waited_for = (computing - woken) as f64 > REPLY_WINDOW * period as f64;
+    let computed_briefly = (done - computing) as f64 <= COMPUTING * period as f64;
+    match () {
+        _ if done - woken <= period => Cause::WakeUp,
+        _ if pauses.explain(cycle, period) => Cause::Pause,
+        _ if waited_for && computed_briefly => Cause::Terminal,
         _ => Cause::Library,
     }
 }

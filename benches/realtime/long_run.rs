@@ -28,7 +28,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let seconds = (arguments.minutes * 60.0).ceil() as u64;
     let priority = configuration.fingers[0].priority;
     let cyclictest = Cyclictest::start(priority, period / 1000, seconds)?;
-    let watchers = [Watchers::start(ABOVE)?, Watchers::start(0)?];
+    let watchers = Watchers::start(ABOVE)?;
 
     let end = now() + seconds * 1_000_000_000;
     let (mut threads, mut planners, mut boards) = (Vec::new(), Vec::new(), Vec::new());
@@ -50,11 +50,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for thread in threads {
         found.push(thread.join().map_err(|_| "a servo panicked")??);
     }
-    let [above, ordinary] = watchers.map(Watchers::finish);
+    let pauses = watchers.finish();
     let machine = cyclictest.finish()?;
 
     println!(
-        "| finger | cycles | replies lost | late | by their wake-up | by a pause of a core | by a kernel worker | by the library |"
+        "| finger | cycles | replies lost | late | by their wake-up | by a pause of a core | by the terminal | by the library |"
     );
     println!("|---|---|---|---|---|---|---|---|");
     let mut own = 0;
@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             return Err(format!("finger {} is {:?}, not under control", index + 1, report.stage).into());
         }
         let causes: Vec<(Cause, LateCycle)> =
-            late.iter().map(|cycle| (cause(cycle, period, &above, &ordinary), *cycle)).collect();
+            late.iter().map(|cycle| (cause(cycle, period, &pauses), *cycle)).collect();
         let count = |cause| causes.iter().filter(|(found, _)| *found == cause).count();
         let library = count(Cause::Library);
         println!(
@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             late.len(),
             count(Cause::WakeUp),
             count(Cause::Pause),
-            count(Cause::Worker)
+            count(Cause::Terminal)
         );
         for (_, LateCycle { beginning, woken, computing, done }) in
             causes.iter().filter(|(cause, _)| *cause == Cause::Library).take(10)
@@ -101,11 +101,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         );
     }
     println!(
-        "\n{:.1} minutes at {:.0} Hz; pauses of a core above 50 us: {} above all servos, {} for ordinary threads.\n",
+        "\n{:.1} minutes at {:.0} Hz; {} pauses of a core above 50 us.\n",
         arguments.minutes,
         configuration.hand.rate,
-        above.count(),
-        ordinary.count()
+        pauses.count()
     );
     if own > 0 {
         return Err(format!("{own} cycles were late by the library's own doing").into());

@@ -11,8 +11,10 @@ use super::motor_torque::MotorTorque;
 use super::release::Release;
 use super::sensors::Sensors;
 use super::signals::{Activity, Command, Feedback, Measured, Report, SetPoint};
+use super::slack::{Slack, SlackTakeUp, Slackness, TakeUp};
 use super::slew::Slew;
 use super::soft_limits::SoftLimits;
+use super::spring_transition::{Spring, SpringStages, SpringTransition};
 use super::state_feedback::{Decision, StateFeedback, StateFeedbackState};
 use super::stillness::Stillness;
 use super::tendon_controller::TendonController;
@@ -41,6 +43,7 @@ pub struct Controller {
     speed_filter: LowPass,
     stretch_filter: LowPass,
     joint_positions: JointPositions,
+    slack: SlackTakeUp,
     slew: Slew,
     joint_stiffness: JointStiffness,
     distribution: TensionDistribution,
@@ -50,6 +53,7 @@ pub struct Controller {
     motor_damping: f64,
     state_feedback: Option<StateFeedback>,
     admissible: AdmissibleStiffness,
+    spring_transition: SpringTransition,
     soft_limits: SoftLimits,
     gravity: GravityCompensation,
     heating: MotorHeating,
@@ -72,6 +76,8 @@ pub struct State {
     tensions: Vector4<f64>,
     tendons: TendonState,
     transition: Transition,
+    /// The spring that is followed.
+    spring: Option<SpringStages>,
     /// What the controller before this one would pull next, N at the tendon.
     goes_on_from: Option<Vector4<f64>>,
     stillness: Stillness,
@@ -88,7 +94,7 @@ pub struct State {
 #[derive(Clone, Copy, Debug)]
 enum Doing {
     Nothing,
-    TakingUpSlack,
+    TakingUpSlack(Slack),
     /// With the spring's anchor on its way to the set point, rad.
     Following(Vector3<f64>),
     Releasing(Release),
@@ -120,6 +126,7 @@ impl Controller {
         let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
         Ok(Self {
             admissible: AdmissibleStiffness::new(&tendons, &finger.tendon.stiffness.into(), rate).ok_or_else(soft)?,
+            spring_transition: SpringTransition::new(rate),
             soft_limits: SoftLimits::new(finger),
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
@@ -128,6 +135,7 @@ impl Controller {
             speed_filter: LowPass::new(gains.speed_filter, rate),
             stretch_filter: LowPass::new(gains.stretch_filter, rate),
             joint_positions: JointPositions::new(finger, &tendons)?,
+            slack: SlackTakeUp::new(finger.links(), &tendons, finger.tendon.minimum, rate),
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
             distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, strongest)?,
@@ -161,6 +169,7 @@ impl Controller {
             tensions,
             tendons: TendonState::default(),
             transition: Transition::default(),
+            spring: None,
             goes_on_from: None,
             stillness: Stillness::new(motor_angles),
             pulls,
@@ -216,6 +225,7 @@ impl Controller {
         let observed = self.observe(state, measured);
         if !matches!(activity, Activity::Follow(_)) {
             state.against_friction = Vector4::zeros();
+            state.spring = None;
             if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
                 law.idle(elastic);
             }
@@ -223,12 +233,20 @@ impl Controller {
         match activity {
             &Activity::Release { ramp } => self.let_go(state, ramp),
             Activity::Follow(set_point) if observed => self.follow_by_state(state, set_point),
-            Activity::TakeUpSlack if measured.is_some() => self.take_up_slack(state),
+            Activity::TakeUpSlack if measured.is_some() => {
+                let gravity = self.gravity.torques(&state.report.joints);
+                self.take_up_slack(state, &Vector4::zeros(), gravity);
+            }
+            Activity::Tighten(offset) if measured.is_some() => self.take_up_slack(state, offset, Vector3::zeros()),
             Activity::Follow(set_point) if measured.is_some() => self.follow(state, set_point),
             &Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
             &Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),
             &Activity::Turn(torques) => self.turn(state, torques),
-            Activity::TakeUpSlack | Activity::Follow(_) | Activity::Tense(_) | Activity::Pull(_) => {}
+            Activity::TakeUpSlack
+            | Activity::Tighten(_)
+            | Activity::Follow(_)
+            | Activity::Tense(_)
+            | Activity::Pull(_) => {}
         }
         if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
             law.commanded(elastic, &state.pulls, &state.against_friction);
@@ -240,9 +258,9 @@ impl Controller {
     }
 
     /// The part of a spring's K_theta, N cm/rad, that the pose can carry.
-    fn carried(&self, state: &mut State, k_theta: &Matrix3<f64>) -> f64 {
-        state.report.stiffness_scale = self.admissible.scale(k_theta);
-        state.report.stiffness_scale
+    fn carried(&self, report: &mut Report, k_theta: &Matrix3<f64>) -> f64 {
+        report.stiffness_scale = self.admissible.scale(k_theta);
+        report.stiffness_scale
     }
 
     /// Keeps the observers of state feedback going in every activity; whether it can decide.
@@ -280,20 +298,48 @@ impl Controller {
         report.under_tension = tensions.min() >= self.tight && state.stillness.at_rest();
     }
 
-    /// Pretension without joint torque. A slack tendon is wound in by feed-forward against the motor damper, so at a
-    /// speed that does no harm when it comes taut.
-    fn take_up_slack(&self, state: &mut State) {
-        let Distribution { tensions: desired, .. } = self.distribution.distribute(&Vector3::zeros());
-        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
-        let begins = !matches!(state.doing, Doing::TakingUpSlack);
-        state.doing = Doing::TakingUpSlack;
-        self.pull(state, Vector3::zeros(), slack, begins);
+    /// Pretension, with the joints held where they are when the last tendon comes taut. `offset`: what the gauges show too much, N;
+    /// `gravity`: what holds the links there, N cm.
+    fn take_up_slack(&self, state: &mut State, offset: &Vector4<f64>, gravity: Vector3<f64>) {
+        let now = Slackness {
+            travel: state.motor_angles.component_mul(&self.radius),
+            speeds: state.motor_speeds.component_mul(&self.radius),
+            tensions: state.report.tensions - offset,
+            // Not what state feedback observes: this is Figures 9 and 10, which need the stretch low-passed.
+            joints: self.joint_positions.joints(&state.motor_angles, &state.tensions),
+            joint_rates: self.joint_positions.joint_rates(&state.motor_speeds),
+        };
+        let (mut slack, starts) = match state.doing {
+            Doing::TakingUpSlack(slack) => (slack, false),
+            _ => (self.slack.start(&now), true),
+        };
+        state.report.slackest = self.slack.slackest(&slack, &now);
+        match self.slack.step(&mut slack, &now) {
+            TakeUp::Pull(pulls) => {
+                self.give(state, &pulls, starts);
+                // Whatever follows begins anew.
+                state.tendons = TendonState::default();
+                state.report.joint_torques = Vector3::zeros();
+                state.report.desired_tensions = pulls;
+                state.report.torque_scale = 1.0;
+            }
+            TakeUp::Hold { torques, below, begins } => {
+                let torques = torques + gravity;
+                let Distribution { tensions, scale } = self.distribution.distribute(&torques);
+                self.bring(state, tensions - below + offset, begins);
+                state.report.joint_torques = torques;
+                state.report.torque_scale = scale;
+                state.report.under_tension &= below == Vector4::zeros();
+            }
+        }
+        state.doing = Doing::TakingUpSlack(slack);
     }
 
     /// The spring, from its anchor to the joints. It begins without deflection.
     fn follow(&self, state: &mut State, set_point: &SetPoint) {
-        let mut spring = self.joint_stiffness.posed(set_point, &state.report.joints);
-        spring.soften(self.carried(state, &spring.k_theta));
+        let spring = self.spring_transition.advance(&mut state.spring, set_point);
+        let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
+        spring.soften(self.carried(&mut state.report, &spring.k_theta));
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
             _ => (state.report.joints, true),
@@ -305,20 +351,25 @@ impl Controller {
         let push = self.soft_limits.push(joints);
         let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
         let torques = torques + push.torque - damped + self.gravity.torques(joints);
-        self.pull(state, torques, [false; 4], begins);
+        let Distribution { tensions: desired, scale } = self.distribution.distribute(&torques);
+        self.bring(state, desired, begins);
+        state.report.joint_torques = torques;
+        state.report.torque_scale = scale;
     }
 
     /// The spring by state feedback. It begins without deflection.
     fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
-        let scale = self.carried(state, &self.joint_stiffness.joint_stiffness(set_point, &state.report.joints));
+        let spring = self.spring_transition.advance(&mut state.spring, set_point);
+        let k_theta = self.joint_stiffness.joint_stiffness(spring, &state.report.joints);
+        let scale = self.carried(&mut state.report, &k_theta);
+        let spring = &Spring { stiffness: spring.stiffness * scale, ..*spring };
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };
         let begins = !matches!(state.doing, Doing::Following(_));
         state.doing = Doing::Following(elastic.joints);
-        let set_point = &SetPoint { stiffness: set_point.stiffness * scale, ..*set_point };
         let Decision { pulls, against_friction, joint_torques, distribution } =
-            law.decide(elastic, set_point, begins, &self.soft_limits, &self.gravity, &self.distribution);
+            law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &self.distribution);
         state.against_friction = against_friction;
         self.give(state, &pulls, false);
         state.report.joint_torques = joint_torques;
@@ -326,20 +377,11 @@ impl Controller {
         state.report.torque_scale = distribution.scale;
     }
 
-    /// Joint torques to pulls: R^-1 and the tendon controller.
-    fn pull(&self, state: &mut State, joint_torques: Vector3<f64>, slack: [bool; 4], begins: bool) {
-        let Distribution { tensions: desired, scale } = self.distribution.distribute(&joint_torques);
-        self.bring(state, desired, slack, begins);
-        state.report.joint_torques = joint_torques;
-        state.report.torque_scale = scale;
-    }
-
     /// Tensions as they are asked for.
     fn tense(&self, state: &mut State, desired: Vector4<f64>) {
-        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
         let begins = !matches!(state.doing, Doing::Tensing);
         state.doing = Doing::Tensing;
-        self.bring(state, desired, slack, begins);
+        self.bring(state, desired, begins);
         state.report.joint_torques = Vector3::zeros();
         state.report.torque_scale = 1.0;
     }
@@ -367,8 +409,10 @@ impl Controller {
     }
 
     /// Desired tensions to pulls: the tendon controller.
-    fn bring(&self, state: &mut State, desired: Vector4<f64>, slack: [bool; 4], begins: bool) {
+    fn bring(&self, state: &mut State, desired: Vector4<f64>, begins: bool) {
         let measured = state.report.tensions;
+        let following = matches!(state.doing, Doing::Following(_));
+        let slack = std::array::from_fn(|tendon| !following && measured[tendon] < SLACK * desired[tendon]);
         let speed = state.motor_speeds.component_mul(&self.radius);
         let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
         self.give(state, &asked, begins);

@@ -1,6 +1,6 @@
 //! The box K_theta: joint torques of the virtual spring, eqs. 1 to 6, with a damper beside it.
 
-use super::signals::{Law, SetPoint};
+use super::spring_transition::Spring;
 use crate::model::Links;
 use nalgebra::{Matrix3, Matrix6x3, Vector3, Vector6};
 
@@ -25,15 +25,16 @@ pub struct JointStiffness {
     damping: Vector3<f64>,
 }
 
-/// The spring of a set point at a pose: found once a cycle, because its sines and products are what a cycle spends most on.
+/// A spring at a pose: found once a cycle, because its sines and products are what a cycle spends most on.
 #[derive(Clone, Debug)]
 pub(super) struct PosedSpring<'a> {
     of: &'a JointStiffness,
-    set_point: &'a SetPoint,
     joints: Vector3<f64>,
+    exact: f64,
+    damping: f64,
     /// K J, before any scaling.
     stiffened: Matrix6x3<f64>,
-    /// The part of the set point's stiffness that the spring has.
+    /// The part of its stiffness that the spring has.
     scale: f64,
     /// K_theta of eq. 6, N cm/rad.
     pub k_theta: Matrix3<f64>,
@@ -48,28 +49,29 @@ impl JointStiffness {
     }
 
     /// tau of spring and damper, N cm, at joint angles (rad) and rates (rad/s).
-    pub fn torques(&self, set_point: &SetPoint, joints: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64> {
-        let spring = self.posed(set_point, joints);
-        spring.torques(&set_point.joints) - spring.damper(rates)
+    pub fn torques(&self, spring: &Spring, joints: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64> {
+        let posed = self.posed(spring, joints);
+        posed.torques(&spring.joints) - posed.damper(rates)
     }
 
     /// K_theta of eq. 6, N cm/rad.
-    pub fn joint_stiffness(&self, set_point: &SetPoint, joints: &Vector3<f64>) -> Matrix3<f64> {
-        self.posed(set_point, joints).k_theta
+    pub fn joint_stiffness(&self, spring: &Spring, joints: &Vector3<f64>) -> Matrix3<f64> {
+        self.posed(spring, joints).k_theta
     }
 
     /// tau of the spring alone, N cm: K_theta (theta_d - theta) by eqs. 3 and 6, or J^T f by eqs. 1 and 2 with the deflection
     /// of the tip itself.
-    pub fn spring(&self, set_point: &SetPoint, joints: &Vector3<f64>) -> Vector3<f64> {
-        self.posed(set_point, joints).torques(&set_point.joints)
+    pub fn spring(&self, spring: &Spring, joints: &Vector3<f64>) -> Vector3<f64> {
+        self.posed(spring, joints).torques(&spring.joints)
     }
 
-    /// The spring at joint angles, rad.
-    pub(super) fn posed<'a>(&'a self, set_point: &'a SetPoint, joints: &Vector3<f64>) -> PosedSpring<'a> {
+    /// A spring at joint angles, rad.
+    pub(super) fn posed(&self, spring: &Spring, joints: &Vector3<f64>) -> PosedSpring<'_> {
         let jacobian = self.links.spatial_jacobian(joints);
-        let stiffened = set_point.stiffness * jacobian;
+        let stiffened = spring.stiffness * jacobian;
         let k_theta = jacobian.tr_mul(&stiffened);
-        PosedSpring { of: self, set_point, joints: *joints, stiffened, scale: 1.0, k_theta }
+        let Spring { exact, damping, .. } = *spring;
+        PosedSpring { of: self, joints: *joints, exact, damping, stiffened, scale: 1.0, k_theta }
     }
 
     /// Translation (cm) and rotation vector (rad) from the tip's pose at `joints` to that at `desired`.
@@ -96,20 +98,25 @@ impl PosedSpring<'_> {
 
     /// tau, N cm, of the spring between `desired`, rad, and the joints.
     pub fn torques(&self, desired: &Vector3<f64>) -> Vector3<f64> {
-        match self.set_point.law {
-            Law::Report => self.k_theta * (desired - self.joints),
-            // K is symmetric: J^T K d = (K J)^T d.
-            Law::Exact => self.stiffened.tr_mul(&self.of.deflection(desired, &self.joints)) * self.scale,
+        let mut torques = Vector3::zeros();
+        if self.exact < 1.0 {
+            torques += self.k_theta * (desired - self.joints) * (1.0 - self.exact);
         }
+        if self.exact > 0.0 {
+            // K is symmetric: J^T K d = (K J)^T d.
+            let deflection = self.of.deflection(desired, &self.joints);
+            torques += self.stiffened.tr_mul(&deflection) * (self.scale * self.exact);
+        }
+        torques
     }
 
-    /// tau of the damper, N cm, at joint rates, rad/s: its matrix is symmetric, positive definite, and in proportion to the set
-    /// point's relative damping.
+    /// tau of the damper, N cm, at joint rates, rad/s: its matrix is symmetric, positive definite, and in proportion to the
+    /// spring's relative damping.
     pub fn damper(&self, rates: &Vector3<f64>) -> Vector3<f64> {
         // beta^2 K_ref / K_jj to the power 1/4; without stiffness in a joint there is nothing to damp it with.
         let stiffness = self.k_theta.diagonal();
         let b = stiffness.zip_map(&self.of.damping, |k, damping| (damping / k.max(1e-6)).sqrt().sqrt());
         let damped = (self.k_theta * rates.component_mul(&b)).component_mul(&b) + rates * LIMP_DAMPING;
-        damped * self.set_point.damping
+        damped * self.damping
     }
 }

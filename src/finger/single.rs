@@ -5,9 +5,9 @@ use crate::board::{OutgoingCommand, Received};
 use crate::control::calibration::{Calibration, Sample, Verdict};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Adjustable, Mailbox, Order, ServoEnd, mailbox};
-use crate::finger::{Fault, FingerReport, Stage};
+use crate::finger::{Fault, FaultKind, FingerReport, Stage};
 use crate::model::configuration::{Configuration, EndState, Unusable};
-use crate::realtime::{self, CycleTiming};
+use crate::realtime::{self, CycleTiming, Memory};
 use nalgebra::{Matrix3, Vector3, Vector4};
 use rtrb::Producer;
 
@@ -26,6 +26,9 @@ const LEAST_BLIND: u32 = 3;
 
 /// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
 const BEYOND_LIMITS: f64 = 0.5;
+
+/// The board's clock wraps after 65.5 ms: after a longer silence, ms, it does not say how old a measurement is.
+const CLOCK_UNKNOWN_MS: f64 = 60.0;
 
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
@@ -51,6 +54,10 @@ pub struct FingerServo {
     toggle: bool,
     answered: bool,
     lost_in_a_row: u32,
+    /// The board's clock at the last measurement, us modulo 65 536; none before the first.
+    sampled_at: Option<u16>,
+    /// Periods from that measurement to this cycle.
+    sample_age: u64,
     limits: Limits,
     settled_cycles: u32,
     /// Cycles since the stage began.
@@ -59,6 +66,8 @@ pub struct FingerServo {
     /// How the finger holds the pose that it finds at open.
     initial: SetPoint,
     end_state: EndState,
+    /// What of the finger is on the heap.
+    memory: Memory,
 }
 
 /// Times of the configuration, in cycles.
@@ -99,7 +108,7 @@ impl FingerServo {
         stiffness: Matrix3<f64>,
         identity: &Identity,
         configured: &Configured,
-        timings: Producer<CycleTiming>,
+        mut timings: Producer<CycleTiming>,
     ) -> Result<(Self, Mailbox), Unusable> {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
         let address = configuration.address(index);
@@ -116,13 +125,24 @@ impl FingerServo {
             orders: 0,
             calibration: None,
             cycles: 0,
-            lost_replies: 0,
+            overruns: 0,
             skipped_periods: 0,
+            lost_replies: 0,
+            late_replies: 0,
             damaged_frames: 0,
+            warnings: Default::default(),
             first: 0,
             last: 0,
         };
-        let (planners, servo) = mailbox(report, &adjustable);
+        let (planners, servo, mut memory) = mailbox(report, &adjustable);
+        memory.add(timings.buffer());
+        let every = timings.slots();
+        if let Ok(mut room) = timings.write_chunk(every) {
+            // Nothing is sent: the room is written to, so that it is there.
+            let (first, second) = room.as_mut_slices();
+            memory.add(first);
+            memory.add(second);
+        }
         let this = Self {
             adjustable,
             state,
@@ -141,6 +161,8 @@ impl FingerServo {
             toggle: false,
             answered: false,
             lost_in_a_row: 0,
+            sampled_at: None,
+            sample_age: 0,
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
                 lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
@@ -154,6 +176,7 @@ impl FingerServo {
             stops_left: STOPS_AFTER_FAULT,
             initial,
             end_state: hand.end_state,
+            memory,
         };
         Ok((this, planners))
     }
@@ -162,6 +185,11 @@ impl FingerServo {
     pub fn limp(mut self) -> Self {
         self.go_limp();
         self
+    }
+
+    /// What of the finger its servo touches and is not in this value itself.
+    pub fn memory(&self) -> &Memory {
+        &self.memory
     }
 
     /// The address of the finger on its port.
@@ -208,23 +236,42 @@ impl FingerServo {
         received.sequence == self.sequence && self.waiting()
     }
 
+    /// Counts a reply that this cycle does not await.
+    pub fn pass_over(&mut self, received: &Received) {
+        self.report.late_replies += u64::from(received.sequence != self.sequence);
+    }
+
+    /// The board's clock as this cycle's command arrived, us modulo 65 536; none without a reply.
+    pub fn sampled_at(&self) -> Option<u16> {
+        self.sampled_at.filter(|_| self.answered)
+    }
+
     /// Takes in the reply that answers this cycle's command.
     pub fn take(&mut self, received: &Received) {
         self.answered = true;
         let reply = &received.reply;
+        // This cycle's command took effect as it was sampled; what it was computed from was sampled before.
+        if let Some(before) = self.sampled_at
+            && self.sample_age as f64 * self.limits.period_ms < CLOCK_UNKNOWN_MS
+        {
+            self.timing.note(realtime::Stage::Age, 0, u64::from(reply.sampled_at.wrapping_sub(before)) * 1000);
+        }
+        (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
         self.zero_valid = reply.status.has(Status::ZERO_VALID);
-        if reply.status.has(Status::WATCHDOG_TRIPPED) {
-            self.fault(Fault::WatchdogTripped);
-        } else if reply.status.has(Status::FAULTS | Status::ENDED) {
-            self.fault(Fault::BoardStopped { status: reply.status.0 });
+        if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
+            self.fault(Fault::stopped(reply.status));
         }
     }
 
-    /// Ends a cycle: computes the next command and reports.
-    pub fn end(&mut self, began: u64, skipped: u64, damaged_frames: u64) {
+    /// Ends a cycle: computes the next command and reports. `overrun`: the next cycle should have begun already, and so many periods are
+    /// skipped.
+    pub fn end(&mut self, began: u64, overrun: Option<u64>, damaged_frames: u64) {
+        let skipped = overrun.unwrap_or(0);
+        self.sample_age += 1 + skipped;
         self.report.cycles += 1;
+        self.report.overruns += u64::from(overrun.is_some());
         self.report.skipped_periods += skipped;
         self.report.damaged_frames = damaged_frames;
         self.report.last = began;
@@ -235,9 +282,7 @@ impl FingerServo {
             self.count_replies();
         }
         if self.under_control() {
-            self.take_commands();
-            let new = self.mailbox.new_adjustable();
-            let previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
+            let previous = self.take_commands();
             self.calibrate();
             let feedback = self.answered.then_some(&self.feedback);
             let controller = &self.adjustable.controller;
@@ -286,8 +331,8 @@ impl FingerServo {
         let (low, high) = self.adjustable.pose;
         let joints = self.report.cycle.joints;
         if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
-            let degrees = joints[joint].to_degrees() as i32;
-            self.fault(Fault::ImpossiblePose { joint: joint as u8, degrees });
+            let value = joints[joint].to_degrees();
+            self.fault(Fault { kind: FaultKind::ImpossiblePose, part: joint as u8, value });
         }
     }
 
@@ -304,14 +349,22 @@ impl FingerServo {
         self.lost_in_a_row += 1;
         // Counted in attempts, not in time: a machine that pauses everything has lost no reply.
         if self.lost_in_a_row >= self.limits.lost {
-            let milliseconds = (f64::from(self.lost_in_a_row) * self.limits.period_ms).round() as u32;
-            self.fault(Fault::LinkLost { milliseconds });
+            let milliseconds = f64::from(self.lost_in_a_row) * self.limits.period_ms;
+            self.fault(Fault::of(FaultKind::LostReplies, milliseconds));
         }
     }
 
-    fn take_commands(&mut self) {
-        if let Some(order) = self.mailbox.new_order() {
+    /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
+    fn take_commands(&mut self) -> Option<Adjustable> {
+        let order = self.mailbox.new_order();
+        // After the order: what was handed over with it is there.
+        let new = self.mailbox.new_adjustable();
+        let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
+        if let Some(order) = order {
             self.report.orders += 1;
+            if let Order::Restart { .. } = order {
+                previous = None;
+            }
             self.carry_out(order);
         }
         if let Some(set_point) = self.mailbox.new_set_point()
@@ -330,6 +383,7 @@ impl FingerServo {
                 self.activity = Activity::Release { ramp };
             }
         }
+        previous
     }
 
     fn carry_out(&mut self, order: Order) {
@@ -340,8 +394,7 @@ impl FingerServo {
                 self.report.calibration = None;
                 self.enter(Stage::Calibrating);
             }
-            Order::Adopt { controller, limp } => {
-                self.adjustable.controller = controller;
+            Order::Restart { limp } => {
                 self.state = self.adjustable.controller.start(&self.feedback);
                 if limp {
                     self.go_limp();
@@ -396,9 +449,9 @@ impl FingerServo {
             Stage::Opening => {
                 self.settled_cycles = 0;
                 if self.stage_cycles >= self.limits.tension {
-                    let tendon = self.report.cycle.tensions.imin() as u8 + 1;
-                    let milliseconds = (f64::from(self.stage_cycles) * self.limits.period_ms).round() as u32;
-                    self.fault(Fault::SlackTendon { tendon, milliseconds });
+                    let slackest = self.report.cycle.slackest;
+                    let value = self.report.cycle.tensions[slackest];
+                    self.fault(Fault { kind: FaultKind::SlackTendon, part: slackest as u8 + 1, value });
                 }
             }
             Stage::Running => self.check_pose(),

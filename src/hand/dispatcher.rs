@@ -1,7 +1,7 @@
 //! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
 
 use crate::control::{SetPoint, spatial};
-use crate::finger::{self, FingerReport, Mailbox};
+use crate::finger::{self, FingerReport, Losses, Mailbox};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::opening::Reached;
@@ -34,6 +34,8 @@ pub(super) struct Dispatcher {
 struct Collected {
     arriving: Consumer<CycleTiming>,
     histograms: Histograms,
+    /// Up to the last reset.
+    losses_before: Losses,
 }
 
 impl Collected {
@@ -50,7 +52,11 @@ impl Dispatcher {
         let (mut members, mut timings) = (Vec::new(), Vec::new());
         for finger in fingers {
             members.push(Member { admission: RwLock::new(finger.admission), mailbox: finger.mailbox });
-            timings.push(Mutex::new(Collected { arriving: finger.timings, histograms: Histograms::new() }));
+            timings.push(Mutex::new(Collected {
+                arriving: finger.timings,
+                histograms: Histograms::new(),
+                losses_before: Losses::default(),
+            }));
         }
         Self { members, timings: Arc::new(timings), collector: None }
     }
@@ -118,11 +124,21 @@ impl Dispatcher {
         Ok(collected.histograms.distribution(stage))
     }
 
-    /// Begins to count anew.
+    /// What went wrong.
+    pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
+        let index = self.index(finger)?;
+        // The report is read under the lock: a reset of another thread's is then before both or after both.
+        let collected = self.timings[index].lock();
+        Ok(Losses::of(&self.members[index].mailbox.report()).since(&collected.losses_before))
+    }
+
+    /// Begins to count timings and losses anew.
     pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
-        let mut collected = self.timings[self.index(finger)?].lock();
+        let index = self.index(finger)?;
+        let mut collected = self.timings[index].lock();
         collected.collect();
         collected.histograms.reset();
+        collected.losses_before = Losses::of(&self.members[index].mailbox.report());
         Ok(())
     }
 

@@ -7,7 +7,7 @@ use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::announcement::say;
 use crate::model::Refusal;
-use crate::model::configuration::{Configuration, FINGERS, Unusable};
+use crate::model::configuration::{Configuration, FINGERS, RealTime, Unusable};
 use crate::realtime::{CycleTiming, Priority, now};
 use nalgebra::Matrix3;
 use rtrb::{Consumer, RingBuffer};
@@ -60,7 +60,11 @@ pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<Simulate
             let unusable = Unusable { key: "simulation", reason: error.to_string() };
             Refusal { finger: Some(index), unusable }
         })?;
-        let priority = Priority { fifo: finger.priority.min(SIMULATED_BOARD_PRIORITY), core: None };
+        let fifo = match configuration.hand.real_time {
+            RealTime::Ignore => 0,
+            _ => finger.priority.min(SIMULATED_BOARD_PRIORITY),
+        };
+        let priority = Priority { fifo, core: None };
         let port = SimulatedPort::start(board, Pace::Patient, priority)
             .map_err(|source| HandError::System { doing: "start the simulated board on a pseudo-terminal", source })?;
         ports[index] = Some(port);
@@ -74,18 +78,11 @@ pub(super) fn reach(
     simulated: &[Option<SimulatedPort>; FINGERS],
     limp: bool,
 ) -> Result<(Vec<Line>, Vec<Reached>), HandError> {
-    let path = |index: usize| match &simulated[index] {
-        Some(port) => port.path().to_path_buf(),
-        None => PathBuf::from(&configuration.fingers[index].port),
-    };
     let (mut lines, mut reached) = (Vec::new(), Vec::new());
-    for first in 0..FINGERS {
-        let sharing: Vec<usize> = (0..FINGERS).filter(|&index| path(index) == path(first)).collect();
-        if sharing.first() < Some(&first) {
-            continue;
-        }
-        let failed = |index| move |source| HandError::Link { finger: index + 1, source };
-        let mut link = Link::open(&path(first), configuration.fingers[first].baud).map_err(failed(first))?;
+    for (path, sharing) in ports(configuration, simulated) {
+        let first = sharing[0];
+        let failed = |source| HandError::Link { finger: first + 1, source };
+        let mut link = Link::open(&path, configuration.fingers[first].baud).map_err(failed)?;
         warn_of_latency(link.transport());
         let mut fingers = Vec::new();
         for index in sharing {
@@ -97,6 +94,22 @@ pub(super) fn reach(
     }
     reached.sort_by_key(|finger| finger.index);
     Ok((lines, reached))
+}
+
+/// Every port, with the fingers on it, 0 to 2, one at least.
+pub(super) fn ports(
+    configuration: &Configuration,
+    simulated: &[Option<SimulatedPort>; FINGERS],
+) -> Vec<(PathBuf, Vec<usize>)> {
+    let mut ports: Vec<(PathBuf, Vec<usize>)> = Vec::new();
+    for (index, finger) in configuration.fingers.iter().enumerate() {
+        let path = simulated[index].as_ref().map_or_else(|| PathBuf::from(&finger.port), |port| port.path().into());
+        match ports.iter_mut().find(|(known, _)| *known == path) {
+            Some((_, fingers)) => fingers.push(index),
+            None => ports.push((path, vec![index])),
+        }
+    }
+    ports
 }
 
 /// A USB bridge that holds replies back makes every cycle lose its reply.

@@ -20,12 +20,22 @@ pub enum Stage {
     Compute,
     /// From the scheduled beginning to the end of the computation.
     Whole,
+    /// How old the newest measurement is when the command computed from it takes effect, by the board's clock.
+    Age,
 }
 
 impl Stage {
-    /// Every stage, in the order of time.
-    pub const ALL: [Stage; 7] =
-        [Stage::WakeUp, Stage::Write, Stage::Wire, Stage::Read, Stage::Decode, Stage::Compute, Stage::Whole];
+    /// Every stage: the parts in the order of time, then what they add up to.
+    pub const ALL: [Stage; 8] = [
+        Stage::WakeUp,
+        Stage::Write,
+        Stage::Wire,
+        Stage::Read,
+        Stage::Decode,
+        Stage::Compute,
+        Stage::Whole,
+        Stage::Age,
+    ];
 }
 
 /// The times of one cycle of one finger, ns, by [`Stage::ALL`]; none where there was no such stage, as without a reply.

@@ -138,7 +138,7 @@ fn slack_is_taken_up() {
                 );
                 assert!(servo.plant.tensions().max() < 40.0);
             }
-            assert!(servo.least_commanded >= 5.0);
+            assert!(servo.report.desired_tensions.min() >= 5.0);
             assert!(servo.plant.tensions().min() >= 4.0);
             // From there the finger is a spring where it is, and goes where it is sent.
             let pose = Vector3::new(0.1, 0.6, 1.0);

@@ -4,6 +4,7 @@
 
 mod board;
 mod calibrate;
+mod doctor;
 mod schedule;
 
 use clap::{Parser, Subcommand};
@@ -23,17 +24,19 @@ struct Arguments {
 enum Tool {
     Board(board::Arguments),
     Calibrate(calibrate::Arguments),
+    Doctor(doctor::Arguments),
     Schedule(schedule::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().tool {
-        Tool::Board(arguments) => board::run(&arguments),
-        Tool::Calibrate(arguments) => calibrate::run(&arguments),
-        Tool::Schedule(arguments) => schedule::run(&arguments),
+        Tool::Board(arguments) => board::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Doctor(arguments) => doctor::run(&arguments),
+        Tool::Schedule(arguments) => schedule::run(&arguments).map(|()| ExitCode::SUCCESS),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(status) => status,
         Err(error) => {
             eprintln!("sun2xp: {error}");
             ExitCode::FAILURE

@@ -20,6 +20,7 @@ mod signs;
 mod stop_search;
 mod take_up;
 mod tendon_stiffness;
+mod wiring;
 mod zeroing;
 
 pub use findings::{Findings, Identified, Signs, Zeros};
