@@ -955,43 +955,33 @@ int AdjustFinger(int i,
 int PushFinger(int i, const double *Force);
 
 /*
- GetFault - what is wrong with a finger
+ WriteBlackBox - write the last seconds of a finger into a file
 
-     int GetFault(int i, struct Fault *Fault);
+     int WriteBlackBox(int i, const char *Path);
 
-   i        finger, 1 to 3
-   Fault    Fault->Size is set by the caller, all else is filled in. Written only if
-            the call returns 0
+   i       finger, 1 to 3
+   Path    the file, new or to be written over. Read during the call only
 
- Returns 0, whether something is wrong or not, or -1 with
-   EFAULT   Fault is null
-   EINVAL   Size is too small; no such finger
+ The library keeps the last two seconds of every finger: feedback, set points, motor
+ commands, timing, state. Of a faulted finger they are the last two before the fault.
+ docs/black-box.md describes the file; `sun2xp replay Path` computes it again. With
+ hand.black_box the library writes such a file by itself whenever a finger faults.
+
+ Takes about 50 ms, in which the servos go on.
+
+ Returns 0, or -1 with
+   EFAULT   Path is null
+   EINVAL   no such finger
    ENODEV   no hand is open
    EPERM    forked child
+   ENOENT, EACCES, ENOSPC ...  the file cannot be written
 
- Threads: any. Never waits for a servo.
+ Threads: any, but not two at once with the same Path.
 
-     struct Fault Fault;
-     Fault.Size = sizeof Fault;
-     if (GetFault(1, &Fault) == 0 && Fault.Number != 0)
-         fprintf(stderr, "finger 1: %s\n", FaultText(Fault.Number));
+     WriteBlackBox(1, "/tmp/finger-1.jsonl");
  */
-int GetFault(int i, struct Fault *Fault);
-
-/*
- FaultText - a fault in words
-
-     const char *FaultText(int Number);
-
-   Number   FAULT_...
-
- Its name, what is the case, the likely cause and the remedy, in one line. An empty
- string for a number that is no fault. Never null, valid for ever. HandError tells the
- same of a fault that refused a call, with part and figures.
-
- Threads: any.
- */
-const char *FaultText(int Number);
+int WriteBlackBox(int i,
+                  const char *Path);
 
 /*
  ZeroFinger - find the zeros of a finger's gauges and encoders
@@ -1050,6 +1040,45 @@ int ZeroFinger(int i);
  Threads: any.
  */
 int IdentifyFinger(int i);
+
+/*
+ GetFault - what is wrong with a finger
+
+     int GetFault(int i, struct Fault *Fault);
+
+   i        finger, 1 to 3
+   Fault    Fault->Size is set by the caller, all else is filled in. Written only if
+            the call returns 0
+
+ Returns 0, whether something is wrong or not, or -1 with
+   EFAULT   Fault is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo.
+
+     struct Fault Fault;
+     Fault.Size = sizeof Fault;
+     if (GetFault(1, &Fault) == 0 && Fault.Number != 0)
+         fprintf(stderr, "finger 1: %s\n", FaultText(Fault.Number));
+ */
+int GetFault(int i, struct Fault *Fault);
+
+/*
+ FaultText - a fault in words
+
+     const char *FaultText(int Number);
+
+   Number   FAULT_...
+
+ Its name, what is the case, the likely cause and the remedy, in one line. An empty
+ string for a number that is no fault. Never null, valid for ever. HandError tells the
+ same of a fault that refused a call, with part and figures.
+
+ Threads: any.
+ */
+const char *FaultText(int Number);
 
 #ifdef __cplusplus
 }

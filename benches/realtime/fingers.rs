@@ -3,7 +3,7 @@
 use crate::Failure;
 use rtrb::{Consumer, RingBuffer};
 use sun2xp::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms};
-use sun2xp::finger::{FingerServo, Mailbox, ServedPort};
+use sun2xp::finger::{BlackBox, ControllerSource, FingerServo, Mailbox, ServedPort};
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{CycleTiming, Priority, Schedule, now};
 
@@ -14,8 +14,8 @@ pub struct Finger {
     pub schedule: Schedule,
     /// The board lives as long as this.
     pub board: SimulatedPort,
-    /// Where the servo leaves its timings; nobody looks.
-    pub timings: Consumer<CycleTiming>,
+    /// Where the servo leaves its timings and records; nobody looks.
+    pub uncollected: (Consumer<CycleTiming>, BlackBox),
 }
 
 /// All fingers of a hand, each on its own port, with cycles of so many ns; the phases staggered.
@@ -30,10 +30,19 @@ pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> 
         let (identity, configured) = link.shake_hands(configuration.address(index), &terms, now() + 1_000_000_000)?;
         let (producer, timings) = RingBuffer::new(16);
         let stiffness = finger.initial_stiffness();
-        let (servo, mailbox) = FingerServo::new(configuration, index, stiffness, &identity, &configured, producer)
-            .map_err(|unusable| unusable.reason)?;
+        let source = ControllerSource { number: 0, gravity: configuration.gravity(index), finger: finger.clone() };
+        let (recorder, black_box) = BlackBox::new(index as i32 + 1, &configuration.hand, source);
+        let (servo, mailbox) =
+            FingerServo::new(configuration, index, stiffness, &identity, &configured, producer, recorder)
+                .map_err(|unusable| unusable.reason)?;
         let schedule = Schedule::new(first + period * index as u64 / FINGERS as u64, period);
-        Ok(Finger { mailbox, port: ServedPort::new(link, vec![servo]), schedule, board, timings })
+        Ok(Finger {
+            mailbox,
+            port: ServedPort::new(link, vec![servo]),
+            schedule,
+            board,
+            uncollected: (timings, black_box),
+        })
     };
     (0..FINGERS).map(reach_one).collect()
 }

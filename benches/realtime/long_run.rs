@@ -43,7 +43,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             drop(servo);
             had.scheduling.map_or_else(|| Ok(clock.finish()), Err)
         })?);
-        planners.push((finger.mailbox, finger.timings));
+        planners.push((finger.mailbox, finger.uncollected));
         boards.push(finger.board);
     }
     let mut found = Vec::new();

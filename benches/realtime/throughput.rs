@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let measured = begun + 1_000_000_000;
     let end = measured + arguments.seconds * 1_000_000_000;
     for finger in fingers {
-        let (port, schedule, timings) = (finger.port, finger.schedule, finger.timings);
+        let (port, schedule, uncollected) = (finger.port, finger.schedule, finger.uncollected);
         mailboxes.push(finger.mailbox);
         boards.push(finger.board);
         threads.push(spawn("servo", Priority { fifo: arguments.priority, core: None }, move |_| {
@@ -75,7 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 servo.cycle();
                 cycles += 1;
             }
-            drop(timings);
+            drop(uncollected);
             cycles
         })?);
     }

@@ -3,7 +3,7 @@
 // The names of the header.
 #![allow(non_snake_case)]
 
-use crate::capi::memory::fill;
+use crate::capi::memory::{fill, size_up_to};
 use crate::capi::refusal::guarded;
 use crate::finger::{self, FaultKind};
 use crate::hand::FingerFault;
@@ -45,8 +45,8 @@ pub struct Fault {
 ///
 /// Returns 0, whether something is wrong or not, or -1 with
 ///   EFAULT   Fault is null
-///   EINVAL   Size is too small; no such finger
 ///   ENODEV   no hand is open
+///   EINVAL   Size is too small; no such finger
 ///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo.
@@ -58,8 +58,9 @@ pub struct Fault {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetFault(i: c_int, Fault: *mut Fault) -> c_int {
     guarded("GetFault", || {
+        let least = size_up_to!(self::Fault, Warnings: c_ulong);
         // SAFETY: the manual's contract: null, or as much room as its first member says.
-        unsafe { fill(Fault, "Fault", size_of::<self::Fault>(), |hand| hand.fault(i).map(|fault| told(&fault))) }
+        unsafe { fill(Fault, "Fault", least, |hand| hand.fault(i).map(|fault| told(&fault))) }
     })
 }
 

@@ -9,6 +9,7 @@
 // The boundary to C cannot be written without raw pointers.
 #![allow(unsafe_code)]
 
+mod black_box_calls;
 mod calibration_calls;
 mod calls;
 mod default_hand;

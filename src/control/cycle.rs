@@ -24,6 +24,7 @@ use super::transition::Transition;
 use super::usable::positive;
 use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
 use nalgebra::{Matrix3, Vector3, Vector4};
+use serde::{Deserialize, Serialize};
 
 /// A tendon counts as tight from this part of t_min on.
 const TIGHT: f64 = 0.8;
@@ -64,7 +65,7 @@ pub struct Controller {
 }
 
 /// What a cycle leaves behind for the next one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct State {
     doing: Doing,
     motor_angles: Vector4<f64>,
@@ -91,7 +92,7 @@ pub struct State {
 }
 
 /// The activity of the last cycle, with what belongs to it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 enum Doing {
     Nothing,
     TakingUpSlack(Slack),

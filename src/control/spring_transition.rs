@@ -2,12 +2,13 @@
 
 use super::signals::{Law, SetPoint};
 use nalgebra::{Matrix6, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Time constant of each of the two stages, s.
 const STAGE: f64 = 0.01;
 
 /// The spring of one cycle: a [`SetPoint`], or what is between two of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Spring {
     /// Its anchor, rad.
     pub joints: Vector3<f64>,
@@ -52,7 +53,7 @@ pub(super) struct SpringTransition {
 }
 
 /// The two stages.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct SpringStages {
     first: Spring,
     second: Spring,

@@ -1,6 +1,7 @@
 //! The integral on the tension error that Figures 9 and 10 share, with its anti-windup.
 
 use nalgebra::Vector4;
+use serde::{Deserialize, Serialize};
 
 /// What a tendon controller sees in one cycle.
 #[derive(Clone, Copy, Debug)]
@@ -16,7 +17,7 @@ pub(super) struct TendonInput {
 }
 
 /// The memory of a tendon controller.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(super) struct TendonState {
     /// N.
     pub integral: Vector4<f64>,

@@ -10,6 +10,7 @@ use crate::finger::{Fault, Warnings};
 use crate::realtime::Memory;
 use nalgebra::Vector3;
 use parking_lot::Mutex;
+use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use triple_buffer::{Input, Output, triple_buffer};
@@ -85,10 +86,26 @@ pub struct FingerReport {
 /// What a servo computes with, and what a planner may change while it runs.
 #[derive(Clone, Debug)]
 pub struct Adjustable {
+    /// Of the controller, in the finger's black box.
+    pub number: u32,
     /// The boxes of Figure 9.
     pub controller: Controller,
     /// Joint angles that a finger under tension can have, rad: lowest and highest.
     pub pose: (Vector3<f64>, Vector3<f64>),
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Stage::Opening => "opening",
+            Stage::Limp => "limp",
+            Stage::Calibrating => "calibrating",
+            Stage::Running => "running",
+            Stage::Closing => "closing",
+            Stage::Closed => "closed",
+            Stage::Faulted(fault) => return write!(f, "faulted: {fault}"),
+        })
+    }
 }
 
 // A servo copies it out of a buffer: nothing may be allocated or freed then.

@@ -109,7 +109,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
                 let computed = self.clock.now();
                 finger.note(Stage::Compute, computing, computed);
                 finger.note(Stage::Whole, beginning, computed);
-                finger.tell_timing();
+                finger.tell();
                 computing = computed;
             }
         }
@@ -120,6 +120,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         for finger in self.ports.iter_mut().flat_map(|port| &mut port.fingers) {
             finger.fault(Fault::new(FaultKind::ServoPanic));
             finger.end(0, None, 0);
+            finger.tell();
         }
         self.confirm_stops();
     }

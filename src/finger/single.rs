@@ -5,7 +5,7 @@ use crate::board::{OutgoingCommand, Received};
 use crate::control::calibration::{Calibration, Sample, Verdict};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Adjustable, Mailbox, Order, ServoEnd, mailbox};
-use crate::finger::{Fault, FaultKind, FingerReport, Stage};
+use crate::finger::{ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage};
 use crate::model::configuration::{Configuration, EndState, Unusable};
 use crate::realtime::{self, CycleTiming, Memory};
 use nalgebra::{Matrix3, Vector3, Vector4};
@@ -39,13 +39,20 @@ pub struct FingerServo {
     state: State,
     activity: Activity,
     calibration: Option<Calibration>,
-    /// Whether the board says that its encoder counts are still good.
-    zero_valid: bool,
+    /// Of the newest reply.
+    status: Status,
     feedback: Feedback,
+    /// The state is to be made anew from the feedback.
+    anew: bool,
     command: Command,
     mailbox: ServoEnd,
     timing: CycleTiming,
     timings: Producer<CycleTiming>,
+    black_box: Recorder,
+    /// What this cycle leaves in the black box; none of a finger that was faulted or closed before.
+    record: Option<CycleRecord>,
+    /// Whether the last cycle left something there.
+    recording: bool,
     report: FingerReport,
     address: u8,
     /// Knows the torque of one count of a command.
@@ -81,22 +88,22 @@ struct Limits {
 }
 
 impl Adjustable {
-    /// What the configuration says.
+    /// What the configuration says. `number`: of the controller, in the finger's black box.
     ///
     /// # Errors
     /// A configuration that no controller can be made from.
-    pub fn new(configuration: &Configuration, index: usize) -> Result<Self, Unusable> {
+    pub fn new(configuration: &Configuration, index: usize, number: u32) -> Result<Self, Unusable> {
         let finger = &configuration.fingers[index];
         let (low, high) = finger.joint_limits();
         let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
         let controller = Controller::in_gravity(finger, &configuration.gravity(index), configuration.hand.rate)?;
-        Ok(Self { controller, pose })
+        Ok(Self { number, controller, pose })
     }
 }
 
 impl FingerServo {
-    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`; those that
-    /// nobody collects are dropped.
+    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`, records
+    /// of its cycles to `black_box`; those that nobody collects are dropped.
     ///
     /// `stiffness` is the Kx that it will hold its pose with, already admitted.
     ///
@@ -109,10 +116,11 @@ impl FingerServo {
         identity: &Identity,
         configured: &Configured,
         mut timings: Producer<CycleTiming>,
+        mut black_box: Recorder,
     ) -> Result<(Self, Mailbox), Unusable> {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
         let address = configuration.address(index);
-        let adjustable = Adjustable::new(configuration, index)?;
+        let adjustable = Adjustable::new(configuration, index, 0)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
@@ -135,6 +143,7 @@ impl FingerServo {
             last: 0,
         };
         let (planners, servo, mut memory) = mailbox(report, &adjustable);
+        memory.append(&black_box.memory());
         memory.add(timings.buffer());
         let every = timings.slots();
         if let Ok(mut room) = timings.write_chunk(every) {
@@ -148,12 +157,16 @@ impl FingerServo {
             state,
             activity: Activity::TakeUpSlack,
             calibration: None,
-            zero_valid: configured.status.has(Status::ZERO_VALID),
+            status: configured.status,
             feedback,
+            anew: false,
             command: Command::default(),
             mailbox: servo,
             timing: CycleTiming::default(),
             timings,
+            black_box,
+            record: None,
+            recording: false,
             report,
             address,
             board: *identity,
@@ -259,7 +272,7 @@ impl FingerServo {
         (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
-        self.zero_valid = reply.status.has(Status::ZERO_VALID);
+        self.status = reply.status;
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
             self.fault(Fault::stopped(reply.status));
         }
@@ -281,27 +294,43 @@ impl FingerServo {
         if self.under_control() {
             self.count_replies();
         }
-        if self.under_control() {
-            let previous = self.take_commands();
-            self.calibrate();
-            let feedback = self.answered.then_some(&self.feedback);
-            let controller = &self.adjustable.controller;
-            (self.command, self.report.cycle) = match &previous {
-                None => controller.cycle(&mut self.state, feedback, &self.activity),
-                Some(Adjustable { controller: previous, .. }) => {
-                    controller.take_over(previous, &mut self.state, feedback, &self.activity)
-                }
-            };
-            // Periods that will be skipped are periods without a reply: what differentiates and predicts must know of them.
-            for _ in 0..skipped.min(self.limits.lost.into()) {
-                (self.command, self.report.cycle) = controller.cycle(&mut self.state, None, &self.activity);
-            }
-            if self.lost_in_a_row >= self.limits.blind {
-                self.command = Command::default();
-            }
-            self.move_on();
+        let recorded = self.recording || self.under_control();
+        let control = self.under_control().then(|| self.control(skipped));
+        if recorded {
+            self.record = Some(CycleRecord {
+                cycle: self.report.cycles,
+                began,
+                stage: self.report.stage,
+                timing: CycleTiming::default(),
+                feedback: self.answered.then_some(self.feedback),
+                status: self.status.0,
+                control,
+            });
         }
+        self.recording = self.under_control();
         self.mailbox.publish(self.report);
+    }
+
+    /// Computes the next command.
+    fn control(&mut self, skipped: u64) -> ControlRecord {
+        let previous = self.take_commands();
+        self.calibrate();
+        let input = ControlInput {
+            anew_from: std::mem::take(&mut self.anew).then_some(self.feedback),
+            activity: self.activity,
+            skipped: skipped.min(self.limits.lost.into()),
+            let_go: self.lost_in_a_row >= self.limits.blind,
+        };
+        self.black_box.keyframe(self.report.cycles, &self.state, !self.recording);
+        let Adjustable { controller, number, .. } = &self.adjustable;
+        let feedback = self.answered.then_some(&self.feedback);
+        let before = previous.as_ref().map(|previous| &previous.controller);
+        let (command, report) = input.run(controller, before, &mut self.state, feedback);
+        (self.command, self.report.cycle) = (command, report);
+        let previous = previous.map_or(*number, |previous| previous.number);
+        let record = ControlRecord { controller: *number, previous, input, command, report };
+        self.move_on();
+        record
     }
 
     /// Notes when a stage of this cycle began and ended, ns.
@@ -309,10 +338,14 @@ impl FingerServo {
         self.timing.note(stage, from, to);
     }
 
-    /// Leaves the timing of this cycle to whoever collects it.
-    pub fn tell_timing(&mut self) {
+    /// Leaves the timing and the record of this cycle to whoever collects them.
+    pub fn tell(&mut self) {
+        let timing = std::mem::take(&mut self.timing);
         // A full ring means that nobody collects: the cycle is worth more than its figure.
-        let _ = self.timings.push(std::mem::take(&mut self.timing));
+        let _ = self.timings.push(timing);
+        if let Some(record) = self.record.take() {
+            self.black_box.record(CycleRecord { timing, ..record });
+        }
     }
 
     /// Stops the finger for a reason.
@@ -340,7 +373,7 @@ impl FingerServo {
         if self.answered {
             if self.lost_in_a_row >= self.limits.blind {
                 // The motors were let go: begin with what the tendons pull now, and not with what was commanded then.
-                self.state = self.adjustable.controller.start(&self.feedback);
+                self.anew = true;
             }
             self.lost_in_a_row = 0;
             return;
@@ -395,7 +428,7 @@ impl FingerServo {
                 self.enter(Stage::Calibrating);
             }
             Order::Restart { limp } => {
-                self.state = self.adjustable.controller.start(&self.feedback);
+                self.anew = true;
                 if limp {
                     self.go_limp();
                 } else {
@@ -413,7 +446,8 @@ impl FingerServo {
         if !self.answered {
             return;
         }
-        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid: self.zero_valid };
+        let zero_valid = self.status.has(Status::ZERO_VALID);
+        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid };
         let (activity, verdict) = calibration.cycle(&sample);
         self.activity = activity;
         self.report.calibration = Some(verdict);

@@ -86,7 +86,9 @@ impl Calibrating {
                 let mut configuration = hand.configuration.write();
                 let mut changed = configuration.clone();
                 found.apply(&mut changed.fingers[index]);
-                let adjustable = Adjustable::new(&changed, index).map_err(|unusable| refusal(finger, unusable))?;
+                let number = hand.dispatcher.announce(finger, &changed)?;
+                let adjustable =
+                    Adjustable::new(&changed, index, number).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = matches!(found, Findings::Signs(_));
                 let given = hand.dispatcher.member(finger)?.mailbox.restart(adjustable, limp);
                 *self = Self::ordered(finger, given, Some(found))?;

@@ -220,6 +220,14 @@ pub enum HandError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A black box that cannot be written.
+    #[error("cannot write the black box to {}: {source}. Name a file in a folder that this user can write to", path.display())]
+    BlackBox {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
     /// A push beyond what any finger bears.
     #[error(
         "a force of {force:.3e} N on finger {finger} is beyond the {strongest} N that a simulated finger is pushed with at most"
@@ -259,7 +267,7 @@ impl HandError {
             Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } | Self::NoAnswer(_) => libc::ETIMEDOUT,
             Self::Calibration { .. } => libc::ECANCELED,
             Self::Busy(_) => libc::EBUSY,
-            Self::Store { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
+            Self::Store { source, .. } | Self::BlackBox { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
             Self::NotSimulated(_) => libc::ENOTSUP,
         }
     }

@@ -4,6 +4,7 @@
 mod adjustment;
 mod admission;
 mod announcement;
+mod black_box;
 mod calibrating;
 mod calibration_file;
 mod configuration_file;
@@ -18,6 +19,7 @@ mod opening;
 mod root;
 mod servo_threads;
 
+pub use black_box::save;
 pub use calibrating::{Calibrating, Standing};
 pub use configuration_file::{configured, read};
 pub use doctor::{Finding, Verdict, examine};

@@ -2,7 +2,7 @@
 
 use crate::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms, capacity};
 use crate::control::InverseKinematics;
-use crate::finger::{FingerServo, Mailbox, ServedPort};
+use crate::finger::{BlackBox, ControllerSource, FingerServo, Mailbox, ServedPort};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::announcement::say;
@@ -11,7 +11,7 @@ use crate::model::configuration::{Configuration, FINGERS, RealTime, Unusable};
 use crate::realtime::{CycleTiming, Priority, now};
 use nalgebra::Matrix3;
 use rtrb::{Consumer, RingBuffer};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Simulated boards run below every servo: they stand for something outside the machine.
 const SIMULATED_BOARD_PRIORITY: u8 = 20;
@@ -29,6 +29,8 @@ pub(super) struct Reached {
     pub admission: Admission,
     /// Where the servo leaves its timings.
     pub timings: Consumer<CycleTiming>,
+    /// Where it leaves its cycles.
+    pub black_box: BlackBox,
 }
 
 /// A port with its fingers, and the thread that shall serve it.
@@ -47,6 +49,17 @@ pub(super) fn check(configuration: &Configuration) -> Result<(), Refusal> {
         carries(configuration, index).map_err(refused)?;
     }
     Ok(())
+}
+
+/// A black box must have a folder to be written into before it is needed.
+pub(super) fn check_folder(configuration: &Configuration) -> Result<(), Refusal> {
+    match &configuration.hand.black_box {
+        Some(folder) if !Path::new(folder).is_dir() => {
+            let reason = format!("{folder} is no folder: make it (mkdir -p {folder}), or name another");
+            Err(Refusal { finger: None, unusable: Unusable { key: "black_box", reason } })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A simulated board behind a pseudo-terminal, for each finger whose port is `simulated`.
@@ -142,9 +155,12 @@ fn shake_hands(
     }
     let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;
     let (producer, timings) = RingBuffer::new(TIMINGS);
+    let first = ControllerSource { number: 0, gravity: configuration.gravity(index), finger: finger.clone() };
+    let (recorder, black_box) = BlackBox::new(index as i32 + 1, hand, first); // 1 to 3
     let (servo, mailbox) =
-        FingerServo::new(configuration, index, stiffness, &identity, &configured, producer).map_err(unusable)?;
-    Ok((servo, Reached { index, mailbox, admission: admission(configuration, index), timings }))
+        FingerServo::new(configuration, index, stiffness, &identity, &configured, producer, recorder)
+            .map_err(unusable)?;
+    Ok((servo, Reached { index, mailbox, admission: admission(configuration, index), timings, black_box }))
 }
 
 pub(super) fn admission(configuration: &Configuration, index: usize) -> Admission {

@@ -5,7 +5,7 @@ use crate::control::calibration::Verdict;
 use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::announcement::say;
 use crate::hand::dispatcher::Dispatcher;
-use crate::hand::opening::{check, reach, simulate};
+use crate::hand::opening::{check, check_folder, reach, simulate};
 use crate::hand::servo_threads::{Given, PortServo, start};
 use crate::hand::{HandError, configured};
 use crate::model::configuration::{Configuration, FINGERS};
@@ -114,6 +114,7 @@ impl Hand {
 
     fn open_from(configuration: Configuration, file: Option<PathBuf>, limp: bool) -> Result<Self, HandError> {
         check(&configuration)?;
+        check_folder(&configuration)?;
         let simulated = simulate(&configuration)?;
         let (lines, reached) = reach(&configuration, &simulated, limp)?;
         let dispatcher = Dispatcher::new(reached);
@@ -123,7 +124,8 @@ impl Hand {
         let given = Given::default();
         let mut hand = Self { dispatcher, servos, simulated, configuration, file, given, ending, process: id() };
         // From here on, dropping the hand closes it.
-        let collecting = hand.dispatcher.start_collecting();
+        let folder = hand.configuration.read().hand.black_box.clone().map(PathBuf::from);
+        let collecting = hand.dispatcher.start_collecting(folder);
         collecting.map_err(|source| HandError::System { doing: "start the thread that collects reports", source })?;
         hand.given = start(&hand.configuration.read(), lines, &mut hand.servos)?;
         hand.wait_for_every_finger()?;

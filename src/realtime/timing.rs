@@ -2,6 +2,7 @@
 //! counts them.
 
 use hdrhistogram::Histogram;
+use serde::{Deserialize, Serialize};
 
 /// A part of a finger's cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +40,8 @@ impl Stage {
 }
 
 /// The times of one cycle of one finger, ns, by [`Stage::ALL`]; none where there was no such stage, as without a reply.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
 pub struct CycleTiming {
     stages: [Option<u32>; Stage::ALL.len()],
 }

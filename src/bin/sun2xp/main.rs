@@ -5,6 +5,7 @@
 mod board;
 mod calibrate;
 mod doctor;
+mod replay;
 mod schedule;
 
 use clap::{Parser, Subcommand};
@@ -25,6 +26,7 @@ enum Tool {
     Board(board::Arguments),
     Calibrate(calibrate::Arguments),
     Doctor(doctor::Arguments),
+    Replay(replay::Arguments),
     Schedule(schedule::Arguments),
 }
 
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
         Tool::Board(arguments) => board::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
+        Tool::Replay(arguments) => replay::run(&arguments),
         Tool::Schedule(arguments) => schedule::run(&arguments).map(|()| ExitCode::SUCCESS),
     };
     match result {

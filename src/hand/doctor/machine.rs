@@ -92,7 +92,7 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
         "The servos would have the jitter of ordinary threads. Write `@realtime - rtprio 90` into {LIMITS}, join the group \
          (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
-    Finding::new(lacking(configuration), subject, format!("{wanted} is wanted, the rtprio limit is {limit}"), advice)
+    lacking(configuration, subject, format!("{wanted} is wanted, the rtprio limit is {limit}"), advice)
 }
 
 fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> Finding {
@@ -107,7 +107,7 @@ fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> F
         "Where memory is short a servo may wait for its own pages. Write `@realtime - memlock unlimited` into {LIMITS} and log in again"
     );
     let found = format!("the memlock limit is {kilobytes} kB, the servos want {} kB", LOCKED / 1024);
-    Finding::new(lacking(configuration), subject, found, advice)
+    lacking(configuration, subject, found, advice)
 }
 
 fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -> Finding {
@@ -119,7 +119,7 @@ fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -
     if let Some(core) = wanted.iter().find(|core| !allowed.contains(core)) {
         let advice =
             format!("The servo cannot run on core {core}: set finger.core to one that is allowed (taskset -p $$)");
-        return Finding::new(lacking(configuration), subject, found, advice);
+        return lacking(configuration, subject, found, advice);
     }
     if let Some(core) = wanted.iter().find(|core| !isolated.contains(core)) {
         let advice = format!(

@@ -58,7 +58,7 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
         return Finding::new(verdict, subject, found, advice);
     }
     if let Some(missing) = missing(vec![had]).first() {
-        return Finding::new(lacking(configuration), subject, found, missing.to_string());
+        return lacking(configuration, &subject, found, missing.to_string());
     }
     Finding::good(subject, found)
 }

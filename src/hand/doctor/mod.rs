@@ -61,10 +61,10 @@ pub fn examine(configuration: &Configuration, root: &Path, duration: Duration) -
 }
 
 /// What it is to lack something that makes a thread real-time.
-fn lacking(configuration: &Configuration) -> Verdict {
+fn lacking(configuration: &Configuration, subject: &str, found: String, advice: String) -> Finding {
     match configuration.hand.real_time {
-        RealTime::Enforce => Verdict::Failure,
-        RealTime::Try => Verdict::Warning,
-        RealTime::Ignore => Verdict::Good,
+        RealTime::Enforce => Finding::new(Verdict::Failure, subject, found, advice),
+        RealTime::Try => Finding::new(Verdict::Warning, subject, found, advice),
+        RealTime::Ignore => Finding::good(subject, found),
     }
 }

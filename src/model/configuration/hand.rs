@@ -44,7 +44,8 @@ pub enum PeriodClock {
     /// The host's CLOCK_MONOTONIC.
     #[default]
     Host,
-    /// The clock of the board, which its replies tell; of the first, where a thread serves several.
+    /// The clock of the board, which its replies tell; of the first, where a thread serves several. Threads that follow different boards
+    /// do not stay staggered.
     Board,
 }
 
@@ -74,6 +75,8 @@ pub struct ConfiguredHand {
     pub out_of_range: OutOfRange,
     /// One line on standard error at the first refusal of each kind.
     pub print_refusals: bool,
+    /// Folder into which the last two seconds of a finger that faults are written; none: nowhere.
+    pub black_box: Option<String>,
     /// Gravity in palm coordinates, m/s^2.
     pub gravity: [f64; 3],
 }
@@ -92,6 +95,7 @@ impl Default for ConfiguredHand {
             open_timeout_ms: 5000,
             out_of_range: OutOfRange::Refuse,
             print_refusals: true,
+            black_box: None,
             gravity: [0.0; 3],
         }
     }
