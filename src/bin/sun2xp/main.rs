@@ -7,6 +7,7 @@ mod bound;
 mod calibrate;
 mod doctor;
 mod replay;
+mod schedule;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -28,6 +29,7 @@ enum Tool {
     Calibrate(calibrate::Arguments),
     Doctor(doctor::Arguments),
     Replay(replay::Arguments),
+    Schedule(schedule::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
         Tool::Replay(arguments) => replay::run(&arguments),
+        Tool::Schedule(arguments) => schedule::run(&arguments).map(|()| ExitCode::SUCCESS),
     };
     match result {
         Ok(status) => status,
