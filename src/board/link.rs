@@ -47,6 +47,28 @@ pub struct LinkCounters {
     pub unsent: u64,
 }
 
+impl LinkCounters {
+    /// Together with what passed through another link.
+    pub fn plus(&self, other: &Self) -> Self {
+        self.with(other, u64::saturating_add)
+    }
+
+    /// Without what passed through another link.
+    pub fn less(&self, other: &Self) -> Self {
+        self.with(other, u64::saturating_sub)
+    }
+
+    fn with(&self, other: &Self, of: impl Fn(u64, u64) -> u64) -> Self {
+        Self {
+            bytes: of(self.bytes, other.bytes),
+            frames: of(self.frames, other.frames),
+            damaged: of(self.damaged, other.damaged),
+            foreign: of(self.foreign, other.foreign),
+            unsent: of(self.unsent, other.unsent),
+        }
+    }
+}
+
 /// How long an answer to a handshake frame may take before the frame is sent again, ns. A USB bridge in its slowest setting
 /// answers after some 35 ms.
 const PATIENCE: u64 = 50_000_000;

@@ -136,8 +136,12 @@ pub struct FingerTiming {
     pub LostReplies: c_ulong,
     /// Replies that came when their cycle was over.
     pub LateReplies: c_ulong,
-    /// Damaged or foreign frames on the finger's port.
+    /// Pieces of bytes on the finger's port that were no frame: damaged, cut short, noise.
     pub CorruptReplies: c_ulong,
+    /// Replies that came once more.
+    pub DuplicateReplies: c_ulong,
+    /// Whole frames on the finger's port that nobody waited for.
+    pub ForeignFrames: c_ulong,
 }
 
 /// GetStatus - rate, jitter and losses of a finger's servo
@@ -289,6 +293,8 @@ fn timing(stage: c_int, times: &Distribution, losses: &Losses) -> FingerTiming {
         LostReplies: count(losses.lost_replies),
         LateReplies: count(losses.late_replies),
         CorruptReplies: count(losses.damaged_frames),
+        DuplicateReplies: count(losses.duplicate_replies),
+        ForeignFrames: count(losses.foreign_frames),
     }
 }
 

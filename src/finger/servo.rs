@@ -1,6 +1,6 @@
 //! A servo thread: periods by absolute deadlines, one transaction a finger and period.
 
-use crate::board::{Link, LinkError, OutgoingCommand, Transport};
+use crate::board::{Link, LinkCounters, LinkError, OutgoingCommand, Transport};
 use crate::finger::{Fault, FaultKind, FingerServo, Lender, Lent, Mended};
 use crate::model::configuration::FINGERS;
 use crate::realtime::{Clock, Follower, Memory, Schedule, Stage};
@@ -15,16 +15,22 @@ pub struct ServedPort<T> {
     link: Option<Link<T>>,
     /// The port has failed.
     failed: bool,
-    lender: Lender<T>,
+    lender: Option<Lender<T>>,
     fingers: Vec<FingerServo>,
-    /// Damaged frames of links that are gone.
-    damaged_before: u64,
+    /// What was heard on links before this one.
+    heard_before: LinkCounters,
 }
 
 impl<T: Transport> ServedPort<T> {
-    /// `fingers` have shaken hands over `link`. When all of them have faulted it is lent through `lender`, to be mended.
-    pub fn new(link: Link<T>, fingers: Vec<FingerServo>, lender: Lender<T>) -> Self {
-        Self { link: Some(link), failed: false, lender, fingers, damaged_before: 0 }
+    /// `fingers` have shaken hands over `link`.
+    pub fn new(link: Link<T>, fingers: Vec<FingerServo>) -> Self {
+        Self { link: Some(link), failed: false, lender: None, fingers, heard_before: LinkCounters::default() }
+    }
+
+    /// The same port, whose link is lent when all of its fingers have faulted, to be mended.
+    pub fn lent_through(mut self, lender: Lender<T>) -> Self {
+        self.lender = Some(lender);
+        self
     }
 }
 
@@ -114,9 +120,9 @@ impl<T: Transport, C: Clock> Servo<T, C> {
             self.schedule.shift(follower.correction(reading, 1 + skipped));
         }
         for port in &mut self.ports {
-            let damaged = port.damaged();
+            let heard = port.heard();
             for finger in &mut port.fingers {
-                finger.end(began, overrun, damaged);
+                finger.end(began, overrun, &heard);
                 let computed = self.clock.now();
                 finger.note(Stage::Compute, computing, computed);
                 finger.note(Stage::Whole, beginning, computed);
@@ -128,10 +134,13 @@ impl<T: Transport, C: Clock> Servo<T, C> {
 
     /// The last thing to do when a cycle panicked: every finger faulted, every board told to stop.
     pub fn fail(&mut self) {
-        for finger in self.ports.iter_mut().flat_map(|port| &mut port.fingers) {
-            finger.fault(Fault::new(FaultKind::ServoPanic));
-            finger.end(0, None, 0);
-            finger.tell();
+        for port in &mut self.ports {
+            let heard = port.heard();
+            for finger in &mut port.fingers {
+                finger.fault(Fault::new(FaultKind::ServoPanic));
+                finger.end(0, None, &heard);
+                finger.tell();
+            }
         }
         self.confirm_stops();
     }
@@ -165,18 +174,18 @@ impl<T: Transport, C: Clock> Servo<T, C> {
 impl<T: Transport> ServedPort<T> {
     /// Lends the link when no finger uses it any more, and takes back a mended one.
     fn exchange(&mut self) {
+        let Some(lender) = &mut self.lender else { return };
         let all_at_rest = self.fingers.iter().all(FingerServo::at_rest);
-        let damaged = self.damaged();
         if let Some(link) = self.link.take_if(|_| all_at_rest) {
-            self.damaged_before = damaged;
+            self.heard_before = self.heard_before.plus(&link.counters());
             // There is room: it is the only link.
-            if let Err(PushError::Full(lent)) = self.lender.lend.push(Lent { link, failed: self.failed }) {
+            if let Err(PushError::Full(lent)) = lender.lend.push(Lent { link, failed: self.failed }) {
                 self.link = Some(lent.link);
             }
-        } else if let Ok(Mended { link, configured, stop_calls }) = self.lender.mended.pop() {
+        } else if let Ok(Mended { link, configured, stop_calls }) = lender.mended.pop() {
             self.failed = false;
             // Of the same link, or of a new one: it goes on from what was counted.
-            self.damaged_before = self.damaged_before.saturating_sub(link.counters().damaged);
+            self.heard_before = self.heard_before.less(&link.counters());
             self.link = Some(link);
             for (finger, configured) in self.fingers.iter_mut().zip(configured) {
                 configured.into_iter().for_each(|configured| finger.recover(&configured, stop_calls));
@@ -184,8 +193,9 @@ impl<T: Transport> ServedPort<T> {
         }
     }
 
-    fn damaged(&self) -> u64 {
-        self.damaged_before + self.link.as_ref().map_or(0, |link| link.counters().damaged)
+    /// What was heard since open.
+    fn heard(&self) -> LinkCounters {
+        self.link.as_ref().map_or(self.heard_before, |link| self.heard_before.plus(&link.counters()))
     }
 
     /// All commands of the port back to back, so that replies overlap the commands that follow.

@@ -3,7 +3,7 @@
 mod life;
 
 use crate::board::protocol::{Command as BoardCommand, Configured, Identity, Status};
-use crate::board::{OutgoingCommand, Received};
+use crate::board::{LinkCounters, OutgoingCommand, Received};
 use crate::control::calibration::Calibration;
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::link_watch::LinkWatch;
@@ -55,6 +55,8 @@ pub struct FingerServo {
     sequence: u8,
     toggle: bool,
     answered: bool,
+    /// Sequence number of the reply that was taken last.
+    last_answer: u8,
     link: LinkWatch,
     alarm: Alarm,
     /// The board's clock at the last measurement, us modulo 65 536; none before the first.
@@ -131,7 +133,9 @@ impl FingerServo {
             skipped_periods: 0,
             lost_replies: 0,
             late_replies: 0,
+            duplicate_replies: 0,
             damaged_frames: 0,
+            foreign_frames: 0,
             recoveries: 0,
             warnings: Default::default(),
             first: 0,
@@ -168,6 +172,7 @@ impl FingerServo {
             sequence: 0,
             toggle: false,
             answered: false,
+            last_answer: 0,
             link: LinkWatch::new(hand, finger.simulated()),
             alarm: Alarm::new(false, stop_calls()),
             sampled_at: None,
@@ -261,9 +266,12 @@ impl FingerServo {
         received.sequence == self.sequence && self.waiting()
     }
 
-    /// Counts a reply that this cycle does not await.
+    /// Counts a reply that this cycle does not await: it came once more, or when its cycle was over.
     pub fn pass_over(&mut self, received: &Received) {
-        self.report.late_replies += u64::from(received.sequence != self.sequence);
+        match received.sequence == self.last_answer {
+            true => self.report.duplicate_replies += 1,
+            false => self.report.late_replies += 1,
+        }
     }
 
     /// The board's clock as this cycle's command arrived, us modulo 65 536; none without a reply.
@@ -274,6 +282,7 @@ impl FingerServo {
     /// Takes in the reply that answers this cycle's command.
     pub fn take(&mut self, received: &Received) {
         self.answered = true;
+        self.last_answer = received.sequence;
         let reply = &received.reply;
         // This cycle's command took effect as it was sampled; what it was computed from was sampled before.
         if let Some(before) = self.sampled_at
@@ -292,13 +301,13 @@ impl FingerServo {
 
     /// Ends a cycle: computes the next command and reports. `overrun`: the next cycle should have begun already, and so many periods are
     /// skipped.
-    pub fn end(&mut self, began: u64, overrun: Option<u64>, damaged_frames: u64) {
+    pub fn end(&mut self, began: u64, overrun: Option<u64>, heard: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
         self.sample_age += 1 + skipped;
         self.report.cycles += 1;
         self.report.overruns += u64::from(overrun.is_some());
         self.report.skipped_periods += skipped;
-        self.report.damaged_frames = damaged_frames;
+        (self.report.damaged_frames, self.report.foreign_frames) = (heard.damaged, heard.foreign);
         self.report.last = began;
         if self.report.cycles == 1 {
             self.report.first = began;

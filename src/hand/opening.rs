@@ -110,7 +110,10 @@ pub(super) fn reach(
             boards.push(board);
         }
         let (lender, borrower) = lending();
-        lines.push(Line { thread: configuration.thread(first), port: ServedPort::new(link, fingers, lender) });
+        lines.push(Line {
+            thread: configuration.thread(first),
+            port: ServedPort::new(link, fingers).lent_through(lender),
+        });
         let baud = configuration.fingers[first].baud;
         let reconnect = sharing.iter().any(|&index| configuration.fingers[index].reconnect);
         workshops.push(Workshop::new(path, baud, reconnect, boards, borrower));

@@ -9,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
-use sun2xp::finger::{Fault, Stage};
+use sun2xp::finger::{FaultKind, Stage};
 use sun2xp::hand::{Hand, HandError, read};
 use sun2xp::model::configuration::Configuration;
 
@@ -23,7 +23,9 @@ fn alone() -> MutexGuard<'static, ()> {
 fn configuration(port: &Path, keys: &str) -> Configuration {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let path = folder.path().join("sun2xp.toml");
-    let text = format!("[hand]\n{keys}\n[finger]\nthread = 1\nport = \"{}\"\n", port.display());
+    // The fingers live in the emulated time, which a busy machine makes slow; so opening may take long.
+    let text =
+        format!("[hand]\nopen_timeout_ms = 60000\n{keys}\n[finger]\nthread = 1\nport = \"{}\"\n", port.display());
     std::fs::write(&path, text).expect("the configuration is written");
     read(&path).expect("the configuration is good")
 }
@@ -34,7 +36,7 @@ const TARGETS: [[f64; 3]; 3] = [[0.1, 0.4, 0.9], [-0.1, 0.6, 1.1], [0.0, 0.7, 0.
 const CLOSE: f64 = 0.02;
 
 /// A busy machine moves the finger more slowly than time passes.
-const PATIENCE: Duration = Duration::from_secs(20);
+const PATIENCE: Duration = Duration::from_secs(60);
 
 fn farthest(found: [[f64; 3]; 3], wanted: [[f64; 3]; 3]) -> f64 {
     let pairs = found.as_flattened().iter().zip(wanted.as_flattened());
@@ -77,10 +79,10 @@ fn a_hand_settles_where_it_does_on_the_simulated_board() {
         });
         let (positions, joints, status) = match outcome {
             Ok(outcome) => outcome,
-            Err(HandError::Faulted { fault: Fault::LinkLost { .. } | Fault::BoardStopped { .. }, .. })
-                if rate > 100 =>
+            Err(HandError::Faulted { fault, .. })
+                if rate > 100 && matches!(fault.kind, FaultKind::LostReplies | FaultKind::Watchdog) =>
             {
-                eprintln!("{rate} Hz: more than this machine holds");
+                eprintln!("{rate} Hz is more than this machine holds: {fault}");
                 continue;
             }
             Err(error) => panic!("{rate} Hz: {error}"),
@@ -91,8 +93,8 @@ fn a_hand_settles_where_it_does_on_the_simulated_board() {
             "{rate} Hz: {:.4} rad from the simulated hand, {:.4} rad from the truth, {} of {} replies lost",
             farthest(positions, expected),
             farthest(joints, positions),
-            status.lost_replies,
-            status.cycles
+            status.losses.lost_replies,
+            status.losses.cycles
         );
         assert!(farthest(positions, expected) < CLOSE, "{positions:?} instead of {expected:?}");
         assert!(farthest(joints, expected) < CLOSE, "truly at {joints:?} instead of {expected:?}");
@@ -116,8 +118,7 @@ fn its_emergency_stop_stops_the_hand() {
         assert!(begin.elapsed() < PATIENCE, "the emergency stop goes unnoticed");
         std::thread::sleep(Duration::from_millis(1));
     };
-    let Fault::BoardStopped { status } = fault else { panic!("{fault}") };
-    assert!(Status(status).has(Status::EMERGENCY_STOP), "{status:#06x}");
+    assert_eq!(fault.kind, FaultKind::EmergencyStopInput, "{fault}");
     assert_eq!(machine.finger(1).asked.currents, [0; 4]);
     assert!(hand.position(1).is_ok() && hand.position(3).is_ok(), "the input is finger 2's");
 }

@@ -108,7 +108,12 @@ fn a_board_that_lost_its_power_recovers_on_the_same_port() {
     assert!(error.errno() == libc::EBUSY && error.to_string().contains("shares its port"), "{error}");
     goes(&hand, 1, TARGET);
     stop_all();
-    (1..=3).for_each(|finger| drop(faults(&hand, finger)));
+    for finger in 1..=3 {
+        assert_eq!(
+            faults(&hand, finger),
+            if finger == 2 { FaultKind::BoardReset } else { FaultKind::EmergencyStopCall }
+        );
+    }
     recovers(&hand, 2);
     for finger in 1..=3 {
         assert_eq!(fault(&hand, finger), None, "it shares the port");

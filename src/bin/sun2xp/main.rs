@@ -3,9 +3,11 @@
 #![deny(unsafe_code)]
 
 mod board;
+mod bound;
 mod calibrate;
 mod doctor;
 mod replay;
+mod schedule;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -23,17 +25,21 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Tool {
     Board(board::Arguments),
+    Bound(bound::Arguments),
     Calibrate(calibrate::Arguments),
     Doctor(doctor::Arguments),
     Replay(replay::Arguments),
+    Schedule(schedule::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().tool {
         Tool::Board(arguments) => board::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Bound(arguments) => bound::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
         Tool::Replay(arguments) => replay::run(&arguments),
+        Tool::Schedule(arguments) => schedule::run(&arguments).map(|()| ExitCode::SUCCESS),
     };
     match result {
         Ok(status) => status,

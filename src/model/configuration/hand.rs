@@ -55,7 +55,8 @@ pub enum PeriodClock {
     /// The host's CLOCK_MONOTONIC.
     #[default]
     Host,
-    /// The clock of the board, which its replies tell; of the first, where a thread serves several.
+    /// The clock of the board, which its replies tell; of the first, where a thread serves several. Threads that follow different boards
+    /// do not stay staggered.
     Board,
 }
 
