@@ -48,14 +48,15 @@ pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
     guarded("ZeroFinger", || default_hand::calibrate(i, Task::Zero))
 }
 
-/// IdentifyFinger - measure friction and tendon stiffness of a finger
+/// IdentifyFinger - measure gauge gains, friction and tendon stiffness of a finger
 ///
 ///     int IdentifyFinger(int i);
 ///
 ///   i        finger, 1 to 3; it must have been zeroed
 ///
-/// Leads the finger to its lower stops, moves each joint to and fro, presses against the
-/// stops with up to 0.6 of the largest tension, and returns to where it began. Finds the
+/// Moves the joints a little to and fro where they are, leads the finger to its lower
+/// stops, moves each joint to and fro, presses against the stops with up to 0.6 of the
+/// largest tension, and returns to where it began. Finds the gains of the gauges, the
 /// stiffness of each tendon and the friction of motors, conduits and joints. What was
 /// found is in force at once and is written into the configuration file, as by
 /// ZeroFinger. Takes about a minute, and the room that the joints can reach.

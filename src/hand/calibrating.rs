@@ -27,6 +27,7 @@ pub struct Calibrating {
 
 /// How a calibration stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "looked at and dropped")]
 pub enum Standing {
     /// It goes on.
     Going(Progress),
@@ -118,7 +119,7 @@ impl Hand {
         self.calibrate(finger, Task::Zero, progress)
     }
 
-    /// Measures friction and tendon stiffness of finger 1, 2 or 3, which must have been zeroed.
+    /// Measures gauge gains, friction and tendon stiffness of finger 1, 2 or 3, which must have been zeroed.
     ///
     /// # Errors
     /// As [`Calibrating::begin`] and [`Calibrating::poll`].

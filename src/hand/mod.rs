@@ -20,6 +20,7 @@ mod servo_threads;
 
 pub use black_box::save;
 pub use calibrating::{Calibrating, Standing};
+pub use calibration_file::store;
 pub use configuration_file::{configured, read};
 pub use doctor::{Finding, Verdict, examine};
 pub use error::HandError;

@@ -198,6 +198,7 @@ impl ConfiguredFinger {
         optional("controller.speed_filter", controller.speed_filter, 1.0, 1e4, "Hz")?;
         optional("controller.stretch_filter", controller.stretch_filter, 0.1, 1e4, "Hz")?;
         optional("controller.set_point_speed", controller.set_point_speed, 1e-3, 1e3, "rad/s")?;
+        optional("controller.adaptation_gain", controller.adaptation_gain, 0.0, 30.0, "1/s")?;
         optional("controller.inertia_gain", controller.inertia_gain, 0.1, 20.0, "")?;
         optional("controller.damping_ratio", controller.damping_ratio, 0.05, 3.0, "")?;
         optional("controller.set_point_time", controller.set_point_time, 1e-3, 1.0, "s")?;

@@ -3,6 +3,7 @@
 #![deny(unsafe_code)]
 
 mod board;
+mod bound;
 mod calibrate;
 mod doctor;
 mod replay;
@@ -23,6 +24,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Tool {
     Board(board::Arguments),
+    Bound(bound::Arguments),
     Calibrate(calibrate::Arguments),
     Doctor(doctor::Arguments),
     Replay(replay::Arguments),
@@ -31,6 +33,7 @@ enum Tool {
 fn main() -> ExitCode {
     let result = match Arguments::parse().tool {
         Tool::Board(arguments) => board::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Bound(arguments) => bound::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
         Tool::Replay(arguments) => replay::run(&arguments),

@@ -8,6 +8,7 @@ mod hand;
 pub use controller::{ConfiguredController, Law, Scheme};
 pub use drive::{
     ConfiguredEncoder, ConfiguredGauge, ConfiguredGeometry, ConfiguredJoints, ConfiguredMotor, ConfiguredTendon,
+    GaugeReference,
 };
 pub use hand::{ConfiguredHand, EndState, OutOfRange, PeriodClock, RealTime};
 
