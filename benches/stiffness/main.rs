@@ -9,6 +9,7 @@ mod cases;
 mod closed_loop;
 mod contact;
 mod fits;
+mod identification;
 mod motion;
 mod parallel;
 mod plots;
