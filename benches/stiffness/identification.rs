@@ -3,17 +3,14 @@
 use crate::cases::{Case, Friction};
 use crate::robustness;
 use nalgebra::Vector3;
-use sun2xp::control::calibration::{Calibration, Sample, Task, Verdict};
+use sun2xp::control::calibration::{Calibration, Obstacle, Sample, Task, Verdict};
 use sun2xp::control::{Activity, Command, Controller, Feedback, Report};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
 /// What identification finds for the stiffness of each tendon, N/cm, where the true ones are these times as stiff as believed. With the
 /// friction that a finger has, and in counts.
-///
-/// # Panics
-/// If the routine gives up.
-pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> [f64; 4] {
+pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obstacle> {
     let pose = Vector3::from(ConfiguredFinger::default().simulation.start_degrees.map(f64::to_radians));
     let mut belief = case.finger(&pose, Friction::Default);
     let mut truth = belief.clone();
@@ -49,9 +46,9 @@ pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> [f64; 4] {
             Verdict::Going(_) => report = advance(&mut plant, &feedback, &activity),
             Verdict::Found(findings) => {
                 findings.apply(&mut belief);
-                return belief.tendon.stiffness;
+                return Ok(belief.tendon.stiffness);
             }
-            Verdict::Refused(obstacle) => panic!("{obstacle:?}"),
+            Verdict::Refused(obstacle) => return Err(obstacle),
         }
     }
 }

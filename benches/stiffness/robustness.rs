@@ -5,6 +5,7 @@ use crate::closed_loop::Senses;
 use crate::parallel::{each, worst};
 use crate::{fits, identification, statics};
 use nalgebra::Matrix3;
+use sun2xp::control::calibration::Obstacle;
 use sun2xp::model::configuration::ConfiguredFinger;
 
 /// Error of the apparent stiffness where the true finger is not what the controller believes. No friction, exact sensors: what
@@ -47,11 +48,16 @@ pub fn tendon_stiffness(case: &Case, stiffness: f64, ratios: &[[f64; 4]]) -> f64
 
 /// With tendons that are off by each of these, and a controller that has identified them: the worst error of what it then believes of
 /// a tendon, and those of the apparent stiffness at each of `stiffnesses`.
-pub fn identified_tendons(case: &Case, stiffnesses: [f64; 2], ratios: &[[f64; 4]]) -> (f64, [f64; 2]) {
+pub fn identified_tendons(
+    case: &Case,
+    stiffnesses: [f64; 2],
+    ratios: &[[f64; 4]],
+) -> Result<(f64, [f64; 2]), Obstacle> {
     let found = each(ratios, |_, ratio| identification::tendon_stiffness(case, ratio));
     let mut off = 0.0;
     let mut errors = [0.0; 2];
     for (ratio, found) in ratios.iter().zip(found) {
+        let found = found?;
         let mut truth = ConfiguredFinger::default();
         stiffen(&mut truth, ratio);
         let truth = truth.simulation.tendon_stiffness;
@@ -64,7 +70,7 @@ pub fn identified_tendons(case: &Case, stiffnesses: [f64; 2], ratios: &[[f64; 4]
             *error = worst([*error, believing(case, stiffness, differ)]);
         }
     }
-    (off, errors)
+    Ok((off, errors))
 }
 
 /// Makes the true tendons so many times as stiff.

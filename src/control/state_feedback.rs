@@ -76,7 +76,7 @@ pub(super) struct StateFeedback {
     /// Radius of each motor, m, and half a count of its encoder, rad: a count is rounded down.
     radius: Vector4<f64>,
     half_count: Vector4<f64>,
-    /// What the tensions of a finger at rest swing by, N: the dither, and four times the noise of a gauge.
+    /// What the tensions of a finger at rest swing by, N: the dither, and six times the noise of a gauge.
     pub reserve: f64,
 }
 
@@ -186,7 +186,7 @@ impl StateFeedback {
             reference: Reference::new(numbers.reference_time, rate),
             slew: Slew::new(set_point_speed, rate),
             dither: Dither::new(shaken, numbers.dither_frequency, rate),
-            reserve: (pseudo_inverse.abs() * shaken).max() + 4.0 * GAUGE_NOISE,
+            reserve: (pseudo_inverse.abs() * shaken).max() + 6.0 * GAUGE_NOISE,
             friction: FrictionFeedForward {
                 coulomb: Vector4::from(finger.friction.motor_coulomb).component_div(&tendons.radius),
                 conduit: finger.friction.conduit.into(),
