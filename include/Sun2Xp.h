@@ -10,7 +10,7 @@
        2. Return values, errno    7. Servo and real time
        3. Units, frames, order    8. Configuration
        4. float and double        9. The calls
-       5. Planners of 1990
+       5. Planners of 1990       10. Faults
 
 
    1. QUICK START
@@ -58,7 +58,8 @@
        EDOM     Kx not symmetric, or with a negative eigenvalue; a normal of length zero
        EIO      the finger is faulted: it has stopped by itself
        ENOTSUP  not for a finger on a real port
-       others   a configuration file or a port: what the system said, or the nearest
+       others   a configuration file, a port, or enforced real time: what the system
+                said, or the nearest
 
    Where several hold, the call tells the first of: EPERM, EFAULT, ENODEV, then the
    others in the order of the entry. A call that succeeds leaves errno and HandError()
@@ -140,10 +141,17 @@
 
    7. SERVO AND REAL TIME
 
-   One servo thread runs each finger, 1000 times a second by default, in SCHED_FIFO
-   where the system permits it. Where it does not, one line on standard error says so,
-   and GetStatus: everything works, but with the jitter of an ordinary process. README
-   tells how to permit it.
+   One servo thread runs each finger, 1000 times a second by default, in SCHED_FIFO,
+   with locked memory and on the configured core, where the system permits it. Where it
+   does not, hand.real_time says what OpenHand does:
+
+       "try"      goes on without; one line on standard error says so, and GetStatus:
+                  everything works, but with the jitter of an ordinary process
+       "enforce"  is refused, and HandError says what to change
+       "ignore"   does not try
+
+   sun2xp doctor looks at a machine and says what to change. GetTiming tells where the
+   time of a cycle goes.
 
 
    8. CONFIGURATION
@@ -165,7 +173,18 @@
        port = "/dev/ttyUSB0"
 
 
-   9. THE CALLS */
+   9. THE CALLS: below, each with its manual
+
+
+   10. FAULTS
+
+   What goes wrong with a finger has a number that never changes (FAULT_..., below), a
+   text, a likely cause and a remedy: FaultText. A fault stops the finger: its motors go
+   to the configured end state, its calls are refused with EIO, and HandError says why,
+   until CloseHand and OpenHand. A warning is told and the finger goes on: it stays for
+   a second after it was last seen. GetFault tells both. Some faults make OpenHand
+   refuse; their numbers stand in the text of HandError. docs/faults.md lists all, with
+   how and how fast each is found. */
 
 #ifndef SUN2XP_H
 #define SUN2XP_H
@@ -182,6 +201,53 @@
 #error "SUN2XP_REAL must be float or double: compile with -DSUN2XP_REAL=float or -DSUN2XP_REAL=double"
 #endif
 #endif
+
+/* The faults (chapter 10). Numbers never change. */
+#define FAULT_SLACK_TENDON            1 /* slack tendon */
+#define FAULT_BROKEN_TENDON           2 /* broken tendon */
+#define FAULT_OVER_TENSION            3 /* over-tension */
+#define FAULT_GAUGE_STUCK             4 /* gauge stuck */
+#define FAULT_GAUGE_OUT_OF_RANGE      5 /* gauge out of range */
+#define FAULT_GAUGE_DISAGREES         6 /* gauge against encoders */
+#define FAULT_ENCODER_JUMP            7 /* encoder jump */
+#define FAULT_STALLED_MOTOR           8 /* stalled motor */
+#define FAULT_OVERHEATED_MOTOR        9 /* over-heated motor */
+#define FAULT_JOINT_AT_STOP          10 /* joint at its stop */
+#define FAULT_IMPOSSIBLE_POSE        11 /* impossible pose */
+#define FAULT_SLACK_IN_MOTION        12 /* slack in motion */
+#define FAULT_LOST_REPLIES           13 /* lost replies */
+#define FAULT_DAMAGED_REPLIES        14 /* damaged replies */
+#define FAULT_LINE_NOISE             15 /* noise on the line */
+#define FAULT_WATCHDOG               16 /* watchdog */
+#define FAULT_BOARD_STOPPED          17 /* board stopped */
+#define FAULT_EMERGENCY_STOP_INPUT   18 /* emergency stop, input */
+#define FAULT_EMERGENCY_STOP_CALL    19 /* emergency stop, call */
+#define FAULT_SUPPLY_FAULT           20 /* motor supply */
+#define FAULT_DRIVER_FAULT           21 /* motor driver */
+#define FAULT_SENSOR_FAULT           22 /* sensor, by the board */
+#define FAULT_BOARD_RESET            23 /* board reset */
+#define FAULT_COMMAND_REFUSED        24 /* command refused */
+#define FAULT_PORT_VANISHED          25 /* port vanished */
+#define FAULT_PORT_FAILED            26 /* port failed */
+#define FAULT_PORT_MISSING           27 /* port missing */
+#define FAULT_PORT_BUSY              28 /* port busy */
+#define FAULT_PORT_PERMISSION        29 /* port forbidden */
+#define FAULT_PORT_UNUSABLE          30 /* port unusable */
+#define FAULT_BOARD_SILENT           31 /* board silent */
+#define FAULT_UNINTELLIGIBLE         32 /* no protocol */
+#define FAULT_UNANSWERED             33 /* finger silent */
+#define FAULT_WRONG_VERSION          34 /* wrong protocol version */
+#define FAULT_WRONG_FINGER           35 /* wrong finger */
+#define FAULT_UNSUITABLE_BOARD       36 /* wrong board */
+#define FAULT_IDENTITY_CHANGED       37 /* identity changed */
+#define FAULT_ZERO_LOST              38 /* zero lost */
+#define FAULT_OVERRUN                39 /* overrun */
+#define FAULT_REALTIME_REFUSED       40 /* no real time */
+#define FAULT_SERVO_PANIC            41 /* servo failed */
+#define FAULT_CURRENT_LIMIT          42 /* current limit */
+#define FAULT_TORQUE_NOT_ADMITTED    43 /* torque not admitted */
+#define FAULT_CALIBRATION_FAILED     44 /* calibration failed */
+#define FAULT_WARM_MOTOR             45 /* warm motor */
 
 #ifdef __cplusplus
 extern "C" {
@@ -212,6 +278,50 @@ extern "C" {
  brought under tension. Set points have no effect.
  */
 #define FINGER_CALIBRATING 4
+
+/*
+ Stage for GetTiming: from the scheduled beginning of a cycle to the thread's first
+ instruction.
+ */
+#define TIMING_WAKE_UP 0
+
+/*
+ Stage for GetTiming: handing the commands of the port to the system.
+ */
+#define TIMING_WRITE 1
+
+/*
+ Stage for GetTiming: from there until the reply can be read: both ways on the line, and
+ the board.
+ */
+#define TIMING_WIRE 2
+
+/*
+ Stage for GetTiming: reading the reply.
+ */
+#define TIMING_READ 3
+
+/*
+ Stage for GetTiming: from bytes to the finger's reply, checks included.
+ */
+#define TIMING_DECODE 4
+
+/*
+ Stage for GetTiming: the controller.
+ */
+#define TIMING_COMPUTE 5
+
+/*
+ Stage for GetTiming: from the scheduled beginning of a cycle to the end of its
+ computation.
+ */
+#define TIMING_CYCLE 6
+
+/*
+ Stage for GetTiming: how old the newest measurement is when the command that was
+ computed from it takes effect, by the board's clock. One period where nothing is late.
+ */
+#define TIMING_AGE 7
 
 /*
  What GetStatus tells of a finger. Set Size = sizeof (struct FingerStatus) before the
@@ -278,6 +388,82 @@ struct FingerStatus {
      The part of the calibration under way that is done, 0 to 1; 0 where there is none.
      */
     double Calibration;
+    /*
+     1: the memory that the servo thread uses is locked, so that it never waits for a page.
+     0: it is not.
+     */
+    int MemoryLocked;
+    /*
+     1: the servo thread runs on the configured core, or none is configured. 0: it does not.
+     */
+    int OnCore;
+};
+
+/*
+ What GetTiming tells of a stage of a finger's cycle. Set Size = sizeof (struct
+ FingerTiming) before the call: later versions add members at the end, and a program
+ never gets more than it has room for.
+
+ All times are ns, within 1 %, at most 4.29e9, and 0 where nothing was counted. All
+ numbers are since OpenHand or the finger's last ResetTiming.
+ */
+struct FingerTiming {
+    /*
+     In: bytes of room, sizeof *Timing. Out: bytes that were filled, never more.
+     */
+    unsigned int Size;
+    /*
+     The stage that was asked for.
+     */
+    int Stage;
+    /*
+     Cycles that had this stage.
+     */
+    unsigned long Count;
+    /*
+     The shortest.
+     */
+    unsigned long Minimum;
+    /*
+     Half of them took no longer.
+     */
+    unsigned long Median;
+    /*
+     99 of 100 took no longer.
+     */
+    unsigned long P99;
+    /*
+     999 of 1000 took no longer.
+     */
+    unsigned long P999;
+    /*
+     The longest.
+     */
+    unsigned long Maximum;
+    /*
+     The finger's cycles, with or without this stage, like all that follows.
+     */
+    unsigned long Cycles;
+    /*
+     Cycles that were not over when the next one should have begun.
+     */
+    unsigned long Overruns;
+    /*
+     Whole periods that were skipped because of that.
+     */
+    unsigned long SkippedPeriods;
+    /*
+     Cycles without a valid reply in time.
+     */
+    unsigned long LostReplies;
+    /*
+     Replies that came when their cycle was over.
+     */
+    unsigned long LateReplies;
+    /*
+     Damaged or foreign frames on the finger's port.
+     */
+    unsigned long CorruptReplies;
 };
 
 /*
@@ -311,6 +497,47 @@ struct FingerTip {
 };
 
 /*
+ What GetFault tells of a finger. Set Size = sizeof (struct Fault) before the call:
+ later versions add members at the end.
+ */
+struct Fault {
+    /*
+     In: bytes of room, sizeof *Fault. Out: bytes that were filled, never more.
+     */
+    unsigned int Size;
+    /*
+     The fault that has stopped the finger: FAULT_...; 0 none.
+     */
+    int Number;
+    /*
+     Its joint (0 to 2), tendon, motor, gauge or encoder (1 to 4), as its text says;
+     0 where it is of the whole finger.
+     */
+    int Part;
+    /*
+     What the finger is warned of, up to a second ago: FAULT_...; 0 nothing.
+     */
+    int Warning;
+    /*
+     Its joint, tendon, motor, gauge or encoder.
+     */
+    int WarningPart;
+    /*
+     How much: N, ms, degrees, counts, per cent, errno or status bits, as
+     docs/faults.md says.
+     */
+    double Value;
+    /*
+     How much, of the warning.
+     */
+    double WarningValue;
+    /*
+     How many warnings have been given since OpenHand; one that goes on counts once.
+     */
+    unsigned long Warnings;
+};
+
+/*
  OpenHand - start the hand
 
      int OpenHand(void);
@@ -326,6 +553,8 @@ struct FingerTip {
    ENOENT, EACCES, EBUSY ...  the configuration file or a port cannot be opened; the
             errno is the system's
    ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
+   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory
+            or the configured core cannot be had; HandError says what to change
    EPERM    forked child
 
  Threads: any; one hand a process.
@@ -398,7 +627,8 @@ int SendPosD(int i, const double *Pos);
          row (x, y, z of the finger's frame, chapter 3) for a displacement of 1 cm
          along axis column, N/cm. Read during the call only
 
- Takes effect whole, from the next cycle on. Kx must be symmetric: a difference of up
+ Taken over whole, from the next cycle on and without a jump in torque: 95 % of the
+ change is there after 50 ms. Kx must be symmetric: a difference of up
  to 1e-3 of the largest entry is averaged away. No eigenvalue may be below -1e-3 of
  the largest one. Kx of lower rank is fine, and so is zero: the finger is limp along
  those directions, still damped. The largest eigenvalue may be up to the configured
@@ -486,8 +716,8 @@ const char *HandError(void);
 
  Returns 0, or -1 with
    EFAULT   Status is null
-   EINVAL   Size is too small; no such finger
    ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
    EPERM    forked child
 
  Threads: any.
@@ -500,84 +730,51 @@ int GetStatus(int i,
               struct FingerStatus *Status);
 
 /*
- ZeroFinger - find the zeros of a finger's gauges and encoders
+ GetTiming - where the time of a finger's cycles goes
 
-     int ZeroFinger(int i);
+     int GetTiming(int i, int Stage, struct FingerTiming *Timing);
 
    i        finger, 1 to 3
+   Stage    TIMING_WAKE_UP to TIMING_AGE
+   Timing   Timing->Size is set by the caller, all else is filled in. Written only if
+            the call returns 0
 
- Lets the tendons out and reads the gauges, then finds the zero of the encoders as
- finger.zeroing.method says: "pose" - the finger stands in the configured pose when the
- call begins; "stops" - each joint is led slowly against both of its stops, for which
- the finger needs room; "kept" - the configured zero stays, if the board says that its
- counts are still good. What was found is in force at once, and is written into the
- configuration file if OpenHand has read one: only the keys that changed, comments stay.
- Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
- free finger has moved, by up to some tenths of a radian.
-
- Waits until it is done: seconds, up to a minute with "stops". Meanwhile GetStatus tells
- the part that is done (FingerStatus.Calibration), other calls go on, and set points for
- this finger have no effect.
+ Works while the servo runs, and on a faulted finger too.
 
  Returns 0, or -1 with
-   ECANCELED  something stood in the way (a tendon is slack, a gauge dead, a joint meets
-              no stop or meets it early ...): the finger is limp, nothing was changed,
-              and HandError says what to do
-   ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
-   EBUSY      the finger is being calibrated already
-   ENODEV     no hand is open, or it was closed meanwhile
-   EINVAL     no such finger
-   EIO        the finger is faulted
-   EPERM      forked child
-   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
-              until CloseHand
-
- Threads: any.
-
-     if (ZeroFinger(1) != 0) fprintf(stderr, "%s\n", HandError());
- */
-int ZeroFinger(int i);
-
-/*
- IdentifyFinger - measure friction and tendon stiffness of a finger
-
-     int IdentifyFinger(int i);
-
-   i        finger, 1 to 3; it must have been zeroed
-
- Leads the finger to its lower stops, moves each joint to and fro, presses against the
- stops with up to 0.6 of the largest tension, and returns to where it began. Finds the
- stiffness of each tendon and the friction of motors, conduits and joints. What was
- found is in force at once and is written into the configuration file, as by
- ZeroFinger. Takes about a minute, and the room that the joints can reach.
-
- Returns and waits as ZeroFinger.
-
- Threads: any.
- */
-int IdentifyFinger(int i);
-
-/*
- PushFinger - push the fingertip of a simulated finger
-
-     int PushFinger(int i, const double *Force);
-
-   i       finger, 1 to 3
-   Force   Force[3]: force on the fingertip along x, y, z of the finger's frame, N,
-           from now until the next call; zero lets go. Always double. Read during
-           the call only
-
- Returns 0, or -1 with
-   EFAULT   Force is null
+   EFAULT   Timing is null
    ENODEV   no hand is open
-   EINVAL   no such finger; an entry is NaN or infinite
-   ERANGE   a component is beyond 1000 N
-   ENOTSUP  the finger is on a real port
+   EINVAL   Size is too small; no such finger; no such Stage
    EPERM    forked child
 
- Threads: any.
+ Threads: any. Never waits for a servo; some us.
+
+     struct FingerTiming Timing;
+     Timing.Size = sizeof Timing;
+     if (GetTiming(1, TIMING_WIRE, &Timing) == 0) printf("%lu ns\n", Timing.P99);
  */
-int PushFinger(int i, const double *Force);
+int GetTiming(int i,
+              int Stage,
+              struct FingerTiming *Timing);
+
+/*
+ ResetTiming - begin to count anew what GetTiming tells
+
+     int ResetTiming(int i);
+
+   i        finger, 1 to 3; 0: all
+
+ What GetStatus tells since OpenHand goes on, but for the wake-up times, which are
+ those of GetTiming.
+
+ Returns 0, or -1 with
+   ENODEV   no hand is open
+   EINVAL   no such finger
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo.
+ */
+int ResetTiming(int i);
 
 /*
  SendTip - send a desired fingertip position to a finger
@@ -621,8 +818,8 @@ int SendTip(int i,
 
  Returns 0, or -1 with
    EFAULT   Tip is null
-   EINVAL   Size is too small; no such finger
    ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
    EIO      the finger is faulted
    EPERM    forked child
 
@@ -652,7 +849,7 @@ int GetTip(int i, struct FingerTip *Tip);
    Normal   Normal[3]: direction of the contact's normal in the finger's frame, of any
             length but zero. Not used for D = 3, and may be null there
 
- Always double. Read during the calls only. Takes effect whole, from the next cycle on,
+ Always double. Read during the calls only. Taken over whole, without a jump in torque,
  and takes the place of the stiffness sent last, as a later SendKx takes its. In the
  directions that a contact does not have the finger is limp, still damped. K must be
  symmetric and without a negative eigenvalue, as for SendKx; for its bound a rotation
@@ -687,7 +884,8 @@ int SendContact(int i,
    Ratio   damping relative to what the controller chooses from the stiffness: 0.2 to
            3; 1 is that, and is so after OpenHand
 
- Stays until it is sent again, whatever the stiffness.
+ Taken over without a jump in torque. Stays until it is sent again, whatever the
+ stiffness.
 
  Returns 0, or -1 with
    ENODEV   no hand is open
@@ -733,6 +931,155 @@ int SendDamping(int i,
  */
 int AdjustFinger(int i,
                  const char *Keys);
+
+/*
+ PushFinger - push the fingertip of a simulated finger
+
+     int PushFinger(int i, const double *Force);
+
+   i       finger, 1 to 3
+   Force   Force[3]: force on the fingertip along x, y, z of the finger's frame, N,
+           from now until the next call; zero lets go. Always double. Read during
+           the call only
+
+ Returns 0, or -1 with
+   EFAULT   Force is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an entry is NaN or infinite
+   ERANGE   a component is beyond 1000 N
+   ENOTSUP  the finger is on a real port
+   EPERM    forked child
+
+ Threads: any.
+ */
+int PushFinger(int i, const double *Force);
+
+/*
+ WriteBlackBox - write the last seconds of a finger into a file
+
+     int WriteBlackBox(int i, const char *Path);
+
+   i       finger, 1 to 3
+   Path    the file, new or to be written over. Read during the call only
+
+ The library keeps the last two seconds of every finger: feedback, set points, motor
+ commands, timing, state. Of a faulted finger they are the last two before the fault.
+ docs/black-box.md describes the file; `sun2xp replay Path` computes it again. With
+ hand.black_box the library writes such a file by itself whenever a finger faults.
+
+ Takes about 50 ms, in which the servos go on.
+
+ Returns 0, or -1 with
+   EFAULT   Path is null
+   EINVAL   no such finger
+   ENODEV   no hand is open
+   EPERM    forked child
+   ENOENT, EACCES, ENOSPC ...  the file cannot be written
+
+ Threads: any, but not two at once with the same Path.
+
+     WriteBlackBox(1, "/tmp/finger-1.jsonl");
+ */
+int WriteBlackBox(int i,
+                  const char *Path);
+
+/*
+ ZeroFinger - find the zeros of a finger's gauges and encoders
+
+     int ZeroFinger(int i);
+
+   i        finger, 1 to 3
+
+ Lets the tendons out and reads the gauges, then finds the zero of the encoders as
+ finger.zeroing.method says: "pose" - the finger stands in the configured pose when the
+ call begins; "stops" - each joint is led slowly against both of its stops, for which
+ the finger needs room; "kept" - the configured zero stays, if the board says that its
+ counts are still good. What was found is in force at once, and is written into the
+ configuration file if OpenHand has read one: only the keys that changed, comments stay.
+ Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
+ free finger has moved, by up to some tenths of a radian.
+
+ Waits until it is done: seconds, up to a minute with "stops". Meanwhile GetStatus tells
+ the part that is done (FingerStatus.Calibration), other calls go on, and set points for
+ this finger have no effect.
+
+ Returns 0, or -1 with
+   ECANCELED  something stood in the way (a tendon is slack, a gauge dead, a joint meets
+              no stop or meets it early ...): the finger is limp, nothing was changed,
+              and HandError says what to do
+   ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
+   EBUSY      the finger is being calibrated already
+   ENODEV     no hand is open, or it was closed meanwhile
+   EINVAL     no such finger
+   EIO        the finger is faulted
+   EPERM      forked child
+   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
+              until CloseHand
+
+ Threads: any.
+
+     if (ZeroFinger(1) != 0) fprintf(stderr, "%s\n", HandError());
+ */
+int ZeroFinger(int i);
+
+/*
+ IdentifyFinger - measure gauge gains, friction and tendon stiffness of a finger
+
+     int IdentifyFinger(int i);
+
+   i        finger, 1 to 3; it must have been zeroed
+
+ Moves the joints a little to and fro where they are, leads the finger to its lower
+ stops, moves each joint to and fro, presses against the stops with up to 0.6 of the
+ largest tension, and returns to where it began. Finds the gains of the gauges, the
+ stiffness of each tendon and the friction of motors, conduits and joints. What was
+ found is in force at once and is written into the configuration file, as by
+ ZeroFinger. Takes about a minute, and the room that the joints can reach.
+
+ Returns and waits as ZeroFinger.
+
+ Threads: any.
+ */
+int IdentifyFinger(int i);
+
+/*
+ GetFault - what is wrong with a finger
+
+     int GetFault(int i, struct Fault *Fault);
+
+   i        finger, 1 to 3
+   Fault    Fault->Size is set by the caller, all else is filled in. Written only if
+            the call returns 0
+
+ Returns 0, whether something is wrong or not, or -1 with
+   EFAULT   Fault is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo.
+
+     struct Fault Fault;
+     Fault.Size = sizeof Fault;
+     if (GetFault(1, &Fault) == 0 && Fault.Number != 0)
+         fprintf(stderr, "finger 1: %s\n", FaultText(Fault.Number));
+ */
+int GetFault(int i, struct Fault *Fault);
+
+/*
+ FaultText - a fault in words
+
+     const char *FaultText(int Number);
+
+   Number   FAULT_...
+
+ Its name, what is the case, the likely cause and the remedy, in one line. An empty
+ string for a number that is no fault. Never null, valid for ever. HandError tells the
+ same of a fault that refused a call, with part and figures.
+
+ Threads: any.
+ */
+const char *FaultText(int Number);
 
 #ifdef __cplusplus
 }

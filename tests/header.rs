@@ -3,6 +3,16 @@
 
 use std::path::Path;
 use std::{env, fs};
+use sun2xp::finger::FaultKind;
+
+/// A constant for each fault.
+fn faults() -> String {
+    let line = |kind: &FaultKind| {
+        let told = kind.description();
+        format!("#define FAULT_{:<22} {:>2} /* {} */", told.constant, kind.number(), told.name)
+    };
+    FaultKind::ALL.iter().map(line).collect::<Vec<_>>().join("\n")
+}
 
 #[test]
 fn the_committed_header_is_the_one_of_the_exports() {
@@ -12,11 +22,15 @@ fn the_committed_header_is_the_one_of_the_exports() {
     cbindgen::Builder::new()
         .with_config(config)
         .with_src(root.join("src/capi/calls.rs"))
+        .with_src(root.join("src/capi/status_calls.rs"))
         .with_src(root.join("src/capi/fingertip_calls.rs"))
+        .with_src(root.join("src/capi/black_box_calls.rs"))
+        .with_src(root.join("src/capi/calibration_calls.rs"))
+        .with_src(root.join("src/capi/fault_calls.rs"))
         .generate()
         .expect("the exports can be parsed")
         .write(&mut made);
-    let made = String::from_utf8(made).expect("the header is text");
+    let made = String::from_utf8(made).expect("the header is text").replace("@FAULTS@", &faults());
 
     let committed = root.join("include/Sun2Xp.h");
     if env::var_os("SUN2XP_WRITE_HEADER").is_some() {

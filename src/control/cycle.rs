@@ -11,8 +11,10 @@ use super::motor_torque::MotorTorque;
 use super::release::Release;
 use super::sensors::Sensors;
 use super::signals::{Activity, Command, Feedback, Measured, Report, SetPoint};
+use super::slack::{Slack, SlackTakeUp, Slackness, TakeUp};
 use super::slew::Slew;
 use super::soft_limits::SoftLimits;
+use super::spring_transition::{Spring, SpringStages, SpringTransition};
 use super::state_feedback::{Decision, StateFeedback, StateFeedbackState};
 use super::stillness::Stillness;
 use super::tendon_controller::TendonController;
@@ -21,12 +23,13 @@ use super::tension_integral::{TendonInput, TendonState};
 use super::transition::Transition;
 use super::usable::positive;
 use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::{Matrix3, Vector3, Vector4};
+use serde::{Deserialize, Serialize};
 
 /// A tendon counts as tight from this part of t_min on.
 const TIGHT: f64 = 0.8;
 
-/// Damping over stiffness of the soft limits with Figures 9 and 10, s.
+/// Damping over stiffness of the soft limits with the figures of the report, s.
 const LIMIT_DAMPING: f64 = 0.015;
 
 /// Below this part of its desired tension a tendon counts as slack while slack is taken up: well under what a motor with
@@ -41,6 +44,7 @@ pub struct Controller {
     speed_filter: LowPass,
     stretch_filter: LowPass,
     joint_positions: JointPositions,
+    slack: SlackTakeUp,
     slew: Slew,
     joint_stiffness: JointStiffness,
     distribution: TensionDistribution,
@@ -50,6 +54,7 @@ pub struct Controller {
     motor_damping: f64,
     state_feedback: Option<StateFeedback>,
     admissible: AdmissibleStiffness,
+    spring_transition: SpringTransition,
     soft_limits: SoftLimits,
     gravity: GravityCompensation,
     heating: MotorHeating,
@@ -60,7 +65,7 @@ pub struct Controller {
 }
 
 /// What a cycle leaves behind for the next one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct State {
     doing: Doing,
     motor_angles: Vector4<f64>,
@@ -72,11 +77,15 @@ pub struct State {
     tensions: Vector4<f64>,
     tendons: TendonState,
     transition: Transition,
+    /// The spring that is followed.
+    spring: Option<SpringStages>,
     /// What the controller before this one would pull next, N at the tendon.
     goes_on_from: Option<Vector4<f64>>,
     stillness: Stillness,
     /// N at the tendon.
     pulls: Vector4<f64>,
+    /// The pulls that act until the next sample: one cycle older.
+    acting: Vector4<f64>,
     /// The part of `pulls` that is fed forward against friction.
     against_friction: Vector4<f64>,
     state_feedback: Option<StateFeedbackState>,
@@ -85,10 +94,10 @@ pub struct State {
 }
 
 /// The activity of the last cycle, with what belongs to it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 enum Doing {
     Nothing,
-    TakingUpSlack,
+    TakingUpSlack(Slack),
     /// With the spring's anchor on its way to the set point, rad.
     Following(Vector3<f64>),
     Releasing(Release),
@@ -113,7 +122,7 @@ impl Controller {
         let strongest = motor_torque.limit.map(|limit| limit.min(finger.tendon.maximum));
         let state_feedback = match finger.controller.scheme {
             Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
-            Scheme::Figure9 | Scheme::Figure10 => None,
+            Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };
         // What shakes the tensions shall stay within their bounds.
         let reserve = state_feedback.as_ref().map_or(0.0, |law| law.reserve);
@@ -121,7 +130,8 @@ impl Controller {
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
         let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
         Ok(Self {
-            admissible: AdmissibleStiffness::new(&tendons, &finger.tendon.stiffness.into(), rate).ok_or_else(soft)?,
+            admissible: AdmissibleStiffness::new(finger, &tendons, rate).ok_or_else(soft)?,
+            spring_transition: SpringTransition::new(rate),
             soft_limits: SoftLimits::new(finger),
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
@@ -130,6 +140,7 @@ impl Controller {
             speed_filter: LowPass::new(gains.speed_filter, rate),
             stretch_filter: LowPass::new(gains.stretch_filter, rate),
             joint_positions: JointPositions::new(finger, &tendons)?,
+            slack: SlackTakeUp::new(finger.links(), &tendons, finger.tendon.minimum, rate),
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
             distribution: TensionDistribution::new(
@@ -137,7 +148,7 @@ impl Controller {
                 finger.tendon.minimum + reserve,
                 strongest.add_scalar(-reserve),
             )?,
-            tendons: TendonController::new(finger.controller.scheme, &gains, rate, motor_torque.limit),
+            tendons: TendonController::new(finger.controller.scheme, &gains, rate),
             motor_torque,
             motor_damping: gains.motor_damping,
             state_feedback,
@@ -167,9 +178,11 @@ impl Controller {
             tensions,
             tendons: TendonState::default(),
             transition: Transition::default(),
+            spring: None,
             goes_on_from: None,
             stillness: Stillness::new(motor_angles),
             pulls,
+            acting: pulls,
             against_friction: Vector4::zeros(),
             state_feedback: self.state_feedback.as_ref().map(|law| law.start(&measured)),
             heat: Heat::default(),
@@ -216,47 +229,50 @@ impl Controller {
         activity: &Activity,
     ) -> (Command, Report) {
         state.age = state.age.saturating_add(1);
+        let acting = state.pulls;
         if let Some(measured) = measured {
             self.measure(state, measured);
         }
         let observed = self.observe(state, measured);
         if !matches!(activity, Activity::Follow(_)) {
             state.against_friction = Vector4::zeros();
+            state.spring = None;
             if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
                 law.idle(elastic);
             }
         }
-        match *activity {
-            Activity::Release { ramp } => self.let_go(state, ramp),
-            Activity::Follow(set_point) if observed => {
-                let set_point = self.carried(state, set_point);
-                self.follow_by_state(state, &set_point);
+        match activity {
+            &Activity::Release { ramp } => self.let_go(state, ramp),
+            Activity::Follow(set_point) if observed => self.follow_by_state(state, set_point),
+            Activity::TakeUpSlack if measured.is_some() => {
+                let gravity = self.gravity.torques(&state.report.joints);
+                self.take_up_slack(state, &Vector4::zeros(), gravity);
             }
-            Activity::TakeUpSlack if measured.is_some() => self.take_up_slack(state),
-            Activity::Follow(set_point) if measured.is_some() => {
-                let set_point = self.carried(state, set_point);
-                self.follow(state, set_point);
-            }
-            Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
-            Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),
-            Activity::Turn(torques) => self.turn(state, torques),
-            Activity::TakeUpSlack | Activity::Follow(_) | Activity::Tense(_) | Activity::Pull(_) => {}
+            Activity::Tighten(offset) if measured.is_some() => self.take_up_slack(state, offset, Vector3::zeros()),
+            Activity::Follow(set_point) if measured.is_some() => self.follow(state, set_point),
+            &Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
+            &Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),
+            &Activity::Turn(torques) => self.turn(state, torques),
+            Activity::TakeUpSlack
+            | Activity::Tighten(_)
+            | Activity::Follow(_)
+            | Activity::Tense(_)
+            | Activity::Pull(_) => {}
         }
         if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
             law.commanded(elastic, &state.pulls, &state.against_friction);
         }
+        state.acting = acting;
         self.heating.advance(&mut state.heat, &state.pulls);
         let motor_torques = self.motor_torque.torques(&state.pulls);
         state.report.motor_torques = motor_torques;
         (Command { motor_torques }, state.report)
     }
 
-    /// The set point with as much of its stiffness as the pose can carry.
-    fn carried(&self, state: &mut State, set_point: SetPoint) -> SetPoint {
-        let k_theta = self.joint_stiffness.joint_stiffness(&set_point, &state.report.joints);
-        let scale = self.admissible.scale(&k_theta);
-        state.report.stiffness_scale = scale;
-        SetPoint { stiffness: set_point.stiffness * scale, ..set_point }
+    /// The part of a spring's K_theta, N cm/rad, that the pose can carry.
+    fn carried(&self, report: &mut Report, k_theta: &Matrix3<f64>) -> f64 {
+        report.stiffness_scale = self.admissible.scale(k_theta);
+        report.stiffness_scale
     }
 
     /// Keeps the observers of state feedback going in every activity; whether it can decide.
@@ -294,41 +310,78 @@ impl Controller {
         report.under_tension = tensions.min() >= self.tight && state.stillness.at_rest();
     }
 
-    /// Pretension without joint torque. A slack tendon is wound in by feed-forward against the motor damper, so at a
-    /// speed that does no harm when it comes taut.
-    fn take_up_slack(&self, state: &mut State) {
-        let Distribution { tensions: desired, .. } = self.distribution.distribute(&Vector3::zeros());
-        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
-        let begins = !matches!(state.doing, Doing::TakingUpSlack);
-        state.doing = Doing::TakingUpSlack;
-        self.pull(state, Vector3::zeros(), slack, begins);
+    /// Pretension, with the joints held where they are when the last tendon comes taut. `offset`: what the gauges show too much, N;
+    /// `gravity`: what holds the links there, N cm.
+    fn take_up_slack(&self, state: &mut State, offset: &Vector4<f64>, gravity: Vector3<f64>) {
+        let now = Slackness {
+            travel: state.motor_angles.component_mul(&self.radius),
+            speeds: state.motor_speeds.component_mul(&self.radius),
+            tensions: state.report.tensions - offset,
+            // Not what state feedback observes: this is Figures 9 and 10, which need the stretch low-passed.
+            joints: self.joint_positions.joints(&state.motor_angles, &state.tensions),
+            joint_rates: self.joint_positions.joint_rates(&state.motor_speeds),
+        };
+        let (mut slack, starts) = match state.doing {
+            Doing::TakingUpSlack(slack) => (slack, false),
+            _ => (self.slack.start(&now), true),
+        };
+        state.report.slackest = self.slack.slackest(&slack, &now);
+        match self.slack.step(&mut slack, &now) {
+            TakeUp::Pull(pulls) => {
+                self.give(state, &pulls, starts);
+                // Whatever follows begins anew.
+                state.tendons = TendonState::default();
+                state.report.joint_torques = Vector3::zeros();
+                state.report.desired_tensions = pulls;
+                state.report.torque_scale = 1.0;
+            }
+            TakeUp::Hold { torques, below, begins } => {
+                let torques = torques + gravity;
+                let Distribution { tensions, scale } = self.distribution.distribute(&torques);
+                self.bring(state, tensions - below + offset, begins);
+                state.report.joint_torques = torques;
+                state.report.torque_scale = scale;
+                state.report.under_tension &= below == Vector4::zeros();
+            }
+        }
+        state.doing = Doing::TakingUpSlack(slack);
     }
 
     /// The spring, from its anchor to the joints. It begins without deflection.
-    fn follow(&self, state: &mut State, set_point: SetPoint) {
+    fn follow(&self, state: &mut State, set_point: &SetPoint) {
+        let spring = self.spring_transition.advance(&mut state.spring, set_point);
+        let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
+        spring.soften(self.carried(&mut state.report, &spring.k_theta));
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
             _ => (state.report.joints, true),
         };
         self.slew.advance(&mut anchor, &set_point.joints);
         state.doing = Doing::Following(anchor);
-        let spring = SetPoint { joints: anchor, ..set_point };
-        let torques = self.joint_stiffness.torques(&spring, &state.report.joints, &state.report.joint_rates);
-        let push = self.soft_limits.push(&state.report.joints);
-        let damped = push.stiffness.component_mul(&state.report.joint_rates) * LIMIT_DAMPING;
-        let torques = torques + push.torque - damped + self.gravity.torques(&state.report.joints);
-        self.pull(state, torques, [false; 4], begins);
+        let Report { joints, joint_rates, .. } = &state.report;
+        let torques = spring.torques(&anchor) - spring.damper(joint_rates);
+        let push = self.soft_limits.push(joints);
+        let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
+        let torques = torques + push.torque - damped + self.gravity.torques(joints);
+        let Distribution { tensions: desired, scale } = self.distribution.distribute(&torques);
+        self.bring(state, desired, begins);
+        state.report.joint_torques = torques;
+        state.report.torque_scale = scale;
     }
 
     /// The spring by state feedback. It begins without deflection.
     fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
+        let spring = self.spring_transition.advance(&mut state.spring, set_point);
+        let k_theta = self.joint_stiffness.joint_stiffness(spring, &state.report.joints);
+        let scale = self.carried(&mut state.report, &k_theta);
+        let spring = &Spring { stiffness: spring.stiffness * scale, ..*spring };
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };
         let begins = !matches!(state.doing, Doing::Following(_));
         state.doing = Doing::Following(elastic.joints);
         let Decision { pulls, against_friction, joint_torques, distribution } =
-            law.decide(elastic, set_point, begins, &self.soft_limits, &self.gravity, &self.distribution);
+            law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &self.distribution);
         state.against_friction = against_friction;
         self.give(state, &pulls, false);
         state.report.joint_torques = joint_torques;
@@ -336,20 +389,11 @@ impl Controller {
         state.report.torque_scale = distribution.scale;
     }
 
-    /// Joint torques to pulls: R^-1 and the tendon controller.
-    fn pull(&self, state: &mut State, joint_torques: Vector3<f64>, slack: [bool; 4], begins: bool) {
-        let Distribution { tensions: desired, scale } = self.distribution.distribute(&joint_torques);
-        self.bring(state, desired, slack, begins);
-        state.report.joint_torques = joint_torques;
-        state.report.torque_scale = scale;
-    }
-
     /// Tensions as they are asked for.
     fn tense(&self, state: &mut State, desired: Vector4<f64>) {
-        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
         let begins = !matches!(state.doing, Doing::Tensing);
         state.doing = Doing::Tensing;
-        self.bring(state, desired, slack, begins);
+        self.bring(state, desired, begins);
         state.report.joint_torques = Vector3::zeros();
         state.report.torque_scale = 1.0;
     }
@@ -377,10 +421,14 @@ impl Controller {
     }
 
     /// Desired tensions to pulls: the tendon controller.
-    fn bring(&self, state: &mut State, desired: Vector4<f64>, slack: [bool; 4], begins: bool) {
+    fn bring(&self, state: &mut State, desired: Vector4<f64>, begins: bool) {
         let measured = state.report.tensions;
+        let following = matches!(state.doing, Doing::Following(_));
+        let slack = std::array::from_fn(|tendon| !following && measured[tendon] < SLACK * desired[tendon]);
         let speed = state.motor_speeds.component_mul(&self.radius);
-        let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
+        let (limit, acted) = (self.heating.limit(&state.heat), state.acting);
+        let input = TendonInput { desired, measured, speed, slack, limit, acted };
+        let asked = self.tendons.pulls(&mut state.tendons, &input);
         self.give(state, &asked, begins);
         state.report.desired_tensions = desired;
     }

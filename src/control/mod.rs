@@ -1,7 +1,7 @@
 //! The pure core: one servo cycle is a function of feedback, set point and controller state. It knows neither threads nor
 //! ports nor clocks, and allocates nothing.
 //!
-//! One file is one box of Figure 9 (or of Figure 10), or one part of the state feedback that can stand in their place; [`Controller::cycle`] connects them.
+//! One file is one box of Figure 9 (or of Figures 10 and 11), or one part of the state feedback that can stand in their place; [`Controller::cycle`] connects them.
 
 mod admissible_stiffness;
 pub mod calibration;
@@ -10,11 +10,13 @@ mod damping_design;
 mod dither;
 mod eigenvalues;
 mod figure10;
+mod figure11;
 mod figure9;
 mod friction_feed_forward;
 mod gains;
 mod gravity_compensation;
 mod inverse_kinematics;
+mod joint_hold;
 mod joint_positions;
 mod joint_stiffness;
 mod low_pass;
@@ -24,8 +26,10 @@ mod reference;
 mod release;
 mod sensors;
 mod signals;
+mod slack;
 mod slew;
 mod soft_limits;
+mod spring_transition;
 mod state_feedback;
 mod state_feedback_numbers;
 mod stillness;
@@ -40,4 +44,5 @@ pub use cycle::{Controller, State};
 pub use inverse_kinematics::{InverseKinematics, OutOfReach};
 pub use joint_stiffness::JointStiffness;
 pub use signals::{Activity, Command, Feedback, Law, Measured, Report, SetPoint, spatial};
+pub use spring_transition::Spring;
 pub use tension_distribution::{Distribution, TensionDistribution};

@@ -3,9 +3,10 @@
 pub use crate::model::configuration::Law;
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
+use serde::{Deserialize, Serialize};
 
 /// What the board measured at one instant, as it measured it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Feedback {
     /// m_c of eq. 28: motor encoder counts, without wrap.
     pub motor_counts: [i32; 4],
@@ -23,7 +24,7 @@ pub struct Measured {
 }
 
 /// Where a fingertip's spring is anchored and how stiff it is. Taken over whole.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct SetPoint {
     /// theta_d: desired joint angles, rad. With the exact law it stands for the tip's pose there.
     pub joints: Vector3<f64>,
@@ -52,11 +53,14 @@ pub fn spatial(kx: &Matrix3<f64>) -> Matrix6<f64> {
 }
 
 /// What a finger is doing; decided by its servo thread.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[expect(clippy::large_enum_variant, reason = "a set point in a box would be allocated and freed in the servo")]
 pub enum Activity {
-    /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is.
+    /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is; the joints are held where
+    /// they are.
     TakeUpSlack,
+    /// The same by gauges that are known to show so much too much, N, and whatever the joints are. For calibration.
+    Tighten(Vector4<f64>),
     /// The fingertip is a spring.
     Follow(SetPoint),
     /// Motor torques ramp to zero over so many seconds from the first such cycle.
@@ -73,14 +77,14 @@ pub enum Activity {
 }
 
 /// What the motors shall do.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Command {
     /// m_tau of eq. 22, N cm, as the board takes it: a positive one pulls where `motor.sign` is +1.
     pub motor_torques: Vector4<f64>,
 }
 
 /// What one cycle found and decided.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Report {
     /// Measured joint angles, corrected for tendon stretch, rad.
     pub joints: Vector3<f64>,
@@ -88,7 +92,7 @@ pub struct Report {
     pub joint_rates: Vector3<f64>,
     /// Measured tensions, N.
     pub tensions: Vector4<f64>,
-    /// Commanded tensions, N: never below t_min but during a release.
+    /// Commanded tensions, N: never below t_min but while slack is taken up and during a release.
     pub desired_tensions: Vector4<f64>,
     /// Joint torques that the stiffness law asked for, N cm.
     pub joint_torques: Vector3<f64>,
@@ -96,8 +100,11 @@ pub struct Report {
     pub torque_scale: f64,
     /// The part of the set point's stiffness that the pose can carry, 0 to 1.
     pub stiffness_scale: f64,
-    /// Every tendon has at least 0.8 t_min, and the motors are at rest: slack is taken up.
+    /// Every tendon has at least 0.8 t_min, and the motors are at rest: slack is taken up. Not before the tensions have risen to
+    /// where they shall be.
     pub under_tension: bool,
+    /// While slack is taken up, the tendon that is farthest from being under tension, 0 to 3.
+    pub slackest: usize,
     /// The command, N cm.
     pub motor_torques: Vector4<f64>,
 }

@@ -9,9 +9,10 @@ use super::friction_feed_forward::FrictionFeedForward;
 use super::gravity_compensation::GravityCompensation;
 use super::joint_stiffness::JointStiffness;
 use super::reference::{Reference, ReferenceState};
-use super::signals::{Measured, SetPoint};
+use super::signals::Measured;
 use super::slew::Slew;
 use super::soft_limits::SoftLimits;
+use super::spring_transition::Spring;
 use super::state_feedback_numbers::Numbers;
 use super::tendon_observer::{ElasticTendon, ObserverDesign, TendonEstimate, TendonMotion, TendonObserver};
 use super::tension_distribution::{Distribution, TensionDistribution};
@@ -20,6 +21,7 @@ use super::usable::positive;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::model::{LinkDynamics, Tendons};
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
+use serde::{Deserialize, Serialize};
 
 /// Noise of a gauge that the observers reckon with, N rms.
 const GAUGE_NOISE: f64 = 0.03;
@@ -81,7 +83,7 @@ pub(super) struct StateFeedback {
 }
 
 /// What it remembers.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct StateFeedbackState {
     estimates: [TendonEstimate; 4],
     /// The pull that acts until the next sample, but for what was fed forward against friction, N.
@@ -282,11 +284,11 @@ impl StateFeedback {
         state.jerk = Vector3::zeros();
     }
 
-    /// The pulls that make the fingertip the spring of `set_point`, from the next sample on. It `begins` where the finger is.
+    /// The pulls that make the fingertip the spring `spring`, from the next sample on. It `begins` where the finger is.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
-        set_point: &SetPoint,
+        spring: &Spring,
         begins: bool,
         limits: &SoftLimits,
         gravity: &GravityCompensation,
@@ -306,19 +308,19 @@ impl StateFeedback {
         let joints = self.pseudo_inverse.tr_mul(&of(|motion| motion.travel));
         let rates = self.pseudo_inverse.tr_mul(&speeds);
 
-        self.slew.advance(&mut state.anchor, &set_point.joints);
+        self.slew.advance(&mut state.anchor, &spring.joints);
         let reference = self.reference.advance(&mut state.reference, &state.anchor);
         state.jerk = reference.jerk;
 
         // The torque of the spring, its damper and the reference's motion.
-        let spring = SetPoint { joints: reference.joints, ..*set_point };
+        let spring = Spring { joints: reference.joints, ..*spring };
         let push = limits.push(&joints);
         let k_theta = self.joint_stiffness.joint_stiffness(&spring, &joints) + Matrix3::from_diagonal(&push.stiffness);
         let k_theta = k_theta * 0.01;
         let inertia = self.dynamics.inertia(&state.joints);
         let felt = self.felt_motors + inertia;
         let damped = self.damped_motors + inertia;
-        let damping = self.damping.damping(&damped, &inertia, &k_theta, set_point.damping);
+        let damping = self.damping.damping(&damped, &inertia, &k_theta, spring.damping);
         state.drift += (rates - reference.rates - state.drift) * self.drift_gain;
         let moving = reference.rates + state.drift;
         let rubbing = Vector3::from_fn(|joint, _| {

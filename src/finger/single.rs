@@ -5,9 +5,9 @@ use crate::board::{OutgoingCommand, Received};
 use crate::control::calibration::{Calibration, Sample, Verdict};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Adjustable, Mailbox, Order, ServoEnd, mailbox};
-use crate::finger::{Fault, FingerReport, Stage};
+use crate::finger::{ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage};
 use crate::model::configuration::{Configuration, EndState, Unusable};
-use crate::realtime::{self, CycleTiming};
+use crate::realtime::{self, CycleTiming, Memory};
 use nalgebra::{Matrix3, Vector3, Vector4};
 use rtrb::Producer;
 
@@ -27,6 +27,9 @@ const LEAST_BLIND: u32 = 3;
 /// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
 const BEYOND_LIMITS: f64 = 0.5;
 
+/// The board's clock wraps after 65.5 ms: after a longer silence, ms, it does not say how old a measurement is.
+const CLOCK_UNKNOWN_MS: f64 = 60.0;
+
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
 
@@ -36,13 +39,20 @@ pub struct FingerServo {
     state: State,
     activity: Activity,
     calibration: Option<Calibration>,
-    /// Whether the board says that its encoder counts are still good.
-    zero_valid: bool,
+    /// Of the newest reply.
+    status: Status,
     feedback: Feedback,
+    /// The state is to be made anew from the feedback.
+    anew: bool,
     command: Command,
     mailbox: ServoEnd,
     timing: CycleTiming,
     timings: Producer<CycleTiming>,
+    black_box: Recorder,
+    /// What this cycle leaves in the black box; none of a finger that was faulted or closed before.
+    record: Option<CycleRecord>,
+    /// Whether the last cycle left something there.
+    recording: bool,
     report: FingerReport,
     address: u8,
     /// Knows the torque of one count of a command.
@@ -51,6 +61,10 @@ pub struct FingerServo {
     toggle: bool,
     answered: bool,
     lost_in_a_row: u32,
+    /// The board's clock at the last measurement, us modulo 65 536; none before the first.
+    sampled_at: Option<u16>,
+    /// Periods from that measurement to this cycle.
+    sample_age: u64,
     limits: Limits,
     settled_cycles: u32,
     /// Cycles since the stage began.
@@ -59,6 +73,8 @@ pub struct FingerServo {
     /// How the finger holds the pose that it finds at open.
     initial: SetPoint,
     end_state: EndState,
+    /// What of the finger is on the heap.
+    memory: Memory,
 }
 
 /// Times of the configuration, in cycles.
@@ -72,22 +88,22 @@ struct Limits {
 }
 
 impl Adjustable {
-    /// What the configuration says.
+    /// What the configuration says. `number`: of the controller, in the finger's black box.
     ///
     /// # Errors
     /// A configuration that no controller can be made from.
-    pub fn new(configuration: &Configuration, index: usize) -> Result<Self, Unusable> {
+    pub fn new(configuration: &Configuration, index: usize, number: u32) -> Result<Self, Unusable> {
         let finger = &configuration.fingers[index];
         let (low, high) = finger.joint_limits();
         let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
         let controller = Controller::in_gravity(finger, &configuration.gravity(index), configuration.hand.rate)?;
-        Ok(Self { controller, pose })
+        Ok(Self { number, controller, pose })
     }
 }
 
 impl FingerServo {
-    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`; those that
-    /// nobody collects are dropped.
+    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`, records
+    /// of its cycles to `black_box`; those that nobody collects are dropped.
     ///
     /// `stiffness` is the Kx that it will hold its pose with, already admitted.
     ///
@@ -99,11 +115,12 @@ impl FingerServo {
         stiffness: Matrix3<f64>,
         identity: &Identity,
         configured: &Configured,
-        timings: Producer<CycleTiming>,
+        mut timings: Producer<CycleTiming>,
+        mut black_box: Recorder,
     ) -> Result<(Self, Mailbox), Unusable> {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
         let address = configuration.address(index);
-        let adjustable = Adjustable::new(configuration, index)?;
+        let adjustable = Adjustable::new(configuration, index, 0)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
@@ -116,24 +133,40 @@ impl FingerServo {
             orders: 0,
             calibration: None,
             cycles: 0,
-            lost_replies: 0,
+            overruns: 0,
             skipped_periods: 0,
+            lost_replies: 0,
+            late_replies: 0,
             damaged_frames: 0,
+            warnings: Default::default(),
             first: 0,
             last: 0,
         };
-        let (planners, servo) = mailbox(report, &adjustable);
+        let (planners, servo, mut memory) = mailbox(report, &adjustable);
+        memory.append(&black_box.memory());
+        memory.add(timings.buffer());
+        let every = timings.slots();
+        if let Ok(mut room) = timings.write_chunk(every) {
+            // Nothing is sent: the room is written to, so that it is there.
+            let (first, second) = room.as_mut_slices();
+            memory.add(first);
+            memory.add(second);
+        }
         let this = Self {
             adjustable,
             state,
             activity: Activity::TakeUpSlack,
             calibration: None,
-            zero_valid: configured.status.has(Status::ZERO_VALID),
+            status: configured.status,
             feedback,
+            anew: false,
             command: Command::default(),
             mailbox: servo,
             timing: CycleTiming::default(),
             timings,
+            black_box,
+            record: None,
+            recording: false,
             report,
             address,
             board: *identity,
@@ -141,6 +174,8 @@ impl FingerServo {
             toggle: false,
             answered: false,
             lost_in_a_row: 0,
+            sampled_at: None,
+            sample_age: 0,
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
                 lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
@@ -154,6 +189,7 @@ impl FingerServo {
             stops_left: STOPS_AFTER_FAULT,
             initial,
             end_state: hand.end_state,
+            memory,
         };
         Ok((this, planners))
     }
@@ -162,6 +198,11 @@ impl FingerServo {
     pub fn limp(mut self) -> Self {
         self.go_limp();
         self
+    }
+
+    /// What of the finger its servo touches and is not in this value itself.
+    pub fn memory(&self) -> &Memory {
+        &self.memory
     }
 
     /// The address of the finger on its port.
@@ -208,23 +249,42 @@ impl FingerServo {
         received.sequence == self.sequence && self.waiting()
     }
 
+    /// Counts a reply that this cycle does not await.
+    pub fn pass_over(&mut self, received: &Received) {
+        self.report.late_replies += u64::from(received.sequence != self.sequence);
+    }
+
+    /// The board's clock as this cycle's command arrived, us modulo 65 536; none without a reply.
+    pub fn sampled_at(&self) -> Option<u16> {
+        self.sampled_at.filter(|_| self.answered)
+    }
+
     /// Takes in the reply that answers this cycle's command.
     pub fn take(&mut self, received: &Received) {
         self.answered = true;
         let reply = &received.reply;
+        // This cycle's command took effect as it was sampled; what it was computed from was sampled before.
+        if let Some(before) = self.sampled_at
+            && self.sample_age as f64 * self.limits.period_ms < CLOCK_UNKNOWN_MS
+        {
+            self.timing.note(realtime::Stage::Age, 0, u64::from(reply.sampled_at.wrapping_sub(before)) * 1000);
+        }
+        (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
-        self.zero_valid = reply.status.has(Status::ZERO_VALID);
-        if reply.status.has(Status::WATCHDOG_TRIPPED) {
-            self.fault(Fault::WatchdogTripped);
-        } else if reply.status.has(Status::FAULTS | Status::ENDED) {
-            self.fault(Fault::BoardStopped { status: reply.status.0 });
+        self.status = reply.status;
+        if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
+            self.fault(Fault::stopped(reply.status));
         }
     }
 
-    /// Ends a cycle: computes the next command and reports.
-    pub fn end(&mut self, began: u64, skipped: u64, damaged_frames: u64) {
+    /// Ends a cycle: computes the next command and reports. `overrun`: the next cycle should have begun already, and so many periods are
+    /// skipped.
+    pub fn end(&mut self, began: u64, overrun: Option<u64>, damaged_frames: u64) {
+        let skipped = overrun.unwrap_or(0);
+        self.sample_age += 1 + skipped;
         self.report.cycles += 1;
+        self.report.overruns += u64::from(overrun.is_some());
         self.report.skipped_periods += skipped;
         self.report.damaged_frames = damaged_frames;
         self.report.last = began;
@@ -234,29 +294,43 @@ impl FingerServo {
         if self.under_control() {
             self.count_replies();
         }
-        if self.under_control() {
-            self.take_commands();
-            let new = self.mailbox.new_adjustable();
-            let previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
-            self.calibrate();
-            let feedback = self.answered.then_some(&self.feedback);
-            let controller = &self.adjustable.controller;
-            (self.command, self.report.cycle) = match &previous {
-                None => controller.cycle(&mut self.state, feedback, &self.activity),
-                Some(Adjustable { controller: previous, .. }) => {
-                    controller.take_over(previous, &mut self.state, feedback, &self.activity)
-                }
-            };
-            // Periods that will be skipped are periods without a reply: what differentiates and predicts must know of them.
-            for _ in 0..skipped.min(self.limits.lost.into()) {
-                (self.command, self.report.cycle) = controller.cycle(&mut self.state, None, &self.activity);
-            }
-            if self.lost_in_a_row >= self.limits.blind {
-                self.command = Command::default();
-            }
-            self.move_on();
+        let recorded = self.recording || self.under_control();
+        let control = self.under_control().then(|| self.control(skipped));
+        if recorded {
+            self.record = Some(CycleRecord {
+                cycle: self.report.cycles,
+                began,
+                stage: self.report.stage,
+                timing: CycleTiming::default(),
+                feedback: self.answered.then_some(self.feedback),
+                status: self.status.0,
+                control,
+            });
         }
+        self.recording = self.under_control();
         self.mailbox.publish(self.report);
+    }
+
+    /// Computes the next command.
+    fn control(&mut self, skipped: u64) -> ControlRecord {
+        let previous = self.take_commands();
+        self.calibrate();
+        let input = ControlInput {
+            anew_from: std::mem::take(&mut self.anew).then_some(self.feedback),
+            activity: self.activity,
+            skipped: skipped.min(self.limits.lost.into()),
+            let_go: self.lost_in_a_row >= self.limits.blind,
+        };
+        self.black_box.keyframe(self.report.cycles, &self.state, !self.recording);
+        let Adjustable { controller, number, .. } = &self.adjustable;
+        let feedback = self.answered.then_some(&self.feedback);
+        let before = previous.as_ref().map(|previous| &previous.controller);
+        let (command, report) = input.run(controller, before, &mut self.state, feedback);
+        (self.command, self.report.cycle) = (command, report);
+        let previous = previous.map_or(*number, |previous| previous.number);
+        let record = ControlRecord { controller: *number, previous, input, command, report };
+        self.move_on();
+        record
     }
 
     /// Notes when a stage of this cycle began and ended, ns.
@@ -264,10 +338,14 @@ impl FingerServo {
         self.timing.note(stage, from, to);
     }
 
-    /// Leaves the timing of this cycle to whoever collects it.
-    pub fn tell_timing(&mut self) {
+    /// Leaves the timing and the record of this cycle to whoever collects them.
+    pub fn tell(&mut self) {
+        let timing = std::mem::take(&mut self.timing);
         // A full ring means that nobody collects: the cycle is worth more than its figure.
-        let _ = self.timings.push(std::mem::take(&mut self.timing));
+        let _ = self.timings.push(timing);
+        if let Some(record) = self.record.take() {
+            self.black_box.record(CycleRecord { timing, ..record });
+        }
     }
 
     /// Stops the finger for a reason.
@@ -286,8 +364,8 @@ impl FingerServo {
         let (low, high) = self.adjustable.pose;
         let joints = self.report.cycle.joints;
         if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
-            let degrees = joints[joint].to_degrees() as i32;
-            self.fault(Fault::ImpossiblePose { joint: joint as u8, degrees });
+            let value = joints[joint].to_degrees();
+            self.fault(Fault { kind: FaultKind::ImpossiblePose, part: joint as u8, value });
         }
     }
 
@@ -295,7 +373,7 @@ impl FingerServo {
         if self.answered {
             if self.lost_in_a_row >= self.limits.blind {
                 // The motors were let go: begin with what the tendons pull now, and not with what was commanded then.
-                self.state = self.adjustable.controller.start(&self.feedback);
+                self.anew = true;
             }
             self.lost_in_a_row = 0;
             return;
@@ -304,14 +382,22 @@ impl FingerServo {
         self.lost_in_a_row += 1;
         // Counted in attempts, not in time: a machine that pauses everything has lost no reply.
         if self.lost_in_a_row >= self.limits.lost {
-            let milliseconds = (f64::from(self.lost_in_a_row) * self.limits.period_ms).round() as u32;
-            self.fault(Fault::LinkLost { milliseconds });
+            let milliseconds = f64::from(self.lost_in_a_row) * self.limits.period_ms;
+            self.fault(Fault::of(FaultKind::LostReplies, milliseconds));
         }
     }
 
-    fn take_commands(&mut self) {
-        if let Some(order) = self.mailbox.new_order() {
+    /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
+    fn take_commands(&mut self) -> Option<Adjustable> {
+        let order = self.mailbox.new_order();
+        // After the order: what was handed over with it is there.
+        let new = self.mailbox.new_adjustable();
+        let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
+        if let Some(order) = order {
             self.report.orders += 1;
+            if let Order::Restart { .. } = order {
+                previous = None;
+            }
             self.carry_out(order);
         }
         if let Some(set_point) = self.mailbox.new_set_point()
@@ -330,6 +416,7 @@ impl FingerServo {
                 self.activity = Activity::Release { ramp };
             }
         }
+        previous
     }
 
     fn carry_out(&mut self, order: Order) {
@@ -340,9 +427,8 @@ impl FingerServo {
                 self.report.calibration = None;
                 self.enter(Stage::Calibrating);
             }
-            Order::Adopt { controller, limp } => {
-                self.adjustable.controller = controller;
-                self.state = self.adjustable.controller.start(&self.feedback);
+            Order::Restart { limp } => {
+                self.anew = true;
                 if limp {
                     self.go_limp();
                 } else {
@@ -360,7 +446,8 @@ impl FingerServo {
         if !self.answered {
             return;
         }
-        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid: self.zero_valid };
+        let zero_valid = self.status.has(Status::ZERO_VALID);
+        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid };
         let (activity, verdict) = calibration.cycle(&sample);
         self.activity = activity;
         self.report.calibration = Some(verdict);
@@ -396,9 +483,9 @@ impl FingerServo {
             Stage::Opening => {
                 self.settled_cycles = 0;
                 if self.stage_cycles >= self.limits.tension {
-                    let tendon = self.report.cycle.tensions.imin() as u8 + 1;
-                    let milliseconds = (f64::from(self.stage_cycles) * self.limits.period_ms).round() as u32;
-                    self.fault(Fault::SlackTendon { tendon, milliseconds });
+                    let slackest = self.report.cycle.slackest;
+                    let value = self.report.cycle.tensions[slackest];
+                    self.fault(Fault { kind: FaultKind::SlackTendon, part: slackest as u8 + 1, value });
                 }
             }
             Stage::Running => self.check_pose(),

@@ -63,6 +63,21 @@ fn figure_10_settles_at_2000_hz() {
     settles_everywhere(Scheme::Figure10, 2000.0);
 }
 
+#[test]
+fn figure_11_settles_at_500_hz() {
+    settles_everywhere(Scheme::Figure11, 500.0);
+}
+
+#[test]
+fn figure_11_settles_at_1000_hz() {
+    settles_everywhere(Scheme::Figure11, 1000.0);
+}
+
+#[test]
+fn figure_11_settles_at_2000_hz() {
+    settles_everywhere(Scheme::Figure11, 2000.0);
+}
+
 /// Deflection under 0.3 N, tip, over what the spring of 3 N/cm should give: 1 is a perfect spring.
 fn deflection_ratio(finger: &ConfiguredFinger, belief: &ConfiguredFinger) -> f64 {
     let mut servo = Loop::with_belief(finger, belief, 1000.0);
@@ -94,7 +109,7 @@ fn tip_is_the_commanded_spring_and_is_not_without_stretch_compensation() {
 
 #[test]
 fn without_damping_the_finger_does_not_rest() {
-    for scheme in [Scheme::Figure9, Scheme::Figure10] {
+    for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11] {
         let mut finger = finger_with(scheme);
         finger.controller.motor_damping = Some(0.0);
         finger.controller.rate_time = Some(0.0);
@@ -116,6 +131,9 @@ fn slack_is_taken_up() {
         (Scheme::Figure9, 500.0),
         (Scheme::Figure10, 1000.0),
         (Scheme::Figure10, 2000.0),
+        (Scheme::Figure11, 500.0),
+        (Scheme::Figure11, 1000.0),
+        (Scheme::Figure11, 2000.0),
         (Scheme::StateFeedback, 500.0),
         (Scheme::StateFeedback, 1000.0),
         (Scheme::StateFeedback, 2000.0),
@@ -138,7 +156,7 @@ fn slack_is_taken_up() {
                 );
                 assert!(servo.plant.tensions().max() < 40.0);
             }
-            assert!(servo.least_commanded >= 5.0);
+            assert!(servo.report.desired_tensions.min() >= 5.0);
             assert!(servo.plant.tensions().min() >= 4.0);
             // From there the finger is a spring where it is, and goes where it is sent.
             let pose = Vector3::new(0.1, 0.6, 1.0);

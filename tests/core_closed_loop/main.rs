@@ -2,7 +2,10 @@
 
 mod adjustment;
 mod behaviour;
+mod figure11;
 mod limits;
 mod rig;
 mod robustness;
+mod slack;
 mod state_feedback;
+mod switching;

@@ -3,7 +3,7 @@
 use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three_boards, turn, wait_until};
 use sun2xp::board::protocol::Status;
 use sun2xp::board::{Pace, SimulatedBoard, SimulatedFinger, SimulatedPort};
-use sun2xp::finger::{Fault, Stage};
+use sun2xp::finger::{Fault, FaultKind};
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
@@ -25,6 +25,10 @@ fn fault_text(hand: &Hand, finger: i32) -> String {
     text
 }
 
+fn fault(hand: &Hand, finger: i32) -> Fault {
+    hand.fault(finger).expect("there is such a finger").stopped.expect("faulted")
+}
+
 #[test]
 fn a_board_that_dies_faults_its_finger_only() {
     let _turn = turn();
@@ -38,8 +42,8 @@ fn a_board_that_dies_faults_its_finger_only() {
         goes(&hand, 2, TARGET);
         boards[1].kill();
         let text = fault_text(&hand, 2);
-        assert!(text.contains("port failed") && text.contains("unplugged"), "{text}");
-        assert!(matches!(hand.status(2).expect("status").stage, Stage::Faulted(Fault::PortFailed { .. })));
+        assert!(text.contains("port vanished") && text.contains("unplugged"), "{text}");
+        assert!(matches!(fault(&hand, 2), Fault { kind: FaultKind::PortVanished, .. }));
         goes(&hand, 1, TARGET);
         goes(&hand, 3, TARGET);
         close(hand);
@@ -55,7 +59,7 @@ fn a_board_that_falls_silent_faults_its_finger_and_its_watchdog_ends_it() {
     goes(&hand, 1, TARGET);
     boards[0].signal(libc::SIGSTOP);
     let text = fault_text(&hand, 1);
-    assert!(text.contains("no valid reply from the board for 1000 ms"), "{text}");
+    assert!(text.contains("lost replies (1000 ms)"), "{text}");
     goes(&hand, 2, TARGET);
     close(hand);
     boards[0].signal(libc::SIGCONT);
@@ -99,10 +103,9 @@ fn an_emergency_stop_faults_the_finger_with_its_status_bits() {
     let (board, hand) = own_board();
     with_finger(&board, 3, |finger| finger.set_faults(Status::EMERGENCY_STOP));
     let text = fault_text(&hand, 3);
-    let Stage::Faulted(Fault::BoardStopped { status }) = hand.status(3).expect("status").stage else {
-        panic!("{text}")
-    };
-    assert!(Status(status).has(Status::EMERGENCY_STOP) && text.contains("status bits"), "{text}");
+    let Fault { kind, value: status, .. } = fault(&hand, 3);
+    assert_eq!(kind, FaultKind::EmergencyStopInput);
+    assert!(Status(status as u16).has(Status::EMERGENCY_STOP) && text.contains("status bits"), "{text}");
     goes(&hand, 1, TARGET);
     close(hand);
 

@@ -1,5 +1,6 @@
 //! What every routine reads its finger with: the configured sensors and tendons.
 
+use crate::control::joint_hold::JointHold;
 use crate::control::sensors::Sensors;
 use crate::control::signals::Feedback;
 use crate::control::tension_distribution::TensionDistribution;
@@ -29,11 +30,13 @@ pub(super) struct Instruments {
     pub strongest: f64,
     /// What the configured gauge zero makes the tensions too high by, N.
     pub offset: Vector4<f64>,
+    /// What the configured tensions must be multiplied by, as far as it is known.
+    pub gain: Vector4<f64>,
     /// t_min, t_max, N.
     pub minimum: f64,
     pub maximum: f64,
-    /// Length of the finger beyond each joint, cm.
-    pub beyond: Vector3<f64>,
+    /// What leads the joints.
+    pub hold: JointHold,
     /// Seconds of a cycle.
     pub period: f64,
 }
@@ -61,12 +64,10 @@ impl Instruments {
             signed_radius: tendons.radius.component_mul(&Vector4::from(finger.motor.sign.map(f64::from))),
             strongest: Vector4::from(finger.motor.torque_limit).component_div(&tendons.radius).min(),
             offset: Vector4::zeros(),
+            gain: Vector4::repeat(1.0),
             minimum: finger.tendon.minimum,
             maximum: finger.tendon.maximum,
-            beyond: {
-                let [l0, l1, l2] = finger.geometry.links;
-                Vector3::new(l0 + l1 + l2, l1 + l2, l2)
-            },
+            hold: JointHold::new(finger.links()),
             period: 1.0 / rate,
             tendons,
             sensors,
@@ -78,9 +79,9 @@ impl Instruments {
         self.sensors.motor_angles(feedback).component_mul(&self.radius)
     }
 
-    /// Tensions with the gauge offsets known so far, N.
+    /// Tensions with the gauge offsets and gains known so far, N.
     pub fn tensions(&self, feedback: &Feedback) -> Vector4<f64> {
-        self.sensors.tensions(feedback) - self.offset
+        (self.sensors.tensions(feedback) - self.offset).component_mul(&self.gain)
     }
 
     /// theta, rad: eq. 27 with the stretch taken out.
@@ -94,8 +95,8 @@ impl Instruments {
         self.tendons.r.tr_mul(joints) + (tensions - self.pretension).component_mul(&self.compliance)
     }
 
-    /// What the tendon controller, which knows nothing of the offsets yet, must be asked for.
+    /// What the tendon controller, which knows nothing of the offsets and gains yet, must be asked for.
     pub fn ask(&self, tensions: Vector4<f64>) -> Vector4<f64> {
-        tensions + self.offset
+        tensions.component_div(&self.gain) + self.offset
     }
 }

@@ -3,13 +3,10 @@
 
 use super::instruments::Instruments;
 use super::routine::Sample;
+use crate::control::joint_hold::HOLDING_STIFFNESS;
 use crate::control::signals::Activity;
 use nalgebra::{Vector3, Vector4};
 
-/// N cm/rad: less than the softest spring that the tendon controllers are tuned for gives a bent finger.
-const STIFFNESS: f64 = 30.0;
-/// N cm s/rad for every cm of finger beyond the joint, whose inertia must not swing on the spring.
-const DAMPING: f64 = 0.2;
 /// Time constant of the low-pass on the joints, s: for supervision, not for the loop.
 const SMOOTHING: f64 = 0.02;
 
@@ -24,6 +21,8 @@ pub(super) struct JointLead {
     tensions: Vector4<f64>,
     /// Largest torque, N cm.
     limit: f64,
+    /// Tension beyond what the torques need, N in the least pulled tendon.
+    pub common: f64,
 }
 
 impl JointLead {
@@ -31,7 +30,7 @@ impl JointLead {
     pub fn new(instruments: &Instruments, sample: &Sample, limit: f64) -> Self {
         let tensions = instruments.tensions(sample.feedback);
         let joints = instruments.joints(&instruments.travel(sample.feedback), &tensions);
-        Self { anchor: joints, moved: Vector3::zeros(), joints, tensions, limit }
+        Self { anchor: joints, moved: Vector3::zeros(), joints, tensions, limit, common: 0.0 }
     }
 
     /// Takes a measurement in.
@@ -45,7 +44,7 @@ impl JointLead {
 
     /// Moves the anchor of one joint toward `target`, rad, by at most `step`.
     pub fn advance(&mut self, joint: usize, target: f64, step: f64) {
-        let farthest = self.limit / STIFFNESS;
+        let farthest = self.limit / HOLDING_STIFFNESS;
         let anchor = self.anchor[joint] + (target - self.anchor[joint]).clamp(-step, step);
         let before = self.anchor[joint];
         self.anchor[joint] = anchor.clamp(self.joints[joint] - farthest, self.joints[joint] + farthest);
@@ -54,16 +53,15 @@ impl JointLead {
 
     /// Whether the torque of a joint is at its limit: it lags as far behind as it may.
     pub fn strained(&self, joint: usize) -> bool {
-        (self.anchor[joint] - self.joints[joint]).abs() > 0.95 * self.limit / STIFFNESS
+        (self.anchor[joint] - self.joints[joint]).abs() > 0.95 * self.limit / HOLDING_STIFFNESS
     }
 
     /// What holds the joints at their anchors.
     pub fn activity(&self, instruments: &Instruments, sample: &Sample) -> Activity {
-        let spring = (self.anchor - self.joints) * STIFFNESS;
-        let spring = spring.map(|torque| torque.clamp(-self.limit, self.limit));
         // Against the anchor's own speed, so that a moving joint does not lag.
         let slip = sample.report.joint_rates - self.moved / instruments.period;
-        let torques = spring - slip.component_mul(&instruments.beyond) * DAMPING;
-        Activity::Tense(instruments.ask(instruments.distribution.distribute(&torques).tensions))
+        let torques = instruments.hold.torques(&(self.anchor - self.joints), &slip, self.limit);
+        let common = instruments.pretension * (self.common / instruments.minimum);
+        Activity::Tense(instruments.ask(instruments.distribution.distribute(&torques).tensions + common))
     }
 }

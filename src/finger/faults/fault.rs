@@ -1,0 +1,74 @@
+//! A fault that happened: its kind, where, and how much.
+
+use super::{FaultKind, Part, Quantity};
+use std::error::Error;
+use std::fmt;
+
+/// What made a finger stop, or what it is warned of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fault {
+    /// Which one.
+    pub kind: FaultKind,
+    /// Of which joint (0 to 2), tendon, motor, gauge or encoder (1 to 4); 0 where it is of the whole finger.
+    pub part: u8,
+    /// How much, in the unit of the kind's [`Quantity`]; 0 where there is nothing to measure.
+    pub value: f64,
+}
+
+impl Fault {
+    /// A fault of the whole finger, without a value.
+    pub fn new(kind: FaultKind) -> Self {
+        Self { kind, part: 0, value: 0.0 }
+    }
+
+    /// A fault of the whole finger.
+    pub fn of(kind: FaultKind, value: f64) -> Self {
+        Self { kind, part: 0, value }
+    }
+}
+
+/// Name, place and figure, what is the case, cause and remedy.
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let told = self.kind.description();
+        write!(f, "{}", told.name)?;
+        let part = told.part.word().filter(|_| told.part == Part::Joint || self.part > 0);
+        if let Some(part) = part {
+            write!(f, ", {part} {}", self.part)?;
+        }
+        match told.quantity {
+            Quantity::Nothing => {}
+            Quantity::Errno => write!(f, " (errno {})", self.value)?,
+            Quantity::Status => write!(f, " (status bits {:#06x})", self.value as u16)?,
+            Quantity::Reason => write!(f, " (reason {})", self.value)?,
+            Quantity::Tension | Quantity::Angle => write!(f, " ({:.1} {})", self.value, unit(told.quantity))?,
+            Quantity::Time | Quantity::Counts | Quantity::Share => {
+                write!(f, " ({:.0} {})", self.value, unit(told.quantity))?
+            }
+        }
+        write!(f, ": {}. Likely {}. {}", told.text, told.cause, told.remedy)
+    }
+}
+
+impl Error for Fault {}
+
+fn unit(quantity: Quantity) -> &'static str {
+    quantity.words().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fault_says_what_where_how_much_why_and_what_to_do() {
+        let text = Fault { kind: FaultKind::BrokenTendon, part: 3, value: 0.04 }.to_string();
+        assert!(text.starts_with("broken tendon, tendon 3 (0.0 N): "), "{text}");
+        assert!(text.contains(". Likely "), "{text}");
+        let text = Fault { kind: FaultKind::ImpossiblePose, part: 0, value: -170.26 }.to_string();
+        assert!(text.starts_with("impossible pose, joint 0 (-170.3 degrees): "), "{text}");
+        let text = Fault::of(FaultKind::BoardStopped, 72.0).to_string();
+        assert!(text.starts_with("board stopped (status bits 0x0048): "), "{text}");
+        assert!(Fault::new(FaultKind::ServoPanic).to_string().starts_with("servo failed: "));
+    }
+}

@@ -1,0 +1,11 @@
+//! Faults with names: what can go wrong with a finger, in numbers that never change and in words for the person at the bench.
+
+mod at_link;
+mod fault;
+mod kind;
+mod table;
+mod warnings;
+
+pub use fault::Fault;
+pub use kind::{Description, FaultKind, Part, Quantity, Severity};
+pub use warnings::Warnings;

@@ -1,0 +1,61 @@
+//! What a finger is warned of and goes on all the same.
+
+use super::Fault;
+
+/// The newest warning. It stays for a while after it was last given, so that a planner that looks now and then sees it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Warnings {
+    newest: Option<Fault>,
+    /// Cycles until it is forgotten.
+    left: u32,
+    given: u64,
+}
+
+impl Warnings {
+    /// Takes the warning that this cycle gives, if it gives one, and keeps it for so many cycles.
+    pub fn note(&mut self, warning: Option<Fault>, cycles: u32) {
+        match warning {
+            Some(fault) => {
+                let goes_on = self.newest.is_some_and(|newest| newest.kind == fault.kind && newest.part == fault.part);
+                self.given += u64::from(!goes_on);
+                (self.newest, self.left) = (Some(fault), cycles);
+            }
+            None if self.left > 0 => self.left -= 1,
+            None => self.newest = None,
+        }
+    }
+
+    /// The newest, if it was given within the last second.
+    pub fn newest(&self) -> Option<Fault> {
+        self.newest
+    }
+
+    /// How many have been given; one that goes on counts once.
+    pub fn given(&self) -> u64 {
+        self.given
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finger::FaultKind;
+
+    #[test]
+    fn a_warning_stays_for_its_time_and_counts_once() {
+        let mut warnings = Warnings::default();
+        let warm = Some(Fault { kind: FaultKind::WarmMotor, part: 2, value: 85.0 });
+        for _ in 0..10 {
+            warnings.note(warm, 3);
+        }
+        assert_eq!((warnings.newest(), warnings.given()), (warm, 1));
+        for _ in 0..3 {
+            warnings.note(None, 3);
+            assert_eq!(warnings.newest(), warm);
+        }
+        warnings.note(None, 3);
+        assert_eq!((warnings.newest(), warnings.given()), (None, 1));
+        warnings.note(warm, 3);
+        assert_eq!(warnings.given(), 2);
+    }
+}
