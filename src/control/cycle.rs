@@ -124,6 +124,8 @@ impl Controller {
             Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
             Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };
+        // What shakes the tensions shall stay within their bounds.
+        let reserve = state_feedback.as_ref().map_or(0.0, |law| law.reserve);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
         let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
@@ -141,7 +143,11 @@ impl Controller {
             slack: SlackTakeUp::new(finger.links(), &tendons, finger.tendon.minimum, rate),
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
-            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, strongest)?,
+            distribution: TensionDistribution::new(
+                &tendons,
+                finger.tendon.minimum + reserve,
+                strongest.add_scalar(-reserve),
+            )?,
             tendons: TendonController::new(finger.controller.scheme, &gains, rate),
             motor_torque,
             motor_damping: gains.motor_damping,

