@@ -75,7 +75,7 @@ pub(super) fn reach(
     limp: bool,
 ) -> Result<(Vec<Line>, Vec<Reached>), HandError> {
     let path = |index: usize| match &simulated[index] {
-        Some(port) => port.path().to_path_buf(),
+        Some(port) => port.path(),
         None => PathBuf::from(&configuration.fingers[index].port),
     };
     let (mut lines, mut reached) = (Vec::new(), Vec::new());
