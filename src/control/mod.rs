@@ -18,6 +18,7 @@ mod inverse_kinematics;
 mod joint_positions;
 mod joint_stiffness;
 mod low_pass;
+pub mod monitors;
 mod motor_heating;
 mod motor_torque;
 mod reference;

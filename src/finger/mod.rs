@@ -4,6 +4,7 @@ mod faults;
 mod mailbox;
 mod servo;
 mod single;
+mod watching;
 
 pub use faults::{Description, Fault, FaultKind, Part, Quantity, Severity, Warnings};
 pub use mailbox::{Adjustable, FingerReport, Mailbox, Order, Stage};

@@ -5,6 +5,7 @@ use crate::board::{OutgoingCommand, Received};
 use crate::control::calibration::{Calibration, Sample, Verdict};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Adjustable, Mailbox, Order, ServoEnd, mailbox};
+use crate::finger::watching::Watching;
 use crate::finger::{Fault, FaultKind, FingerReport, Stage};
 use crate::model::configuration::{Configuration, EndState, Unusable};
 use crate::realtime::{self, CycleTiming};
@@ -30,6 +31,9 @@ const BEYOND_LIMITS: f64 = 0.5;
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
 
+/// So long, ms, a warning stays after it was last given.
+const WARNING_MS: f64 = 1000.0;
+
 /// One finger: its controller, its place in the protocol, its mailbox.
 pub struct FingerServo {
     adjustable: Adjustable,
@@ -51,6 +55,7 @@ pub struct FingerServo {
     toggle: bool,
     answered: bool,
     lost_in_a_row: u32,
+    watching: Watching,
     limits: Limits,
     settled_cycles: u32,
     /// Cycles since the stage began.
@@ -69,6 +74,8 @@ struct Limits {
     tension: u32,
     settled: u32,
     ramp: u32,
+    /// How long a warning stays.
+    warning: u32,
 }
 
 impl Adjustable {
@@ -107,6 +114,7 @@ impl FingerServo {
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
+        let patience = cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() });
         let law = finger.controller.law;
         let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
         let report = FingerReport {
@@ -142,13 +150,15 @@ impl FingerServo {
             toggle: false,
             answered: false,
             lost_in_a_row: 0,
+            watching: Watching::new(hand.rate, patience, identity.gauge_bits),
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
-                lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
+                lost: patience,
                 blind: cycles(BLIND_MS).max(LEAST_BLIND),
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
+                warning: cycles(WARNING_MS),
             },
             settled_cycles: 0,
             stage_cycles: 0,
@@ -215,9 +225,13 @@ impl FingerServo {
         let reply = &received.reply;
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
+        self.watching.note_status(reply.status);
+        let zero_lost = self.zero_valid && !reply.status.has(Status::ZERO_VALID);
         self.zero_valid = reply.status.has(Status::ZERO_VALID);
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
             self.fault(Fault::stopped(reply.status));
+        } else if zero_lost {
+            self.fault(Fault::of(FaultKind::ZeroLost, f64::from(reply.status.0)));
         }
     }
 
@@ -229,6 +243,11 @@ impl FingerServo {
         self.report.last = began;
         if self.report.cycles == 1 {
             self.report.first = began;
+        }
+        if self.under_control()
+            && let Some(fault) = self.watching.note_period(self.answered, skipped, damaged_frames)
+        {
+            self.fault(fault);
         }
         if self.under_control() {
             self.count_replies();
@@ -253,6 +272,7 @@ impl FingerServo {
             if self.lost_in_a_row >= self.limits.blind {
                 self.command = Command::default();
             }
+            self.watch(previous.is_some());
             self.move_on();
         }
         self.mailbox.publish(self.report);
@@ -280,6 +300,26 @@ impl FingerServo {
         !matches!(self.report.stage, Stage::Closed | Stage::Faulted(_))
     }
 
+    /// The monitors of a finger that is a spring.
+    fn watch(&mut self, adjusted: bool) {
+        if adjusted {
+            self.watching.adjusted();
+        }
+        if self.report.stage == Stage::Running {
+            let feedback = self.answered.then_some(&self.feedback);
+            if let Some(fault) = self.watching.spring(&self.adjustable.controller, &self.state, feedback) {
+                self.fault(fault);
+            }
+        }
+        let failed = match self.report.calibration {
+            Some(Verdict::Refused(_)) if self.report.stage == Stage::Limp => {
+                Some(Fault::new(FaultKind::CalibrationFailed))
+            }
+            _ => None,
+        };
+        self.report.warnings.note(failed.or(self.watching.warning()), self.limits.warning);
+    }
+
     /// A spring pulls a finger that is believed to be where it cannot be with all it has.
     fn check_pose(&mut self) {
         let (low, high) = self.adjustable.pose;
@@ -295,6 +335,7 @@ impl FingerServo {
             if self.lost_in_a_row >= self.limits.blind {
                 // The motors were let go: begin with what the tendons pull now, and not with what was commanded then.
                 self.state = self.adjustable.controller.start(&self.feedback);
+                self.watching.begin();
             }
             self.lost_in_a_row = 0;
             return;
@@ -304,7 +345,7 @@ impl FingerServo {
         // Counted in attempts, not in time: a machine that pauses everything has lost no reply.
         if self.lost_in_a_row >= self.limits.lost {
             let milliseconds = f64::from(self.lost_in_a_row) * self.limits.period_ms;
-            self.fault(Fault::of(FaultKind::LostReplies, milliseconds));
+            self.fault(self.watching.silence(milliseconds));
         }
     }
 
@@ -389,6 +430,7 @@ impl FingerServo {
                     let joints = self.report.cycle.joints;
                     self.report.set_point = SetPoint { joints, ..self.initial };
                     self.activity = Activity::Follow(self.report.set_point);
+                    self.watching.begin();
                     self.enter(Stage::Running);
                 }
             }
