@@ -497,7 +497,8 @@ int SendPosD(int i, const double *Pos);
          row (x, y, z of the finger's frame, chapter 3) for a displacement of 1 cm
          along axis column, N/cm. Read during the call only
 
- Takes effect whole, from the next cycle on. Kx must be symmetric: a difference of up
+ Taken over whole, from the next cycle on and without a jump in torque: 95 % of the
+ change is there after 50 ms. Kx must be symmetric: a difference of up
  to 1e-3 of the largest entry is averaged away. No eigenvalue may be below -1e-3 of
  the largest one. Kx of lower rank is fine, and so is zero: the finger is limp along
  those directions, still damped. The largest eigenvalue may be up to the configured
@@ -751,7 +752,7 @@ int GetTip(int i, struct FingerTip *Tip);
    Normal   Normal[3]: direction of the contact's normal in the finger's frame, of any
             length but zero. Not used for D = 3, and may be null there
 
- Always double. Read during the calls only. Takes effect whole, from the next cycle on,
+ Always double. Read during the calls only. Taken over whole, without a jump in torque,
  and takes the place of the stiffness sent last, as a later SendKx takes its. In the
  directions that a contact does not have the finger is limp, still damped. K must be
  symmetric and without a negative eigenvalue, as for SendKx; for its bound a rotation
@@ -786,7 +787,8 @@ int SendContact(int i,
    Ratio   damping relative to what the controller chooses from the stiffness: 0.2 to
            3; 1 is that, and is so after OpenHand
 
- Stays until it is sent again, whatever the stiffness.
+ Taken over without a jump in torque. Stays until it is sent again, whatever the
+ stiffness.
 
  Returns 0, or -1 with
    ENODEV   no hand is open

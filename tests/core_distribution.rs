@@ -103,9 +103,9 @@ proptest! {
         let law = JointStiffness::new(links, 0.02);
         let jacobian = links.jacobian(&theta);
         let expected = jacobian.transpose() * (root * root.transpose() * (jacobian * away));
-        let rest = law.torques(&set_point, &theta, &Vector3::zeros());
+        let rest = law.torques(&set_point.into(), &theta, &Vector3::zeros());
         prop_assert!((rest - expected).amax() < 1e-9);
-        let power = rates.dot(&(law.torques(&set_point, &theta, &rates) - rest));
+        let power = rates.dot(&(law.torques(&set_point.into(), &theta, &rates) - rest));
         prop_assert!(power <= 1e-9, "the damper fed {power} into the finger");
     }
 }
@@ -114,9 +114,9 @@ proptest! {
 fn without_stiffness_only_damping_is_left() {
     let set_point = SetPoint::hard_finger(Vector3::new(0.3, 0.2, 0.1), nalgebra::Matrix3::zeros());
     let law = JointStiffness::new(Links([3.556, 5.080, 4.000]), 0.02);
-    assert_eq!(law.torques(&set_point, &Vector3::zeros(), &Vector3::zeros()), Vector3::zeros());
+    assert_eq!(law.torques(&set_point.into(), &Vector3::zeros(), &Vector3::zeros()), Vector3::zeros());
     let rates = Vector3::new(1.0, -2.0, 0.5);
-    assert!(law.torques(&set_point, &Vector3::zeros(), &rates).angle(&-rates) < 1e-6);
+    assert!(law.torques(&set_point.into(), &Vector3::zeros(), &rates).angle(&-rates) < 1e-6);
 }
 
 /// Section 5.5 prints +1.09 for entry (2, 4): with the printed ghost row singular, with any other a hand that cannot hold.

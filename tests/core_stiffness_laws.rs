@@ -62,8 +62,8 @@ proptest! {
         let expected = jacobian.transpose() * k * jacobian;
         let away = Vector3::from(away);
         let point = set_point(theta + away, &contact, Law::Report);
-        prop_assert!((law().joint_stiffness(&point, &theta) - expected).amax() < 1e-9);
-        prop_assert!((law().spring(&point, &theta) - expected * away).amax() < 1e-9);
+        prop_assert!((law().joint_stiffness(&point.into(), &theta) - expected).amax() < 1e-9);
+        prop_assert!((law().spring(&point.into(), &theta) - expected * away).amax() < 1e-9);
     }
 
     /// tau = J^T f with the force of the definition, at any deflection; a tip in place has no torque.
@@ -76,8 +76,8 @@ proptest! {
         let contact = Contact::hard_finger(kx).expect("a spring");
         let force = kx * (LINKS.tip(&desired) - LINKS.tip(&theta));
         let point = set_point(desired, &contact, Law::Exact);
-        prop_assert!((law().spring(&point, &theta) - LINKS.jacobian(&theta).transpose() * force).amax() < 1e-9);
-        prop_assert_eq!(law().spring(&point, &desired), Vector3::zeros());
+        prop_assert!((law().spring(&point.into(), &theta) - LINKS.jacobian(&theta).transpose() * force).amax() < 1e-9);
+        prop_assert_eq!(law().spring(&point.into(), &desired), Vector3::zeros());
     }
 
     /// Both laws are one for a small deflection, rotation included: their difference is of second order.
@@ -90,7 +90,7 @@ proptest! {
         let apart = |size: f64| {
             let desired = theta + Vector3::from(away) * size;
             let [exact, report] = [Law::Exact, Law::Report]
-                .map(|which| law().spring(&set_point(desired, &contact, which), &theta));
+                .map(|which| law().spring(&set_point(desired, &contact, which).into(), &theta));
             (exact - report).norm()
         };
         prop_assert!(apart(1e-4) <= apart(1e-3) * 0.02 + 1e-9);
@@ -105,8 +105,8 @@ proptest! {
         let (_, _, contact) = soft_finger(root, n);
         let plain = set_point(theta, &contact, Law::Exact);
         let rates = Vector3::from(rates);
-        let one = law().torques(&plain, &theta, &rates);
-        let scaled = law().torques(&SetPoint { damping: ratio, ..plain }, &theta, &rates);
+        let one = law().torques(&plain.into(), &theta, &rates);
+        let scaled = law().torques(&SetPoint { damping: ratio, ..plain }.into(), &theta, &rates);
         prop_assert!((scaled - one * ratio).amax() < 1e-9);
         prop_assert!(one.dot(&rates) <= 0.0);
     }
@@ -119,10 +119,10 @@ fn torsion_alone_turns_the_tip_back_about_the_normal() {
     let contact = Contact::soft_finger(k, Vector3::y()).expect("a spring");
     let theta = Vector3::new(0.1, 0.4, 0.0);
     let desired = Vector3::new(0.4, 0.4, 0.0);
-    let report = law().spring(&set_point(desired, &contact, Law::Report), &theta);
+    let report = law().spring(&set_point(desired, &contact, Law::Report).into(), &theta);
     assert!((report - Vector3::new(3.0, 0.0, 0.0)).amax() < 1e-12, "{report}");
     // The rotation vector of a turn about y by 0.3 rad is 0.3 y, whatever the other joints.
-    let exact = law().spring(&set_point(desired, &contact, Law::Exact), &theta);
+    let exact = law().spring(&set_point(desired, &contact, Law::Exact).into(), &theta);
     assert!((exact - report).amax() < 1e-12, "{exact}");
 }
 
@@ -135,6 +135,7 @@ fn a_frictionless_point_slides() {
     let across = normal.cross(&Vector3::z());
     let wrench = contact.stiffness() * Vector6::new(across.x, across.y, across.z, 0.3, 0.4, 0.5);
     assert!(wrench.amax() < 1e-12);
-    let eigenvalues = law().joint_stiffness(&set_point(theta, &contact, Law::Report), &theta).symmetric_eigenvalues();
+    let eigenvalues =
+        law().joint_stiffness(&set_point(theta, &contact, Law::Report).into(), &theta).symmetric_eigenvalues();
     assert_eq!(eigenvalues.iter().filter(|&&value| value.abs() > 1e-9).count(), 1);
 }

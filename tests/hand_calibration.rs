@@ -24,7 +24,7 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     assert!(steps.contains(&Step::TryingMotors));
     assert_eq!(stage(2), Stage::Limp);
 
-    // The simulated finger starts in the pose that is configured by default, and stays near there: slack is not taken up evenly.
+    // The simulated finger starts in the pose that is configured by default, and stays near there.
     let zeros = hand.zero(2, |_| {}).expect("zeros");
     let Findings::Zeros(zeros) = zeros else { panic!("{zeros:?}") };
     for tendon in 0..4 {

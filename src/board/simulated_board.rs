@@ -117,9 +117,13 @@ fn answer(fingers: &mut [SimulatedFinger], now: u64, packet: &Packet, damaged: u
         Ok(Message { frame: Frame::Configure(terms), .. }) => finger.configure(&terms),
         Ok(Message { frame: Frame::Command(command), .. }) => finger.command(now, &command, damaged),
         Ok(Message { frame: Frame::Stop(_), .. }) => finger.stop(now),
+        // It has no tactile sensors, and does not name the capability.
+        Ok(Message { frame: Frame::TactileRequest(_), .. }) => refuse(Reason::UnknownFrame, packet.body().len() as u16),
         // Answers were sorted out above.
         Ok(_) => return None,
-        Err(Malformed::Value { offset, .. }) => refuse(Reason::Value, u16::from(offset)),
+        Err(Malformed::Value { offset, .. }) => {
+            finger.refuses_any_terms().unwrap_or_else(|| refuse(Reason::Value, u16::from(offset)))
+        }
         Err(Malformed::UnknownKind(_) | Malformed::Length { .. }) => {
             refuse(Reason::UnknownFrame, packet.body().len() as u16)
         }

@@ -199,13 +199,10 @@ impl SimulatedFinger {
     }
 
     pub(super) fn configure(&mut self, terms: &Configure) -> Frame {
+        if let Some(refusal) = self.refuses_any_terms() {
+            return refusal;
+        }
         let refuse = |reason, detail| Frame::Refused(Refused { request: 0x2, reason, detail });
-        if self.enabled() {
-            return refuse(Reason::Running, 0);
-        }
-        if self.present != Status::default() {
-            return refuse(Reason::Fault, self.present.0);
-        }
         if terms.version != VERSION {
             return refuse(Reason::Value, 2);
         }
@@ -221,6 +218,18 @@ impl SimulatedFinger {
         self.state = State::Ready;
         let (encoders, gauges) = self.sensors.read(&self.plant);
         Frame::Configured(Configured { terms: *terms, encoders, gauges, status: self.status() })
+    }
+
+    /// What goes before a look at the terms, also at those that the codec cannot read.
+    pub(super) fn refuses_any_terms(&self) -> Option<Frame> {
+        let refuse = |reason, detail| Some(Frame::Refused(Refused { request: 0x2, reason, detail }));
+        if self.enabled() {
+            return refuse(Reason::Running, 0);
+        }
+        if self.present != Status::default() {
+            return refuse(Reason::Fault, self.present.0);
+        }
+        None
     }
 
     /// `damaged`: damaged frames on the port so far.
@@ -271,13 +280,13 @@ impl SimulatedFinger {
 
     fn end(&mut self, now: u64) {
         let holds_until = match self.terms.end_state {
-            EndState::Release => {
-                self.torques = [0; 4];
-                None
-            }
-            EndState::Hold => {
+            EndState::Hold if self.terms.hold_time_ms > 0 => {
                 self.torques = within(self.torques, [self.terms.hold_torque_limit; 4]);
                 Some(now + u64::from(self.terms.hold_time_ms) * MILLISECOND)
+            }
+            EndState::Release | EndState::Hold => {
+                self.torques = [0; 4];
+                None
             }
         };
         self.state = State::Ended { holds_until };

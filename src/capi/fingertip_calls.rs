@@ -114,7 +114,7 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 ///   Normal   Normal[3]: direction of the contact's normal in the finger's frame, of any
 ///            length but zero. Not used for D = 3, and may be null there
 ///
-/// Always double. Read during the calls only. Takes effect whole, from the next cycle on,
+/// Always double. Read during the calls only. Taken over whole, without a jump in torque,
 /// and takes the place of the stiffness sent last, as a later SendKx takes its. In the
 /// directions that a contact does not have the finger is limp, still damped. K must be
 /// symmetric and without a negative eigenvalue, as for SendKx; for its bound a rotation
@@ -163,7 +163,8 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 ///   Ratio   damping relative to what the controller chooses from the stiffness: 0.2 to
 ///           3; 1 is that, and is so after OpenHand
 ///
-/// Stays until it is sent again, whatever the stiffness.
+/// Taken over without a jump in torque. Stays until it is sent again, whatever the
+/// stiffness.
 ///
 /// Returns 0, or -1 with
 ///   ENODEV   no hand is open

@@ -12,8 +12,10 @@ use super::motor_torque::MotorTorque;
 use super::release::Release;
 use super::sensors::Sensors;
 use super::signals::{Activity, Command, Feedback, Measured, Report, SetPoint};
+use super::slack::{Slack, SlackTakeUp, Slackness, TakeUp};
 use super::slew::Slew;
 use super::soft_limits::SoftLimits;
+use super::spring_transition::{Spring, SpringTransition};
 use super::state_feedback::{Decision, StateFeedback, StateFeedbackState};
 use super::stillness::Stillness;
 use super::tendon_controller::TendonController;
@@ -42,6 +44,7 @@ pub struct Controller {
     speed_filter: LowPass,
     stretch_filter: LowPass,
     joint_positions: JointPositions,
+    slack: SlackTakeUp,
     slew: Slew,
     joint_stiffness: JointStiffness,
     distribution: TensionDistribution,
@@ -74,6 +77,8 @@ pub struct State {
     tensions: Vector4<f64>,
     tendons: TendonState,
     transition: Transition,
+    /// The spring that is followed.
+    spring: Option<SpringTransition>,
     /// What the controller before this one would pull next, N at the tendon.
     goes_on_from: Option<Vector4<f64>>,
     stillness: Stillness,
@@ -90,7 +95,7 @@ pub struct State {
 #[derive(Clone, Copy, Debug)]
 enum Doing {
     Nothing,
-    TakingUpSlack,
+    TakingUpSlack(Slack),
     /// With the spring's anchor on its way to the set point, rad.
     Following(Vector3<f64>),
     Releasing(Release),
@@ -131,6 +136,7 @@ impl Controller {
             speed_filter: LowPass::new(gains.speed_filter, rate),
             stretch_filter: LowPass::new(gains.stretch_filter, rate),
             joint_positions: JointPositions::new(finger, &tendons)?,
+            slack: SlackTakeUp::new(finger.links(), &tendons, finger.tendon.minimum, rate),
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
             distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, strongest)?,
@@ -164,6 +170,7 @@ impl Controller {
             tensions,
             tendons: TendonState::default(),
             transition: Transition::default(),
+            spring: None,
             goes_on_from: None,
             stillness: Stillness::new(motor_angles),
             pulls,
@@ -219,6 +226,7 @@ impl Controller {
         let observed = self.observe(state, measured);
         if !matches!(activity, Activity::Follow(_)) {
             state.against_friction = Vector4::zeros();
+            state.spring = None;
             if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
                 law.idle(elastic);
             }
@@ -226,18 +234,26 @@ impl Controller {
         match *activity {
             Activity::Release { ramp } => self.let_go(state, ramp),
             Activity::Follow(set_point) if observed => {
-                let set_point = self.carried(state, set_point);
-                self.follow_by_state(state, &set_point);
+                let spring = self.carried(state, set_point);
+                self.follow_by_state(state, &spring);
             }
-            Activity::TakeUpSlack if measured.is_some() => self.take_up_slack(state),
+            Activity::TakeUpSlack if measured.is_some() => {
+                let gravity = self.gravity.torques(&state.report.joints);
+                self.take_up_slack(state, &Vector4::zeros(), gravity);
+            }
+            Activity::Tighten(offset) if measured.is_some() => self.take_up_slack(state, &offset, Vector3::zeros()),
             Activity::Follow(set_point) if measured.is_some() => {
-                let set_point = self.carried(state, set_point);
-                self.follow(state, set_point);
+                let spring = self.carried(state, set_point);
+                self.follow(state, &spring);
             }
             Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
             Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),
             Activity::Turn(torques) => self.turn(state, torques),
-            Activity::TakeUpSlack | Activity::Follow(_) | Activity::Tense(_) | Activity::Pull(_) => {}
+            Activity::TakeUpSlack
+            | Activity::Tighten(_)
+            | Activity::Follow(_)
+            | Activity::Tense(_)
+            | Activity::Pull(_) => {}
         }
         if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
             law.commanded(elastic, &state.pulls, &state.against_friction);
@@ -255,12 +271,14 @@ impl Controller {
         self.monitors.watch(watch, feedback, &state.report, &state.pulls, &heat, age, full_scale)
     }
 
-    /// The set point with as much of its stiffness as the pose can carry.
-    fn carried(&self, state: &mut State, set_point: SetPoint) -> SetPoint {
-        let k_theta = self.joint_stiffness.joint_stiffness(&set_point, &state.report.joints);
+    /// The spring of this cycle, with as much of its stiffness as the pose can carry.
+    fn carried(&self, state: &mut State, set_point: SetPoint) -> Spring {
+        let target = Spring::from(set_point);
+        let spring = state.spring.get_or_insert_with(|| SpringTransition::new(target)).advance(&target, self.period);
+        let k_theta = self.joint_stiffness.joint_stiffness(&spring, &state.report.joints);
         let scale = self.admissible.scale(&k_theta);
         state.report.stiffness_scale = scale;
-        SetPoint { stiffness: set_point.stiffness * scale, ..set_point }
+        Spring { stiffness: spring.stiffness * scale, ..spring }
     }
 
     /// Keeps the observers of state feedback going in every activity; whether it can decide.
@@ -298,41 +316,71 @@ impl Controller {
         report.under_tension = tensions.min() >= self.tight && state.stillness.at_rest();
     }
 
-    /// Pretension without joint torque. A slack tendon is wound in by feed-forward against the motor damper, so at a
-    /// speed that does no harm when it comes taut.
-    fn take_up_slack(&self, state: &mut State) {
-        let Distribution { tensions: desired, .. } = self.distribution.distribute(&Vector3::zeros());
-        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
-        let begins = !matches!(state.doing, Doing::TakingUpSlack);
-        state.doing = Doing::TakingUpSlack;
-        self.pull(state, Vector3::zeros(), slack, begins);
+    /// Pretension, with the joints held where they are when the last tendon comes taut. `offset`: what the gauges show too much, N;
+    /// `gravity`: what holds the links there, N cm.
+    fn take_up_slack(&self, state: &mut State, offset: &Vector4<f64>, gravity: Vector3<f64>) {
+        let now = Slackness {
+            travel: state.motor_angles.component_mul(&self.radius),
+            speeds: state.motor_speeds.component_mul(&self.radius),
+            tensions: state.report.tensions - offset,
+            // Not what state feedback observes: this is Figures 9 and 10, which need the stretch low-passed.
+            joints: self.joint_positions.joints(&state.motor_angles, &state.tensions),
+            joint_rates: self.joint_positions.joint_rates(&state.motor_speeds),
+        };
+        let (mut slack, starts) = match state.doing {
+            Doing::TakingUpSlack(slack) => (slack, false),
+            _ => (self.slack.start(&now), true),
+        };
+        state.report.slackest = self.slack.slackest(&slack, &now);
+        match self.slack.step(&mut slack, &now) {
+            TakeUp::Pull(pulls) => {
+                self.give(state, &pulls, starts);
+                // Whatever follows begins anew.
+                state.tendons = TendonState::default();
+                state.report.joint_torques = Vector3::zeros();
+                state.report.desired_tensions = pulls;
+                state.report.torque_scale = 1.0;
+            }
+            TakeUp::Hold { torques, below, begins } => {
+                let torques = torques + gravity;
+                let Distribution { tensions, scale } = self.distribution.distribute(&torques);
+                self.bring(state, tensions - below + offset, begins);
+                state.report.joint_torques = torques;
+                state.report.torque_scale = scale;
+                state.report.under_tension &= below == Vector4::zeros();
+            }
+        }
+        state.doing = Doing::TakingUpSlack(slack);
     }
 
     /// The spring, from its anchor to the joints. It begins without deflection.
-    fn follow(&self, state: &mut State, set_point: SetPoint) {
+    fn follow(&self, state: &mut State, spring: &Spring) {
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
             _ => (state.report.joints, true),
         };
-        self.slew.advance(&mut anchor, &set_point.joints);
+        self.slew.advance(&mut anchor, &spring.joints);
         state.doing = Doing::Following(anchor);
-        let spring = SetPoint { joints: anchor, ..set_point };
+        let spring = Spring { joints: anchor, ..*spring };
         let torques = self.joint_stiffness.torques(&spring, &state.report.joints, &state.report.joint_rates);
         let push = self.soft_limits.push(&state.report.joints);
         let damped = push.stiffness.component_mul(&state.report.joint_rates) * LIMIT_DAMPING;
         let torques = torques + push.torque - damped + self.gravity.torques(&state.report.joints);
-        self.pull(state, torques, [false; 4], begins);
+        let Distribution { tensions: desired, scale } = self.distribution.distribute(&torques);
+        self.bring(state, desired, begins);
+        state.report.joint_torques = torques;
+        state.report.torque_scale = scale;
     }
 
     /// The spring by state feedback. It begins without deflection.
-    fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
+    fn follow_by_state(&self, state: &mut State, spring: &Spring) {
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };
         let begins = !matches!(state.doing, Doing::Following(_));
         state.doing = Doing::Following(elastic.joints);
         let Decision { pulls, against_friction, joint_torques, distribution } =
-            law.decide(elastic, set_point, begins, &self.soft_limits, &self.gravity, &self.distribution);
+            law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &self.distribution);
         state.against_friction = against_friction;
         self.give(state, &pulls, false);
         state.report.joint_torques = joint_torques;
@@ -340,20 +388,11 @@ impl Controller {
         state.report.torque_scale = distribution.scale;
     }
 
-    /// Joint torques to pulls: R^-1 and the tendon controller.
-    fn pull(&self, state: &mut State, joint_torques: Vector3<f64>, slack: [bool; 4], begins: bool) {
-        let Distribution { tensions: desired, scale } = self.distribution.distribute(&joint_torques);
-        self.bring(state, desired, slack, begins);
-        state.report.joint_torques = joint_torques;
-        state.report.torque_scale = scale;
-    }
-
     /// Tensions as they are asked for.
     fn tense(&self, state: &mut State, desired: Vector4<f64>) {
-        let slack = std::array::from_fn(|tendon| state.report.tensions[tendon] < SLACK * desired[tendon]);
         let begins = !matches!(state.doing, Doing::Tensing);
         state.doing = Doing::Tensing;
-        self.bring(state, desired, slack, begins);
+        self.bring(state, desired, begins);
         state.report.joint_torques = Vector3::zeros();
         state.report.torque_scale = 1.0;
     }
@@ -381,8 +420,10 @@ impl Controller {
     }
 
     /// Desired tensions to pulls: the tendon controller.
-    fn bring(&self, state: &mut State, desired: Vector4<f64>, slack: [bool; 4], begins: bool) {
+    fn bring(&self, state: &mut State, desired: Vector4<f64>, begins: bool) {
         let measured = state.report.tensions;
+        let following = matches!(state.doing, Doing::Following(_));
+        let slack = std::array::from_fn(|tendon| !following && measured[tendon] < SLACK * desired[tendon]);
         let speed = state.motor_speeds.component_mul(&self.radius);
         let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
         self.give(state, &asked, begins);

@@ -1,6 +1,6 @@
 //! The box K_theta: joint torques of the virtual spring, eqs. 1 to 6, with a damper beside it.
 
-use super::signals::{Law, SetPoint};
+use super::spring_transition::Spring;
 use crate::model::Links;
 use nalgebra::{Matrix3, Vector3, Vector6};
 
@@ -34,26 +34,29 @@ impl JointStiffness {
     }
 
     /// tau of spring and damper, N cm, at joint angles (rad) and rates (rad/s).
-    pub fn torques(&self, set_point: &SetPoint, joints: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64> {
-        let damping = self.damping(&self.joint_stiffness(set_point, joints), set_point.damping);
-        self.spring(set_point, joints) - damping * rates
+    pub fn torques(&self, spring: &Spring, joints: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64> {
+        let damping = self.damping(&self.joint_stiffness(spring, joints), spring.damping);
+        self.spring(spring, joints) - damping * rates
     }
 
     /// K_theta of eq. 6, N cm/rad.
-    pub fn joint_stiffness(&self, set_point: &SetPoint, joints: &Vector3<f64>) -> Matrix3<f64> {
+    pub fn joint_stiffness(&self, spring: &Spring, joints: &Vector3<f64>) -> Matrix3<f64> {
         let jacobian = self.links.spatial_jacobian(joints);
-        jacobian.tr_mul(&(set_point.stiffness * jacobian))
+        jacobian.tr_mul(&(spring.stiffness * jacobian))
     }
 
     /// tau of the spring alone, N cm: K_theta (theta_d - theta) by eqs. 3 and 6, or J^T f by eqs. 1 and 2 with the deflection
     /// of the tip itself.
-    pub fn spring(&self, set_point: &SetPoint, joints: &Vector3<f64>) -> Vector3<f64> {
+    pub fn spring(&self, spring: &Spring, joints: &Vector3<f64>) -> Vector3<f64> {
         let jacobian = self.links.spatial_jacobian(joints);
-        let deflection = match set_point.law {
-            Law::Report => jacobian * (set_point.joints - joints),
-            Law::Exact => self.deflection(&set_point.joints, joints),
-        };
-        jacobian.tr_mul(&(set_point.stiffness * deflection))
+        let mut deflection = Vector6::zeros();
+        if spring.exact < 1.0 {
+            deflection += jacobian * (spring.joints - joints) * (1.0 - spring.exact);
+        }
+        if spring.exact > 0.0 {
+            deflection += self.deflection(&spring.joints, joints) * spring.exact;
+        }
+        jacobian.tr_mul(&(spring.stiffness * deflection))
     }
 
     /// Translation (cm) and rotation vector (rad) from the tip's pose at `joints` to that at `desired`.

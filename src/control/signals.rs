@@ -55,8 +55,11 @@ pub fn spatial(kx: &Matrix3<f64>) -> Matrix6<f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a set point in a box would be allocated and freed in the servo")]
 pub enum Activity {
-    /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is.
+    /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is; the joints are held where
+    /// they are.
     TakeUpSlack,
+    /// The same by gauges that are known to show so much too much, N, and whatever the joints are. For calibration.
+    Tighten(Vector4<f64>),
     /// The fingertip is a spring.
     Follow(SetPoint),
     /// Motor torques ramp to zero over so many seconds from the first such cycle.
@@ -88,7 +91,7 @@ pub struct Report {
     pub joint_rates: Vector3<f64>,
     /// Measured tensions, N.
     pub tensions: Vector4<f64>,
-    /// Commanded tensions, N: never below t_min but during a release.
+    /// Commanded tensions, N: never below t_min but while slack is taken up and during a release.
     pub desired_tensions: Vector4<f64>,
     /// Joint torques that the stiffness law asked for, N cm.
     pub joint_torques: Vector3<f64>,
@@ -96,8 +99,11 @@ pub struct Report {
     pub torque_scale: f64,
     /// The part of the set point's stiffness that the pose can carry, 0 to 1.
     pub stiffness_scale: f64,
-    /// Every tendon has at least 0.8 t_min, and the motors are at rest: slack is taken up.
+    /// Every tendon has at least 0.8 t_min, and the motors are at rest: slack is taken up. Not before the tensions have risen to
+    /// where they shall be.
     pub under_tension: bool,
+    /// While slack is taken up, the tendon that is farthest from being under tension, 0 to 3.
+    pub slackest: usize,
     /// The command, N cm.
     pub motor_torques: Vector4<f64>,
 }

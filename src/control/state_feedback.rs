@@ -9,9 +9,10 @@ use super::friction_feed_forward::FrictionFeedForward;
 use super::gravity_compensation::GravityCompensation;
 use super::joint_stiffness::JointStiffness;
 use super::reference::{Reference, ReferenceState};
-use super::signals::{Measured, SetPoint};
+use super::signals::Measured;
 use super::slew::Slew;
 use super::soft_limits::SoftLimits;
+use super::spring_transition::Spring;
 use super::state_feedback_numbers::Numbers;
 use super::tendon_observer::{ElasticTendon, ObserverDesign, TendonEstimate, TendonMotion, TendonObserver};
 use super::tension_distribution::{Distribution, TensionDistribution};
@@ -256,11 +257,11 @@ impl StateFeedback {
         state.jerk = Vector3::zeros();
     }
 
-    /// The pulls that make the fingertip the spring of `set_point`, from the next sample on. It `begins` where the finger is.
+    /// The pulls that make the fingertip the spring `spring`, from the next sample on. It `begins` where the finger is.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
-        set_point: &SetPoint,
+        spring: &Spring,
         begins: bool,
         limits: &SoftLimits,
         gravity: &GravityCompensation,
@@ -279,18 +280,18 @@ impl StateFeedback {
         let joints = self.pseudo_inverse.tr_mul(&of(|motion| motion.travel));
         let rates = self.pseudo_inverse.tr_mul(&speeds);
 
-        self.slew.advance(&mut state.anchor, &set_point.joints);
+        self.slew.advance(&mut state.anchor, &spring.joints);
         let reference = self.reference.advance(&mut state.reference, &state.anchor);
         state.jerk = reference.jerk;
 
         // The torque of the spring, its damper and the reference's motion.
-        let spring = SetPoint { joints: reference.joints, ..*set_point };
+        let spring = Spring { joints: reference.joints, ..*spring };
         let push = limits.push(&joints);
         let k_theta = self.joint_stiffness.joint_stiffness(&spring, &joints) + Matrix3::from_diagonal(&push.stiffness);
         let k_theta = k_theta * 0.01;
         let inertia = self.dynamics.inertia(&state.joints);
         let felt = self.felt_motors + inertia;
-        let damping = self.damping.damping(&felt, &inertia, &k_theta, set_point.damping);
+        let damping = self.damping.damping(&felt, &inertia, &k_theta, spring.damping);
         let moving = reference.rates.map(|rate| (rate / JOINT_CREEP).clamp(-1.0, 1.0));
         let held = self.joint_stiffness.spring(&spring, &joints) + push.torque + gravity.torques(&joints);
         let torque = held * 0.01 - damping * (rates - reference.rates)

@@ -41,10 +41,8 @@ pub enum Order {
     Nothing,
     /// To be calibrated; the finger is limp afterwards, whatever comes of it.
     Calibrate(Calibration),
-    /// To be controlled by another controller from now on.
-    Adopt {
-        /// The controller.
-        controller: Controller,
+    /// To begin anew with what it was handed last to compute with: what its state is measured in may have changed.
+    Restart {
         /// With the motors off; else slack is taken up, as after open.
         limp: bool,
     },
@@ -192,16 +190,15 @@ impl Mailbox {
     /// # Errors
     /// The fault; nothing is ordered then.
     pub fn order(&self, order: Order) -> Result<Option<u32>, Fault> {
-        let mut planners = self.planners.lock();
-        let report = *planners.reports.read();
-        match report.stage {
-            Stage::Faulted(fault) => return Err(fault),
-            Stage::Running | Stage::Limp if report.orders == planners.ordered => {}
-            _ => return Ok(None),
-        }
-        planners.ordered += 1;
-        planners.orders.write(order);
-        Ok(Some(planners.ordered))
+        self.planners.lock().order(order, None)
+    }
+
+    /// Gives the servo something else to compute with, which it begins anew with. Otherwise like [`Mailbox::order`].
+    ///
+    /// # Errors
+    /// The fault; nothing is changed then.
+    pub fn restart(&self, adjustable: Adjustable, limp: bool) -> Result<Option<u32>, Fault> {
+        self.planners.lock().order(Order::Restart { limp }, Some(adjustable))
     }
 
     /// Takes over the set point that the servo has found for itself at open, as what the next change starts from.
@@ -213,6 +210,24 @@ impl Mailbox {
     /// Asks the servo to bring the finger to its end state.
     pub fn close(&self) {
         self.closing.store(true, Ordering::Release);
+    }
+}
+
+impl PlannersEnd {
+    /// What is handed over goes first: a servo that has the order has that too.
+    fn order(&mut self, order: Order, adjustable: Option<Adjustable>) -> Result<Option<u32>, Fault> {
+        let report = *self.reports.read();
+        match report.stage {
+            Stage::Faulted(fault) => return Err(fault),
+            Stage::Running | Stage::Limp if report.orders == self.ordered => {}
+            _ => return Ok(None),
+        }
+        if let Some(adjustable) = adjustable {
+            self.adjustments.write(adjustable);
+        }
+        self.ordered += 1;
+        self.orders.write(order);
+        Ok(Some(self.ordered))
     }
 }
 

@@ -253,9 +253,7 @@ impl FingerServo {
             self.count_replies();
         }
         if self.under_control() {
-            self.take_commands();
-            let new = self.mailbox.new_adjustable();
-            let previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
+            let previous = self.take_commands();
             self.calibrate();
             let feedback = self.answered.then_some(&self.feedback);
             let controller = &self.adjustable.controller;
@@ -349,9 +347,17 @@ impl FingerServo {
         }
     }
 
-    fn take_commands(&mut self) {
-        if let Some(order) = self.mailbox.new_order() {
+    /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
+    fn take_commands(&mut self) -> Option<Adjustable> {
+        let order = self.mailbox.new_order();
+        // After the order: what was handed over with it is there.
+        let new = self.mailbox.new_adjustable();
+        let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
+        if let Some(order) = order {
             self.report.orders += 1;
+            if let Order::Restart { .. } = order {
+                previous = None;
+            }
             self.carry_out(order);
         }
         if let Some(set_point) = self.mailbox.new_set_point()
@@ -370,6 +376,7 @@ impl FingerServo {
                 self.activity = Activity::Release { ramp };
             }
         }
+        previous
     }
 
     fn carry_out(&mut self, order: Order) {
@@ -380,8 +387,7 @@ impl FingerServo {
                 self.report.calibration = None;
                 self.enter(Stage::Calibrating);
             }
-            Order::Adopt { controller, limp } => {
-                self.adjustable.controller = controller;
+            Order::Restart { limp } => {
                 self.state = self.adjustable.controller.start(&self.feedback);
                 if limp {
                     self.go_limp();
@@ -437,7 +443,8 @@ impl FingerServo {
             Stage::Opening => {
                 self.settled_cycles = 0;
                 if self.stage_cycles >= self.limits.tension {
-                    let (slackest, value) = self.report.cycle.tensions.argmin();
+                    let slackest = self.report.cycle.slackest;
+                    let value = self.report.cycle.tensions[slackest];
                     self.fault(Fault { kind: FaultKind::SlackTendon, part: slackest as u8 + 1, value });
                 }
             }

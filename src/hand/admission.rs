@@ -3,12 +3,8 @@
 use crate::control::InverseKinematics;
 use crate::hand::HandError;
 use crate::model::configuration::{Law, OutOfRange};
-use crate::model::{Contact, Links, symmetrised};
+use crate::model::{Contact, ContactError, Links, spring};
 use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};
-
-/// Kx may be asymmetric, or have a negative eigenvalue, by so much of its largest entry or eigenvalue: the rounding of a
-/// planner that works in `float`.
-const ROUNDING: f64 = 1e-3;
 
 /// Damping that a planner may ask for, relative to the chosen one.
 const DAMPING: (f64, f64) = (0.2, 3.0);
@@ -53,23 +49,11 @@ impl Admission {
 
     /// Kx, N/cm, symmetric, positive semi-definite and within the bound. `rows[row][column]`.
     pub fn stiffness(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, HandError> {
-        self.finite("Kx", rows.as_flattened())?;
         // nalgebra is column-major: this is the one place where the order of C is turned.
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
-        let tolerance = ROUNDING * asked.amax();
-        for (row, column) in [(0, 1), (0, 2), (1, 2)] {
-            let difference = (asked[(row, column)] - asked[(column, row)]).abs();
-            if difference > tolerance {
-                return Err(HandError::NotSymmetric { finger: self.finger, row, column, difference });
-            }
-        }
-        let symmetric = symmetrised(&asked);
+        let symmetric = spring(&asked).map_err(|error| self.no_spring(error))?;
         let mut eigen = symmetric.symmetric_eigen();
         let (smallest, largest) = (eigen.eigenvalues.min(), eigen.eigenvalues.max());
-        // An eigenvalue may be infinite where no entry is.
-        if smallest < -ROUNDING * largest.abs().max(smallest.abs()).min(f64::MAX) {
-            return Err(HandError::Negative { finger: self.finger, smallest });
-        }
         let bound = self.stiffness_bound;
         // A bound sent as `float` is a bound.
         let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
@@ -83,6 +67,19 @@ impl Admission {
         eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
         let recomposed = eigen.recompose();
         Ok((recomposed + recomposed.transpose()) * 0.5)
+    }
+
+    /// Why a Kx is no spring.
+    fn no_spring(&self, error: ContactError) -> HandError {
+        let finger = self.finger;
+        match error {
+            ContactError::NotFinite(value) => HandError::NotFinite { what: "Kx", finger, value },
+            ContactError::NotSymmetric { row, column, difference } => {
+                HandError::NotSymmetric { finger, row, column, difference }
+            }
+            ContactError::Negative { smallest } => HandError::Negative { finger, smallest },
+            ContactError::NoNormal(_) => HandError::Contact { finger, source: error },
+        }
     }
 
     /// Joint angles, rad, for a tip position, cm, nearest to the `present` ones. Never clamped: the nearest point of the

@@ -1,8 +1,7 @@
 //! Calibrating a finger of an open hand: asks its servo, waits for the verdict, puts what was found in force.
 
-use crate::control::Controller;
 use crate::control::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
-use crate::finger::{Order, Stage};
+use crate::finger::{Adjustable, Fault, Order, Stage};
 use crate::hand::calibration_file::store;
 use crate::hand::{Hand, HandError};
 use crate::model::Refusal;
@@ -45,11 +44,11 @@ impl Calibrating {
         let configured = hand.calibrated(finger)?;
         let rate = hand.rate();
         let calibration = Calibration::new(task, &configured, rate).map_err(|unusable| refusal(finger, unusable))?;
-        Self::order(hand, finger, Order::Calibrate(calibration), None)
+        let given = hand.dispatcher.member(finger)?.mailbox.order(Order::Calibrate(calibration));
+        Self::ordered(finger, given, None)
     }
 
-    fn order(hand: &Hand, finger: i32, order: Order, found: Option<Findings>) -> Result<Self, HandError> {
-        let given = hand.dispatcher.member(finger)?.mailbox.order(order);
+    fn ordered(finger: i32, given: Result<Option<u32>, Fault>, found: Option<Findings>) -> Result<Self, HandError> {
         let order = given.map_err(|fault| HandError::Faulted { finger, fault })?.ok_or(HandError::Busy(finger))?;
         Ok(Self { finger, order, found, asked: Instant::now() })
     }
@@ -82,13 +81,16 @@ impl Calibrating {
             Some(Verdict::Going(progress)) => Ok(Standing::Going(progress)),
             Some(Verdict::Refused(obstacle)) => Err(HandError::Calibration { finger, obstacle }),
             Some(Verdict::Found(found)) => {
-                let mut configured = hand.calibrated(finger)?;
-                found.apply(&mut configured);
-                let controller =
-                    Controller::new(&configured, hand.rate()).map_err(|unusable| refusal(finger, unusable))?;
+                let index = finger as usize - 1; // 1 to 3: it has reported
+                // Held throughout: an adjustment meanwhile is not lost.
+                let mut configuration = hand.configuration.write();
+                let mut changed = configuration.clone();
+                found.apply(&mut changed.fingers[index]);
+                let adjustable = Adjustable::new(&changed, index).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = matches!(found, Findings::Signs(_));
-                *self = Self::order(hand, finger, Order::Adopt { controller, limp }, Some(found))?;
-                hand.configuration.write().fingers[finger as usize - 1] = configured; // 1 to 3: it has reported
+                let given = hand.dispatcher.member(finger)?.mailbox.restart(adjustable, limp);
+                *self = Self::ordered(finger, given, Some(found))?;
+                *configuration = changed;
                 Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))
             }
         }

@@ -40,7 +40,9 @@ fn locate() -> Option<PathBuf> {
     }
     let user = etcetera::choose_base_strategy().ok().map(|strategy| strategy.config_dir());
     let system = env::var_os("XDG_CONFIG_DIRS").filter(|folders| !folders.is_empty()).unwrap_or("/etc/xdg".into());
-    let folders = user.into_iter().chain(env::split_paths(&system).collect::<Vec<_>>());
+    // The standard of these folders: relative ones are to be ignored.
+    let system = env::split_paths(&system).filter(|folder| folder.is_absolute()).collect::<Vec<_>>();
+    let folders = user.into_iter().chain(system);
     let candidates = [PathBuf::from("sun2xp.toml")].into_iter().chain(folders.map(|f| f.join("sun2xp/sun2xp.toml")));
     // A file that is there but unreadable is found, and refused: symlink_metadata needs no permission on the file itself.
     candidates.into_iter().find(|path| path.symlink_metadata().is_ok())

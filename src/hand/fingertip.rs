@@ -41,7 +41,7 @@ impl Hand {
         })
     }
 
-    /// What finger 1, 2 or 3 may exchange with an object: its tip is the spring of that contact from the next cycle on. Takes
+    /// What finger 1, 2 or 3 may exchange with an object: its tip becomes the spring of that contact, without a jump in torque. Takes
     /// the place of the Kx sent last, as a Kx takes its.
     ///
     /// # Errors

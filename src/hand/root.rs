@@ -148,7 +148,8 @@ impl Hand {
         self.dispatcher.send_position(finger, joints)
     }
 
-    /// Kx of finger 1, 2 or 3 in the finger's frame, N/cm: `rows[row][column]`. Takes effect whole, within a cycle.
+    /// Kx of finger 1, 2 or 3 in the finger's frame, N/cm: `rows[row][column]`. Taken over whole, without a
+    /// jump in torque: 95 % of the change is there after 50 ms.
     ///
     /// # Errors
     /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, finger faulted.

@@ -165,7 +165,7 @@ where
 /// are. Halved before they are added, because a sum may be infinite. Entries that are rounding errors of the largest become
 /// zeros, because the squares of much smaller ones underflow in the iteration. Either would make eigenvalues NaN, which
 /// pass every comparison with a bound.
-pub(crate) fn symmetrised<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
+fn symmetrised<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
     let negligible = f64::EPSILON * matrix.amax();
     (matrix * 0.5 + matrix.transpose() * 0.5).map(|entry| if entry.abs() < negligible { 0.0 } else { entry })
 }

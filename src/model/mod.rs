@@ -11,7 +11,6 @@ mod simulation;
 mod tendons;
 mod validation;
 
-pub(crate) use contact::symmetrised;
 pub use contact::{Contact, ContactError, spring};
 pub use kinematics::Links;
 pub use link_dynamics::LinkDynamics;

@@ -24,8 +24,8 @@
 
 /* Frames */
 
-enum { HELLO = 0x1, CONFIGURE = 0x2, COMMAND = 0x3, STOP = 0x4 };
-enum { IDENTITY = 0x9, CONFIGURED = 0xA, REPLY = 0xB, STOPPED = 0xC, REFUSED = 0xD };
+enum { HELLO = 0x1, CONFIGURE = 0x2, COMMAND = 0x3, STOP = 0x4, TACTILE_REQUEST = 0x6 };
+enum { IDENTITY = 0x9, CONFIGURED = 0xA, REPLY = 0xB, STOPPED = 0xC, REFUSED = 0xD, TACTILE_EVENT = 0xE };
 
 enum { FRAME_OVERHEAD = 6, FRAME_MAXIMUM = 128, STUFFED_MAXIMUM = 129, WIRE_MAXIMUM = 130 };
 
@@ -42,11 +42,13 @@ static unsigned frame_length(unsigned type)
     case CONFIGURE: return 38;
     case COMMAND: return 15;
     case STOP: return 6;
+    case TACTILE_REQUEST: return 7;
     case IDENTITY: return 43;
     case CONFIGURED: return 64;
     case REPLY: return 26;
     case STOPPED: return 8;
     case REFUSED: return 10;
+    case TACTILE_EVENT: return 18;
     default: return 0;
     }
 }
@@ -496,6 +498,8 @@ static void answer(struct board *board, const struct frame *request, int64_t now
     case CONFIGURE: configure(board, request); break;
     case COMMAND: command(board, request, now); break;
     case STOP: stop(board, request, now); break;
+    /* It feels nothing. */
+    case TACTILE_REQUEST: refuse(board, request, 6, request->length - FRAME_OVERHEAD); break;
     }
 }
 
@@ -612,7 +616,7 @@ static void put_example_configure(struct frame *frame)
 }
 
 static const char *const example_names[] = {"Hello",   "Identity", "Configure", "Configured", "Stop",
-                                            "Stopped", "Refused",  "Command",   "Reply"};
+                                            "Stopped", "Refused",  "Command",   "Reply",      "TactileRequest", "TactileEvent"};
 enum { EXAMPLES = sizeof example_names / sizeof *example_names };
 
 static void build_example(int which, struct frame *frame)
@@ -683,6 +687,20 @@ static void build_example(int which, struct frame *frame)
         for (int i = 0; i < MOTORS; i++)
             put16(frame, gauges[i]);
         put16(frame, 12345);
+        break;
+    case 9:
+        begin(frame, TACTILE_REQUEST, 1, 5);
+        put8(frame, 254);
+        break;
+    case 10:
+        begin(frame, TACTILE_EVENT, 1, 5);
+        put8(frame, 2);
+        put8(frame, 255);
+        put8(frame, 1);
+        put16(frame, 300);
+        put16(frame, 4095);
+        put32(frame, 4000000000u);
+        put8(frame, 0);
         break;
     }
 }

@@ -59,7 +59,7 @@ fn at_the_configured_pose() {
     // Gauges as good as at last year's zeroing: a finger that nothing holds in its pose stays there.
     belief.gauge.zero = truth.gauge.zero;
     let mut bench = Bench::new(&truth, &belief, 1000.0);
-    bench.run(0.5, &Activity::TakeUpSlack);
+    bench.run(1.0, &Activity::TakeUpSlack);
     bench.belief.zeroing.pose_degrees = bench.plant.joints().map(f64::to_degrees).into();
     let found = zeroed(&mut bench);
     eprintln!("pose: {found:?}");

@@ -1,15 +1,8 @@
 //! What section 5 calls adjustable, adjusted while the finger runs.
 
-use crate::rig::{Loop, spring};
+use crate::rig::{Loop, SCHEMES, quiet, spring};
 use nalgebra::Vector3;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
-
-/// Without noise, so that what is left of a jump is the adjustment's.
-fn quiet() -> ConfiguredFinger {
-    let mut finger = ConfiguredFinger::default();
-    finger.simulation.gauge_noise = 0.0;
-    finger
-}
 
 /// A change, and whether the commands would jump by it if nothing were done.
 type Change = (&'static str, fn(&mut ConfiguredFinger), bool);
@@ -17,22 +10,25 @@ type Change = (&'static str, fn(&mut ConfiguredFinger), bool);
 const CHANGES: &[Change] = &[
     ("t_min", |finger| finger.tendon.minimum = 12.0, true),
     ("t_max", |finger| finger.tendon.maximum = 30.0, false),
-    ("gains", |finger| finger.controller.tension_gain = Some(3.0), false),
+    ("gains", |finger| finger.controller.tension_integral = Some(100.0), false),
     ("damper", |finger| finger.controller.motor_damping = Some(300.0), false),
-    ("scheme", |finger| finger.controller.scheme = Scheme::Figure9, false),
+    ("to figure 9", |finger| finger.controller.scheme = Scheme::Figure9, false),
+    ("to figure 10", |finger| finger.controller.scheme = Scheme::Figure10, false),
+    ("to state feedback", |finger| finger.controller.scheme = Scheme::StateFeedback, false),
     ("links", |finger| finger.geometry.links = [3.556, 5.080, 4.200], false),
     ("tendon stiffness", |finger| finger.tendon.stiffness = [280.0; 4], false),
     ("motor radius", |finger| finger.geometry.motor_radius = [0.0480; 4], true),
 ];
 
-/// Largest change of a command from one cycle to the next, N at the tendon: at rest, by the adjustment, and by the controller's
-/// replacement without ado.
-fn jumps(change: fn(&mut ConfiguredFinger)) -> [f64; 3] {
-    let mut finger = quiet();
+/// Largest change of a command from one cycle to the next, N at the tendon, of a pushed finger: at rest, by the adjustment, and
+/// by the controller's replacement without ado.
+fn jumps(scheme: Scheme, change: fn(&mut ConfiguredFinger)) -> [f64; 3] {
+    let mut finger = quiet(scheme);
     let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
     let rested = || {
-        let mut servo = Loop::new(&quiet(), 1000.0);
-        servo.run(1.5, &activity);
+        let mut servo = Loop::new(&quiet(scheme), 1000.0);
+        servo.plant.set_external_force(Vector3::new(0.8, -0.6, 0.5));
+        servo.run(2.5, &activity);
         servo.forget();
         servo
     };
@@ -48,13 +44,16 @@ fn jumps(change: fn(&mut ConfiguredFinger)) -> [f64; 3] {
 
 #[test]
 fn an_adjustment_does_not_jump() {
-    for (name, change, would_jump) in CHANGES {
-        let [at_rest, adjusted, replaced] = jumps(*change);
-        assert!(adjusted < at_rest + 0.5, "{name}: {adjusted} N, {at_rest} N at rest");
+    for (scheme, (name, change, would_jump)) in
+        SCHEMES.into_iter().flat_map(|scheme| CHANGES.iter().map(move |it| (scheme, it)))
+    {
+        let [at_rest, adjusted, replaced] = jumps(scheme, *change);
+        println!("{scheme:?}, {name}: {adjusted:.3} N, {at_rest:.3} N at rest, {replaced:.2} N without a transition");
+        assert!(adjusted < at_rest + 0.5, "{scheme:?}, {name}: {adjusted} N, {at_rest} N at rest");
         if *would_jump {
             assert!(
                 replaced > adjusted + 1.0,
-                "{name}: blind, {replaced} N without a transition, {adjusted} N with it"
+                "{scheme:?}, {name}: blind, {replaced} N without a transition, {adjusted} N with it"
             );
         }
     }
@@ -64,13 +63,13 @@ fn an_adjustment_does_not_jump() {
 #[test]
 fn an_adjustment_takes_effect() {
     let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
-    let mut servo = Loop::new(&quiet(), 1000.0);
+    let mut servo = Loop::new(&quiet(Scheme::Figure10), 1000.0);
     servo.run(1.5, &activity);
     servo.forget();
     servo.run(0.5, &activity);
     let at_rest = servo.largest_jump;
     let joints = servo.plant.joints();
-    let mut finger = quiet();
+    let mut finger = quiet(Scheme::Figure10);
     finger.tendon.minimum = 12.0;
     servo.forget();
     servo.adjust(&finger);
@@ -86,8 +85,8 @@ fn an_adjustment_takes_effect() {
 #[test]
 fn a_finger_that_is_adjusted_all_the_while_moves_and_settles() {
     let target = Vector3::new(0.2, 0.7, 1.2);
-    let mut servo = Loop::new(&quiet(), 1000.0);
-    let mut finger = quiet();
+    let mut servo = Loop::new(&quiet(Scheme::Figure10), 1000.0);
+    let mut finger = quiet(Scheme::Figure10);
     for cycle in 0..2000 {
         finger.tendon.minimum = 5.0 + f64::from(cycle % 5);
         servo.adjust(&finger);

@@ -5,4 +5,6 @@ mod behaviour;
 mod limits;
 mod rig;
 mod robustness;
+mod slack;
 mod state_feedback;
+mod switching;

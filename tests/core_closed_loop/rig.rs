@@ -187,3 +187,13 @@ pub fn finger_with(scheme: Scheme) -> ConfiguredFinger {
     finger.controller.scheme = scheme;
     finger
 }
+
+pub const SCHEMES: [Scheme; 3] = [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback];
+
+/// Without noise or dither, so that what is left of a jump in torque is that of a switch.
+pub fn quiet(scheme: Scheme) -> ConfiguredFinger {
+    let mut finger = finger_with(scheme);
+    finger.simulation.gauge_noise = 0.0;
+    finger.controller.dither = Some(0.0);
+    finger
+}

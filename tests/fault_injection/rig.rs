@@ -67,6 +67,8 @@ impl Bench {
     fn open(world: World, mut configuration: Configuration, random: Pcg64) -> Self {
         // With the patience of a real port.
         configuration.fingers[0].port = "in memory".into();
+        // After a blow a tendon may hang by centimetres, and it is wound in slowly.
+        configuration.hand.open_timeout_ms = 30_000;
         let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
         let mut link = Link::new(world.clone());
         let deadline = Transport::now(&world) + 1000 * MILLISECOND;
@@ -79,7 +81,7 @@ impl Bench {
         let schedule = Schedule::new(Transport::now(&world) + period, period);
         let servo = Servo::new(world.clone(), schedule, vec![ServedPort::new(link, vec![finger])]);
         let mut bench = Self { world, servo, mailbox, random, configuration, next_target: 0 };
-        for _ in 0..5000 {
+        for _ in 0..30_000 {
             bench.servo.cycle();
             match bench.mailbox.report().stage {
                 Stage::Running => break,

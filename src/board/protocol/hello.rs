@@ -72,7 +72,7 @@ impl Capabilities {
     pub const EMERGENCY_STOP: Capabilities = Capabilities(1 << 2);
     /// It puts the toggle bit on a pin.
     pub const TOGGLE_PIN: Capabilities = Capabilities(1 << 3);
-    /// It sends tactile events. Kept for a later version.
+    /// It answers tactile requests.
     pub const TACTILE: Capabilities = Capabilities(1 << 4);
 
     /// Whether all of these are there.

@@ -1,7 +1,10 @@
 //! What a frame says: its kind, whom it concerns, and its fields.
 
 use super::fields::{FieldReader, FieldWriter};
-use super::{Command, Configure, Configured, Hello, Identity, Packet, Refused, Reply, Stop, Stopped};
+use super::{
+    Command, Configure, Configured, Hello, Identity, Packet, Refused, Reply, Stop, Stopped, TactileEvent,
+    TactileRequest,
+};
 use thiserror::Error;
 
 /// Frame types; the high half of the header. A request has the top bit clear, an answer has it set.
@@ -13,25 +16,29 @@ pub enum Kind {
     Configure = 0x2,
     Command = 0x3,
     Stop = 0x4,
+    TactileRequest = 0x6,
     Identity = 0x9,
     Configured = 0xA,
     Reply = 0xB,
     Stopped = 0xC,
     Refused = 0xD,
+    TactileEvent = 0xE,
 }
 
 impl Kind {
-    /// Every type in use. 0x5 and 0xE are kept for tactile sensing; 0x0, 0x6, 0x7, 0x8 and 0xF are free.
-    pub const ALL: [Kind; 9] = [
+    /// Every type in use. 0x0, 0x7, 0x8 and 0xF are free; 0x5 as well, but its answer could only be a Refused.
+    pub const ALL: [Kind; 11] = [
         Kind::Hello,
         Kind::Configure,
         Kind::Command,
         Kind::Stop,
+        Kind::TactileRequest,
         Kind::Identity,
         Kind::Configured,
         Kind::Reply,
         Kind::Stopped,
         Kind::Refused,
+        Kind::TactileEvent,
     ];
 
     /// None where the number is free or kept.
@@ -46,11 +53,13 @@ impl Kind {
             Kind::Configure => Configure::LENGTH,
             Kind::Command => Command::LENGTH,
             Kind::Stop => Stop::LENGTH,
+            Kind::TactileRequest => TactileRequest::LENGTH,
             Kind::Identity => Identity::LENGTH,
             Kind::Configured => Configured::LENGTH,
             Kind::Reply => Reply::LENGTH,
             Kind::Stopped => Stopped::LENGTH,
             Kind::Refused => Refused::LENGTH,
+            Kind::TactileEvent => TactileEvent::LENGTH,
         }
     }
 
@@ -68,11 +77,13 @@ pub enum Frame {
     Configure(Configure),
     Command(Command),
     Stop(Stop),
+    TactileRequest(TactileRequest),
     Identity(Identity),
     Configured(Configured),
     Reply(Reply),
     Stopped(Stopped),
     Refused(Refused),
+    TactileEvent(TactileEvent),
 }
 
 /// A frame with its header.
@@ -118,11 +129,13 @@ impl Frame {
             Frame::Configure(_) => Kind::Configure,
             Frame::Command(_) => Kind::Command,
             Frame::Stop(_) => Kind::Stop,
+            Frame::TactileRequest(_) => Kind::TactileRequest,
             Frame::Identity(_) => Kind::Identity,
             Frame::Configured(_) => Kind::Configured,
             Frame::Reply(_) => Kind::Reply,
             Frame::Stopped(_) => Kind::Stopped,
             Frame::Refused(_) => Kind::Refused,
+            Frame::TactileEvent(_) => Kind::TactileEvent,
         }
     }
 
@@ -132,11 +145,13 @@ impl Frame {
             Frame::Configure(frame) => frame.write(fields),
             Frame::Command(frame) => frame.write(fields),
             Frame::Stop(_) => {}
+            Frame::TactileRequest(frame) => frame.write(fields),
             Frame::Identity(frame) => frame.write(fields),
             Frame::Configured(frame) => frame.write(fields),
             Frame::Reply(frame) => frame.write(fields),
             Frame::Stopped(frame) => frame.write(fields),
             Frame::Refused(frame) => frame.write(fields),
+            Frame::TactileEvent(frame) => frame.write(fields),
         }
     }
 }
@@ -154,11 +169,13 @@ impl Message {
             Kind::Configure => Frame::Configure(Configure::read(fields, kind)?),
             Kind::Command => Frame::Command(Command::read(fields)),
             Kind::Stop => Frame::Stop(Stop),
+            Kind::TactileRequest => Frame::TactileRequest(TactileRequest::read(fields)),
             Kind::Identity => Frame::Identity(Identity::read(fields)),
             Kind::Configured => Frame::Configured(Configured::read(fields)?),
             Kind::Reply => Frame::Reply(Reply::read(fields)),
             Kind::Stopped => Frame::Stopped(Stopped::read(fields)),
             Kind::Refused => Frame::Refused(Refused::read(fields)),
+            Kind::TactileEvent => Frame::TactileEvent(TactileEvent::read(fields)),
         };
         Ok(Self { address: packet.address(), sequence: packet.sequence(), frame })
     }

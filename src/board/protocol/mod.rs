@@ -10,6 +10,7 @@ mod refused;
 mod reply;
 mod status;
 mod stop;
+mod tactile;
 mod wire;
 
 pub use command::Command;
@@ -21,6 +22,7 @@ pub use refused::{Reason, Refused};
 pub use reply::Reply;
 pub use status::Status;
 pub use stop::{Stop, Stopped};
+pub use tactile::{TactileChange, TactileEvent, TactileRequest};
 pub use wire::{MAX_FRAME, MAX_WIRE, Packet, WIRE_OVERHEAD, WireFrame, check};
 
 /// The protocol version that this library speaks.

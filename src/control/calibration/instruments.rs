@@ -1,5 +1,6 @@
 //! What every routine reads its finger with: the configured sensors and tendons.
 
+use crate::control::joint_hold::JointHold;
 use crate::control::sensors::Sensors;
 use crate::control::signals::Feedback;
 use crate::control::tension_distribution::TensionDistribution;
@@ -32,8 +33,8 @@ pub(super) struct Instruments {
     /// t_min, t_max, N.
     pub minimum: f64,
     pub maximum: f64,
-    /// Length of the finger beyond each joint, cm.
-    pub beyond: Vector3<f64>,
+    /// What leads the joints.
+    pub hold: JointHold,
     /// Seconds of a cycle.
     pub period: f64,
 }
@@ -63,10 +64,7 @@ impl Instruments {
             offset: Vector4::zeros(),
             minimum: finger.tendon.minimum,
             maximum: finger.tendon.maximum,
-            beyond: {
-                let [l0, l1, l2] = finger.geometry.links;
-                Vector3::new(l0 + l1 + l2, l1 + l2, l2)
-            },
+            hold: JointHold::new(finger.links()),
             period: 1.0 / rate,
             tendons,
             sensors,

@@ -3,13 +3,10 @@
 
 use super::instruments::Instruments;
 use super::routine::Sample;
+use crate::control::joint_hold::HOLDING_STIFFNESS;
 use crate::control::signals::Activity;
 use nalgebra::{Vector3, Vector4};
 
-/// N cm/rad: less than the softest spring that the tendon controllers are tuned for gives a bent finger.
-const STIFFNESS: f64 = 30.0;
-/// N cm s/rad for every cm of finger beyond the joint, whose inertia must not swing on the spring.
-const DAMPING: f64 = 0.2;
 /// Time constant of the low-pass on the joints, s: for supervision, not for the loop.
 const SMOOTHING: f64 = 0.02;
 
@@ -45,7 +42,7 @@ impl JointLead {
 
     /// Moves the anchor of one joint toward `target`, rad, by at most `step`.
     pub fn advance(&mut self, joint: usize, target: f64, step: f64) {
-        let farthest = self.limit / STIFFNESS;
+        let farthest = self.limit / HOLDING_STIFFNESS;
         let anchor = self.anchor[joint] + (target - self.anchor[joint]).clamp(-step, step);
         let before = self.anchor[joint];
         self.anchor[joint] = anchor.clamp(self.joints[joint] - farthest, self.joints[joint] + farthest);
@@ -54,16 +51,14 @@ impl JointLead {
 
     /// Whether the torque of a joint is at its limit: it lags as far behind as it may.
     pub fn strained(&self, joint: usize) -> bool {
-        (self.anchor[joint] - self.joints[joint]).abs() > 0.95 * self.limit / STIFFNESS
+        (self.anchor[joint] - self.joints[joint]).abs() > 0.95 * self.limit / HOLDING_STIFFNESS
     }
 
     /// What holds the joints at their anchors.
     pub fn activity(&self, instruments: &Instruments, sample: &Sample) -> Activity {
-        let spring = (self.anchor - self.joints) * STIFFNESS;
-        let spring = spring.map(|torque| torque.clamp(-self.limit, self.limit));
         // Against the anchor's own speed, so that a moving joint does not lag.
         let slip = sample.report.joint_rates - self.moved / instruments.period;
-        let torques = spring - slip.component_mul(&instruments.beyond) * DAMPING;
+        let torques = instruments.hold.torques(&(self.anchor - self.joints), &slip, self.limit);
         Activity::Tense(instruments.ask(instruments.distribution.distribute(&torques).tensions))
     }
 }

@@ -31,8 +31,7 @@ impl TakeUp {
         let tensions = instruments.tensions(sample.feedback);
         let angles = instruments.travel(sample.feedback).component_div(&instruments.radius);
         self.stillness.note(&angles, instruments.period);
-        let (tendon, newton) = tensions.argmin();
-        if newton >= TIGHT * instruments.minimum && self.stillness.at_rest() {
+        if tensions.min() >= TIGHT * instruments.minimum && self.stillness.at_rest() {
             self.settled += instruments.period;
         } else {
             self.settled = 0.0;
@@ -41,8 +40,9 @@ impl TakeUp {
             return Ok(None);
         }
         if self.seconds > LIMIT {
-            return Err(Obstacle::Slack { tendon: tendon as u8 + 1, newton });
+            let tendon = sample.report.slackest;
+            return Err(Obstacle::Slack { tendon: tendon as u8 + 1, newton: tensions[tendon] });
         }
-        Ok(Some(Activity::Tense(instruments.ask(instruments.pretension))))
+        Ok(Some(Activity::Tighten(instruments.offset)))
     }
 }

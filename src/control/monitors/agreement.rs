@@ -46,11 +46,18 @@ pub(super) struct Memory {
     /// Disagreement over what is let pass.
     part: f64,
     lasts: f64,
+    /// What each tendon would have beyond what its gauge shows if the other three are right, N.
+    missing: Vector4<f64>,
     /// Mean of pull minus tension of each tendon, N.
     unbalanced: Vector4<f64>,
 }
 
 impl Memory {
+    /// What each tendon would have beyond what its gauge shows if the other three are right, N.
+    pub fn missing(&self) -> Vector4<f64> {
+        self.missing
+    }
+
     /// Whether gauges and encoders are on the way to disagreement.
     pub fn doubtful(&self) -> bool {
         self.part > 0.5
@@ -73,19 +80,26 @@ impl Agreement {
 
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
         memory.unbalanced += (sample.pulls - sample.tensions - memory.unbalanced) * AVERAGING;
-        if sample.tensions.min() < self.slack {
-            memory.lasts = 0.0;
-            return None;
-        }
         let above = sample.tensions - self.home;
         let difference = self.of_travel.dot(&sample.travel) - self.of_tension.dot(&above);
+        let slack = sample.tensions.min() < self.slack;
+        if slack {
+            memory.lasts = 0.0;
+        }
         if memory.samples < ZEROING {
+            if slack {
+                return None;
+            }
             memory.samples += 1;
             memory.zero += (difference - memory.zero) / f64::from(memory.samples);
             memory.above += (above - memory.above) / f64::from(memory.samples);
             return None;
         }
         let difference = difference - memory.zero;
+        memory.missing = self.of_tension.map(|share| difference / share);
+        if slack {
+            return None;
+        }
         let let_pass = LET_PASS + LET_PASS_OF_TENSION * self.of_tension.dot(&(above - memory.above).abs());
         memory.part = difference.abs() / let_pass;
         memory.lasts = if memory.part > 1.0 { memory.lasts + sample.elapsed } else { 0.0 };

@@ -16,6 +16,13 @@ const UNLIKELY: f64 = -25.3;
 /// A gauge that repeats itself more often than this is not known to flicker: without noise, or converted slowly.
 const MOST_REPEATS: f64 = 0.7;
 
+/// So many of the samples of a gauge with noise turn back from where the one before them went: about half do. Motion does not turn
+/// back, so that a gauge without noise that comes to rest is not taken for a dead one.
+const LEAST_REVERSALS: f64 = 0.15;
+
+/// Part of the way that the mean of the reversals goes in a sample: slowly, because noise does not show in a fast motion.
+const LEARNING_REVERSALS: f64 = 1.0 / 512.0;
+
 /// So many samples with the same count are a row that a gauge may be judged by.
 const ROW: u32 = 4;
 
@@ -30,12 +37,16 @@ pub(super) struct Memory {
     same: [u32; 4],
     /// How often a sample repeats the one before, 0 to 1.
     repeats: [f64; 4],
+    /// How often a sample turns back, 0 to 1.
+    reversals: [f64; 4],
+    /// Whether each gauge last rose.
+    rose: [bool; 4],
     samples: u32,
 }
 
 impl Default for Memory {
     fn default() -> Self {
-        Self { last: [0; 4], same: [0; 4], repeats: [1.0; 4], samples: 0 }
+        Self { last: [0; 4], same: [0; 4], repeats: [1.0; 4], reversals: [0.0; 4], rose: [false; 4], samples: 0 }
     }
 }
 
@@ -55,7 +66,10 @@ impl Memory {
     }
 
     pub fn flickers(&self) -> Flicker {
-        let known = self.repeats.map(|repeats| self.samples >= KNOWN && repeats < MOST_REPEATS);
+        let known = std::array::from_fn(|gauge| {
+            let noisy = self.repeats[gauge] < MOST_REPEATS && self.reversals[gauge] > LEAST_REVERSALS;
+            self.samples >= KNOWN && noisy
+        });
         Flicker { known, same: self.same }
     }
 }
@@ -64,13 +78,20 @@ impl GaugeStuck {
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
         let counts = sample.feedback.gauge_counts;
         memory.samples = memory.samples.saturating_add(1);
+        let slow = LEARNING_REVERSALS.max(1.0 / f64::from(memory.samples));
         let same = |gauge: usize| counts[gauge] == memory.last[gauge];
         memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge] + 1 } else { 0 });
         for gauge in 0..4 {
             // What is judged must not shift the judgement.
             if memory.same[gauge] < ROW || !memory.others_flicker(gauge) {
+                let learn = |mean: &mut f64, is: bool, gain: f64| *mean += (f64::from(u8::from(is)) - *mean) * gain;
                 let same = memory.same[gauge] > 0;
-                memory.repeats[gauge] += (f64::from(u8::from(same)) - memory.repeats[gauge]) * LEARNING;
+                let rises = counts[gauge] > memory.last[gauge];
+                learn(&mut memory.repeats[gauge], same, LEARNING);
+                learn(&mut memory.reversals[gauge], !same && rises != memory.rose[gauge], slow);
+            }
+            if memory.same[gauge] == 0 {
+                memory.rose[gauge] = counts[gauge] > memory.last[gauge];
             }
         }
         memory.last = counts;

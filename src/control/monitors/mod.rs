@@ -190,8 +190,9 @@ impl Monitors {
         let jumped = self.encoder_jump.watch(&mut watch.encoder_jump, &sample);
         let range = self.gauge_range.watch(&mut watch.gauge_range, &sample);
         let flickers = watch.gauge_stuck.flickers();
-        let lost = self.tension_lost.watch(&mut watch.tension_lost, &sample, &flickers);
         let disagrees = self.agreement.watch(&mut watch.agreement, &sample);
+        let missing = watch.agreement.missing();
+        let lost = self.tension_lost.watch(&mut watch.tension_lost, &sample, &missing, &flickers);
         let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
         // Where the gauge drifts, its motor stands still against a tension that is not there.
         let doubtful = watch.agreement.doubtful();

@@ -1,4 +1,7 @@
 //! Tendons that lose their tension: torn, slipping, or with a gauge that is dead.
+//!
+//! A fast motion or a blow makes a whole tendon slack for a moment. Then it hangs; one that is torn, slips, or has a dead gauge
+//! has no tension although the other three and the encoders say that it is stretched.
 
 use super::gauge_stuck::Flicker;
 use super::{Alarm, Alarms, Sample, Symptom, first_of};
@@ -11,8 +14,14 @@ const LOW: f64 = 0.3;
 /// Its tension is gone below this part.
 const GONE: f64 = 0.1;
 
-/// So long, s, a tendon is low or gone only if something is wrong; a step at the largest stiffness takes less.
+/// From this part of t_min on a low tendon is missed: its stretch says that it should have so much.
+const MISSED: f64 = 0.3;
+
+/// So long, s, a tendon that is missed must be low.
 const LASTS: f64 = 0.012;
+
+/// So long, s, no motion makes a whole tendon slack.
+const TOO_LONG: f64 = 0.1;
 
 /// So long, s, tension must be gone for a warning.
 const NOTICED: f64 = 0.003;
@@ -25,6 +34,7 @@ pub(super) struct TensionLost {
     /// N.
     low: f64,
     gone: f64,
+    missed: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,36 +42,44 @@ pub(super) struct Memory {
     /// For how long each tendon has been low, s, and its tension since, N s.
     low: Vector4<f64>,
     impulse: Vector4<f64>,
+    /// For how long it has been low and missed, s.
+    missed: Vector4<f64>,
     /// For how long its tension has been gone, s.
     gone: Vector4<f64>,
 }
 
 impl TensionLost {
     pub fn new(finger: &ConfiguredFinger) -> Self {
-        Self { low: LOW * finger.tendon.minimum, gone: GONE * finger.tendon.minimum }
+        let minimum = finger.tendon.minimum;
+        Self { low: LOW * minimum, gone: GONE * minimum, missed: MISSED * minimum }
     }
 
-    pub fn watch(&self, memory: &mut Memory, sample: &Sample, flicker: &Flicker) -> Alarms {
+    /// `missing`: what each tendon would have beyond what its gauge shows if the other three are right, N.
+    pub fn watch(&self, memory: &mut Memory, sample: &Sample, missing: &Vector4<f64>, flicker: &Flicker) -> Alarms {
         for tendon in 0..4 {
             let tension = sample.tensions[tendon];
+            let low = tension < self.low;
             let counted = |so_far: f64, holds: bool| if holds { so_far + sample.elapsed } else { 0.0 };
-            memory.low[tendon] = counted(memory.low[tendon], tension < self.low);
+            memory.low[tendon] = counted(memory.low[tendon], low);
+            memory.missed[tendon] = counted(memory.missed[tendon], low && missing[tendon] > self.missed);
             memory.gone[tendon] = counted(memory.gone[tendon], tension < self.gone);
             let impulse = memory.impulse[tendon] + tension * sample.elapsed;
-            memory.impulse[tendon] = if tension < self.low { impulse } else { 0.0 };
+            memory.impulse[tendon] = if low { impulse } else { 0.0 };
         }
         let warning = first_of(Symptom::SlackInMotion, |tendon| {
             (memory.gone[tendon] >= NOTICED).then_some(sample.tensions[tendon])
         });
         // The others follow a torn tendon, as nothing balances them: the one that went first is it.
-        let tendon = memory.low.imax();
-        let fault = (memory.low[tendon] >= LASTS).then(|| self.fault(memory, sample, flicker, tendon));
-        Alarms { fault: fault.flatten(), warning }
+        let (missed, lowest) = (memory.missed.imax(), memory.low.imax());
+        let fault = if memory.missed[missed] >= LASTS {
+            self.fault(memory, sample, flicker, missed)
+        } else {
+            (memory.low[lowest] >= TOO_LONG).then(|| self.lost(memory, lowest))
+        };
+        Alarms { fault, warning }
     }
 
     fn fault(&self, memory: &Memory, sample: &Sample, flicker: &Flicker, tendon: usize) -> Option<Alarm> {
-        let part = tendon as u8 + 1;
-        let mean = memory.impulse[tendon] / memory.low[tendon];
         let others_hold = (0..4).all(|other| other == tendon || memory.low[other] == 0.0);
         let dead = match flicker.known[tendon] {
             // A little later it is certain.
@@ -69,13 +87,16 @@ impl TensionLost {
             true => false,
             false => others_hold,
         };
-        Some(if dead {
-            let count = f64::from(sample.feedback.gauge_counts[tendon]);
-            Alarm { symptom: Symptom::GaugeStuck, part, value: count }
-        } else if mean < self.gone {
-            Alarm { symptom: Symptom::BrokenTendon, part, value: mean }
-        } else {
-            Alarm { symptom: Symptom::SlackTendon, part, value: mean }
-        })
+        if !dead {
+            return Some(self.lost(memory, tendon));
+        }
+        let count = f64::from(sample.feedback.gauge_counts[tendon]);
+        Some(Alarm { symptom: Symptom::GaugeStuck, part: tendon as u8 + 1, value: count })
+    }
+
+    fn lost(&self, memory: &Memory, tendon: usize) -> Alarm {
+        let mean = memory.impulse[tendon] / memory.low[tendon];
+        let symptom = if mean < self.gone { Symptom::BrokenTendon } else { Symptom::SlackTendon };
+        Alarm { symptom, part: tendon as u8 + 1, value: mean }
     }
 }

@@ -1,5 +1,5 @@
-//! A second board, in C and written from the page of the protocol alone. If the library settles its fingers, then the page
-//! says all that a board has to know.
+//! Boards in C: a second board, written from the page of the protocol alone, and the reference firmware. If the library settles
+//! the fingers of the one, then the page says all that a board has to know; the other is what a lab begins with.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use sun2xp::hand::{Hand, read};
 
 const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/c/second_board.c");
+const FIRMWARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/firmware");
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/board-protocol.md");
 
 /// The finger is this close to its target, rad.
@@ -16,18 +17,23 @@ const CLOSE: f64 = 0.02;
 /// A busy machine moves the finger more slowly than time passes.
 const PATIENCE: Duration = Duration::from_secs(20);
 
+fn succeeds(command: &mut Command) {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let said = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat();
+    assert!(output.status.success(), "{command:?}:\n{said}");
+}
+
 /// Compiles the board into the folder, and refuses any warning.
 fn compile(folder: &Path) -> PathBuf {
     let program = folder.join("second_board");
     let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_string());
-    let output = Command::new(&compiler)
-        .args(["-std=c99", "-D_XOPEN_SOURCE=700", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-o"])
-        .arg(&program)
-        .arg(SOURCE)
-        .arg("-lm")
-        .output()
-        .unwrap_or_else(|error| panic!("{compiler}: {error}"));
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    succeeds(
+        Command::new(&compiler)
+            .args(["-std=c99", "-D_XOPEN_SOURCE=700", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-o"])
+            .arg(&program)
+            .arg(SOURCE)
+            .arg("-lm"),
+    );
     program
 }
 
@@ -105,17 +111,41 @@ fn settle(hand: &Hand, targets: [[f64; 3]; 3]) {
 }
 
 #[test]
-fn settles_three_fingers_and_notices_a_dead_board() {
+fn a_second_board_settles_three_fingers() {
     let folder = tempfile::tempdir().expect("a scratch folder");
-    let program = compile(folder.path());
-    let mut boards = [1, 2, 3].map(|address| Board::start(&program, address));
+    settles_three_fingers_and_notices_a_dead_board(&compile(folder.path()), folder.path());
+}
+
+#[test]
+fn the_reference_firmware_settles_three_fingers() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    make(folder.path(), &["host"]);
+    settles_three_fingers_and_notices_a_dead_board(&folder.path().join("peer"), folder.path());
+}
+
+#[test]
+fn the_reference_firmware_holds_the_vectors_and_survives_noise() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    // Of the two compilers, gcc brings the sanitizers along on Debian.
+    let sanitize = "SANITIZE=-fsanitize=address,undefined -fno-sanitize-recover=all";
+    make(folder.path(), &["check", "CC=gcc", sanitize]);
+    make(&folder.path().join("clang"), &["check", "CC=clang"]);
+}
+
+/// In firmware/, with its products in `folder`.
+fn make(folder: &Path, arguments: &[&str]) {
+    succeeds(Command::new("make").args(["-C", FIRMWARE]).arg(format!("BUILD={}", folder.display())).args(arguments));
+}
+
+fn settles_three_fingers_and_notices_a_dead_board(program: &Path, folder: &Path) {
+    let mut boards = [1, 2, 3].map(|address| Board::start(program, address));
 
     // A busy machine may keep servo or board from running for longer than the usual watchdog.
     let mut text = "[hand]\nwatchdog_ms = 1000\n".to_string();
     for (finger, board) in (1..).zip(&boards) {
         text += &format!("[finger.{finger}]\nport = \"{}\"\n", board.port);
     }
-    let path = folder.path().join("sun2xp.toml");
+    let path = folder.join("sun2xp.toml");
     std::fs::write(&path, text).expect("the configuration is written");
     let hand = Hand::open(read(&path).expect("the configuration is good")).expect("all boards answer");
 

@@ -1,0 +1,88 @@
+#include "board.h"
+#include "protocol.h"
+#include <string.h>
+
+void board_start(struct board *board, unsigned line, struct finger *fingers, size_t count)
+{
+    memset(board, 0, sizeof *board);
+    board->line = line;
+    board->fingers = fingers;
+    board->count = count;
+}
+
+/* None: not for this board. */
+static struct finger *meant(struct board *board, const struct frame *request)
+{
+    if (frame_address(request) == ANY_ADDRESS)
+        return frame_type(request) == TYPE_HELLO && board->count > 0 ? &board->fingers[0] : NULL;
+    for (size_t i = 0; i < board->count; i++)
+        if (board->fingers[i].traits->address == frame_address(request))
+            return &board->fingers[i];
+    return NULL;
+}
+
+static uint16_t addresses(const struct board *board)
+{
+    unsigned bits = 0;
+    for (size_t i = 0; i < board->count; i++)
+        bits |= 1u << board->fingers[i].traits->address;
+    return (uint16_t)bits;
+}
+
+/* The body's length that a type must have, or -1 for a type that this board does not know. */
+static int expected_length(uint8_t type)
+{
+    switch (type) {
+    case TYPE_HELLO: return HELLO_LENGTH;
+    case TYPE_CONFIGURE: return CONFIGURE_LENGTH;
+    case TYPE_COMMAND: return COMMAND_LENGTH;
+    case TYPE_STOP: return STOP_LENGTH;
+    default: return -1;
+    }
+}
+
+static void answer(struct board *board, const struct frame *request, uint32_t arrived_at)
+{
+    /* An answer is not answered: a line that is short-circuited brings back what was sent. */
+    struct finger *finger = frame_type(request) & TYPE_IS_ANSWER ? NULL : meant(board, request);
+    if (finger == NULL)
+        return;
+    /* Whatever ran out before this arrived has run out. */
+    finger_tick(finger, arrived_at);
+
+    struct frame reply;
+    size_t length = frame_body_length(request);
+    if ((int)length != expected_length(frame_type(request))) {
+        finger_refuse(finger, request, REASON_UNKNOWN_FRAME, (uint16_t)length, &reply);
+    } else {
+        switch (frame_type(request)) {
+        case TYPE_HELLO: finger_hello(finger, request, addresses(board), &reply); break;
+        case TYPE_CONFIGURE: finger_configure(finger, request, &reply); break;
+        case TYPE_COMMAND: finger_command(finger, request, arrived_at, &reply); break;
+        default: finger_stop(finger, request, arrived_at, &reply); break;
+        }
+    }
+    uint8_t wire[WIRE_MOST];
+    hal_send(board->line, wire, frame_to_wire(&reply, wire));
+}
+
+void board_poll(struct board *board)
+{
+    uint8_t bytes[64];
+    uint32_t arrived_at;
+    size_t taken;
+    /* All that has arrived, but not for ever: a line that never falls silent must not keep the watchdogs from running. */
+    for (int runs = 0; runs < 32 && (taken = hal_receive(board->line, bytes, sizeof bytes, &arrived_at)) > 0; runs++) {
+        for (size_t i = 0; i < taken; i++) {
+            struct frame request;
+            enum received received = receiver_take(&board->receiver, bytes[i], &request);
+            if (received == RECEIVED_FRAME)
+                answer(board, &request, arrived_at);
+            for (size_t n = 0; received == RECEIVED_DAMAGE && n < board->count; n++)
+                board->fingers[n].damaged = true;
+        }
+    }
+    uint32_t now = hal_microseconds();
+    for (size_t n = 0; n < board->count; n++)
+        finger_tick(&board->fingers[n], now);
+}

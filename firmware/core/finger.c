@@ -1,0 +1,224 @@
+#include "finger.h"
+#include "protocol.h"
+#include <string.h>
+
+static void answer_begin(const struct finger *finger, const struct frame *request, uint8_t type, struct frame *answer)
+{
+    frame_begin(answer, type, finger->traits->address, frame_sequence(request));
+}
+
+void finger_refuse(const struct finger *finger, const struct frame *request, uint8_t reason, uint16_t detail,
+                   struct frame *answer)
+{
+    answer_begin(finger, request, TYPE_REFUSED, answer);
+    write_refused(answer, frame_type(request), reason, detail);
+}
+
+static int64_t clip(int64_t value, int64_t limit)
+{
+    return value > limit ? limit : value < -limit ? -limit : value;
+}
+
+/* Torques within `limits` and within what the drivers bear, as currents on the motors. True: one was clipped. */
+static bool drive(struct finger *finger, const int16_t wanted[MOTORS], const uint16_t limits[MOTORS])
+{
+    bool clipped = false;
+    int32_t currents[MOTORS];
+    for (size_t i = 0; i < MOTORS; i++) {
+        uint32_t constant = finger->terms.torque_constants[i];
+        if (constant == 0)
+            constant = finger->traits->torque_constants[i];
+        finger->torques[i] = (int16_t)clip(wanted[i], limits[i]);
+        /* nN m / (uN m/A) is mA; at most 2^15 * 2^32 * 1000, which 63 bits hold. */
+        int64_t current = (int64_t)finger->torques[i] * finger->traits->torque_unit * 1000 / constant;
+        int64_t borne = clip(current, finger->traits->largest_currents[i]);
+        currents[i] = (int32_t)borne;
+        clipped = clipped || finger->torques[i] != wanted[i] || borne != current;
+    }
+    hal_set_currents(finger->index, currents);
+    return clipped;
+}
+
+static void motors_off(struct finger *finger)
+{
+    static const int32_t none[MOTORS] = {0};
+    memset(finger->torques, 0, sizeof finger->torques);
+    finger->holding = false;
+    hal_set_currents(finger->index, none);
+}
+
+void finger_start(struct finger *finger, const struct finger_traits *traits, unsigned index)
+{
+    memset(finger, 0, sizeof *finger);
+    finger->traits = traits;
+    finger->index = index;
+    finger->state = FINGER_IDLE;
+    motors_off(finger);
+}
+
+/* The end state, from ready or enabled. */
+static void end(struct finger *finger, uint32_t now)
+{
+    bool hold = finger->state == FINGER_ENABLED && finger->terms.end_state == END_STATE_HOLD && finger->terms.hold_time_ms > 0;
+    finger->state = FINGER_ENDED;
+    if (hold) {
+        uint16_t limits[MOTORS];
+        int16_t torques[MOTORS];
+        for (size_t i = 0; i < MOTORS; i++)
+            limits[i] = finger->terms.hold_torque_limit;
+        memcpy(torques, finger->torques, sizeof torques);
+        drive(finger, torques, limits);
+        finger->holding = true;
+        finger->held_since = now;
+    } else {
+        motors_off(finger);
+    }
+}
+
+/* Whether more than `milliseconds` lie between two instants. Signed, because `now` may be the older by a little: it was read
+   before the last bytes came. 65 535 ms are far from where this wraps. */
+static bool passed(uint32_t since, uint32_t now, uint16_t milliseconds)
+{
+    uint32_t elapsed = now - since;
+    return elapsed < 0x80000000u && elapsed > 1000u * (uint32_t)milliseconds;
+}
+
+void finger_tick(struct finger *finger, uint32_t now)
+{
+    uint16_t faults = hal_faults(finger->index) & STATUS_FAULTS;
+    if (faults != 0) {
+        finger->latched |= faults;
+        motors_off(finger);
+        if (finger->state != FINGER_IDLE)
+            finger->state = FINGER_ENDED;
+    }
+    if (finger->state == FINGER_ENABLED && passed(finger->commanded_at, now, finger->terms.watchdog_ms)) {
+        finger->latched |= STATUS_WATCHDOG_TRIPPED;
+        end(finger, now);
+    }
+    if (finger->holding && passed(finger->held_since, now, finger->terms.hold_time_ms))
+        motors_off(finger);
+}
+
+static uint16_t status(const struct finger *finger)
+{
+    unsigned bits = finger->latched;
+    if (finger->state != FINGER_IDLE)
+        bits |= STATUS_CONFIGURED;
+    if (finger->state == FINGER_ENABLED)
+        bits |= STATUS_ENABLED;
+    if (finger->state == FINGER_ENDED)
+        bits |= STATUS_ENDED;
+    if (finger->holding)
+        bits |= STATUS_HOLDING;
+    if (finger->traits->capabilities & CAPABILITY_KEEPS_ZERO)
+        bits |= STATUS_ZERO_VALID;
+    return (uint16_t)bits;
+}
+
+void finger_hello(struct finger *finger, const struct frame *request, uint16_t addresses, struct frame *answer)
+{
+    struct hello hello;
+    read_hello(request, &hello);
+    if (hello.lowest_version > PROTOCOL_VERSION || hello.highest_version < PROTOCOL_VERSION) {
+        finger_refuse(finger, request, REASON_VERSION, PROTOCOL_VERSION | PROTOCOL_VERSION << 8, answer);
+        return;
+    }
+    const struct finger_traits *traits = finger->traits;
+    struct identity identity = {
+        .version = PROTOCOL_VERSION,
+        .addresses = addresses,
+        .kind = KIND_REFERENCE_FIRMWARE,
+        .counts_per_revolution = traits->counts_per_revolution,
+        .gauge_bits = traits->gauge_bits,
+        .torque_unit = traits->torque_unit,
+        .torque_limit = traits->torque_limit,
+        .shortest_watchdog_ms = traits->shortest_watchdog_ms,
+        .capabilities = traits->capabilities,
+    };
+    memcpy(identity.unique_number, traits->unique_number, sizeof identity.unique_number);
+    memcpy(identity.firmware_version, traits->firmware_version, sizeof identity.firmware_version);
+    answer_begin(finger, request, TYPE_IDENTITY, answer);
+    write_identity(answer, &identity);
+}
+
+/* Where the first field begins that cannot be carried out; 0: all can. */
+static uint16_t wrong_field(const struct finger_traits *traits, const struct configure *terms)
+{
+    if (terms->version != PROTOCOL_VERSION)
+        return FIELD_VERSION;
+    if (terms->watchdog_ms < traits->shortest_watchdog_ms)
+        return FIELD_WATCHDOG;
+    bool can_hold = (traits->capabilities & CAPABILITY_HOLD) != 0;
+    if (terms->end_state > END_STATE_HOLD || (terms->end_state == END_STATE_HOLD && !can_hold))
+        return FIELD_END_STATE;
+    for (uint16_t i = 0; i < MOTORS; i++)
+        if (terms->torque_limits[i] > traits->torque_limit)
+            return (uint16_t)(FIELD_TORQUE_LIMITS + 2 * i);
+    return 0;
+}
+
+void finger_configure(struct finger *finger, const struct frame *request, struct frame *answer)
+{
+    struct configure terms;
+    read_configure(request, &terms);
+    uint16_t faults = hal_faults(finger->index) & STATUS_FAULTS;
+    uint16_t wrong = wrong_field(finger->traits, &terms);
+    if (finger->state == FINGER_ENABLED) {
+        finger_refuse(finger, request, REASON_RUNNING, 0, answer);
+    } else if (faults != 0) {
+        finger_refuse(finger, request, REASON_FAULT, faults, answer);
+    } else if (wrong != 0) {
+        finger_refuse(finger, request, REASON_VALUE, wrong, answer);
+    } else {
+        finger->terms = terms;
+        finger->latched = 0;
+        finger->state = FINGER_READY;
+        motors_off(finger);
+        struct sensors sensors;
+        hal_sample(finger->index, &sensors);
+        answer_begin(finger, request, TYPE_CONFIGURED, answer);
+        write_configured(answer, &terms, &sensors, status(finger));
+    }
+}
+
+void finger_command(struct finger *finger, const struct frame *request, uint32_t now, struct frame *answer)
+{
+    if (finger->state == FINGER_IDLE) {
+        finger_refuse(finger, request, REASON_NOT_CONFIGURED, 0, answer);
+        return;
+    }
+    struct command command;
+    read_command(request, &command);
+    hal_set_toggle(finger->index, command.toggle);
+    /* Before the torques: what is sampled is what the last ones did. */
+    struct sensors sensors;
+    uint32_t sampled_at = hal_microseconds();
+    hal_sample(finger->index, &sensors);
+    bool clipped = false;
+    if (finger->state != FINGER_ENDED && command.enable) {
+        finger->state = FINGER_ENABLED;
+        finger->commanded_at = now;
+        clipped = drive(finger, command.torques, finger->terms.torque_limits);
+    } else if (finger->state != FINGER_ENDED) {
+        finger->state = FINGER_READY;
+        motors_off(finger);
+    }
+    uint16_t reported = status(finger);
+    if (clipped)
+        reported |= STATUS_TORQUE_CLIPPED;
+    if (finger->damaged)
+        reported |= STATUS_DAMAGED_INPUT;
+    finger->damaged = false;
+    answer_begin(finger, request, TYPE_REPLY, answer);
+    write_reply(answer, reported, &sensors, (uint16_t)(sampled_at & 0xFFFFu));
+}
+
+void finger_stop(struct finger *finger, const struct frame *request, uint32_t now, struct frame *answer)
+{
+    /* A second Stop does not prolong a hold. */
+    if (finger->state == FINGER_READY || finger->state == FINGER_ENABLED)
+        end(finger, now);
+    answer_begin(finger, request, TYPE_STOPPED, answer);
+    write_stopped(answer, status(finger));
+}

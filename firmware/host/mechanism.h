@@ -1,0 +1,23 @@
+/* A finger for a board without one: four motors, each pulling an elastic tendon, and three joints whose inertias do not
+   couple. Enough to come under tension and to settle; no measure of how a real finger moves. */
+
+#ifndef FIRMWARE_MECHANISM_H
+#define FIRMWARE_MECHANISM_H
+
+#include "../hal.h"
+
+#define JOINTS 3
+
+/* SI units. */
+struct mechanism {
+    double theta[JOINTS], theta_rate[JOINTS];
+    double motor[MOTORS], motor_rate[MOTORS];
+    double torque[MOTORS];
+    bool braked; /* Until the first torque. */
+};
+
+void mechanism_start(struct mechanism *finger);
+void mechanism_advance(struct mechanism *finger, uint32_t microseconds);
+void mechanism_sample(const struct mechanism *finger, struct sensors *sensors);
+
+#endif

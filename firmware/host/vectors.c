@@ -1,0 +1,323 @@
+/* The firmware against the test vectors.
+
+       vectors protocol/vectors.json
+
+   It reads the file line by line: every vector is an object on a line of its own. A board of your own design can be tested
+   with this program too: give it a hardware layer like fake_hardware.c and keep the rest. */
+
+#include "fake_hardware.h"
+#include "../core/protocol.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINE_MOST = 4096, BYTES_MOST = 1024 };
+
+static const char *current_line;
+static unsigned line_number, failures, checked;
+static char conversation[LINE_MOST];
+
+static void fail(const char *what)
+{
+    fprintf(stderr, "line %u: %s\n    %s", line_number, what, current_line);
+    if (conversation[0] != 0)
+        fprintf(stderr, "    in: %s", conversation);
+    failures++;
+}
+
+static void expect(bool holds, const char *what)
+{
+    checked++;
+    if (!holds)
+        fail(what);
+}
+
+/* Objects of numbers, lists of numbers and texts without escapes */
+
+/* What follows `"name": `; NULL without it. */
+static const char *value(const char *name)
+{
+    char key[40];
+    snprintf(key, sizeof key, "\"%s\": ", name);
+    const char *found = strstr(current_line, key);
+    return found == NULL ? NULL : found + strlen(key);
+}
+
+/* The number, or the `index`th of a list. */
+static long long number(const char *name, size_t index)
+{
+    const char *at = value(name);
+    if (at == NULL) {
+        fail(name);
+        return 0;
+    }
+    if (*at == '[')
+        at++;
+    for (; index > 0 && at != NULL; index--) {
+        at = strchr(at, ',');
+        if (at != NULL)
+            at++;
+    }
+    return at == NULL ? 0 : strtoll(at, NULL, 10);
+}
+
+static bool text_is(const char *name, const char *wanted)
+{
+    const char *at = value(name);
+    return at != NULL && *at == '"' && strncmp(at + 1, wanted, strlen(wanted)) == 0 && at[1 + strlen(wanted)] == '"';
+}
+
+static unsigned digit(char c)
+{
+    return (unsigned)(c <= '9' ? c - '0' : c - 'a' + 10);
+}
+
+static size_t bytes_of(const char *name, uint8_t bytes[BYTES_MOST])
+{
+    const char *at = value(name);
+    size_t length = 0;
+    if (at == NULL || *at++ != '"') {
+        fail(name);
+        return 0;
+    }
+    for (; at[0] != '"' && length < BYTES_MOST; at += 2)
+        bytes[length++] = (uint8_t)(digit(at[0]) << 4 | digit(at[1]));
+    return length;
+}
+
+/* Frames */
+
+static size_t frames_in(const uint8_t *bytes, size_t length, struct frame *last, unsigned *damaged)
+{
+    struct receiver receiver = {0};
+    struct frame frame;
+    size_t found = 0;
+    for (size_t i = 0; i < length; i++) {
+        enum received received = receiver_take(&receiver, bytes[i], &frame);
+        if (received == RECEIVED_FRAME) {
+            found++;
+            *last = frame;
+        } else if (received == RECEIVED_DAMAGE) {
+            (*damaged)++;
+        }
+    }
+    return found;
+}
+
+static void terms_of_line(struct configure *terms)
+{
+    terms->version = (uint8_t)number("version", 0);
+    terms->watchdog_ms = (uint16_t)number("watchdog_ms", 0);
+    terms->end_state = (uint8_t)number("end_state", 0);
+    terms->hold_time_ms = (uint16_t)number("hold_time_ms", 0);
+    terms->hold_torque_limit = (uint16_t)number("hold_torque_limit", 0);
+    for (size_t i = 0; i < MOTORS; i++) {
+        terms->torque_limits[i] = (uint16_t)number("torque_limits", i);
+        terms->torque_constants[i] = (uint32_t)number("torque_constants", i);
+    }
+}
+
+/* Requests are read and compared field by field. */
+static void check_request(const struct frame *frame)
+{
+    if (frame_type(frame) == TYPE_HELLO) {
+        struct hello hello;
+        read_hello(frame, &hello);
+        expect(hello.lowest_version == number("lowest_version", 0), "lowest version");
+        expect(hello.highest_version == number("highest_version", 0), "highest version");
+    } else if (frame_type(frame) == TYPE_CONFIGURE) {
+        struct configure terms, wanted;
+        read_configure(frame, &terms);
+        terms_of_line(&wanted);
+        expect(terms.version == wanted.version && terms.watchdog_ms == wanted.watchdog_ms, "version or watchdog");
+        expect(terms.end_state == wanted.end_state && terms.hold_time_ms == wanted.hold_time_ms, "end state or hold time");
+        expect(terms.hold_torque_limit == wanted.hold_torque_limit, "hold torque limit");
+        for (size_t i = 0; i < MOTORS; i++) {
+            expect(terms.torque_limits[i] == wanted.torque_limits[i], "torque limits");
+            expect(terms.torque_constants[i] == wanted.torque_constants[i], "torque constants");
+        }
+    } else if (frame_type(frame) == TYPE_COMMAND) {
+        struct command command;
+        read_command(frame, &command);
+        expect(command.toggle == (number("toggle", 0) != 0), "toggle");
+        expect(command.enable == (number("enable", 0) != 0), "enable");
+        for (size_t i = 0; i < MOTORS; i++)
+            expect(command.torques[i] == number("torques", i), "torques");
+    }
+}
+
+/* Answers are written from their fields and compared byte by byte. False: this board sends no such frame. */
+static bool write_answer(struct frame *frame, uint8_t type)
+{
+    struct sensors sensors = {0};
+    uint16_t status = type == TYPE_CONFIGURED || type == TYPE_REPLY || type == TYPE_STOPPED ? (uint16_t)number("status", 0) : 0;
+    for (size_t i = 0; i < MOTORS && (type == TYPE_CONFIGURED || type == TYPE_REPLY); i++) {
+        sensors.encoders[i] = (int32_t)number("encoders", i);
+        sensors.gauges[i] = (uint16_t)number("gauges", i);
+    }
+    frame_begin(frame, type, (uint8_t)number("address", 0), (uint8_t)number("sequence", 0));
+    if (type == TYPE_IDENTITY) {
+        struct identity identity = {
+            .version = (uint8_t)number("version", 0),
+            .addresses = (uint16_t)number("addresses", 0),
+            .kind = (uint16_t)number("board_kind", 0),
+            .counts_per_revolution = (uint32_t)number("counts_per_revolution", 0),
+            .gauge_bits = (uint8_t)number("gauge_bits", 0),
+            .torque_unit = (uint32_t)number("torque_unit", 0),
+            .torque_limit = (uint16_t)number("torque_limit", 0),
+            .shortest_watchdog_ms = (uint16_t)number("shortest_watchdog_ms", 0),
+            .capabilities = (uint32_t)number("capabilities", 0),
+        };
+        for (size_t i = 0; i < sizeof identity.unique_number; i++)
+            identity.unique_number[i] = (uint8_t)number("unique_number", i);
+        for (size_t i = 0; i < sizeof identity.firmware_version; i++)
+            identity.firmware_version[i] = (uint8_t)number("firmware_version", i);
+        write_identity(frame, &identity);
+    } else if (type == TYPE_CONFIGURED) {
+        struct configure terms;
+        terms_of_line(&terms);
+        write_configured(frame, &terms, &sensors, status);
+    } else if (type == TYPE_REPLY) {
+        write_reply(frame, status, &sensors, (uint16_t)number("sampled_at", 0));
+    } else if (type == TYPE_STOPPED) {
+        write_stopped(frame, status);
+    } else if (type == TYPE_REFUSED) {
+        write_refused(frame, (uint8_t)number("request", 0), (uint8_t)number("reason", 0), (uint16_t)number("detail", 0));
+    } else {
+        return false;
+    }
+    return true;
+}
+
+static void check_frame(void)
+{
+    uint8_t wire[BYTES_MOST], again[WIRE_MOST];
+    size_t length = bytes_of("wire", wire);
+    struct frame frame, written;
+    unsigned damaged = 0;
+    expect(frames_in(wire, length, &frame, &damaged) == 1 && damaged == 0, "not one good frame");
+    if (failures > 0)
+        return;
+    expect(frame_address(&frame) == number("address", 0) && frame_sequence(&frame) == number("sequence", 0), "prefix");
+    expect(frame_to_wire(&frame, again) == length && memcmp(wire, again, length) == 0, "stuffed differently");
+    if ((frame_type(&frame) & TYPE_IS_ANSWER) == 0) {
+        check_request(&frame);
+    } else if (write_answer(&written, frame_type(&frame))) {
+        expect(frame_to_wire(&written, again) == length && memcmp(wire, again, length) == 0, "written differently");
+    }
+}
+
+static const uint8_t good_frame[] = {0x07, 0x41, 0x03, 0x01, 0x3D, 0xB2, 0x31, 0x00};
+
+/* A bad frame, and a good one after it. */
+static void check_bad(void)
+{
+    uint8_t wire[BYTES_MOST + sizeof good_frame];
+    size_t length = bytes_of("wire", wire);
+    struct frame frame;
+    unsigned damaged = 0;
+    memcpy(wire + length, good_frame, sizeof good_frame);
+    expect(frames_in(wire, length + sizeof good_frame, &frame, &damaged) == 1, "accepted, or the next one lost");
+    expect(damaged == 1, "not counted once");
+    expect(frame_sequence(&frame) == 3, "not the next frame");
+}
+
+/* A board, and what is said to it */
+
+static struct finger fingers[1];
+static struct board board;
+
+static void power_up(void)
+{
+    uint32_t now = fake.now;
+    memset(&fake, 0, sizeof fake);
+    /* Near where the clock wraps, which must change nothing. */
+    fake.now = now == 0 ? 0xFFFFFFFFu - 50000u : now;
+    finger_start(&fingers[0], &fake_traits[0], 0);
+    board_start(&board, 0, fingers, 1);
+}
+
+static void say(const char *name)
+{
+    uint8_t wire[BYTES_MOST];
+    size_t length = bytes_of(name, wire);
+    fake.output_length = 0;
+    fake_arrive(&board, wire, length);
+}
+
+static void check_ignored(void)
+{
+    power_up();
+    say("wire");
+    expect(fake.output_length == 0, "answered");
+    expect(!fingers[0].damaged, "taken for damage");
+}
+
+static void check_step(void)
+{
+    if (value("wait_ms") != NULL) {
+        fake_wait(&board, 1000 * (uint32_t)number("wait_ms", 0));
+    } else if (value("faults") != NULL) {
+        fake.faults = (uint16_t)number("faults", 0);
+    } else if (value("torques") != NULL) {
+        for (size_t i = 0; i < MOTORS; i++)
+            expect(fake_torque(0, i, 23400) == number("torques", i), "torques");
+    } else {
+        say("send");
+        struct frame answer = {0};
+        unsigned damaged = 0;
+        size_t found = frames_in(fake.output, fake.output_length, &answer, &damaged);
+        bool silent = text_is("answer", "none");
+        expect(found == (silent ? 0 : 1) && damaged == 0, "number of answers");
+        if (silent || found != 1)
+            return;
+        expect(frame_address(&answer) == 1, "address");
+        if (text_is("answer", "Refused")) {
+            expect(frame_type(&answer) == TYPE_REFUSED, "type of the answer");
+            expect(frame_get8(&answer, 3) == number("reason", 0), "reason");
+            expect(frame_get16(&answer, 4) == number("detail", 0), "detail");
+        } else if (text_is("answer", "Identity")) {
+            expect(frame_type(&answer) == TYPE_IDENTITY, "type of the answer");
+        } else {
+            bool configured = text_is("answer", "Configured"), stopped = text_is("answer", "Stopped");
+            uint8_t type = configured ? TYPE_CONFIGURED : stopped ? TYPE_STOPPED : TYPE_REPLY;
+            expect(frame_type(&answer) == type, "type of the answer");
+            unsigned status = frame_get16(&answer, configured ? 58 : 2);
+            expect((status & ~(unsigned)STATUS_ZERO_VALID) == number("status", 0), "status");
+        }
+    }
+}
+
+int main(int count, char **arguments)
+{
+    static char line[LINE_MOST];
+    void (*check)(void) = NULL;
+    unsigned vectors = 0;
+    FILE *file = count == 2 ? fopen(arguments[1], "r") : NULL;
+    if (file == NULL) {
+        fprintf(stderr, "usage: vectors protocol/vectors.json\n");
+        return 2;
+    }
+    current_line = line;
+    while (fgets(line, sizeof line, file) != NULL) {
+        line_number++;
+        if (strncmp(line, "\"frames\"", 8) == 0) {
+            check = check_frame;
+        } else if (strncmp(line, "\"bad\"", 5) == 0) {
+            check = check_bad;
+        } else if (strncmp(line, "\"ignored\"", 9) == 0) {
+            check = check_ignored;
+        } else if (strncmp(line, "\"conversations\"", 15) == 0) {
+            check = check_step;
+        } else if (value("steps") != NULL) {
+            strcpy(conversation, line);
+            power_up();
+        } else if (line[0] == '{' && check != NULL) {
+            check();
+            vectors++;
+        }
+    }
+    fclose(file);
+    printf("%u vectors, %u checks, %u failures\n", vectors, checked, failures);
+    return failures == 0 && vectors > 100 ? 0 : 1;
+}

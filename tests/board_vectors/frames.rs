@@ -1,0 +1,358 @@
+//! Single frames: good ones of every type with edge values, damaged ones, and good ones that are not for this board.
+
+use super::json::{hex, list, object, text};
+use sun2xp::board::protocol::*;
+use sun2xp::model::configuration::EndState;
+
+/// Header, sequence number, body and check as they go on the wire.
+pub fn sealed(content: &[u8]) -> Vec<u8> {
+    stuffed(&with_check(content))
+}
+
+fn with_check(content: &[u8]) -> Vec<u8> {
+    [content, &check(content).to_le_bytes()].concat()
+}
+
+fn stuffed(frame: &[u8]) -> Vec<u8> {
+    // One run for each zero of the frame, and one for its end: no run is long enough here to need more.
+    let mut wire = Vec::new();
+    for run in frame.split(|&byte| byte == 0) {
+        wire.push(run.len() as u8 + 1);
+        wire.extend(run);
+    }
+    wire.push(0);
+    wire
+}
+
+fn terms(end_state: EndState) -> Configure {
+    Configure {
+        version: 1,
+        watchdog_ms: 20,
+        end_state,
+        hold_time_ms: 2000,
+        hold_torque_limit: 5000,
+        torque_limits: [23750, 1, 256, 0],
+        torque_constants: [23400, 0, 1, u32::MAX],
+    }
+}
+
+fn messages() -> Vec<(&'static str, u8, u8, Frame)> {
+    let all_ones = Configure {
+        version: 255,
+        watchdog_ms: u16::MAX,
+        end_state: EndState::Hold,
+        hold_time_ms: u16::MAX,
+        hold_torque_limit: u16::MAX,
+        torque_limits: [u16::MAX; 4],
+        torque_constants: [u32::MAX; 4],
+    };
+    let identity = Identity {
+        version: 1,
+        addresses: 0b1110,
+        board_kind: 0x8000,
+        unique_number: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12],
+        firmware: FirmwareVersion([1, 2, 3]),
+        counts_per_revolution: 2000,
+        gauge_bits: 12,
+        torque_unit: 2000,
+        torque_limit: 23750,
+        shortest_watchdog_ms: 2,
+        capabilities: Capabilities(0b1111),
+    };
+    let most = Identity {
+        version: 255,
+        addresses: 0xFFFE,
+        board_kind: u16::MAX,
+        unique_number: [255; 12],
+        firmware: FirmwareVersion([255; 3]),
+        counts_per_revolution: u32::MAX,
+        gauge_bits: 16,
+        torque_unit: u32::MAX,
+        torque_limit: 32767,
+        shortest_watchdog_ms: 20,
+        capabilities: Capabilities(u32::MAX),
+    };
+    let configured =
+        |terms, encoders, gauges, status| Frame::Configured(Configured { terms, encoders, gauges, status });
+    let reply = |status, encoders, gauges, sampled_at| {
+        Frame::Reply(Reply { status: Status(status), encoders, gauges, sampled_at })
+    };
+    let command = |toggle, enable, torques| Frame::Command(Command { toggle, enable, torques });
+    let refused = |request, reason, detail| Frame::Refused(Refused { request, reason, detail });
+    vec![
+        ("versions 1 to 1", 1, 1, Frame::Hello(Hello { lowest_version: 1, highest_version: 1 })),
+        ("to any finger", 0, 255, Frame::Hello(Hello { lowest_version: 0, highest_version: 255 })),
+        ("hold, limits and constants that differ", 1, 2, Frame::Configure(terms(EndState::Hold))),
+        ("release, the highest address", 15, 0, Frame::Configure(terms(EndState::Release))),
+        ("all ones but the end state", 15, 255, Frame::Configure(all_ones)),
+        ("toggle and enable", 1, 7, command(true, true, [1188, 594, 0, -1])),
+        ("neither", 1, 8, command(false, false, [0; 4])),
+        ("the ends of the range", 2, 0, command(false, true, [i16::MAX, i16::MIN, 256, -256])),
+        ("no zero in the frame", 15, 255, command(true, false, [-1, 257, -257, 514])),
+        ("without a body", 1, 3, Frame::Stop(Stop)),
+        ("all bytes zero but the check", 1, 0, Frame::Stop(Stop)),
+        ("nothing received yet", 1, 4, Frame::TactileRequest(TactileRequest { received: 0 })),
+        ("event 255 received", 1, 5, Frame::TactileRequest(TactileRequest { received: 255 })),
+        ("a board with three fingers", 1, 1, Frame::Identity(identity)),
+        ("the largest numbers", 15, 255, Frame::Identity(most)),
+        (
+            "configured and zero valid",
+            1,
+            2,
+            configured(
+                terms(EndState::Hold),
+                [100_000, -1, 0, 65536],
+                [410, 205, 205, 410],
+                Status::CONFIGURED | Status::ZERO_VALID,
+            ),
+        ),
+        (
+            "the ends of the range",
+            1,
+            3,
+            configured(all_ones, [i32::MIN, i32::MAX, -2, 1], [0, 65535, 1, 256], Status(0xFFFF)),
+        ),
+        ("in motion", 1, 7, reply(0x23, [0x86A0, 0xFFFF, 0, 0], [410, 205, 205, 410], 12345)),
+        ("all zeros", 1, 0, reply(0, [0; 4], [0; 4], 0)),
+        ("all ones", 15, 255, reply(0xFFFF, [0xFFFF; 4], [0xFFFF; 4], 0xFFFF)),
+        ("tripped and ended, a damaged frame before", 2, 9, reply(0x082D, [1, 2, 3, 4], [5, 6, 7, 8], 0x8000)),
+        ("ended and holding", 1, 3, Frame::Stopped(Stopped { status: Status(0x0039) })),
+        ("no common version", 1, 1, refused(0x1, Reason::Version, 0x0302)),
+        ("a torque limit of motor 4", 1, 2, refused(0x2, Reason::Value, 16)),
+        ("not configured", 1, 9, refused(0x3, Reason::NotConfigured, 0)),
+        ("running", 1, 10, refused(0x2, Reason::Running, 0)),
+        ("emergency stop", 1, 11, refused(0x2, Reason::Fault, 0x40)),
+        ("unknown frame with 3 bytes", 1, 12, refused(0x7, Reason::UnknownFrame, 3)),
+        ("nothing waits", 1, 4, Frame::TactileEvent(TactileEvent::default())),
+        (
+            "contact of element 300",
+            1,
+            5,
+            Frame::TactileEvent(TactileEvent {
+                waiting: 2,
+                number: 255,
+                change: TactileChange::Made,
+                element: 300,
+                count: 4095,
+                noticed_at: 4_000_000_000,
+                lost: 255,
+            }),
+        ),
+    ]
+}
+
+fn number(value: impl ToString) -> String {
+    value.to_string()
+}
+
+fn terms_fields(terms: &Configure) -> Vec<(&'static str, String)> {
+    vec![
+        ("version", number(terms.version)),
+        ("watchdog_ms", number(terms.watchdog_ms)),
+        ("end_state", number(terms.end_state as u8)),
+        ("hold_time_ms", number(terms.hold_time_ms)),
+        ("hold_torque_limit", number(terms.hold_torque_limit)),
+        ("torque_limits", list(&terms.torque_limits)),
+        ("torque_constants", list(&terms.torque_constants)),
+    ]
+}
+
+/// Names as in the tables of the page.
+fn fields(frame: &Frame) -> Vec<(&'static str, String)> {
+    match frame {
+        Frame::Hello(hello) => {
+            vec![("lowest_version", number(hello.lowest_version)), ("highest_version", number(hello.highest_version))]
+        }
+        Frame::Configure(terms) => terms_fields(terms),
+        Frame::Command(command) => vec![
+            ("toggle", number(u8::from(command.toggle))),
+            ("enable", number(u8::from(command.enable))),
+            ("torques", list(&command.torques)),
+        ],
+        Frame::Stop(_) => vec![],
+        Frame::TactileRequest(request) => vec![("received", number(request.received))],
+        Frame::Identity(identity) => vec![
+            ("version", number(identity.version)),
+            ("addresses", number(identity.addresses)),
+            ("board_kind", number(identity.board_kind)),
+            ("unique_number", list(&identity.unique_number)),
+            ("firmware_version", list(&identity.firmware.0)),
+            ("counts_per_revolution", number(identity.counts_per_revolution)),
+            ("gauge_bits", number(identity.gauge_bits)),
+            ("torque_unit", number(identity.torque_unit)),
+            ("torque_limit", number(identity.torque_limit)),
+            ("shortest_watchdog_ms", number(identity.shortest_watchdog_ms)),
+            ("capabilities", number(identity.capabilities.0)),
+        ],
+        Frame::Configured(configured) => {
+            let mut fields = terms_fields(&configured.terms);
+            fields.push(("encoders", list(&configured.encoders)));
+            fields.push(("gauges", list(&configured.gauges)));
+            fields.push(("status", number(configured.status.0)));
+            fields
+        }
+        Frame::Reply(reply) => vec![
+            ("status", number(reply.status.0)),
+            ("encoders", list(&reply.encoders)),
+            ("gauges", list(&reply.gauges)),
+            ("sampled_at", number(reply.sampled_at)),
+        ],
+        Frame::Stopped(stopped) => vec![("status", number(stopped.status.0))],
+        Frame::Refused(refused) => vec![
+            ("request", number(refused.request)),
+            ("reason", number(refused.reason.number())),
+            ("detail", number(refused.detail)),
+        ],
+        Frame::TactileEvent(event) => vec![
+            ("waiting", number(event.waiting)),
+            ("number", number(event.number)),
+            ("change", number(event.change.number())),
+            ("element", number(event.element)),
+            ("count", number(event.count)),
+            ("noticed_at", number(event.noticed_at)),
+            ("lost", number(event.lost)),
+        ],
+    }
+}
+
+pub fn good() -> Vec<String> {
+    let line = |(name, address, sequence, frame): (&str, u8, u8, Frame)| {
+        let wire = WireFrame::new(&Message { address, sequence, frame });
+        let mut pairs = vec![
+            ("type", text(&format!("{:?}", frame.kind()))),
+            ("name", text(name)),
+            ("wire", hex(wire.as_bytes())),
+            ("address", number(address)),
+            ("sequence", number(sequence)),
+        ];
+        pairs.extend(fields(&frame));
+        object(&pairs)
+    };
+    messages().into_iter().map(line).collect()
+}
+
+/// A Command to finger 1, and what can happen to it.
+fn damaged() -> Vec<(&'static str, &'static str, Vec<u8>)> {
+    let content = [0x31, 7, 3, 0xA4, 4, 0x52, 2, 0, 0, 0xFF, 0xFF];
+    let good = sealed(&content);
+    let changed = |place: usize, value: u8| {
+        let mut wire = good.clone();
+        wire[place] ^= value;
+        wire
+    };
+    let without = |place: usize| [&good[..place], &good[place + 1..]].concat();
+    let mut wrong_check = with_check(&content);
+    wrong_check[content.len()] ^= 0x80;
+    let swapped: Vec<u8> = content.iter().copied().chain(check(&content).to_be_bytes()).collect();
+    let unfinished = |initial: u32| {
+        // As a CRC without its final exclusive-or would be.
+        let frame: Vec<u8> = content.iter().copied().chain((check(&content) ^ initial).to_le_bytes()).collect();
+        stuffed(&frame)
+    };
+    vec![
+        ("one bit of a torque", "check", changed(4, 0x10)),
+        ("one bit of the sequence number", "check", changed(2, 1)),
+        ("one bit of the check", "check", stuffed(&wrong_check)),
+        ("the check in the other byte order", "check", stuffed(&swapped)),
+        ("the check without its last exclusive-or", "check", unfinished(u32::MAX)),
+        ("a check of zero", "check", stuffed(&[&content[..], &[0; 4]].concat())),
+        ("a byte lost", "check", without(5)),
+        ("a byte doubled", "check", [&good[..5], &good[4..]].concat()),
+        ("cut short by a delimiter", "check", [&good[..9], &[0]].concat()),
+        ("two frames without the delimiter between them", "check", [&good[..good.len() - 1], &good[..]].concat()),
+        ("the first distance lost", "stuffing", without(0)),
+        ("a distance beyond the end", "stuffing", vec![9, 0x41, 3, 0]),
+        ("a distance beyond the end of a whole frame", "stuffing", changed(0, 0x40)),
+        ("nothing but a distance", "short", vec![1, 0]),
+        ("one byte", "short", vec![2, 0x41, 0]),
+        ("five bytes, of which four are their check", "short", sealed(&[0x41])),
+        ("four bytes, the check of nothing", "short", sealed(&[])),
+        ("129 bytes whose check is right", "long", sealed(&[0x41; 125])),
+        ("200 bytes whose check is right", "long", sealed(&[0x41; 196])),
+        ("300 bytes without a zero", "long", [vec![0x55; 300], vec![0]].concat()),
+        ("half a Stop, then half a Command", "stuffing", [&sealed(&[0x41, 3])[..4], &good[8..]].concat()),
+        ("text", "stuffing", b"login: \0".to_vec()),
+    ]
+}
+
+pub fn bad() -> Vec<String> {
+    let line = |(name, reason, wire): (&str, &str, Vec<u8>)| {
+        object(&[("reason", text(reason)), ("name", text(name)), ("wire", hex(&wire))])
+    };
+    damaged().into_iter().map(line).collect()
+}
+
+/// For a board with the one finger 1.
+fn not_for_finger_1() -> Vec<(&'static str, Vec<u8>)> {
+    vec![
+        ("a Stop for finger 2", sealed(&[0x42, 1])),
+        ("a Hello for finger 15", sealed(&[0x1F, 1, 1, 1])),
+        ("a Stop for address 0", sealed(&[0x40, 1])),
+        ("a Command for address 0", sealed(&[0x30, 1, 2, 0, 0, 0, 0, 0, 0, 0, 0])),
+        ("an unknown type for finger 2", sealed(&[0x72, 1, 9])),
+        ("a Stopped, which is an answer", sealed(&[0xC1, 1, 0, 0])),
+        ("a Refused, which is an answer", sealed(&[0xD1, 1, 3, 3, 0, 0])),
+        ("a free type with the top bit set", sealed(&[0xF1, 1])),
+        ("a delimiter", vec![0]),
+        ("three delimiters", vec![0; 3]),
+    ]
+}
+
+pub fn ignored() -> Vec<String> {
+    let line = |(name, wire): (&str, Vec<u8>)| object(&[("name", text(name)), ("wire", hex(&wire))]);
+    not_for_finger_1().into_iter().map(line).collect()
+}
+
+fn all_found(decoder: &mut Decoder, mut bytes: &[u8]) -> Vec<Message> {
+    let mut found = Vec::new();
+    while let Some(packet) = decoder.next(&mut bytes) {
+        found.extend(Message::read(&packet));
+    }
+    found
+}
+
+#[test]
+fn every_type_is_there() {
+    for kind in Kind::ALL {
+        assert!(messages().iter().any(|(.., frame)| frame.kind() == kind), "{kind:?}");
+    }
+}
+
+#[test]
+fn good_frames_are_read_back() {
+    for (name, address, sequence, frame) in messages() {
+        let message = Message { address, sequence, frame };
+        let mut decoder = Decoder::default();
+        assert_eq!(all_found(&mut decoder, WireFrame::new(&message).as_bytes()), [message], "{name}");
+    }
+}
+
+#[test]
+fn bad_frames_are_dropped_and_counted_and_cost_no_other() {
+    let next = Message { address: 1, sequence: 8, frame: Frame::Stop(Stop) };
+    for (name, _, wire) in damaged() {
+        let mut decoder = Decoder::default();
+        assert_eq!(all_found(&mut decoder, &wire), [], "{name}");
+        assert_eq!(decoder.counters().damaged, 1, "{name}");
+        assert_eq!(all_found(&mut decoder, WireFrame::new(&next).as_bytes()), [next], "{name}");
+    }
+}
+
+#[test]
+fn reasons_are_right() {
+    for (name, reason, wire) in damaged() {
+        let mut frame = [0; 512];
+        let stuffed = &wire[..wire.len() - 1];
+        let length = cobs::decode(stuffed, &mut frame).map(|report| report.frame_size());
+        let found = match length {
+            _ if stuffed.len() > MAX_WIRE - 1 => "long",
+            Err(_) => "stuffing",
+            Ok(0..6) => "short",
+            Ok(length) => match Packet::checked(&frame[..length]) {
+                None => "check",
+                Some(_) => "none",
+            },
+        };
+        assert_eq!(found, reason, "{name}");
+    }
+}

@@ -1,0 +1,92 @@
+//! Every switch that a planner may make, on a finger that is pushed away from its anchor: no jump in torque.
+
+use crate::rig::{Loop, SCHEMES, quiet};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
+use sun2xp::control::{Activity, JointStiffness, Law, SetPoint, TensionDistribution};
+use sun2xp::model::Contact;
+use sun2xp::model::configuration::ConfiguredFinger;
+
+const ANCHOR: Vector3<f64> = Vector3::new(0.2, 0.7, 1.2);
+
+fn isotropic(stiffness: f64) -> SetPoint {
+    SetPoint::hard_finger(ANCHOR, Matrix3::identity() * stiffness)
+}
+
+/// Name, set point before and after, and whether the finger is moving.
+fn switches() -> Vec<(&'static str, SetPoint, SetPoint, bool)> {
+    let report = isotropic(3.0);
+    let exact = SetPoint { law: Law::Exact, ..report };
+    let stiff = |contact: Result<Contact, _>| SetPoint { stiffness: *contact.expect("a spring").stiffness(), ..exact };
+    let soft_finger = stiff(Contact::soft_finger(
+        Matrix4::from_diagonal(&Vector4::new(3.0, 2.0, 1.0, 20.0)),
+        Vector3::new(0.0, 1.0, 1.0),
+    ));
+    let point = stiff(Contact::frictionless_point(4.0, Vector3::new(0.3, 1.0, 0.5)));
+    let directed = stiff(Contact::hard_finger(Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0))));
+    let damped = SetPoint { damping: 3.0, ..report };
+    let steps = [
+        ("law", report, exact),
+        ("stiffer", isotropic(1.0), isotropic(6.0)),
+        ("softer", isotropic(6.0), isotropic(1.0)),
+        ("limp", report, isotropic(0.0)),
+        ("directed", exact, directed),
+        ("soft finger", exact, soft_finger),
+        ("frictionless point", soft_finger, point),
+        ("damping", report, damped),
+        ("everything", report, SetPoint { damping: 0.5, ..soft_finger }),
+    ];
+    let both = |(name, before, after)| [(name, before, after, false), (name, before, after, true)];
+    steps.into_iter().flat_map(both).collect()
+}
+
+/// A pushed finger before a switch: at rest, or let go of 30 ms ago.
+fn before(finger: &ConfiguredFinger, rate: f64, set_point: SetPoint, moving: bool) -> Loop {
+    let mut servo = Loop::new(finger, rate);
+    let follow = Activity::Follow(set_point);
+    servo.plant.set_external_force(Vector3::new(0.8, -0.6, 0.5));
+    servo.run(2.5, &follow);
+    if moving {
+        servo.plant.set_external_force(Vector3::new(-0.2, 0.3, 0.1));
+        servo.run(0.03, &follow);
+    }
+    servo.forget();
+    servo
+}
+
+/// What the desired tensions would change by if the switch were made at once, N.
+fn at_once(finger: &ConfiguredFinger, servo: &Loop, before: SetPoint, after: SetPoint) -> f64 {
+    let law = JointStiffness::new(finger.links(), 0.015);
+    let limit = Vector4::repeat(finger.tendon.maximum);
+    let distribution =
+        TensionDistribution::new(&finger.tendons().expect("regular"), finger.tendon.minimum, limit).expect("bounds");
+    let [before, after] = [before, after].map(|set_point| {
+        let torques = law.torques(&set_point.into(), &servo.plant.joints(), &servo.plant.joint_rates());
+        distribution.distribute(&torques).tensions
+    });
+    (after - before).amax()
+}
+
+#[test]
+fn no_switch_of_the_spring_jumps() {
+    let mut seen: f64 = 0.0;
+    for rate in [500.0, 1000.0, 2000.0] {
+        for scheme in SCHEMES {
+            let finger = quiet(scheme);
+            let mut worst: f64 = 0.0;
+            for (name, from, to, moving) in switches() {
+                let mut goes_on = before(&finger, rate, from, moving);
+                let mut switched = before(&finger, rate, from, moving);
+                let bare = at_once(&finger, &switched, from, to);
+                goes_on.cycle(&Activity::Follow(from));
+                switched.cycle(&Activity::Follow(to));
+                let jump = switched.largest_jump - goes_on.largest_jump;
+                let case = format!("{name}, {scheme:?}, {rate} Hz, moving: {moving}");
+                assert!(jump < 0.02 + 0.07 * bare, "{case}: {jump} N");
+                worst = worst.max(jump);
+                seen = seen.max(bare);
+            }
+            println!("{scheme:?}, {rate} Hz: worst {worst:.3} N");
+        }
+    }
+    assert!(seen > 10.0, "blind: at once would be {seen} N");
+}
