@@ -15,8 +15,9 @@ use nalgebra::Vector4;
 const LET_PASS: f64 = 0.5;
 const LET_PASS_OF_TENSION: f64 = 0.2;
 
-/// Below this part of t_min a tendon may be slack, and then it stretches less than nothing.
-const SLACK: f64 = 0.2;
+/// Below this part of t_min a tendon may be slack, and then it stretches less than nothing; and what is to be said of it, `tension_lost`
+/// says.
+const SLACK: f64 = 0.35;
 
 /// Samples whose mean is the zero.
 const ZEROING: u32 = 32;

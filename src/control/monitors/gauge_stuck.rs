@@ -79,22 +79,22 @@ impl GaugeStuck {
         let counts = sample.feedback.gauge_counts;
         memory.samples = memory.samples.saturating_add(1);
         let slow = LEARNING_REVERSALS.max(1.0 / f64::from(memory.samples));
-        let same = |gauge: usize| counts[gauge] == memory.last[gauge];
+        let last = std::mem::replace(&mut memory.last, counts);
+        let same = |gauge: usize| counts[gauge] == last[gauge];
+        let rises = |gauge: usize| counts[gauge] > last[gauge];
         memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge] + 1 } else { 0 });
         for gauge in 0..4 {
             // What is judged must not shift the judgement.
             if memory.same[gauge] < ROW || !memory.others_flicker(gauge) {
                 let learn = |mean: &mut f64, is: bool, gain: f64| *mean += (f64::from(u8::from(is)) - *mean) * gain;
                 let same = memory.same[gauge] > 0;
-                let rises = counts[gauge] > memory.last[gauge];
                 learn(&mut memory.repeats[gauge], same, LEARNING);
-                learn(&mut memory.reversals[gauge], !same && rises != memory.rose[gauge], slow);
+                learn(&mut memory.reversals[gauge], !same && rises(gauge) != memory.rose[gauge], slow);
             }
             if memory.same[gauge] == 0 {
-                memory.rose[gauge] = counts[gauge] > memory.last[gauge];
+                memory.rose[gauge] = rises(gauge);
             }
         }
-        memory.last = counts;
         let known = memory.flickers().known;
         first_of(Symptom::GaugeStuck, |gauge| {
             let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(0.1).ln() < UNLIKELY;
