@@ -1,4 +1,4 @@
-//! Time of one servo cycle: the whole of Figure 9 or 10, from counts to motor torques. The report needed 1430 us.
+//! Time of one servo cycle: the whole of Figure 9, 10 or 11, from counts to motor torques. The report needed 1430 us.
 
 use divan::{Bencher, black_box};
 use nalgebra::{Matrix3, Vector3};
@@ -10,7 +10,7 @@ fn main() {
     divan::main();
 }
 
-#[divan::bench(args = [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback])]
+#[divan::bench(args = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback])]
 fn follow(bencher: Bencher, scheme: Scheme) {
     cycle(bencher, scheme, 1.0);
 }

@@ -58,7 +58,8 @@
        EDOM     Kx not symmetric, or with a negative eigenvalue; a normal of length zero
        EIO      the finger is faulted: it has stopped by itself
        ENOTSUP  not for a finger on a real port
-       others   a configuration file or a port: what the system said, or the nearest
+       others   a configuration file, a port, or enforced real time: what the system
+                said, or the nearest
 
    Where several hold, the call tells the first of: EPERM, EFAULT, ENODEV, then the
    others in the order of the entry. A call that succeeds leaves errno and HandError()
@@ -140,10 +141,17 @@
 
    7. SERVO AND REAL TIME
 
-   One servo thread runs each finger, 1000 times a second by default, in SCHED_FIFO
-   where the system permits it. Where it does not, one line on standard error says so,
-   and GetStatus: everything works, but with the jitter of an ordinary process. README
-   tells how to permit it.
+   One servo thread runs each finger, 1000 times a second by default, in SCHED_FIFO,
+   with locked memory and on the configured core, where the system permits it. Where it
+   does not, hand.real_time says what OpenHand does:
+
+       "try"      goes on without; one line on standard error says so, and GetStatus:
+                  everything works, but with the jitter of an ordinary process
+       "enforce"  is refused, and HandError says what to change
+       "ignore"   does not try
+
+   sun2xp doctor looks at a machine and says what to change. GetTiming tells where the
+   time of a cycle goes.
 
 
    8. CONFIGURATION
@@ -272,6 +280,50 @@ extern "C" {
 #define FINGER_CALIBRATING 4
 
 /*
+ Stage for GetTiming: from the scheduled beginning of a cycle to the thread's first
+ instruction.
+ */
+#define TIMING_WAKE_UP 0
+
+/*
+ Stage for GetTiming: handing the commands of the port to the system.
+ */
+#define TIMING_WRITE 1
+
+/*
+ Stage for GetTiming: from there until the reply can be read: both ways on the line, and
+ the board.
+ */
+#define TIMING_WIRE 2
+
+/*
+ Stage for GetTiming: reading the reply.
+ */
+#define TIMING_READ 3
+
+/*
+ Stage for GetTiming: from bytes to the finger's reply, checks included.
+ */
+#define TIMING_DECODE 4
+
+/*
+ Stage for GetTiming: the controller.
+ */
+#define TIMING_COMPUTE 5
+
+/*
+ Stage for GetTiming: from the scheduled beginning of a cycle to the end of its
+ computation.
+ */
+#define TIMING_CYCLE 6
+
+/*
+ Stage for GetTiming: how old the newest measurement is when the command that was
+ computed from it takes effect, by the board's clock. One period where nothing is late.
+ */
+#define TIMING_AGE 7
+
+/*
  What GetStatus tells of a finger. Set Size = sizeof (struct FingerStatus) before the
  call: later versions add members at the end, and a program never gets more than it
  has room for.
@@ -336,6 +388,82 @@ struct FingerStatus {
      The part of the calibration under way that is done, 0 to 1; 0 where there is none.
      */
     double Calibration;
+    /*
+     1: the memory that the servo thread uses is locked, so that it never waits for a page.
+     0: it is not.
+     */
+    int MemoryLocked;
+    /*
+     1: the servo thread runs on the configured core, or none is configured. 0: it does not.
+     */
+    int OnCore;
+};
+
+/*
+ What GetTiming tells of a stage of a finger's cycle. Set Size = sizeof (struct
+ FingerTiming) before the call: later versions add members at the end, and a program
+ never gets more than it has room for.
+
+ All times are ns, within 1 %, at most 4.29e9, and 0 where nothing was counted. All
+ numbers are since OpenHand or the finger's last ResetTiming.
+ */
+struct FingerTiming {
+    /*
+     In: bytes of room, sizeof *Timing. Out: bytes that were filled, never more.
+     */
+    unsigned int Size;
+    /*
+     The stage that was asked for.
+     */
+    int Stage;
+    /*
+     Cycles that had this stage.
+     */
+    unsigned long Count;
+    /*
+     The shortest.
+     */
+    unsigned long Minimum;
+    /*
+     Half of them took no longer.
+     */
+    unsigned long Median;
+    /*
+     99 of 100 took no longer.
+     */
+    unsigned long P99;
+    /*
+     999 of 1000 took no longer.
+     */
+    unsigned long P999;
+    /*
+     The longest.
+     */
+    unsigned long Maximum;
+    /*
+     The finger's cycles, with or without this stage, like all that follows.
+     */
+    unsigned long Cycles;
+    /*
+     Cycles that were not over when the next one should have begun.
+     */
+    unsigned long Overruns;
+    /*
+     Whole periods that were skipped because of that.
+     */
+    unsigned long SkippedPeriods;
+    /*
+     Cycles without a valid reply in time.
+     */
+    unsigned long LostReplies;
+    /*
+     Replies that came when their cycle was over.
+     */
+    unsigned long LateReplies;
+    /*
+     Damaged or foreign frames on the finger's port.
+     */
+    unsigned long CorruptReplies;
 };
 
 /*
@@ -425,6 +553,8 @@ struct Fault {
    ENOENT, EACCES, EBUSY ...  the configuration file or a port cannot be opened; the
             errno is the system's
    ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
+   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory
+            or the configured core cannot be had; HandError says what to change
    EPERM    forked child
 
  Threads: any; one hand a process.
@@ -586,8 +716,8 @@ const char *HandError(void);
 
  Returns 0, or -1 with
    EFAULT   Status is null
-   EINVAL   Size is too small; no such finger
    ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
    EPERM    forked child
 
  Threads: any.
@@ -600,84 +730,51 @@ int GetStatus(int i,
               struct FingerStatus *Status);
 
 /*
- ZeroFinger - find the zeros of a finger's gauges and encoders
+ GetTiming - where the time of a finger's cycles goes
 
-     int ZeroFinger(int i);
+     int GetTiming(int i, int Stage, struct FingerTiming *Timing);
 
    i        finger, 1 to 3
+   Stage    TIMING_WAKE_UP to TIMING_AGE
+   Timing   Timing->Size is set by the caller, all else is filled in. Written only if
+            the call returns 0
 
- Lets the tendons out and reads the gauges, then finds the zero of the encoders as
- finger.zeroing.method says: "pose" - the finger stands in the configured pose when the
- call begins; "stops" - each joint is led slowly against both of its stops, for which
- the finger needs room; "kept" - the configured zero stays, if the board says that its
- counts are still good. What was found is in force at once, and is written into the
- configuration file if OpenHand has read one: only the keys that changed, comments stay.
- Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
- free finger has moved, by up to some tenths of a radian.
-
- Waits until it is done: seconds, up to a minute with "stops". Meanwhile GetStatus tells
- the part that is done (FingerStatus.Calibration), other calls go on, and set points for
- this finger have no effect.
+ Works while the servo runs, and on a faulted finger too.
 
  Returns 0, or -1 with
-   ECANCELED  something stood in the way (a tendon is slack, a gauge dead, a joint meets
-              no stop or meets it early ...): the finger is limp, nothing was changed,
-              and HandError says what to do
-   ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
-   EBUSY      the finger is being calibrated already
-   ENODEV     no hand is open, or it was closed meanwhile
-   EINVAL     no such finger
-   EIO        the finger is faulted
-   EPERM      forked child
-   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
-              until CloseHand
-
- Threads: any.
-
-     if (ZeroFinger(1) != 0) fprintf(stderr, "%s\n", HandError());
- */
-int ZeroFinger(int i);
-
-/*
- IdentifyFinger - measure friction and tendon stiffness of a finger
-
-     int IdentifyFinger(int i);
-
-   i        finger, 1 to 3; it must have been zeroed
-
- Leads the finger to its lower stops, moves each joint to and fro, presses against the
- stops with up to 0.6 of the largest tension, and returns to where it began. Finds the
- stiffness of each tendon and the friction of motors, conduits and joints. What was
- found is in force at once and is written into the configuration file, as by
- ZeroFinger. Takes about a minute, and the room that the joints can reach.
-
- Returns and waits as ZeroFinger.
-
- Threads: any.
- */
-int IdentifyFinger(int i);
-
-/*
- PushFinger - push the fingertip of a simulated finger
-
-     int PushFinger(int i, const double *Force);
-
-   i       finger, 1 to 3
-   Force   Force[3]: force on the fingertip along x, y, z of the finger's frame, N,
-           from now until the next call; zero lets go. Always double. Read during
-           the call only
-
- Returns 0, or -1 with
-   EFAULT   Force is null
+   EFAULT   Timing is null
    ENODEV   no hand is open
-   EINVAL   no such finger; an entry is NaN or infinite
-   ERANGE   a component is beyond 1000 N
-   ENOTSUP  the finger is on a real port
+   EINVAL   Size is too small; no such finger; no such Stage
    EPERM    forked child
 
- Threads: any.
+ Threads: any. Never waits for a servo; some us.
+
+     struct FingerTiming Timing;
+     Timing.Size = sizeof Timing;
+     if (GetTiming(1, TIMING_WIRE, &Timing) == 0) printf("%lu ns\n", Timing.P99);
  */
-int PushFinger(int i, const double *Force);
+int GetTiming(int i,
+              int Stage,
+              struct FingerTiming *Timing);
+
+/*
+ ResetTiming - begin to count anew what GetTiming tells
+
+     int ResetTiming(int i);
+
+   i        finger, 1 to 3; 0: all
+
+ What GetStatus tells since OpenHand goes on, but for the wake-up times, which are
+ those of GetTiming.
+
+ Returns 0, or -1 with
+   ENODEV   no hand is open
+   EINVAL   no such finger
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo.
+ */
+int ResetTiming(int i);
 
 /*
  SendTip - send a desired fingertip position to a finger
@@ -721,8 +818,8 @@ int SendTip(int i,
 
  Returns 0, or -1 with
    EFAULT   Tip is null
-   EINVAL   Size is too small; no such finger
    ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
    EIO      the finger is faulted
    EPERM    forked child
 
@@ -836,6 +933,116 @@ int AdjustFinger(int i,
                  const char *Keys);
 
 /*
+ PushFinger - push the fingertip of a simulated finger
+
+     int PushFinger(int i, const double *Force);
+
+   i       finger, 1 to 3
+   Force   Force[3]: force on the fingertip along x, y, z of the finger's frame, N,
+           from now until the next call; zero lets go. Always double. Read during
+           the call only
+
+ Returns 0, or -1 with
+   EFAULT   Force is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an entry is NaN or infinite
+   ERANGE   a component is beyond 1000 N
+   ENOTSUP  the finger is on a real port
+   EPERM    forked child
+
+ Threads: any.
+ */
+int PushFinger(int i, const double *Force);
+
+/*
+ WriteBlackBox - write the last seconds of a finger into a file
+
+     int WriteBlackBox(int i, const char *Path);
+
+   i       finger, 1 to 3
+   Path    the file, new or to be written over. Read during the call only
+
+ The library keeps the last two seconds of every finger: feedback, set points, motor
+ commands, timing, state. Of a faulted finger they are the last two before the fault.
+ docs/black-box.md describes the file; `sun2xp replay Path` computes it again. With
+ hand.black_box the library writes such a file by itself whenever a finger faults.
+
+ Takes about 50 ms, in which the servos go on.
+
+ Returns 0, or -1 with
+   EFAULT   Path is null
+   EINVAL   no such finger
+   ENODEV   no hand is open
+   EPERM    forked child
+   ENOENT, EACCES, ENOSPC ...  the file cannot be written
+
+ Threads: any, but not two at once with the same Path.
+
+     WriteBlackBox(1, "/tmp/finger-1.jsonl");
+ */
+int WriteBlackBox(int i,
+                  const char *Path);
+
+/*
+ ZeroFinger - find the zeros of a finger's gauges and encoders
+
+     int ZeroFinger(int i);
+
+   i        finger, 1 to 3
+
+ Lets the tendons out and reads the gauges, then finds the zero of the encoders as
+ finger.zeroing.method says: "pose" - the finger stands in the configured pose when the
+ call begins; "stops" - each joint is led slowly against both of its stops, for which
+ the finger needs room; "kept" - the configured zero stays, if the board says that its
+ counts are still good. What was found is in force at once, and is written into the
+ configuration file if OpenHand has read one: only the keys that changed, comments stay.
+ Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
+ free finger has moved, by up to some tenths of a radian.
+
+ Waits until it is done: seconds, up to a minute with "stops". Meanwhile GetStatus tells
+ the part that is done (FingerStatus.Calibration), other calls go on, and set points for
+ this finger have no effect.
+
+ Returns 0, or -1 with
+   ECANCELED  something stood in the way (a tendon is slack, a gauge dead, a joint meets
+              no stop or meets it early ...): the finger is limp, nothing was changed,
+              and HandError says what to do
+   ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
+   EBUSY      the finger is being calibrated already
+   ENODEV     no hand is open, or it was closed meanwhile
+   EINVAL     no such finger
+   EIO        the finger is faulted
+   EPERM      forked child
+   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
+              until CloseHand
+
+ Threads: any.
+
+     if (ZeroFinger(1) != 0) fprintf(stderr, "%s\n", HandError());
+ */
+int ZeroFinger(int i);
+
+/*
+ IdentifyFinger - measure gauge gains, friction and tendon stiffness of a finger
+
+     int IdentifyFinger(int i);
+
+   i        finger, 1 to 3; it must have been zeroed
+
+ Moves the joints a little to and fro where they are, leads the finger to its lower
+ stops, moves each joint to and fro, presses against the stops with up to 0.6 of the
+ largest tension, and returns to where it began. Finds the gains of the gauges, the
+ stiffness of each tendon and the friction of motors, conduits and joints. What was
+ found is in force at once and is written into the configuration file, as by
+ ZeroFinger. Takes about a minute, and the room that the joints can reach.
+
+ Returns and waits as ZeroFinger.
+
+ Threads: any.
+ */
+int IdentifyFinger(int i);
+
+/*
  GetFault - what is wrong with a finger
 
      int GetFault(int i, struct Fault *Fault);
@@ -846,8 +1053,8 @@ int AdjustFinger(int i,
 
  Returns 0, whether something is wrong or not, or -1 with
    EFAULT   Fault is null
-   EINVAL   Size is too small; no such finger
    ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
    EPERM    forked child
 
  Threads: any. Never waits for a servo.

@@ -13,3 +13,4 @@ pub mod hand;
 pub mod model;
 pub mod plant;
 pub mod realtime;
+pub mod stability;

@@ -115,8 +115,26 @@ fn a_finger_is_zeroed() {
 }
 
 #[test]
+fn a_black_box_is_written_and_replayed() {
+    let bench = Bench::new();
+    let program = bench.build(c_compilers()[0], &strict(&[]), &["black_box.c"]);
+    let file = bench.path().join("finger-1.jsonl");
+    let mut command = Command::new(&program);
+    command.arg(&file);
+    let run = bench.run(command);
+    assert!(run.status.success(), "{}", said(&run));
+    let run = Command::new(env!("CARGO_BIN_EXE_sun2xp")).arg("replay").arg(&file).output().expect("the tool runs");
+    assert!(run.status.success() && said(&run).contains("the same to the last bit"), "{}", said(&run));
+}
+
+#[test]
 fn the_status_tells_of_the_servo() {
     succeed(&strict(&[]), &["status.c"]);
+}
+
+#[test]
+fn the_timing_tells_where_the_time_goes() {
+    succeed(&strict(&["-std=c99"]), &["timing.c"]);
 }
 
 #[test]

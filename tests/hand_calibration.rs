@@ -72,6 +72,47 @@ fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
     assert!(matches!(hand.zero(4, |_| {}), Err(HandError::NoSuchFinger(4))));
 }
 
+/// Two fingers at once: one is zeroed against its stops, the other, whose tendons are not as stiff as configured, identified.
+#[test]
+fn fingers_are_zeroed_against_their_stops_and_identified() {
+    let mut configuration = read_default();
+    configuration.hand.rate = 500.0;
+    for finger in &mut configuration.fingers {
+        // Soon done: little way, little tension.
+        finger.zeroing.method = sun2xp::model::configuration::ZeroingMethod::Stops;
+        finger.zeroing.speed = 1.5;
+        finger.joints.minimum_degrees = [-30.0, -10.0, 30.0];
+        finger.joints.maximum_degrees = [30.0, 50.0, 90.0];
+        finger.tendon.maximum = 35.0;
+    }
+    // Noise below zero would be clipped.
+    configuration.fingers[0].gauge.zero = [204.0; 4];
+    configuration.fingers[1].simulation.tendon_stiffness = [330.0, 270.0, 315.0, 285.0];
+    let hand = Hand::open(configuration).expect("open");
+    let (mut sought, mut pressed) = (Vec::new(), Vec::new());
+    let (zeros, identified) = std::thread::scope(|scope| {
+        let zeros = scope.spawn(|| hand.zero(1, |progress| sought.push(progress.step)));
+        let identified = hand.identify(2, |progress| pressed.push(progress.step));
+        (zeros.join().expect("no panic"), identified)
+    });
+    let Ok(Findings::Zeros(zeros)) = zeros else { panic!("{zeros:?}") };
+    assert!(sought.contains(&Step::ZeroingGauges) && sought.contains(&Step::SeekingStops), "{sought:?}");
+    // The simulated encoders have their zero where the configuration says, and the stops are where it says.
+    for tendon in 0..4 {
+        assert!(zeros.encoder[tendon].abs() <= 8 && (zeros.gauge[tendon] - 204.0).abs() < 1.0, "{zeros:?}");
+    }
+    assert!(zeros.range_error.is_some_and(|range| range.amax() < 0.01), "{zeros:?}");
+    let Ok(Findings::Identified(found)) = identified else { panic!("{identified:?}") };
+    assert!(pressed.contains(&Step::MovingJoints) && pressed.contains(&Step::Pressing), "{pressed:?}");
+    for (tendon, truth) in [330.0, 270.0, 315.0, 285.0].into_iter().enumerate() {
+        assert!((found.tendon_stiffness[tendon] / truth - 1.0).abs() < 0.02, "{found:?}");
+    }
+    // In force at once, for that finger only, and both are under control.
+    assert_eq!(hand.calibrated(2).expect("there").tendon.stiffness, <[f64; 4]>::from(found.tendon_stiffness));
+    assert_eq!(hand.calibrated(1).expect("there").tendon.stiffness, [300.0; 4]);
+    assert_eq!([1, 2, 3].map(|finger| hand.report(finger).expect("a report").stage), [Stage::Running; 3]);
+}
+
 fn read_default() -> sun2xp::model::configuration::Configuration {
     sun2xp::model::configuration::Configuration::default()
 }

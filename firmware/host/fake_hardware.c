@@ -30,7 +30,7 @@ size_t hal_receive(unsigned line, uint8_t *bytes, size_t room, uint32_t *arrived
         if (bytes[taken++] == 0)
             break;
     }
-    *arrived_at = fake.now;
+    *arrived_at = fake.now - fake.delay;
     return taken;
 }
 

@@ -8,7 +8,8 @@
 enum { FAKE_FINGERS = 2 };
 
 struct fake_hardware {
-    uint32_t now; /* us. */
+    uint32_t now;   /* us. */
+    uint32_t delay; /* How long bytes have been there before the board looks, us. */
     const uint8_t *input;
     size_t input_length;
     uint8_t output[4096];

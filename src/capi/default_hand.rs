@@ -3,7 +3,7 @@
 use crate::capi::process;
 use crate::capi::refusal::{self, Refusal};
 use crate::control::calibration::Task;
-use crate::hand::{self, Calibrating, Hand, HandError, Standing};
+use crate::hand::{self, Calibrating, Hand, Standing};
 use parking_lot::{Mutex, RwLock};
 use std::thread::sleep;
 use std::time::Duration;
@@ -53,10 +53,10 @@ pub(super) fn close_at_exit() {
 }
 
 /// Runs `call` on the open hand.
-pub(super) fn with<T>(call: impl FnOnce(&Hand) -> Result<T, HandError>) -> Result<T, Refusal> {
+pub(super) fn with<T, E: Into<Refusal>>(call: impl FnOnce(&Hand) -> Result<T, E>) -> Result<T, Refusal> {
     let hand = HAND.read();
     let hand = hand.as_ref().ok_or(Refusal::NoHand)?;
-    Ok(call(hand)?)
+    call(hand).map_err(E::into)
 }
 
 /// Calibrates a finger of the open hand and stores what was found. The hand is looked at from time to time and not kept from

@@ -3,8 +3,7 @@
 // The names of the header.
 #![allow(non_snake_case)]
 
-use crate::capi::calls::fill;
-use crate::capi::default_hand;
+use crate::capi::memory::{fill, size_up_to};
 use crate::capi::refusal::guarded;
 use crate::finger::{self, FaultKind};
 use crate::hand::FingerFault;
@@ -46,8 +45,8 @@ pub struct Fault {
 ///
 /// Returns 0, whether something is wrong or not, or -1 with
 ///   EFAULT   Fault is null
-///   EINVAL   Size is too small; no such finger
 ///   ENODEV   no hand is open
+///   EINVAL   Size is too small; no such finger
 ///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo.
@@ -59,9 +58,9 @@ pub struct Fault {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetFault(i: c_int, Fault: *mut Fault) -> c_int {
     guarded("GetFault", || {
-        let told = |filled| default_hand::with(|hand| hand.fault(i).map(|fault| told(&fault, filled)));
+        let least = size_up_to!(self::Fault, Warnings: c_ulong);
         // SAFETY: the manual's contract: null, or as much room as its first member says.
-        unsafe { fill(Fault, "Fault", size_of::<self::Fault>(), told) }
+        unsafe { fill(Fault, "Fault", least, |hand| hand.fault(i).map(|fault| told(&fault))) }
     })
 }
 
@@ -91,14 +90,14 @@ pub extern "C" fn FaultText(Number: c_int) -> *const c_char {
     index.and_then(|index| TEXTS.get(index)).map_or(c"".as_ptr(), |text| text.as_ptr())
 }
 
-fn told(told: &FingerFault, filled: usize) -> Fault {
+fn told(told: &FingerFault) -> Fault {
     let parts = |fault: Option<finger::Fault>| {
         fault.map_or((0, 0, 0.0), |fault| (c_int::from(fault.kind.number()), c_int::from(fault.part), fault.value))
     };
     let (number, part, value) = parts(told.stopped);
     let (warning, warning_part, warning_value) = parts(told.warning);
     Fault {
-        Size: filled as c_uint,
+        Size: 0, // until the caller's room is known
         Number: number,
         Part: part,
         Warning: warning,

@@ -1,17 +1,16 @@
-//! The exported functions that speak of the fingertip and of what may change while a finger runs. As in `calls.rs`, their
+//! The exported functions that speak of the fingertip, and of what else may change while a finger runs. As in `calls.rs`, their
 //! comments are the C manual.
 
 // Named like the calls of 1990.
 #![allow(non_snake_case)]
 
-use crate::capi::calls::{fill, load, non_null};
 use crate::capi::default_hand;
+use crate::capi::memory::{fill, load, non_null, size_up_to};
 use crate::capi::refusal::guarded;
 use crate::hand::{self, HandError};
 use crate::model::{Contact, ContactError};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use std::ffi::{CStr, c_char, c_int, c_uint};
-use std::mem::offset_of;
 
 /// What GetTip tells of a fingertip. Set Size = sizeof (struct FingerTip) before the call:
 /// later versions add members at the end, and a program never gets more than it has room
@@ -78,8 +77,8 @@ pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
 ///
 /// Returns 0, or -1 with
 ///   EFAULT   Tip is null
-///   EINVAL   Size is too small; no such finger
 ///   ENODEV   no hand is open
+///   EINVAL   Size is too small; no such finger
 ///   EIO      the finger is faulted
 ///   EPERM    forked child
 ///
@@ -91,9 +90,9 @@ pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
     guarded("GetTip", || {
-        let told = |filled| default_hand::with(|hand| hand.fingertip(i).map(|tip| told(&tip, filled)));
+        let least = size_up_to!(FingerTip, Tensions: [f64; 4]);
         // SAFETY: the manual's contract: null, or as much room as its first member says.
-        unsafe { fill(Tip, "Tip", FIRST_SIZE, told) }
+        unsafe { fill(Tip, "Tip", least, |hand| hand.fingertip(i).map(|tip| told(&tip))) }
     })
 }
 
@@ -147,7 +146,7 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
             4 => Contact::soft_finger(Matrix4::from_row_slice(&unsafe { load::<f64, 16>(K, "K") }?), normal()?),
             _ => return default_hand::with(|hand| hand.report(i).and(Err(HandError::NoSuchContact(D)))),
         };
-        default_hand::with(|hand| {
+        default_hand::with(|hand| -> Result<(), HandError> {
             // The finger's number is looked at first.
             hand.report(i)?;
             hand.send_contact(i, contact.map_err(|source: ContactError| HandError::Contact { finger: i, source })?)
@@ -213,7 +212,7 @@ pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
         non_null(Keys, "Keys")?;
         // SAFETY: not null, and a string by the manual's contract.
         let keys = unsafe { CStr::from_ptr(Keys) }.to_str();
-        default_hand::with(|hand| {
+        default_hand::with(|hand| -> Result<(), HandError> {
             hand.report(i)?;
             let reason = "is not UTF-8".to_string();
             hand.adjust(i, keys.map_err(|_| HandError::Adjustment { finger: i, line: 1, reason })?)
@@ -221,13 +220,36 @@ pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
     })
 }
 
-/// The smallest size that a program can have been compiled with: up to the last member
-/// of the first version.
-const FIRST_SIZE: usize = offset_of!(FingerTip, Tensions) + size_of::<[f64; 4]>();
+/// PushFinger - push the fingertip of a simulated finger
+///
+///     int PushFinger(int i, const double *Force);
+///
+///   i       finger, 1 to 3
+///   Force   Force[3]: force on the fingertip along x, y, z of the finger's frame, N,
+///           from now until the next call; zero lets go. Always double. Read during
+///           the call only
+///
+/// Returns 0, or -1 with
+///   EFAULT   Force is null
+///   ENODEV   no hand is open
+///   EINVAL   no such finger; an entry is NaN or infinite
+///   ERANGE   a component is beyond 1000 N
+///   ENOTSUP  the finger is on a real port
+///   EPERM    forked child
+///
+/// Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn PushFinger(i: c_int, Force: *const f64) -> c_int {
+    guarded("PushFinger", || {
+        // SAFETY: the manual's contract: null, or the array of the synopsis.
+        let force = unsafe { load::<f64, 3>(Force, "Force") }?;
+        default_hand::with(|hand| hand.push_simulated(i, force))
+    })
+}
 
-fn told(tip: &hand::FingerTip, filled: usize) -> FingerTip {
+fn told(tip: &hand::FingerTip) -> FingerTip {
     FingerTip {
-        Size: filled as c_uint,
+        Size: 0,                 // until the caller's room is known
         Felt: tip.felt as c_int, // 0 to 3
         Tip: tip.tip,
         Force: tip.force,

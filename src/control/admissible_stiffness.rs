@@ -2,11 +2,18 @@
 
 use super::eigenvalues::eigenvalues;
 use crate::model::Tendons;
-use nalgebra::{Matrix3, Matrix3x4, Vector4};
+use crate::model::configuration::{ConfiguredFinger, Scheme};
+use nalgebra::{Matrix3, Matrix3x4};
 
-/// The part of the stiffness of the locked tendons that K_theta may have, below 750 Hz and from there on: as far as the loops
-/// of all schemes were found stable.
-const SHARES: [f64; 2] = [0.7, 0.95];
+/// The part of the stiffness of the locked tendons that K_theta may have, below 750 Hz and from there on: as far as the loop
+/// was found stable. That of Figure 11, which has no gain on the tension error, carries less.
+fn share(scheme: Scheme, rate: f64) -> f64 {
+    match scheme {
+        Scheme::Figure11 => 0.7,
+        _ if rate < 750.0 => 0.7,
+        _ => 0.95,
+    }
+}
 
 /// Locked tendons hold the joints with R k R^T = L L^T. The largest eigenvalue of L^-1 K_theta L^-T is the largest part of
 /// that, over all directions, which K_theta asks for.
@@ -18,11 +25,12 @@ pub(super) struct AdmissibleStiffness {
 }
 
 impl AdmissibleStiffness {
-    /// Tendon stiffness, N/cm; cycles a second. None where R has no rank of 3.
-    pub fn new(tendons: &Tendons, stiffness: &Vector4<f64>, rate: f64) -> Option<Self> {
+    /// For `finger` at `rate`, Hz. None where R has no rank of 3.
+    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64) -> Option<Self> {
+        let stiffness = finger.tendon.stiffness;
         let stretched = Matrix3x4::from_fn(|joint, tendon| tendons.r[(joint, tendon)] * stiffness[tendon]);
         let inverse = (stretched * tendons.r.transpose()).cholesky()?.l().try_inverse()?;
-        Some(Self { inverse, share: SHARES[usize::from(rate >= 750.0)] })
+        Some(Self { inverse, share: share(finger.controller.scheme, rate) })
     }
 
     /// The factor, 0 to 1, that K_theta (N cm/rad) has to be scaled by.

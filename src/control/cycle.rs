@@ -25,11 +25,12 @@ use super::transition::Transition;
 use super::usable::positive;
 use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
 use nalgebra::{Vector3, Vector4};
+use serde::{Deserialize, Serialize};
 
 /// A tendon counts as tight from this part of t_min on.
 const TIGHT: f64 = 0.8;
 
-/// Damping over stiffness of the soft limits with Figures 9 and 10, s.
+/// Damping over stiffness of the soft limits with the figures of the report, s.
 const LIMIT_DAMPING: f64 = 0.015;
 
 /// Below this part of its desired tension a tendon counts as slack while slack is taken up: well under what a motor with
@@ -65,7 +66,7 @@ pub struct Controller {
 }
 
 /// What a cycle leaves behind for the next one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct State {
     doing: Doing,
     motor_angles: Vector4<f64>,
@@ -84,6 +85,8 @@ pub struct State {
     stillness: Stillness,
     /// N at the tendon.
     pulls: Vector4<f64>,
+    /// The pulls that act until the next sample: one cycle older.
+    acting: Vector4<f64>,
     /// The part of `pulls` that is fed forward against friction.
     against_friction: Vector4<f64>,
     state_feedback: Option<StateFeedbackState>,
@@ -92,7 +95,7 @@ pub struct State {
 }
 
 /// The activity of the last cycle, with what belongs to it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 enum Doing {
     Nothing,
     TakingUpSlack(Slack),
@@ -120,13 +123,13 @@ impl Controller {
         let strongest = motor_torque.limit.map(|limit| limit.min(finger.tendon.maximum));
         let state_feedback = match finger.controller.scheme {
             Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
-            Scheme::Figure9 | Scheme::Figure10 => None,
+            Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
         let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
         Ok(Self {
-            admissible: AdmissibleStiffness::new(&tendons, &finger.tendon.stiffness.into(), rate).ok_or_else(soft)?,
+            admissible: AdmissibleStiffness::new(finger, &tendons, rate).ok_or_else(soft)?,
             soft_limits: SoftLimits::new(finger),
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
@@ -140,7 +143,7 @@ impl Controller {
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
             distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, strongest)?,
-            tendons: TendonController::new(finger.controller.scheme, &gains, rate, motor_torque.limit),
+            tendons: TendonController::new(finger.controller.scheme, &gains, rate),
             motor_torque,
             motor_damping: gains.motor_damping,
             state_feedback,
@@ -174,6 +177,7 @@ impl Controller {
             goes_on_from: None,
             stillness: Stillness::new(motor_angles),
             pulls,
+            acting: pulls,
             against_friction: Vector4::zeros(),
             state_feedback: self.state_feedback.as_ref().map(|law| law.start(&measured)),
             heat: Heat::default(),
@@ -220,6 +224,7 @@ impl Controller {
         activity: &Activity,
     ) -> (Command, Report) {
         state.age = state.age.saturating_add(1);
+        let acting = state.pulls;
         if let Some(measured) = measured {
             self.measure(state, measured);
         }
@@ -258,6 +263,7 @@ impl Controller {
         if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
             law.commanded(elastic, &state.pulls, &state.against_friction);
         }
+        state.acting = acting;
         self.heating.advance(&mut state.heat, &state.pulls);
         let motor_torques = self.motor_torque.torques(&state.pulls);
         state.report.motor_torques = motor_torques;
@@ -425,7 +431,9 @@ impl Controller {
         let following = matches!(state.doing, Doing::Following(_));
         let slack = std::array::from_fn(|tendon| !following && measured[tendon] < SLACK * desired[tendon]);
         let speed = state.motor_speeds.component_mul(&self.radius);
-        let asked = self.tendons.pulls(&mut state.tendons, &TendonInput { desired, measured, speed, slack });
+        let (limit, acted) = (self.heating.limit(&state.heat), state.acting);
+        let input = TendonInput { desired, measured, speed, slack, limit, acted };
+        let asked = self.tendons.pulls(&mut state.tendons, &input);
         self.give(state, &asked, begins);
         state.report.desired_tensions = desired;
     }

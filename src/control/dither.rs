@@ -1,6 +1,7 @@
 //! A small shaking of the joints: friction that never rests does not hold a finger where its spring would not.
 
 use nalgebra::{Vector2, Vector3};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Joint torques A sin(omega t + i 120 degrees): three phases, so that the finger never stands still as a whole.
@@ -15,7 +16,7 @@ pub(super) struct Dither {
 }
 
 /// Cosine and sine of omega t. Rotated, not computed anew: a cycle has no time to spare.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct DitherState(Vector2<f64>);
 
 impl Dither {

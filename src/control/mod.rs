@@ -1,7 +1,7 @@
 //! The pure core: one servo cycle is a function of feedback, set point and controller state. It knows neither threads nor
 //! ports nor clocks, and allocates nothing.
 //!
-//! One file is one box of Figure 9 (or of Figure 10), or one part of the state feedback that can stand in their place; [`Controller::cycle`] connects them.
+//! One file is one box of Figure 9 (or of Figures 10 and 11), or one part of the state feedback that can stand in their place; [`Controller::cycle`] connects them.
 
 mod admissible_stiffness;
 pub mod calibration;
@@ -10,6 +10,7 @@ mod damping_design;
 mod dither;
 mod eigenvalues;
 mod figure10;
+mod figure11;
 mod figure9;
 mod friction_feed_forward;
 mod gains;

@@ -2,6 +2,7 @@
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
+use serde::{Deserialize, Serialize};
 
 /// From this part of the continuous heat on the limit falls. It has reached the continuous torque when the heat is whole.
 const WARM: f64 = 0.8;
@@ -17,7 +18,7 @@ pub(super) struct MotorHeating {
 }
 
 /// h, N^2 at the tendon.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(super) struct Heat(Vector4<f64>);
 
 impl MotorHeating {

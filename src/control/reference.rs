@@ -1,6 +1,7 @@
 //! The set point as the finger can follow it: smooth enough that its derivatives can be fed forward.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// Poles of the filter.
 const ORDER: usize = 5;
@@ -18,7 +19,7 @@ pub(super) struct Reference {
 }
 
 /// The stages, rad.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(super) struct ReferenceState([Vector3<f64>; ORDER]);
 
 /// Joint angles and their four derivatives, rad/s^n.

@@ -1,9 +1,10 @@
 //! Letting go: the pulls ramp to zero.
 
 use nalgebra::Vector4;
+use serde::{Deserialize, Serialize};
 
 /// A ramp under way.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct Release {
     /// Pulls at its beginning, N.
     from: Vector4<f64>,

@@ -3,9 +3,10 @@
 pub use crate::model::configuration::Law;
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
+use serde::{Deserialize, Serialize};
 
 /// What the board measured at one instant, as it measured it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Feedback {
     /// m_c of eq. 28: motor encoder counts, without wrap.
     pub motor_counts: [i32; 4],
@@ -23,7 +24,7 @@ pub struct Measured {
 }
 
 /// Where a fingertip's spring is anchored and how stiff it is. Taken over whole.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct SetPoint {
     /// theta_d: desired joint angles, rad. With the exact law it stands for the tip's pose there.
     pub joints: Vector3<f64>,
@@ -52,7 +53,7 @@ pub fn spatial(kx: &Matrix3<f64>) -> Matrix6<f64> {
 }
 
 /// What a finger is doing; decided by its servo thread.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[expect(clippy::large_enum_variant, reason = "a set point in a box would be allocated and freed in the servo")]
 pub enum Activity {
     /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is; the joints are held where
@@ -76,14 +77,14 @@ pub enum Activity {
 }
 
 /// What the motors shall do.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Command {
     /// m_tau of eq. 22, N cm, as the board takes it: a positive one pulls where `motor.sign` is +1.
     pub motor_torques: Vector4<f64>,
 }
 
 /// What one cycle found and decided.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Report {
     /// Measured joint angles, corrected for tendon stretch, rad.
     pub joints: Vector3<f64>,

@@ -7,6 +7,7 @@
 use super::joint_hold::JointHold;
 use crate::model::{Links, Tendons};
 use nalgebra::{Vector3, Vector4};
+use serde::{Deserialize, Serialize};
 
 /// Speed of winding, m/s of tendon, and what it grows by, m/s^2: little slack is taken up gently, much of it in time.
 const SPEED: f64 = 0.003;
@@ -43,7 +44,7 @@ pub(super) struct SlackTakeUp {
 }
 
 /// How far it is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) enum Slack {
     /// Motors wind in, or wait.
     Winding(Winding),
@@ -55,7 +56,7 @@ pub(super) enum Slack {
     },
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct Winding {
     seconds: f64,
     /// Where every motor is held, m.

@@ -2,12 +2,13 @@
 
 use super::signals::{Law, SetPoint};
 use nalgebra::{Matrix6, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Time constant of each of the two stages, s.
 const STAGE: f64 = 0.01;
 
 /// The spring of one cycle: a [`SetPoint`], or what is between two of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Spring {
     /// Its anchor, rad.
     pub joints: Vector3<f64>,
@@ -41,7 +42,7 @@ impl Spring {
 /// Two equal first-order stages in a row, so that the torque does not even bend sharply, and a planner that sends a new spring in
 /// every cycle is followed all the while. The spring itself goes over, and not its torque: between two springs within the bound
 /// every one is within it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct SpringTransition {
     first: Spring,
     second: Spring,

@@ -21,6 +21,7 @@ use super::usable::positive;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::model::{LinkDynamics, Tendons};
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
+use serde::{Deserialize, Serialize};
 
 /// Noise of a gauge that the observers reckon with, N rms.
 const GAUGE_NOISE: f64 = 0.03;
@@ -69,7 +70,7 @@ pub(super) struct StateFeedback {
 }
 
 /// What it remembers.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct StateFeedbackState {
     estimates: [TendonEstimate; 4],
     /// The pull that acts until the next sample, but for what was fed forward against friction, N.

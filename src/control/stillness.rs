@@ -1,6 +1,7 @@
 //! Whether the motors have come to rest. A speed cannot tell: at 1000 Hz a single count is already 3 rad/s.
 
 use nalgebra::Vector4;
+use serde::{Deserialize, Serialize};
 
 /// Seconds that the motors must stay where they are.
 const REST: f64 = 0.05;
@@ -9,7 +10,7 @@ const REST: f64 = 0.05;
 const WANDER: f64 = 0.007;
 
 /// Where the motors were, and for how long.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct Stillness {
     at: Vector4<f64>,
     seconds: f64,

@@ -2,6 +2,7 @@
 
 use super::figure9::Figure9;
 use super::figure10::Figure10;
+use super::figure11::Figure11;
 use super::gains::Gains;
 use super::tension_integral::{TendonInput, TendonState, TensionIntegral};
 use crate::model::configuration::Scheme;
@@ -12,18 +13,19 @@ use nalgebra::Vector4;
 pub(super) enum TendonController {
     Figure9(Figure9),
     Figure10(Figure10),
+    Figure11(Figure11),
 }
 
 impl TendonController {
-    /// `limit`: largest pull of each motor, N.
-    pub fn new(scheme: Scheme, gains: &Gains, rate: f64, limit: Vector4<f64>) -> Self {
-        let integral = TensionIntegral::new(gains.tension_integral, rate, limit);
+    pub fn new(scheme: Scheme, gains: &Gains, rate: f64) -> Self {
+        let integral = TensionIntegral::new(gains.tension_integral, rate);
         let motor_damping = gains.motor_damping;
         match scheme {
             Scheme::Figure9 => Self::Figure9(Figure9 { integral, motor_damping }),
             Scheme::Figure10 | Scheme::StateFeedback => {
                 Self::Figure10(Figure10 { integral, tension_gain: gains.tension_gain, motor_damping })
             }
+            Scheme::Figure11 => Self::Figure11(Figure11::new(gains.adaptation_gain, motor_damping, rate)),
         }
     }
 
@@ -32,6 +34,7 @@ impl TendonController {
         match self {
             Self::Figure9(scheme) => scheme.pulls(state, input),
             Self::Figure10(scheme) => scheme.pulls(state, input),
+            Self::Figure11(scheme) => scheme.pulls(state, input),
         }
     }
 }

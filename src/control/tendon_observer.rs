@@ -1,6 +1,7 @@
 //! What the encoder and the gauge of one tendon do not show: speeds of motor and joint side, and the motor's disturbance.
 
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Matrix6x2, Vector2, Vector6};
+use serde::{Deserialize, Serialize};
 
 /// Steps of the Riccati recursion at most, and the relative change of the gain that ends it.
 const MOST_STEPS: usize = 20_000;
@@ -58,7 +59,7 @@ pub(super) struct TendonObserver {
 }
 
 /// What an observer believes.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(super) struct TendonEstimate {
     x: Vector6<f64>,
     /// Samples since the last lost reply, at most [`RECOVERY`].

@@ -1,12 +1,13 @@
 //! Changing what a finger does without a jump in torque.
 
 use nalgebra::Vector4;
+use serde::{Deserialize, Serialize};
 
 /// Time constant with which the old command fades, s.
 const FADE: f64 = 0.02;
 
 /// What the commands still differ by from what the controller asks for, N at the tendon.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(super) struct Transition {
     rest: Vector4<f64>,
 }

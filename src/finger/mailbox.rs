@@ -7,8 +7,10 @@
 use crate::control::calibration::{Calibration, Verdict};
 use crate::control::{Controller, Report, SetPoint};
 use crate::finger::{Fault, Warnings};
+use crate::realtime::Memory;
 use nalgebra::Vector3;
 use parking_lot::Mutex;
+use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use triple_buffer::{Input, Output, triple_buffer};
@@ -63,10 +65,14 @@ pub struct FingerReport {
     pub calibration: Option<Verdict>,
     /// Cycles since open.
     pub cycles: u64,
-    /// Cycles without a valid reply.
-    pub lost_replies: u64,
-    /// Periods skipped because the servo was late.
+    /// Cycles that were not over when the next one should have begun.
+    pub overruns: u64,
+    /// Periods skipped because of that.
     pub skipped_periods: u64,
+    /// Cycles without a valid reply in time.
+    pub lost_replies: u64,
+    /// Replies that came when their cycle was over.
+    pub late_replies: u64,
     /// Damaged or foreign frames on the finger's port.
     pub damaged_frames: u64,
     /// What the finger is warned of.
@@ -80,10 +86,26 @@ pub struct FingerReport {
 /// What a servo computes with, and what a planner may change while it runs.
 #[derive(Clone, Debug)]
 pub struct Adjustable {
+    /// Of the controller, in the finger's black box.
+    pub number: u32,
     /// The boxes of Figure 9.
     pub controller: Controller,
     /// Joint angles that a finger under tension can have, rad: lowest and highest.
     pub pose: (Vector3<f64>, Vector3<f64>),
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Stage::Opening => "opening",
+            Stage::Limp => "limp",
+            Stage::Calibrating => "calibrating",
+            Stage::Running => "running",
+            Stage::Closing => "closing",
+            Stage::Closed => "closed",
+            Stage::Faulted(fault) => return write!(f, "faulted: {fault}"),
+        })
+    }
 }
 
 // A servo copies it out of a buffer: nothing may be allocated or freed then.
@@ -113,13 +135,15 @@ pub(super) struct ServoEnd {
     closing: Arc<AtomicBool>,
 }
 
-/// A mailbox whose both ends hold `report`, with its set point, and `adjustable`.
-pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd) {
-    let (set_points_in, set_points_out) = triple_buffer(&report.set_point);
-    let (adjustments_in, adjustments_out) = triple_buffer(adjustable);
-    let (reports_in, reports_out) = triple_buffer(&report);
-    let (orders_in, orders_out) = triple_buffer(&Order::Nothing);
+/// A mailbox whose both ends hold `report`, with its set point, and `adjustable`; and the memory that they share.
+pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd, Memory) {
+    let mut memory = Memory::default();
+    let (set_points_in, set_points_out) = shared(&report.set_point, &mut memory);
+    let (adjustments_in, adjustments_out) = shared(adjustable, &mut memory);
+    let (reports_in, reports_out) = shared(&report, &mut memory);
+    let (orders_in, orders_out) = shared(&Order::Nothing, &mut memory);
     let closing = Arc::new(AtomicBool::new(false));
+    memory.add(&*closing);
     let planners = PlannersEnd {
         sent: report.set_point,
         set_points: set_points_in,
@@ -135,7 +159,19 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
         reports: reports_in,
         closing: closing.clone(),
     };
-    (Mailbox { planners: Mutex::new(planners), closing }, servo)
+    (Mailbox { planners: Mutex::new(planners), closing }, servo, memory)
+}
+
+/// A triple buffer, and where it is.
+fn shared<T: Clone + Send>(initial: &T, memory: &mut Memory) -> (Input<T>, Output<T>) {
+    let (mut input, mut output) = triple_buffer(initial);
+    // Its three buffers take turns at the input. It ends as it began, with nothing new in it.
+    for _ in 0..3 {
+        memory.add(input.input_buffer());
+        input.publish();
+        output.update();
+    }
+    (input, output)
 }
 
 impl Mailbox {

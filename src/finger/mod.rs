@@ -1,12 +1,22 @@
 //! One finger's servo thread and its mailboxes: the shell around the pure core.
 
+mod black_box;
+mod control_input;
 mod faults;
+mod losses;
 mod mailbox;
+mod recording;
+mod replay;
 mod servo;
 mod single;
 mod watching;
 
+pub use black_box::{BlackBox, ControlRecord, ControllerSource, CycleRecord, Recorder};
+pub use control_input::ControlInput;
 pub use faults::{Description, Fault, FaultKind, Part, Quantity, Severity, Warnings};
+pub use losses::Losses;
 pub use mailbox::{Adjustable, FingerReport, Mailbox, Order, Stage};
-pub use servo::{ServedPort, Servo};
+pub use recording::{Origin, Recording, RecordingError};
+pub use replay::{Difference, NotReplayable, Replayed};
+pub use servo::{REPLY_WINDOW, ServedPort, Servo};
 pub use single::FingerServo;

@@ -3,10 +3,10 @@
 use crate::board::{Link, LinkError, OutgoingCommand, Transport};
 use crate::finger::{Fault, FaultKind, FingerServo};
 use crate::model::configuration::FINGERS;
-use crate::realtime::{Clock, Schedule, Stage};
+use crate::realtime::{Clock, Follower, Memory, Schedule, Stage};
 
 /// The part of a period, from the thread's awakening, in which replies are awaited; the rest is for computing.
-const REPLY_WINDOW: f64 = 0.85;
+pub const REPLY_WINDOW: f64 = 0.85;
 
 /// A port with the fingers behind it.
 pub struct ServedPort<T> {
@@ -30,13 +30,37 @@ pub struct Servo<T, C> {
     schedule: Schedule,
     reply_window: u64,
     ports: Vec<ServedPort<T>>,
+    follower: Option<Follower>,
 }
 
 impl<T: Transport, C: Clock> Servo<T, C> {
     /// A servo whose first cycle begins at the start of `schedule`.
     pub fn new(clock: C, schedule: Schedule, ports: Vec<ServedPort<T>>) -> Self {
         let reply_window = (schedule.period() as f64 * REPLY_WINDOW) as u64;
-        Self { clock, schedule, reply_window, ports }
+        Self { clock, schedule, reply_window, ports, follower: None }
+    }
+
+    /// The same servo with its schedule so much later, ns.
+    pub fn later(mut self, by: u64) -> Self {
+        self.schedule.shift(by.cast_signed());
+        self
+    }
+
+    /// The same servo, with periods by the clock of its first board.
+    pub fn following_board(mut self) -> Self {
+        self.follower = Some(Follower::new(self.schedule.period()));
+        self
+    }
+
+    /// What the servo touches and is not in this value itself.
+    pub fn memory(&self) -> Memory {
+        let mut memory = Memory::default();
+        memory.add(&self.ports[..]);
+        for port in &self.ports {
+            memory.add(&port.fingers[..]);
+            port.fingers.iter().for_each(|finger| memory.append(finger.memory()));
+        }
+        memory
     }
 
     /// Runs until every finger is closed, or faulted and asked to close.
@@ -72,14 +96,20 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         }
         let mut computing = self.clock.now();
         let skipped = self.schedule.advance(computing);
+        let overrun = (computing > self.schedule.next()).then_some(skipped);
+        if let Some(follower) = &mut self.follower {
+            let first = self.ports.iter().flat_map(|port| &port.fingers).next();
+            let reading = first.and_then(FingerServo::sampled_at);
+            self.schedule.shift(follower.correction(reading, 1 + skipped));
+        }
         for port in &mut self.ports {
             let damaged = port.link.counters().damaged;
             for finger in &mut port.fingers {
-                finger.end(began, skipped, damaged);
+                finger.end(began, overrun, damaged);
                 let computed = self.clock.now();
                 finger.note(Stage::Compute, computing, computed);
                 finger.note(Stage::Whole, beginning, computed);
-                finger.tell_timing();
+                finger.tell();
                 computing = computed;
             }
         }
@@ -89,7 +119,8 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     pub fn fail(&mut self) {
         for finger in self.ports.iter_mut().flat_map(|port| &mut port.fingers) {
             finger.fault(Fault::new(FaultKind::ServoPanic));
-            finger.end(0, 0, 0);
+            finger.end(0, None, 0);
+            finger.tell();
         }
         self.confirm_stops();
     }
@@ -136,8 +167,9 @@ impl<T: Transport> ServedPort<T> {
         while self.fingers.iter().any(FingerServo::waiting) {
             match self.link.receive(deadline) {
                 Ok(Some(received)) => {
-                    let addressed = self.fingers.iter_mut().find(|finger| finger.address() == received.address);
-                    let Some(finger) = addressed.filter(|finger| finger.awaits(&received)) else {
+                    let mut addressed = self.fingers.iter_mut().find(|finger| finger.address() == received.address);
+                    let Some(finger) = addressed.take_if(|finger| finger.awaits(&received)) else {
+                        addressed.into_iter().for_each(|finger| finger.pass_over(&received));
                         // A board that babbles faster than it is read must not hold the thread.
                         if clock.now() >= deadline {
                             break;

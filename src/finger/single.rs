@@ -6,9 +6,9 @@ use crate::control::calibration::{Calibration, Sample, Verdict};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::mailbox::{Adjustable, Mailbox, Order, ServoEnd, mailbox};
 use crate::finger::watching::Watching;
-use crate::finger::{Fault, FaultKind, FingerReport, Stage};
+use crate::finger::{ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage};
 use crate::model::configuration::{Configuration, EndState, Unusable};
-use crate::realtime::{self, CycleTiming};
+use crate::realtime::{self, CycleTiming, Memory};
 use nalgebra::{Matrix3, Vector3, Vector4};
 use rtrb::Producer;
 
@@ -28,6 +28,9 @@ const LEAST_BLIND: u32 = 3;
 /// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
 const BEYOND_LIMITS: f64 = 0.5;
 
+/// The board's clock wraps after 65.5 ms: after a longer silence, ms, it does not say how old a measurement is.
+const CLOCK_UNKNOWN_MS: f64 = 60.0;
+
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
 
@@ -40,13 +43,20 @@ pub struct FingerServo {
     state: State,
     activity: Activity,
     calibration: Option<Calibration>,
-    /// Whether the board says that its encoder counts are still good.
-    zero_valid: bool,
+    /// Of the newest reply.
+    status: Status,
     feedback: Feedback,
+    /// The state is to be made anew from the feedback.
+    anew: bool,
     command: Command,
     mailbox: ServoEnd,
     timing: CycleTiming,
     timings: Producer<CycleTiming>,
+    black_box: Recorder,
+    /// What this cycle leaves in the black box; none of a finger that was faulted or closed before.
+    record: Option<CycleRecord>,
+    /// Whether the last cycle left something there.
+    recording: bool,
     report: FingerReport,
     address: u8,
     /// Knows the torque of one count of a command.
@@ -56,6 +66,10 @@ pub struct FingerServo {
     answered: bool,
     lost_in_a_row: u32,
     watching: Watching,
+    /// The board's clock at the last measurement, us modulo 65 536; none before the first.
+    sampled_at: Option<u16>,
+    /// Periods from that measurement to this cycle.
+    sample_age: u64,
     limits: Limits,
     settled_cycles: u32,
     /// Cycles since the stage began.
@@ -64,6 +78,8 @@ pub struct FingerServo {
     /// How the finger holds the pose that it finds at open.
     initial: SetPoint,
     end_state: EndState,
+    /// What of the finger is on the heap.
+    memory: Memory,
 }
 
 /// Times of the configuration, in cycles.
@@ -79,22 +95,22 @@ struct Limits {
 }
 
 impl Adjustable {
-    /// What the configuration says.
+    /// What the configuration says. `number`: of the controller, in the finger's black box.
     ///
     /// # Errors
     /// A configuration that no controller can be made from.
-    pub fn new(configuration: &Configuration, index: usize) -> Result<Self, Unusable> {
+    pub fn new(configuration: &Configuration, index: usize, number: u32) -> Result<Self, Unusable> {
         let finger = &configuration.fingers[index];
         let (low, high) = finger.joint_limits();
         let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
         let controller = Controller::in_gravity(finger, &configuration.gravity(index), configuration.hand.rate)?;
-        Ok(Self { controller, pose })
+        Ok(Self { number, controller, pose })
     }
 }
 
 impl FingerServo {
-    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`; those that
-    /// nobody collects are dropped.
+    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`, records
+    /// of its cycles to `black_box`; those that nobody collects are dropped.
     ///
     /// `stiffness` is the Kx that it will hold its pose with, already admitted.
     ///
@@ -106,11 +122,12 @@ impl FingerServo {
         stiffness: Matrix3<f64>,
         identity: &Identity,
         configured: &Configured,
-        timings: Producer<CycleTiming>,
+        mut timings: Producer<CycleTiming>,
+        mut black_box: Recorder,
     ) -> Result<(Self, Mailbox), Unusable> {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
         let address = configuration.address(index);
-        let adjustable = Adjustable::new(configuration, index)?;
+        let adjustable = Adjustable::new(configuration, index, 0)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
@@ -124,25 +141,40 @@ impl FingerServo {
             orders: 0,
             calibration: None,
             cycles: 0,
-            lost_replies: 0,
+            overruns: 0,
             skipped_periods: 0,
+            lost_replies: 0,
+            late_replies: 0,
             damaged_frames: 0,
             warnings: Default::default(),
             first: 0,
             last: 0,
         };
-        let (planners, servo) = mailbox(report, &adjustable);
+        let (planners, servo, mut memory) = mailbox(report, &adjustable);
+        memory.append(&black_box.memory());
+        memory.add(timings.buffer());
+        let every = timings.slots();
+        if let Ok(mut room) = timings.write_chunk(every) {
+            // Nothing is sent: the room is written to, so that it is there.
+            let (first, second) = room.as_mut_slices();
+            memory.add(first);
+            memory.add(second);
+        }
         let this = Self {
             adjustable,
             state,
             activity: Activity::TakeUpSlack,
             calibration: None,
-            zero_valid: configured.status.has(Status::ZERO_VALID),
+            status: configured.status,
             feedback,
+            anew: false,
             command: Command::default(),
             mailbox: servo,
             timing: CycleTiming::default(),
             timings,
+            black_box,
+            record: None,
+            recording: false,
             report,
             address,
             board: *identity,
@@ -151,6 +183,8 @@ impl FingerServo {
             answered: false,
             lost_in_a_row: 0,
             watching: Watching::new(hand.rate, patience, identity.gauge_bits),
+            sampled_at: None,
+            sample_age: 0,
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
                 lost: patience,
@@ -165,6 +199,7 @@ impl FingerServo {
             stops_left: STOPS_AFTER_FAULT,
             initial,
             end_state: hand.end_state,
+            memory,
         };
         Ok((this, planners))
     }
@@ -173,6 +208,11 @@ impl FingerServo {
     pub fn limp(mut self) -> Self {
         self.go_limp();
         self
+    }
+
+    /// What of the finger its servo touches and is not in this value itself.
+    pub fn memory(&self) -> &Memory {
+        &self.memory
     }
 
     /// The address of the finger on its port.
@@ -219,15 +259,32 @@ impl FingerServo {
         received.sequence == self.sequence && self.waiting()
     }
 
+    /// Counts a reply that this cycle does not await.
+    pub fn pass_over(&mut self, received: &Received) {
+        self.report.late_replies += u64::from(received.sequence != self.sequence);
+    }
+
+    /// The board's clock as this cycle's command arrived, us modulo 65 536; none without a reply.
+    pub fn sampled_at(&self) -> Option<u16> {
+        self.sampled_at.filter(|_| self.answered)
+    }
+
     /// Takes in the reply that answers this cycle's command.
     pub fn take(&mut self, received: &Received) {
         self.answered = true;
         let reply = &received.reply;
+        // This cycle's command took effect as it was sampled; what it was computed from was sampled before.
+        if let Some(before) = self.sampled_at
+            && self.sample_age as f64 * self.limits.period_ms < CLOCK_UNKNOWN_MS
+        {
+            self.timing.note(realtime::Stage::Age, 0, u64::from(reply.sampled_at.wrapping_sub(before)) * 1000);
+        }
+        (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
         self.watching.note_status(reply.status);
-        let zero_lost = self.zero_valid && !reply.status.has(Status::ZERO_VALID);
-        self.zero_valid = reply.status.has(Status::ZERO_VALID);
+        let zero_lost = self.status.has(Status::ZERO_VALID) && !reply.status.has(Status::ZERO_VALID);
+        self.status = reply.status;
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
             self.fault(Fault::stopped(reply.status));
         } else if zero_lost {
@@ -235,9 +292,13 @@ impl FingerServo {
         }
     }
 
-    /// Ends a cycle: computes the next command and reports.
-    pub fn end(&mut self, began: u64, skipped: u64, damaged_frames: u64) {
+    /// Ends a cycle: computes the next command and reports. `overrun`: the next cycle should have begun already, and so many periods are
+    /// skipped.
+    pub fn end(&mut self, began: u64, overrun: Option<u64>, damaged_frames: u64) {
+        let skipped = overrun.unwrap_or(0);
+        self.sample_age += 1 + skipped;
         self.report.cycles += 1;
+        self.report.overruns += u64::from(overrun.is_some());
         self.report.skipped_periods += skipped;
         self.report.damaged_frames = damaged_frames;
         self.report.last = began;
@@ -252,28 +313,45 @@ impl FingerServo {
         if self.under_control() {
             self.count_replies();
         }
-        if self.under_control() {
-            let previous = self.take_commands();
-            self.calibrate();
-            let feedback = self.answered.then_some(&self.feedback);
-            let controller = &self.adjustable.controller;
-            (self.command, self.report.cycle) = match &previous {
-                None => controller.cycle(&mut self.state, feedback, &self.activity),
-                Some(Adjustable { controller: previous, .. }) => {
-                    controller.take_over(previous, &mut self.state, feedback, &self.activity)
-                }
-            };
-            // Periods that will be skipped are periods without a reply: what differentiates and predicts must know of them.
-            for _ in 0..skipped.min(self.limits.lost.into()) {
-                (self.command, self.report.cycle) = controller.cycle(&mut self.state, None, &self.activity);
-            }
-            if self.lost_in_a_row >= self.limits.blind {
-                self.command = Command::default();
-            }
-            self.watch(previous.is_some());
-            self.move_on();
+        let recorded = self.recording || self.under_control();
+        let control = self.under_control().then(|| self.control(skipped));
+        if recorded {
+            self.record = Some(CycleRecord {
+                cycle: self.report.cycles,
+                began,
+                stage: self.report.stage,
+                timing: CycleTiming::default(),
+                feedback: self.answered.then_some(self.feedback),
+                status: self.status.0,
+                control,
+            });
         }
+        self.recording = self.under_control();
         self.mailbox.publish(self.report);
+    }
+
+    /// Computes the next command.
+    fn control(&mut self, skipped: u64) -> ControlRecord {
+        let previous = self.take_commands();
+        self.calibrate();
+        let input = ControlInput {
+            anew_from: std::mem::take(&mut self.anew).then_some(self.feedback),
+            activity: self.activity,
+            skipped: skipped.min(self.limits.lost.into()),
+            let_go: self.lost_in_a_row >= self.limits.blind,
+        };
+        self.black_box.keyframe(self.report.cycles, &self.state, !self.recording);
+        let Adjustable { controller, number, .. } = &self.adjustable;
+        let feedback = self.answered.then_some(&self.feedback);
+        let before = previous.as_ref().map(|previous| &previous.controller);
+        let adjusted = before.is_some();
+        let (command, report) = input.run(controller, before, &mut self.state, feedback);
+        (self.command, self.report.cycle) = (command, report);
+        let previous = previous.map_or(*number, |previous| previous.number);
+        let record = ControlRecord { controller: *number, previous, input, command, report };
+        self.watch(adjusted);
+        self.move_on();
+        record
     }
 
     /// Notes when a stage of this cycle began and ended, ns.
@@ -281,10 +359,14 @@ impl FingerServo {
         self.timing.note(stage, from, to);
     }
 
-    /// Leaves the timing of this cycle to whoever collects it.
-    pub fn tell_timing(&mut self) {
+    /// Leaves the timing and the record of this cycle to whoever collects them.
+    pub fn tell(&mut self) {
+        let timing = std::mem::take(&mut self.timing);
         // A full ring means that nobody collects: the cycle is worth more than its figure.
-        let _ = self.timings.push(std::mem::take(&mut self.timing));
+        let _ = self.timings.push(timing);
+        if let Some(record) = self.record.take() {
+            self.black_box.record(CycleRecord { timing, ..record });
+        }
     }
 
     /// Stops the finger for a reason.
@@ -332,7 +414,7 @@ impl FingerServo {
         if self.answered {
             if self.lost_in_a_row >= self.limits.blind {
                 // The motors were let go: begin with what the tendons pull now, and not with what was commanded then.
-                self.state = self.adjustable.controller.start(&self.feedback);
+                self.anew = true;
                 self.watching.begin();
             }
             self.lost_in_a_row = 0;
@@ -388,7 +470,7 @@ impl FingerServo {
                 self.enter(Stage::Calibrating);
             }
             Order::Restart { limp } => {
-                self.state = self.adjustable.controller.start(&self.feedback);
+                self.anew = true;
                 if limp {
                     self.go_limp();
                 } else {
@@ -406,7 +488,8 @@ impl FingerServo {
         if !self.answered {
             return;
         }
-        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid: self.zero_valid };
+        let zero_valid = self.status.has(Status::ZERO_VALID);
+        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid };
         let (activity, verdict) = calibration.cycle(&sample);
         self.activity = activity;
         self.report.calibration = Some(verdict);

@@ -48,7 +48,8 @@ impl Hand {
         changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys)?;
         check(&changed)?;
         let unusable = |unusable: Unusable| HandError::Unusable { section: format!("finger.{finger}"), unusable };
-        let adjustable = Adjustable::new(&changed, index).map_err(unusable)?;
+        let number = self.dispatcher.announce(finger, &changed)?;
+        let adjustable = Adjustable::new(&changed, index, number).map_err(unusable)?;
         adjust_member(member, admission(&changed, index), adjustable)?;
         *configuration = changed;
         Ok(())

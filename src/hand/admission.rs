@@ -51,9 +51,7 @@ impl Admission {
     pub fn stiffness(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, HandError> {
         // nalgebra is column-major: this is the one place where the order of C is turned.
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
-        let symmetric = spring(&asked).map_err(|error| self.no_spring(error))?;
-        let mut eigen = symmetric.symmetric_eigen();
-        let (smallest, largest) = (eigen.eigenvalues.min(), eigen.eigenvalues.max());
+        let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| self.no_spring(error))?;
         let bound = self.stiffness_bound;
         // A bound sent as `float` is a bound.
         let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
@@ -64,6 +62,7 @@ impl Admission {
             return Ok(symmetric);
         }
         // The nearest admissible spring keeps its principal directions.
+        let mut eigen = symmetric.symmetric_eigen();
         eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
         let recomposed = eigen.recompose();
         Ok((recomposed + recomposed.transpose()) * 0.5)

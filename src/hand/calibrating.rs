@@ -27,6 +27,7 @@ pub struct Calibrating {
 
 /// How a calibration stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "looked at and dropped")]
 pub enum Standing {
     /// It goes on.
     Going(Progress),
@@ -86,7 +87,9 @@ impl Calibrating {
                 let mut configuration = hand.configuration.write();
                 let mut changed = configuration.clone();
                 found.apply(&mut changed.fingers[index]);
-                let adjustable = Adjustable::new(&changed, index).map_err(|unusable| refusal(finger, unusable))?;
+                let number = hand.dispatcher.announce(finger, &changed)?;
+                let adjustable =
+                    Adjustable::new(&changed, index, number).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = matches!(found, Findings::Signs(_));
                 let given = hand.dispatcher.member(finger)?.mailbox.restart(adjustable, limp);
                 *self = Self::ordered(finger, given, Some(found))?;
@@ -116,7 +119,7 @@ impl Hand {
         self.calibrate(finger, Task::Zero, progress)
     }
 
-    /// Measures friction and tendon stiffness of finger 1, 2 or 3, which must have been zeroed.
+    /// Measures gauge gains, friction and tendon stiffness of finger 1, 2 or 3, which must have been zeroed.
     ///
     /// # Errors
     /// As [`Calibrating::begin`] and [`Calibrating::poll`].

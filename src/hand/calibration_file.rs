@@ -1,4 +1,4 @@
-//! Calibration into the configuration file: only keys that changed, in the finger's own table, comments and layout kept.
+//! What was found into the configuration file: only keys that changed, in the finger's own table, comments and layout kept.
 
 use crate::hand::{HandError, read};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
@@ -14,11 +14,18 @@ const DIGITS: usize = 6;
 struct Found {
     section: &'static str,
     key: &'static str,
+    /// None of them: the key is left out.
     values: Vec<Value>,
+    /// Whether the values stand in an array.
+    array: bool,
 }
 
-/// Writes what differs between the file at `path` and `calibrated`.
-pub(super) fn store(path: &Path, calibrated: &Configuration) -> Result<(), HandError> {
+/// Writes what calibration or a search for the bound of Kx has found: the keys that differ between the file at `path` and
+/// `calibrated`.
+///
+/// # Errors
+/// [`HandError::Store`], or what [`read`] says; the file is as it was then.
+pub fn store(path: &Path, calibrated: &Configuration) -> Result<(), HandError> {
     let failed = |source| HandError::Store { path: path.to_path_buf(), source };
     let before = read(path)?;
     let text = fs::read_to_string(path).map_err(failed)?;
@@ -37,12 +44,16 @@ fn write_finger(
     now: &ConfiguredFinger,
 ) -> io::Result<()> {
     for (old, new) in keys(before).into_iter().zip(keys(now)) {
-        if same(&old.values, &new.values) {
+        if new.values.is_empty() || same(&old.values, &new.values) {
             continue;
         }
         let fingers = child(document.as_table_mut(), "finger")?;
         let finger = child(fingers, &number.to_string())?;
         let section = child(finger, new.section)?;
+        if !new.array {
+            set(section, new);
+            continue;
+        }
         match section.get_mut(new.key).and_then(Item::as_array_mut) {
             Some(array) if array.len() == new.values.len() => {
                 for (place, value) in new.values.into_iter().enumerate() {
@@ -57,12 +68,27 @@ fn write_finger(
     Ok(())
 }
 
-/// Everything that calibration finds.
+/// A key with one value, whose comments stay.
+fn set(section: &mut dyn TableLike, found: Found) {
+    for mut value in found.values {
+        match section.get_mut(found.key).and_then(Item::as_value_mut) {
+            Some(old) => {
+                *value.decor_mut() = old.decor().clone();
+                *old = value;
+            }
+            None => {
+                section.insert(found.key, Item::Value(value));
+            }
+        }
+    }
+}
+
+/// Everything that calibration and `sun2xp bound` find.
 fn keys(finger: &ConfiguredFinger) -> Vec<Found> {
     let whole = |values: &[i32]| values.iter().map(|&value| i64::from(value).into()).collect();
     let signs = |values: &[i8]| values.iter().map(|&value| i64::from(value).into()).collect();
     let numbers = |values: &[f64]| values.iter().map(|&value| rounded(value)).collect();
-    let found = |section, key, values| Found { section, key, values };
+    let found = |section, key, values| Found { section, key, values, array: true };
     vec![
         found("motor", "sign", signs(&finger.motor.sign)),
         found("encoder", "sign", signs(&finger.encoder.sign)),
@@ -73,6 +99,7 @@ fn keys(finger: &ConfiguredFinger) -> Vec<Found> {
         found("friction", "motor_coulomb", numbers(&finger.friction.motor_coulomb)),
         found("friction", "conduit", numbers(&finger.friction.conduit)),
         found("friction", "joint_coulomb", numbers(&finger.friction.joint_coulomb)),
+        Found { array: false, ..found("stiffness", "bound", numbers(finger.stiffness.bound.as_slice())) },
     ]
 }
 
@@ -84,11 +111,12 @@ fn rounded(value: f64) -> Value {
 }
 
 fn same(one: &[Value], other: &[Value]) -> bool {
-    one.iter().zip(other).all(|(one, other)| match (one, other) {
-        (Value::Float(one), Value::Float(other)) => one.value() == other.value(),
-        (Value::Integer(one), Value::Integer(other)) => one.value() == other.value(),
-        _ => false,
-    })
+    one.len() == other.len()
+        && one.iter().zip(other).all(|(one, other)| match (one, other) {
+            (Value::Float(one), Value::Float(other)) => one.value() == other.value(),
+            (Value::Integer(one), Value::Integer(other)) => one.value() == other.value(),
+            _ => false,
+        })
 }
 
 /// The table behind a key; a new one, without a header of its own until it has keys, where there is none.
@@ -181,6 +209,19 @@ mod tests {
         });
         assert!(text.contains("zero = [9, 0, 0, 0]"), "{text}");
         assert!(text.contains("conduit = [0.07, 0.07, 0.07, 0.07]"), "{text}");
+    }
+
+    #[test]
+    fn a_single_number_keeps_its_comment_or_is_added() {
+        let file = "[finger.1.stiffness]\nbound = 4.0 # N/cm, by hand\n";
+        let text = stored(file, |hand| {
+            hand.fingers[0].stiffness.bound = Some(8.300000001);
+            hand.fingers[2].stiffness.bound = Some(7.0);
+        });
+        let expected = "[finger.1.stiffness]\nbound = 8.3 # N/cm, by hand\n\n[finger.3.stiffness]\nbound = 7.0\n";
+        assert_eq!(text, expected);
+        // What was never found is not written, nor taken away.
+        assert_eq!(stored(file, |hand| hand.fingers[0].stiffness.bound = None), file);
     }
 
     #[test]

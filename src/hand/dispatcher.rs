@@ -1,20 +1,23 @@
 //! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
 
 use crate::control::{SetPoint, spatial};
-use crate::finger::{self, FingerReport, Mailbox};
+use crate::finger::{self, BlackBox, FingerReport, Losses, Mailbox, Recording};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
+use crate::hand::black_box::keep;
 use crate::hand::opening::Reached;
+use crate::model::configuration::Configuration;
 use crate::realtime::{CycleTiming, Distribution, Histograms, Priority, Stage, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
-use parking_lot::{Mutex, RwLock};
+use parking_lot::{Mutex, MutexGuard, RwLock};
 use rtrb::Consumer;
 use std::io;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often timings are collected. The ring of a servo holds many times what comes in between.
+/// How often timings and black boxes are collected. The rings of a servo hold many times what comes in between.
 const COLLECTING: Duration = Duration::from_millis(50);
 
 /// One finger as the planners see it.
@@ -26,14 +29,17 @@ pub(super) struct Member {
 /// Routes to the fingers, collects from them.
 pub(super) struct Dispatcher {
     members: Vec<Member>,
-    timings: Arc<Vec<Mutex<Collected>>>,
+    collected: Arc<Vec<Mutex<Collected>>>,
     collector: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
-/// The timings of one finger.
+/// What the servo of one finger leaves behind.
 struct Collected {
     arriving: Consumer<CycleTiming>,
     histograms: Histograms,
+    /// Up to the last reset.
+    losses_before: Losses,
+    black_box: BlackBox,
 }
 
 impl Collected {
@@ -41,25 +47,33 @@ impl Collected {
         while let Ok(timing) = self.arriving.pop() {
             self.histograms.record(&timing);
         }
+        self.black_box.collect();
     }
 }
 
 impl Dispatcher {
     /// `fingers` in the order of their numbers.
     pub fn new(fingers: Vec<Reached>) -> Self {
-        let (mut members, mut timings) = (Vec::new(), Vec::new());
+        let (mut members, mut collected) = (Vec::new(), Vec::new());
         for finger in fingers {
             members.push(Member { admission: RwLock::new(finger.admission), mailbox: finger.mailbox });
-            timings.push(Mutex::new(Collected { arriving: finger.timings, histograms: Histograms::new() }));
+            collected.push(Mutex::new(Collected {
+                arriving: finger.timings,
+                histograms: Histograms::new(),
+                losses_before: Losses::default(),
+                black_box: finger.black_box,
+            }));
         }
-        Self { members, timings: Arc::new(timings), collector: None }
+        Self { members, collected: Arc::new(collected), collector: None }
     }
 
-    /// Starts the thread that collects timings, so that none is lost while nobody asks.
-    pub fn start_collecting(&mut self) -> io::Result<()> {
+    /// Starts the thread that collects timings and black boxes, so that none is lost while nobody asks, and that writes the black
+    /// box of a finger that faults into `folder`.
+    pub fn start_collecting(&mut self, folder: Option<PathBuf>) -> io::Result<()> {
         let (stop, stopped) = bounded(0);
-        let timings = self.timings.clone();
-        let thread = spawn("sun2xp reports", Priority::default(), move |_| collect(&timings, &stopped))?;
+        let fingers = self.collected.clone();
+        let body = move |_| collect(&fingers, folder.as_deref(), &stopped);
+        let thread = spawn("sun2xp reports", Priority::default(), body)?;
         self.collector = Some((stop, thread));
         Ok(())
     }
@@ -113,17 +127,45 @@ impl Dispatcher {
 
     /// What was counted of a stage.
     pub fn timing(&self, finger: i32, stage: Stage) -> Result<Distribution, HandError> {
-        let mut collected = self.timings[self.index(finger)?].lock();
+        let mut collected = self.collected(finger)?;
         collected.collect();
         Ok(collected.histograms.distribution(stage))
     }
 
-    /// Begins to count anew.
+    /// What went wrong.
+    pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
+        let index = self.index(finger)?;
+        // The report is read under the lock: a reset of another thread's is then before both or after both.
+        let collected = self.collected(finger)?;
+        Ok(Losses::of(&self.members[index].mailbox.report()).since(&collected.losses_before))
+    }
+
+    /// Begins to count timings and losses anew.
     pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
-        let mut collected = self.timings[self.index(finger)?].lock();
+        let index = self.index(finger)?;
+        let mut collected = self.collected(finger)?;
         collected.collect();
         collected.histograms.reset();
+        collected.losses_before = Losses::of(&self.members[index].mailbox.report());
         Ok(())
+    }
+
+    /// The last two seconds; none before the first cycle.
+    pub fn recording(&self, finger: i32) -> Result<Option<Recording>, HandError> {
+        let mut collected = self.collected(finger)?;
+        collected.collect();
+        Ok(collected.black_box.recording())
+    }
+
+    /// Tells the black box of what a controller is about to be made; the controller's number.
+    pub fn announce(&self, finger: i32, configuration: &Configuration) -> Result<u32, HandError> {
+        let index = self.index(finger)?;
+        let mut collected = self.collected(finger)?;
+        Ok(collected.black_box.announce(configuration.fingers[index].clone(), configuration.gravity(index)))
+    }
+
+    fn collected(&self, finger: i32) -> Result<MutexGuard<'_, Collected>, HandError> {
+        Ok(self.collected[self.index(finger)?].lock())
     }
 
     /// Every member, in the order of their numbers.
@@ -152,8 +194,19 @@ impl Drop for Dispatcher {
     }
 }
 
-fn collect(timings: &[Mutex<Collected>], stopped: &Receiver<()>) {
-    while stopped.recv_timeout(COLLECTING) == Err(RecvTimeoutError::Timeout) {
-        timings.iter().for_each(|collected| collected.lock().collect());
+fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopped: &Receiver<()>) {
+    let mut ended = false;
+    while !ended {
+        // Once more at the end: a finger may just have faulted.
+        ended = stopped.recv_timeout(COLLECTING) != Err(RecvTimeoutError::Timeout);
+        for collected in fingers {
+            let mut collected = collected.lock();
+            collected.collect();
+            let recording = collected.black_box.faulted().then(|| collected.black_box.recording()).flatten();
+            drop(collected);
+            if let (Some(folder), Some(recording)) = (folder, recording) {
+                keep(&recording, folder);
+            }
+        }
     }
 }

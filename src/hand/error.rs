@@ -4,6 +4,7 @@ use crate::board::LinkError;
 use crate::control::OutOfReach;
 use crate::control::calibration::Obstacle;
 use crate::finger::Fault;
+use crate::hand::missing::Missing;
 use crate::model::configuration::Unusable;
 use crate::model::{ContactError, Refusal};
 use std::path::PathBuf;
@@ -15,6 +16,9 @@ pub enum HandError {
     /// Fingers are 1, 2 and 3.
     #[error("there is no finger {0}: fingers are 1, 2 and 3")]
     NoSuchFinger(i32),
+    /// A stage of a cycle that is not known.
+    #[error("there is no stage {0}: stages are TIMING_WAKE_UP to TIMING_AGE, 0 to 7")]
+    NoSuchStage(i32),
     /// NaN or infinity in an argument.
     #[error("{what} of finger {finger} contains {value}: every entry must be a finite number")]
     NotFinite {
@@ -188,6 +192,12 @@ pub enum HandError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// Real time that is enforced and cannot be had.
+    #[error("no real time: {missing}, or set `hand.real_time = \"try\"` to do without")]
+    NotRealTime {
+        /// What cannot be had, why, and what to change.
+        missing: Missing,
+    },
     /// A calibration gave up.
     #[error("finger {finger} is limp, and its calibration as it was: {obstacle}")]
     Calibration {
@@ -206,6 +216,14 @@ pub enum HandError {
     #[error("cannot store the calibration in {}: {source}. It is in force until the hand is closed", path.display())]
     Store {
         /// The configuration file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A black box that cannot be written.
+    #[error("cannot write the black box to {}: {source}. Name a file in a folder that this user can write to", path.display())]
+    BlackBox {
+        /// The file.
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
@@ -233,7 +251,7 @@ impl HandError {
         match self {
             Self::NoSuchFinger(_) | Self::NotFinite { .. } => libc::EINVAL,
             Self::Configuration { .. } | Self::Unusable { .. } => libc::EINVAL,
-            Self::NoSuchContact(_) | Self::Adjustment { .. } => libc::EINVAL,
+            Self::NoSuchStage(_) | Self::NoSuchContact(_) | Self::Adjustment { .. } => libc::EINVAL,
             Self::TooMuchForce { .. } | Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
             Self::OutOfReach { .. } | Self::Damping { .. } => libc::ERANGE,
             Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
@@ -244,11 +262,12 @@ impl HandError {
             // Without an errno of the system's the file was read, but is no text.
             Self::ConfigurationFile { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
             Self::System { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
+            Self::NotRealTime { missing } => missing.errno(),
             Self::Link { source, .. } => source.errno(),
             Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } | Self::NoAnswer(_) => libc::ETIMEDOUT,
             Self::Calibration { .. } => libc::ECANCELED,
             Self::Busy(_) => libc::EBUSY,
-            Self::Store { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
+            Self::Store { source, .. } | Self::BlackBox { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
             Self::NotSimulated(_) => libc::ENOTSUP,
         }
     }

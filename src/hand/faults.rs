@@ -2,6 +2,7 @@
 
 use crate::finger::{Fault, FaultKind, Stage};
 use crate::hand::{Hand, HandError};
+use crate::model::configuration::RealTime;
 
 /// The answer to [`Hand::fault`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,8 +26,10 @@ impl Hand {
             Stage::Faulted(fault) => Some(fault),
             _ => None,
         };
-        let asked = self.configuration.read().fingers.iter().any(|finger| finger.priority > 0);
-        let refused = (asked && !self.realtime).then_some(Fault::new(FaultKind::RealtimeRefused));
+        let configuration = self.configuration.read();
+        let asked = configuration.hand.real_time != RealTime::Ignore
+            && configuration.fingers.iter().any(|finger| finger.priority > 0);
+        let refused = (asked && !self.given.scheduling).then_some(Fault::new(FaultKind::RealtimeRefused));
         let warning = report.warnings.newest().or(refused);
         Ok(FingerFault { stopped, warning, warnings: report.warnings.given() })
     }

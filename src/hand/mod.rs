@@ -4,19 +4,27 @@
 mod adjustment;
 mod admission;
 mod announcement;
+mod black_box;
 mod calibrating;
 mod calibration_file;
 mod configuration_file;
 mod dispatcher;
+mod doctor;
 mod error;
 mod faults;
 mod fingertip;
+mod missing;
 mod opening;
 mod root;
+mod servo_threads;
 
+pub use black_box::save;
 pub use calibrating::{Calibrating, Standing};
+pub use calibration_file::store;
 pub use configuration_file::{configured, read};
+pub use doctor::{Finding, Verdict, examine};
 pub use error::HandError;
 pub use faults::FingerFault;
 pub use fingertip::FingerTip;
+pub use missing::Missing;
 pub use root::{FingerStatus, Hand};

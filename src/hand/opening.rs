@@ -2,16 +2,16 @@
 
 use crate::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms, capacity};
 use crate::control::InverseKinematics;
-use crate::finger::{FingerServo, Mailbox, ServedPort};
+use crate::finger::{BlackBox, ControllerSource, FingerServo, Mailbox, ServedPort};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::announcement::say;
 use crate::model::Refusal;
-use crate::model::configuration::{Configuration, FINGERS, Unusable};
+use crate::model::configuration::{Configuration, FINGERS, RealTime, Unusable};
 use crate::realtime::{CycleTiming, Priority, now};
 use nalgebra::Matrix3;
 use rtrb::{Consumer, RingBuffer};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Simulated boards run below every servo: they stand for something outside the machine.
 const SIMULATED_BOARD_PRIORITY: u8 = 20;
@@ -29,6 +29,8 @@ pub(super) struct Reached {
     pub admission: Admission,
     /// Where the servo leaves its timings.
     pub timings: Consumer<CycleTiming>,
+    /// Where it leaves its cycles.
+    pub black_box: BlackBox,
 }
 
 /// A port with its fingers, and the thread that shall serve it.
@@ -49,6 +51,17 @@ pub(super) fn check(configuration: &Configuration) -> Result<(), Refusal> {
     Ok(())
 }
 
+/// A black box must have a folder to be written into before it is needed.
+pub(super) fn check_folder(configuration: &Configuration) -> Result<(), Refusal> {
+    match &configuration.hand.black_box {
+        Some(folder) if !Path::new(folder).is_dir() => {
+            let reason = format!("{folder} is no folder: make it (mkdir -p {folder}), or name another");
+            Err(Refusal { finger: None, unusable: Unusable { key: "black_box", reason } })
+        }
+        _ => Ok(()),
+    }
+}
+
 /// A simulated board behind a pseudo-terminal, for each finger whose port is `simulated`.
 pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<SimulatedPort>; FINGERS], HandError> {
     let mut ports = [const { None }; FINGERS];
@@ -60,7 +73,11 @@ pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<Simulate
             let unusable = Unusable { key: "simulation", reason: error.to_string() };
             Refusal { finger: Some(index), unusable }
         })?;
-        let priority = Priority { fifo: finger.priority.min(SIMULATED_BOARD_PRIORITY), core: None };
+        let fifo = match configuration.hand.real_time {
+            RealTime::Ignore => 0,
+            _ => finger.priority.min(SIMULATED_BOARD_PRIORITY),
+        };
+        let priority = Priority { fifo, core: None };
         let port = SimulatedPort::start(board, Pace::Patient, priority)
             .map_err(|source| HandError::System { doing: "start the simulated board on a pseudo-terminal", source })?;
         ports[index] = Some(port);
@@ -74,18 +91,11 @@ pub(super) fn reach(
     simulated: &[Option<SimulatedPort>; FINGERS],
     limp: bool,
 ) -> Result<(Vec<Line>, Vec<Reached>), HandError> {
-    let path = |index: usize| match &simulated[index] {
-        Some(port) => port.path(),
-        None => PathBuf::from(&configuration.fingers[index].port),
-    };
     let (mut lines, mut reached) = (Vec::new(), Vec::new());
-    for first in 0..FINGERS {
-        let sharing: Vec<usize> = (0..FINGERS).filter(|&index| path(index) == path(first)).collect();
-        if sharing.first() < Some(&first) {
-            continue;
-        }
-        let failed = |index| move |source| HandError::Link { finger: index + 1, source };
-        let mut link = Link::open(&path(first), configuration.fingers[first].baud).map_err(failed(first))?;
+    for (path, sharing) in ports(configuration, simulated) {
+        let first = sharing[0];
+        let failed = |source| HandError::Link { finger: first + 1, source };
+        let mut link = Link::open(&path, configuration.fingers[first].baud).map_err(failed)?;
         warn_of_latency(link.transport());
         let mut fingers = Vec::new();
         for index in sharing {
@@ -97,6 +107,22 @@ pub(super) fn reach(
     }
     reached.sort_by_key(|finger| finger.index);
     Ok((lines, reached))
+}
+
+/// Every port, with the fingers on it, 0 to 2, one at least.
+pub(super) fn ports(
+    configuration: &Configuration,
+    simulated: &[Option<SimulatedPort>; FINGERS],
+) -> Vec<(PathBuf, Vec<usize>)> {
+    let mut ports: Vec<(PathBuf, Vec<usize>)> = Vec::new();
+    for (index, finger) in configuration.fingers.iter().enumerate() {
+        let path = simulated[index].as_ref().map_or_else(|| PathBuf::from(&finger.port), |port| port.path());
+        match ports.iter_mut().find(|(known, _)| *known == path) {
+            Some((_, fingers)) => fingers.push(index),
+            None => ports.push((path, vec![index])),
+        }
+    }
+    ports
 }
 
 /// A USB bridge that holds replies back makes every cycle lose its reply.
@@ -129,9 +155,12 @@ fn shake_hands(
     }
     let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;
     let (producer, timings) = RingBuffer::new(TIMINGS);
+    let first = ControllerSource { number: 0, gravity: configuration.gravity(index), finger: finger.clone() };
+    let (recorder, black_box) = BlackBox::new(index as i32 + 1, hand, first); // 1 to 3
     let (servo, mailbox) =
-        FingerServo::new(configuration, index, stiffness, &identity, &configured, producer).map_err(unusable)?;
-    Ok((servo, Reached { index, mailbox, admission: admission(configuration, index), timings }))
+        FingerServo::new(configuration, index, stiffness, &identity, &configured, producer, recorder)
+            .map_err(unusable)?;
+    Ok((servo, Reached { index, mailbox, admission: admission(configuration, index), timings, black_box }))
 }
 
 pub(super) fn admission(configuration: &Configuration, index: usize) -> Admission {

@@ -1,27 +1,21 @@
 //! Root: opens and closes a hand, owns its threads and ports, reports its status.
 
-use crate::board::{Port, SimulatedFinger, SimulatedPort};
+use crate::board::{SimulatedFinger, SimulatedPort};
 use crate::control::calibration::Verdict;
-use crate::finger::{FingerReport, Servo, Stage};
+use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::announcement::say;
 use crate::hand::dispatcher::Dispatcher;
-use crate::hand::opening::{Line, check, reach, simulate};
+use crate::hand::opening::{check, check_folder, reach, simulate};
+use crate::hand::servo_threads::{Given, PortServo, start};
 use crate::hand::{HandError, configured};
 use crate::model::configuration::{Configuration, FINGERS};
-use crate::realtime::{self, Distribution, MonotonicClock, Priority, Realtime, Schedule, now, spawn};
-use crossbeam_channel::bounded;
+use crate::realtime::{self, Distribution, now};
 use nalgebra::Vector3;
 use parking_lot::RwLock;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::process::id;
 use std::thread::{JoinHandle, sleep};
 use std::time::Duration;
-
-type PortServo = Servo<Port, MonotonicClock>;
-
-/// The first cycle begins so long after the threads are started, ns: they have their priorities and cores by then.
-const HEAD_START: u64 = 10_000_000;
 
 /// Bound on the components of a push, N: far beyond what tears a finger off, and not beyond what can be simulated.
 const STRONGEST_PUSH: f64 = 1000.0;
@@ -46,7 +40,7 @@ pub struct Hand {
     pub(super) configuration: RwLock<Configuration>,
     /// Where the configuration was read from, and where calibration is stored.
     pub(super) file: Option<PathBuf>,
-    pub(super) realtime: bool,
+    pub(super) given: Given,
     /// Within this time, ns, every finger reaches its end state.
     ending: u64,
     /// The process that has the threads. A forked child inherits this value, but not them.
@@ -60,20 +54,18 @@ pub struct FingerStatus {
     pub stage: Stage,
     /// Whether every servo thread runs under SCHED_FIFO.
     pub realtime: bool,
+    /// Whether every servo thread has its memory locked.
+    pub memory_locked: bool,
+    /// Whether every servo thread runs on the core that is configured, if one is.
+    pub on_core: bool,
     /// Configured cycles in a second, Hz.
     pub rate: f64,
     /// Measured cycles in a second since open, Hz.
     pub measured_rate: f64,
     /// From the scheduled beginning of a cycle to its first instruction, microseconds: the servo's jitter.
     pub wake_up: Distribution,
-    /// Cycles since open.
-    pub cycles: u64,
-    /// Cycles without a valid reply.
-    pub lost_replies: u64,
-    /// Periods skipped because the servo was late.
-    pub skipped_periods: u64,
-    /// Damaged or foreign frames on the finger's port.
-    pub damaged_frames: u64,
+    /// Its cycles since open, and what went wrong in them.
+    pub losses: Losses,
     /// The part of the wanted joint torque that the tension limits let through in the last cycle, 0 to 1.
     pub torque_scale: f64,
     /// The part of the calibration under way that is done, 0 to 1; 0 where there is none.
@@ -122,20 +114,20 @@ impl Hand {
 
     fn open_from(configuration: Configuration, file: Option<PathBuf>, limp: bool) -> Result<Self, HandError> {
         check(&configuration)?;
+        check_folder(&configuration)?;
         let simulated = simulate(&configuration)?;
         let (lines, reached) = reach(&configuration, &simulated, limp)?;
-        let mut threads: Vec<u8> = lines.iter().map(|line| line.thread).collect();
-        threads.sort_unstable();
-        threads.dedup();
-
         let dispatcher = Dispatcher::new(reached);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOPPING;
         let configuration = RwLock::new(configuration);
         let servos = Vec::new();
-        let mut hand =
-            Self { dispatcher, servos, simulated, configuration, file, realtime: true, ending, process: id() };
+        let given = Given::default();
+        let mut hand = Self { dispatcher, servos, simulated, configuration, file, given, ending, process: id() };
         // From here on, dropping the hand closes it.
-        hand.start(&threads, lines)?;
+        let folder = hand.configuration.read().hand.black_box.clone().map(PathBuf::from);
+        let collecting = hand.dispatcher.start_collecting(folder);
+        collecting.map_err(|source| HandError::System { doing: "start the thread that collects reports", source })?;
+        hand.given = start(&hand.configuration.read(), lines, &mut hand.servos)?;
         hand.wait_for_every_finger()?;
         Ok(hand)
     }
@@ -183,14 +175,13 @@ impl Hand {
         let intervals = report.cycles.saturating_sub(1) as f64;
         Ok(FingerStatus {
             stage: report.stage,
-            realtime: self.realtime,
+            realtime: self.given.scheduling,
+            memory_locked: self.given.memory,
+            on_core: self.given.core,
             rate: self.configuration.read().hand.rate,
             measured_rate: if seconds > 0.0 { intervals / seconds } else { 0.0 },
             wake_up: self.timing(finger, realtime::Stage::WakeUp)?,
-            cycles: report.cycles,
-            lost_replies: report.lost_replies,
-            skipped_periods: report.skipped_periods,
-            damaged_frames: report.damaged_frames,
+            losses: Losses::of(&report),
             torque_scale: report.cycle.torque_scale,
             calibration: match report.calibration {
                 Some(Verdict::Going(progress)) => progress.part,
@@ -207,7 +198,15 @@ impl Hand {
         self.dispatcher.timing(finger, stage)
     }
 
-    /// Forgets the timings of finger 1, 2 or 3.
+    /// How many cycles finger 1, 2 or 3 has had, and what went wrong in them, since open or since the timings were last reset.
+    ///
+    /// # Errors
+    /// No such finger.
+    pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
+        self.dispatcher.losses(finger)
+    }
+
+    /// Begins to count timings and losses of finger 1, 2 or 3 anew.
     ///
     /// # Errors
     /// No such finger.
@@ -249,44 +248,6 @@ impl Hand {
     /// Brings every finger to its end state, as configured, and ends the threads. The same as dropping the hand.
     pub fn close(self) {}
 
-    fn start(&mut self, threads: &[u8], lines: Vec<Line>) -> Result<(), HandError> {
-        let system = |doing| move |source| HandError::System { doing, source };
-        self.dispatcher.start_collecting().map_err(system("start the thread that collects reports"))?;
-        let period = (1e9 / self.configuration.read().hand.rate).round() as u64;
-        let first = now() + HEAD_START;
-        let mut lines: Vec<Option<Line>> = lines.into_iter().map(Some).collect();
-        let (told, hear) = bounded(threads.len());
-        for (place, &thread) in threads.iter().enumerate() {
-            let own = lines.iter_mut().filter(|line| line.as_ref().is_some_and(|line| line.thread == thread));
-            let ports = own.filter_map(Option::take).map(|line| line.port).collect();
-            // Staggered, so that the fingers do not ask for one core at one instant.
-            let phase = period * place as u64 / threads.len() as u64;
-            let servo = Servo::new(MonotonicClock, Schedule::new(first + phase, period), ports);
-            let told = told.clone();
-            let handle = spawn(&format!("sun2xp servo {thread}"), self.priority(thread), move |realtime| {
-                // The receiver waits for this; if OpenHand has given up meanwhile, nobody needs it.
-                let _ = told.send(realtime);
-                run(servo)
-            });
-            self.servos.push(handle.map_err(system("start a servo thread"))?);
-        }
-        // Ours would keep the channel open where a thread died before it could tell.
-        drop(told);
-        let had: Vec<Realtime> = hear.iter().take(threads.len()).collect();
-        let asked = threads.iter().all(|&thread| self.priority(thread).fifo > 0);
-        self.realtime = asked && had.len() == threads.len() && had.iter().all(|had| had.scheduling.is_none());
-        announce(&had);
-        Ok(())
-    }
-
-    fn priority(&self, thread: u8) -> Priority {
-        let configuration = self.configuration.read();
-        let own = (0..FINGERS).find(|&index| configuration.thread(index) == thread);
-        // Fingers that share a thread have the same priority and core: the configuration was checked.
-        let finger = own.map(|index| &configuration.fingers[index]);
-        finger.map_or_else(Priority::default, |finger| Priority { fifo: finger.priority, core: finger.core })
-    }
-
     /// Until every finger is a spring that holds its pose. Each decides by itself within the open time-out.
     fn wait_for_every_finger(&self) -> Result<(), HandError> {
         loop {
@@ -321,27 +282,5 @@ impl Drop for Hand {
             // A servo thread catches its own panics. Its ports are closed here, not in the servo: it may take long.
             let _ = servo.join();
         }
-    }
-}
-
-/// The body of a servo thread. A panic is a defect, but it must not leave the last torque on the motors.
-fn run(mut servo: PortServo) -> PortServo {
-    if catch_unwind(AssertUnwindSafe(|| servo.run())).is_err() {
-        // If even this panics, the board's watchdog is left.
-        let _ = catch_unwind(AssertUnwindSafe(|| servo.fail()));
-    }
-    servo
-}
-
-/// Tells on standard error where servo threads are not what they should be.
-fn announce(had: &[Realtime]) {
-    if let Some(error) = had.iter().find_map(|had| had.scheduling.as_ref()) {
-        say(&format!(
-            "the servo is not real-time ({error}): allow it with CAP_SYS_NICE or an rtprio limit, or set \
-             `finger.priority = 0`; until then its cycles may be late"
-        ));
-    }
-    if let Some(error) = had.iter().find_map(|had| had.core.as_ref()) {
-        say(&format!("a servo thread is not bound to its core ({error}): see `finger.core`"));
     }
 }

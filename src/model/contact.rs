@@ -96,7 +96,7 @@ impl Contact {
         DefaultAllocator: Allocator<Const<D>, DimDiff<Const<D>, U1>> + Allocator<DimDiff<Const<D>, U1>>,
     {
         finite(selection.as_slice())?;
-        let checked = spring(stiffness)?;
+        let (checked, _) = spring(stiffness)?;
         let spatial = selection.transpose() * checked * selection;
         // Finite factors may have an infinite product.
         finite(spatial.as_slice())?;
@@ -131,12 +131,13 @@ fn scaled(stiffness: &Matrix6<f64>, factor: f64) -> Matrix6<f64> {
     Matrix6::from_fn(|row, column| stiffness[(row, column)] * scale(row) * scale(column))
 }
 
-/// A symmetric stiffness with its rounding averaged away; refused where it is no spring. Of any rank.
+/// A symmetric stiffness with its rounding averaged away, and its smallest and largest eigenvalue; refused where it is no spring.
+/// Of any rank.
 ///
 /// # Errors
 /// NaN or infinity; not symmetric by more than a thousandth of the largest entry; an eigenvalue below minus a thousandth
 /// of the largest.
-pub fn spring<const D: usize>(asked: &SMatrix<f64, D, D>) -> Result<SMatrix<f64, D, D>, ContactError>
+pub fn spring<const D: usize>(asked: &SMatrix<f64, D, D>) -> Result<(SMatrix<f64, D, D>, (f64, f64)), ContactError>
 where
     Const<D>: DimSub<U1>,
     DefaultAllocator: Allocator<Const<D>, DimDiff<Const<D>, U1>> + Allocator<DimDiff<Const<D>, U1>>,
@@ -158,7 +159,7 @@ where
     if smallest < -ROUNDING * largest.abs().max(smallest.abs()).min(f64::MAX) {
         return Err(ContactError::Negative { smallest });
     }
-    Ok(symmetric)
+    Ok((symmetric, (smallest, largest)))
 }
 
 /// A matrix that is symmetric but for rounding, averaged so that its eigenvalues can be computed whatever its finite entries

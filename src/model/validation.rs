@@ -1,6 +1,6 @@
 //! What a configuration must satisfy before a motor may move.
 
-use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, FINGERS, Unusable};
+use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, FINGERS, RealTime, Unusable};
 use crate::model::{Surface, TendonsError};
 
 /// A configuration that cannot be used: which finger's, or the hand's, and why.
@@ -21,6 +21,10 @@ impl Configuration {
         self.hand.check().map_err(|unusable| Refusal { finger: None, unusable })?;
         for (index, finger) in self.fingers.iter().enumerate() {
             finger.check().map_err(|unusable| Refusal { finger: Some(index), unusable })?;
+            if finger.priority == 0 && self.hand.real_time == RealTime::Enforce {
+                let reason = "0 is not real-time, which hand.real_time = \"enforce\" asks for: 1 to 99".into();
+                return Err(Refusal { finger: Some(index), unusable: Unusable { key: "priority", reason } });
+            }
         }
         for second in 0..FINGERS {
             for first in 0..second {
@@ -194,6 +198,7 @@ impl ConfiguredFinger {
         optional("controller.speed_filter", controller.speed_filter, 1.0, 1e4, "Hz")?;
         optional("controller.stretch_filter", controller.stretch_filter, 0.1, 1e4, "Hz")?;
         optional("controller.set_point_speed", controller.set_point_speed, 1e-3, 1e3, "rad/s")?;
+        optional("controller.adaptation_gain", controller.adaptation_gain, 0.0, 30.0, "1/s")?;
         optional("controller.inertia_gain", controller.inertia_gain, 0.1, 20.0, "")?;
         optional("controller.damping_ratio", controller.damping_ratio, 0.05, 3.0, "")?;
         optional("controller.set_point_time", controller.set_point_time, 1e-3, 1.0, "s")?;

@@ -1,11 +1,17 @@
-//! Clock, periods, priorities and timing figures of the servo threads.
+//! Clock, periods, priorities, locked memory and timing figures of the servo threads.
 
 mod clock;
+mod follower;
+mod memory;
 mod period;
 mod threads;
 mod timing;
+mod wake_up;
 
 pub use clock::{Clock, MonotonicClock, now};
+pub use follower::Follower;
+pub use memory::Memory;
 pub use period::Schedule;
-pub use threads::{Priority, Realtime, spawn};
+pub use threads::{Priority, Realtime, lock_stack, spawn, touch_stack};
 pub use timing::{CycleTiming, Distribution, Histograms, Stage};
+pub use wake_up::{WakeUp, measure_wake_up};

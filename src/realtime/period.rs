@@ -14,6 +14,12 @@ impl Schedule {
         Self { next: first, period }
     }
 
+    /// The schedule of one of `of` threads, 0 to `of` - 1, that share cores and whatever else is shared: their cycles begin as far from
+    /// each other as they can.
+    pub fn staggered(first: u64, period: u64, place: usize, of: usize) -> Self {
+        Self::new(first + period * place as u64 / of as u64, period)
+    }
+
     /// When the next cycle begins, ns.
     pub fn next(&self) -> u64 {
         self.next
@@ -32,6 +38,11 @@ impl Schedule {
         self.next += skipped * self.period;
         skipped
     }
+
+    /// Moves all beginnings from the next one on, ns; later where `by` is positive.
+    pub fn shift(&mut self, by: i64) {
+        self.next = self.next.saturating_add_signed(by);
+    }
 }
 
 #[cfg(test)]
@@ -47,6 +58,14 @@ mod tests {
         assert_eq!((schedule.advance(1250), schedule.next()), (0, 1200));
         // More than a whole period late: skipped.
         assert_eq!((schedule.advance(1617), schedule.next()), (3, 1600));
+    }
+
+    #[test]
+    fn threads_begin_as_far_from_each_other_as_they_can() {
+        let beginnings = |of| (0..of).map(|place| Schedule::staggered(5000, 900, place, of).next()).collect::<Vec<_>>();
+        assert_eq!(beginnings(1), [5000]);
+        assert_eq!(beginnings(2), [5000, 5450]);
+        assert_eq!(beginnings(3), [5000, 5300, 5600]);
     }
 
     proptest! {

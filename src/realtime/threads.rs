@@ -24,6 +24,8 @@ pub struct Realtime {
     pub scheduling: Option<io::Error>,
     /// Why the thread is not bound to its core, though it was asked to be.
     pub core: Option<io::Error>,
+    /// Why its memory is not locked, though that was asked for.
+    pub memory: Option<io::Error>,
 }
 
 /// Starts a thread with all signals blocked, so that it takes none of the planner's: not one that the process receives, nor
@@ -41,6 +43,37 @@ pub fn spawn<T: Send + 'static>(
     // SAFETY: `restored` is the mask that this thread had.
     unsafe { libc::pthread_sigmask(libc::SIG_SETMASK, &restored, std::ptr::null_mut()) };
     handle
+}
+
+/// Locks the stack of the calling thread, all of it, and so faults it in.
+///
+/// # Errors
+/// What the system says: EPERM without any right to lock, ENOMEM beyond the memlock limit.
+pub fn lock_stack() -> io::Result<()> {
+    let mut attributes = MaybeUninit::uninit();
+    let (mut lowest, mut bytes) = (std::ptr::null_mut(), 0);
+    // SAFETY: the calling thread; the attributes are initialised before they are looked at, and destroyed once.
+    unsafe {
+        match libc::pthread_getattr_np(libc::pthread_self(), attributes.as_mut_ptr()) {
+            0 => {}
+            error => return Err(io::Error::from_raw_os_error(error)),
+        }
+        libc::pthread_attr_getstack(attributes.as_ptr(), &mut lowest, &mut bytes);
+        libc::pthread_attr_destroy(attributes.as_mut_ptr());
+    }
+    // SAFETY: locking changes no contents.
+    if unsafe { libc::mlock(lowest, bytes) } == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
+}
+
+/// Faults in half of the stack of a thread that [`spawn`] has started: for where it cannot be locked.
+#[inline(never)]
+pub fn touch_stack() {
+    const PAGE: usize = 4096;
+    let mut stack = [MaybeUninit::<u8>::uninit(); STACK_BYTES / 2];
+    for byte in stack.iter_mut().step_by(PAGE) {
+        // SAFETY: a byte of a local array; volatile, because nobody ever reads it.
+        unsafe { std::ptr::from_mut(byte).write_volatile(MaybeUninit::new(0)) };
+    }
 }
 
 /// Blocks every signal in the calling thread, whose new threads inherit that; returns the mask to restore.

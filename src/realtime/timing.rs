@@ -2,6 +2,7 @@
 //! counts them.
 
 use hdrhistogram::Histogram;
+use serde::{Deserialize, Serialize};
 
 /// A part of a finger's cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,16 +21,27 @@ pub enum Stage {
     Compute,
     /// From the scheduled beginning to the end of the computation.
     Whole,
+    /// How old the newest measurement is when the command computed from it takes effect, by the board's clock.
+    Age,
 }
 
 impl Stage {
-    /// Every stage, in the order of time.
-    pub const ALL: [Stage; 7] =
-        [Stage::WakeUp, Stage::Write, Stage::Wire, Stage::Read, Stage::Decode, Stage::Compute, Stage::Whole];
+    /// Every stage: the parts in the order of time, then what they add up to.
+    pub const ALL: [Stage; 8] = [
+        Stage::WakeUp,
+        Stage::Write,
+        Stage::Wire,
+        Stage::Read,
+        Stage::Decode,
+        Stage::Compute,
+        Stage::Whole,
+        Stage::Age,
+    ];
 }
 
 /// The times of one cycle of one finger, ns, by [`Stage::ALL`]; none where there was no such stage, as without a reply.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
 pub struct CycleTiming {
     stages: [Option<u32>; Stage::ALL.len()],
 }

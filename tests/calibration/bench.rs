@@ -17,6 +17,9 @@ pub struct Bench {
     pub report: Report,
     /// A gauge that shows always the same count.
     pub dead_gauge: Option<(usize, u16)>,
+    /// Which gauge's and which motor's cable is at each number, 0 to 3.
+    pub gauge_at: [usize; 4],
+    pub motor_at: [usize; 4],
     /// What the board says of its counts.
     pub zero_valid: bool,
     /// Largest true tension, N.
@@ -40,6 +43,8 @@ impl Bench {
             command: Command::default(),
             report: Report::default(),
             dead_gauge: None,
+            gauge_at: [0, 1, 2, 3],
+            motor_at: [0, 1, 2, 3],
             zero_valid: true,
             largest_tension: 0.0,
         }
@@ -47,6 +52,7 @@ impl Bench {
 
     fn feedback(&mut self) -> Feedback {
         let mut feedback = read(&mut self.sensors, &self.plant);
+        feedback.gauge_counts = self.gauge_at.map(|gauge| feedback.gauge_counts[gauge]);
         if let Some((gauge, count)) = self.dead_gauge {
             feedback.gauge_counts[gauge] = count;
         }
@@ -56,7 +62,7 @@ impl Bench {
     fn advance(&mut self, feedback: &Feedback, activity: &Activity) {
         let steps = (1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize;
         for _ in 0..steps {
-            self.plant.step((self.command.motor_torques * 0.01).into());
+            self.plant.step(self.motor_at.map(|motor| self.command.motor_torques[motor] * 0.01));
             self.largest_tension = self.largest_tension.max(self.plant.tensions().max());
         }
         let (command, report) = self.controller.cycle(&mut self.state, Some(feedback), activity);

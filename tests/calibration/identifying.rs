@@ -2,7 +2,7 @@
 
 use crate::bench::Bench;
 use sun2xp::control::calibration::{Findings, Identified, Task};
-use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::model::configuration::{ConfiguredFinger, GaugeReference};
 
 pub fn identified(bench: &mut Bench) -> Identified {
     match bench.calibrate(Task::Identify) {
@@ -55,5 +55,47 @@ fn harsh_joint_friction_is_found() {
     let found = identified(&mut bench);
     for joint in 0..3 {
         assert!((found.joint_coulomb[joint] / 0.2 - 1.0).abs() < 0.15, "joint {joint}: {found:?}");
+    }
+}
+
+/// A finger whose gauges show so much of what they should, and whose motors give so much of what they are told.
+fn with_gains(gauges: [f64; 4], motors: [f64; 4], reference: GaugeReference) -> (ConfiguredFinger, Identified) {
+    let mut truth = ConfiguredFinger::default();
+    for (scale, gain) in truth.gauge.newton_per_count.iter_mut().zip(gauges) {
+        *scale /= gain;
+    }
+    truth.simulation.motor_constant_ratio = motors;
+    let mut belief = ConfiguredFinger::default();
+    belief.gauge.reference = reference;
+    let mut bench = Bench::new(&truth, &belief, 1000.0).open();
+    (truth, identified(&mut bench))
+}
+
+#[test]
+fn gauges_are_compared_with_each_other() {
+    let gauges = [1.1, 0.92, 1.0, 0.95];
+    let mean = gauges.map(f64::recip).iter().sum::<f64>() / 4.0;
+    let (_, found) = with_gains(gauges, [1.0; 4], GaugeReference::Gauges);
+    println!("{found:.4?}");
+    for (tendon, gauge) in gauges.into_iter().enumerate() {
+        // Their mean stays, so all tensions are off by the mean of what they were off by.
+        let expected = 1.0 / gauge / mean;
+        assert!((found.gauge_gain[tendon] / expected - 1.0).abs() < 0.01, "gauge {tendon}: {found:?}");
+        assert!((found.tendon_stiffness[tendon] * mean / 300.0 - 1.0).abs() < 0.01, "tendon {tendon}: {found:?}");
+    }
+}
+
+#[test]
+fn motors_are_a_reference_for_the_scale_of_the_gauges() {
+    let gauges = [1.2, 1.15, 1.1, 1.25];
+    let (truth, found) = with_gains(gauges, [1.02, 0.98, 1.0, 1.0], GaugeReference::Motors);
+    println!("{found:.4?}");
+    for (tendon, gauge) in gauges.into_iter().enumerate() {
+        let gain = found.gauge_gain[tendon] * gauge;
+        assert!((gain - 1.0).abs() < 0.01, "gauge {tendon}: {gain}, {found:?}");
+        assert!((found.tendon_stiffness[tendon] / 300.0 - 1.0).abs() < 0.01, "tendon {tendon}: {found:?}");
+        let ratio = truth.simulation.motor_constant_ratio[tendon];
+        assert!((found.motor_ratio[tendon] / ratio - 1.0).abs() < 0.01, "motor {tendon}: {found:?}");
+        assert!((found.conduit[tendon] / 0.05 - 1.0).abs() < 0.15, "motor {tendon}: {found:?}");
     }
 }

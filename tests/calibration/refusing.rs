@@ -103,6 +103,30 @@ fn a_routine_that_takes_too_long() {
     assert_eq!(refused, Err(Obstacle::TimeLimit { seconds: 2.0 }));
 }
 
+/// From tight and from slack, at every rate, every pair.
+#[test]
+fn cables_of_two_gauges_or_two_motors_that_are_swapped() {
+    let finger = ConfiguredFinger::default();
+    for (rate, slack) in [(500.0, 0.0), (500.0, 2.0), (1000.0, 2.0), (2000.0, 0.0)] {
+        for (one, other) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
+            let bench = || {
+                let mut bench = Bench::new(&finger, &finger, rate);
+                (0..4).for_each(|motor| bench.plant.turn_motor(motor, -slack * (1.0 + 0.3 * motor as f64)));
+                bench
+            };
+            let number = |index: usize| index as u8 + 1;
+            let mut gauges = bench();
+            gauges.gauge_at.swap(one, other);
+            let expected = Obstacle::Swapped { motor: number(one), gauge: number(other) };
+            assert_eq!(gauges.calibrate(Task::Signs), Err(expected), "{rate} Hz, {slack}");
+            let mut motors = bench();
+            motors.motor_at.swap(one, other);
+            let expected = Obstacle::SwappedMotor { motor: number(one), encoder: number(other) };
+            assert_eq!(motors.calibrate(Task::Signs), Err(expected), "{rate} Hz, {slack}");
+        }
+    }
+}
+
 #[test]
 fn a_motor_that_does_not_turn() {
     let mut finger = ConfiguredFinger::default();

@@ -10,10 +10,18 @@ type Change = (&'static str, fn(&mut ConfiguredFinger), bool);
 const CHANGES: &[Change] = &[
     ("t_min", |finger| finger.tendon.minimum = 12.0, true),
     ("t_max", |finger| finger.tendon.maximum = 30.0, false),
-    ("gains", |finger| finger.controller.tension_integral = Some(100.0), false),
+    (
+        "gains",
+        |finger| match finger.controller.scheme {
+            Scheme::Figure11 => finger.controller.adaptation_gain = Some(5.0),
+            _ => finger.controller.tension_integral = Some(100.0),
+        },
+        false,
+    ),
     ("damper", |finger| finger.controller.motor_damping = Some(300.0), false),
     ("to figure 9", |finger| finger.controller.scheme = Scheme::Figure9, false),
     ("to figure 10", |finger| finger.controller.scheme = Scheme::Figure10, false),
+    ("to figure 11", |finger| finger.controller.scheme = Scheme::Figure11, false),
     ("to state feedback", |finger| finger.controller.scheme = Scheme::StateFeedback, false),
     ("links", |finger| finger.geometry.links = [3.556, 5.080, 4.200], false),
     ("tendon stiffness", |finger| finger.tendon.stiffness = [280.0; 4], false),

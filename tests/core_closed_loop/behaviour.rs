@@ -64,6 +64,21 @@ fn figure_10_settles_at_2000_hz() {
     settles_everywhere(Scheme::Figure10, 2000.0);
 }
 
+#[test]
+fn figure_11_settles_at_500_hz() {
+    settles_everywhere(Scheme::Figure11, 500.0);
+}
+
+#[test]
+fn figure_11_settles_at_1000_hz() {
+    settles_everywhere(Scheme::Figure11, 1000.0);
+}
+
+#[test]
+fn figure_11_settles_at_2000_hz() {
+    settles_everywhere(Scheme::Figure11, 2000.0);
+}
+
 /// Deflection under 0.3 N, tip, over what the spring of 3 N/cm should give: 1 is a perfect spring.
 fn deflection_ratio(finger: &ConfiguredFinger, belief: &ConfiguredFinger) -> f64 {
     let mut servo = Loop::with_belief(finger, belief, 1000.0);
@@ -98,7 +113,7 @@ fn tip_is_the_commanded_spring_and_is_not_without_stretch_compensation() {
 
 #[test]
 fn without_damping_the_finger_does_not_rest() {
-    for scheme in [Scheme::Figure9, Scheme::Figure10] {
+    for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11] {
         let mut finger = finger_with(scheme);
         finger.controller.motor_damping = Some(0.0);
         finger.controller.rate_time = Some(0.0);
@@ -128,6 +143,9 @@ fn slack_is_taken_up() {
         (Scheme::Figure9, 500.0),
         (Scheme::Figure10, 1000.0),
         (Scheme::Figure10, 2000.0),
+        (Scheme::Figure11, 500.0),
+        (Scheme::Figure11, 1000.0),
+        (Scheme::Figure11, 2000.0),
         (Scheme::StateFeedback, 500.0),
         (Scheme::StateFeedback, 1000.0),
         (Scheme::StateFeedback, 2000.0),

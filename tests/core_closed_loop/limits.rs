@@ -1,11 +1,10 @@
 //! Gravity, what a pose can carry, soft joint limits, warm motors: the same for every scheme.
 
-use super::rig::{Loop, finger_with, spring};
-use nalgebra::Vector3;
+use super::rig::{Loop, SCHEMES, finger_with, spring};
+use nalgebra::{Vector3, Vector4};
 use sun2xp::control::monitors::Symptom;
-use sun2xp::model::configuration::Scheme;
-
-const SCHEMES: [Scheme; 3] = [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback];
+use sun2xp::control::{Activity, Controller, Feedback};
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
 #[test]
 fn gravity_does_not_move_the_finger_unless_it_is_left_alone() {
@@ -42,7 +41,8 @@ fn a_pose_that_cannot_carry_the_stiffness_gets_what_it_can() {
         let locked = tendons.r * tendons.r.transpose() * 300.0;
         let part = locked.try_inverse().unwrap() * jacobian.transpose() * jacobian * 24.0 * scale;
         let largest = part.complex_eigenvalues().iter().map(|value| value.re).fold(0.0, f64::max);
-        assert!((largest - 0.95).abs() < 0.01, "{scheme:?}: {largest}");
+        let share = if scheme == Scheme::Figure11 { 0.7 } else { 0.95 };
+        assert!((largest - share).abs() < 0.01, "{scheme:?}: {largest}");
     }
 }
 
@@ -56,7 +56,8 @@ fn a_joint_beyond_its_limit_is_pushed_back() {
         let limp = spring(Vector3::zeros(), 0.0);
         let beyond = |servo: &Loop| servo.plant.joints()[2] - high[2];
         servo.plant.set_external_force(Vector3::new(0.0, 0.0, -0.3));
-        servo.run(2.0, &limp);
+        // Without a gain on the tension error the friction of the motors holds it back on its way.
+        servo.run(if scheme == Scheme::Figure11 { 4.0 } else { 2.0 }, &limp);
         let pushed = beyond(&servo);
         println!("{scheme:?}: {:?} degrees", servo.plant.joints().map(f64::to_degrees).as_slice());
         assert!(servo.plant.joint_rates().amax() < 0.1, "{scheme:?} swings at its limit");
@@ -86,4 +87,70 @@ fn a_motor_that_is_warm_is_limited_to_what_it_can_give_for_ever() {
     }
     assert!(squares.max() < 1.001, "{:?} N^2 cm^2", squares.as_slice());
     assert!(squares.max() > 0.8, "{:?} N^2 cm^2: blind", squares.as_slice());
+}
+
+const FIGURES: [Scheme; 3] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11];
+
+/// A finger whose motors may give 21 N for ever, and are warm after half a second of more.
+fn soon_warm(scheme: Scheme) -> ConfiguredFinger {
+    let mut finger = finger_with(scheme);
+    finger.motor.continuous_torque = [1.0; 4];
+    finger.motor.thermal_time = 0.5;
+    finger
+}
+
+/// Warm motors that pull 21 N while 55 N are asked for, for long; then 10 N are asked for. What winds up holds the motors at
+/// their limit after that.
+#[test]
+fn a_warm_motor_does_not_wind_up_the_integral() {
+    for scheme in FIGURES {
+        for rate in [500.0, 1000.0, 2000.0] {
+            let controller = Controller::new(&soon_warm(scheme), rate).unwrap();
+            let gauges = |newton: f64| Feedback {
+                motor_counts: [0; 4],
+                gauge_counts: [(newton * 4095.0 / 100.0).round() as u16; 4],
+            };
+            let held = gauges(1.0 / 0.0475);
+            let mut state = controller.start(&held);
+            let mut warm = 0.0;
+            for _ in 0..(4.0 * rate) as usize {
+                let asked = Activity::Tense(Vector4::repeat(55.0));
+                warm = controller.cycle(&mut state, Some(&held), &asked).0.motor_torques[0];
+            }
+            assert!(warm < 1.2, "{scheme:?} at {rate} Hz: {warm} N cm, not warm");
+            let (command, _) = controller.cycle(&mut state, Some(&held), &Activity::Tense(Vector4::repeat(10.0)));
+            let pull = command.motor_torques[0] / 0.0475;
+            assert!(pull < 15.0, "{scheme:?} at {rate} Hz: {pull} N where 10 N are asked for");
+        }
+    }
+}
+
+/// A finger pressed against a stop with all that its motors have, then called back: by how much the true tensions are over the
+/// desired ones at most, from 30 ms after the call on, N.
+fn excess_after_a_stop(finger: &ConfiguredFinger, rate: f64) -> f64 {
+    let mut finger = finger.clone();
+    finger.controller.set_point_speed = Some(1e3);
+    let mut servo = Loop::new(&finger, rate);
+    servo.run(3.0, &spring(Vector3::new(0.0, 3.5, 1.0), 5.0));
+    let back = spring(servo.plant.joints() - Vector3::new(0.0, 0.05, 0.0), 5.0);
+    servo.run(0.03, &back);
+    let mut most: f64 = 0.0;
+    for _ in 0..rate as usize {
+        servo.cycle(&back);
+        most = most.max((servo.plant.tensions() - servo.report.desired_tensions).max());
+    }
+    most
+}
+
+#[test]
+fn a_warm_finger_that_leaves_a_stop_overshoots_no_more_than_a_cold_one() {
+    for scheme in FIGURES {
+        for rate in [500.0, 1000.0, 2000.0] {
+            let [warm, cold] =
+                [soon_warm(scheme), finger_with(scheme)].map(|finger| excess_after_a_stop(&finger, rate));
+            println!("{scheme:?} at {rate} Hz: {warm:.2} N warm, {cold:.2} N cold");
+            // Of noise and friction; with an integral that winds up it is 10 N and more.
+            assert!(warm < cold + 1.5, "{scheme:?} at {rate} Hz: {warm} N warm, {cold} N cold");
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 mod adjustment;
 mod behaviour;
+mod figure11;
 mod limits;
 mod rig;
 mod robustness;

@@ -188,7 +188,7 @@ pub fn finger_with(scheme: Scheme) -> ConfiguredFinger {
     finger
 }
 
-pub const SCHEMES: [Scheme; 3] = [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback];
+pub const SCHEMES: [Scheme; 4] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback];
 
 /// Without noise or dither, so that what is left of a jump in torque is that of a switch.
 pub fn quiet(scheme: Scheme) -> ConfiguredFinger {

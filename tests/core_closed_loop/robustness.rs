@@ -1,6 +1,6 @@
 //! The servo's core with a finger that is not what it believes, at the bound of Kx, and with feedback that makes no sense.
 
-use super::rig::{Loop, finger_with, poses, spring};
+use super::rig::{Loop, SCHEMES, finger_with, poses, spring};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 use sun2xp::control::{Activity, Controller, Feedback, SetPoint};
@@ -8,7 +8,7 @@ use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
 #[test]
 fn rests_at_the_bound_of_the_stiffness() {
-    for scheme in [Scheme::Figure9, Scheme::Figure10] {
+    for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11] {
         for rate in [500.0, 1000.0, 2000.0] {
             let finger = finger_with(scheme);
             let stiffness = finger.stiffness_bound(rate);
@@ -73,9 +73,9 @@ proptest! {
         replies in prop::collection::vec(
             prop::option::of((prop::array::uniform4(any::<i32>()), prop::array::uniform4(0u16..4096))), 1..40),
         activities in prop::collection::vec(0..3usize, 40),
-        joints in prop::array::uniform3(-3.0..3.0f64), stiffness in 0.0..6.0f64, scheme in 0..3usize,
+        joints in prop::array::uniform3(-3.0..3.0f64), stiffness in 0.0..6.0f64, scheme in 0..4usize,
     ) {
-        let finger = finger_with([Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback][scheme]);
+        let finger = finger_with(SCHEMES[scheme]);
         let controller = Controller::new(&finger, 1000.0).unwrap();
         let mut state = controller.start(&Feedback::default());
         let follow = spring(Vector3::from(joints), stiffness);

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, SimulatedFinger, Terms, Transport};
 use sun2xp::control::Law;
-use sun2xp::finger::{Fault, FingerServo, Mailbox, ServedPort, Servo, Stage};
+use sun2xp::finger::{BlackBox, ControllerSource, Fault, FingerServo, Mailbox, ServedPort, Servo, Stage};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, Schedule};
 
@@ -75,8 +75,12 @@ impl Bench {
         let (identity, configured) = link.shake_hands(1, &Terms::new(hand, finger), deadline).expect("a board answers");
         let (timings, _) = RingBuffer::new(1);
         let stiffness = finger.initial_stiffness();
+        let source = ControllerSource { number: 0, gravity: configuration.gravity(0), finger: finger.clone() };
+        // Nobody reads it.
+        let (recorder, _) = BlackBox::new(1, hand, source);
         let (finger, mailbox) =
-            FingerServo::new(&configuration, 0, stiffness, &identity, &configured, timings).expect("a finger");
+            FingerServo::new(&configuration, 0, stiffness, &identity, &configured, timings, recorder)
+                .expect("a finger");
         let period = (1e9 / hand.rate) as u64;
         let schedule = Schedule::new(Transport::now(&world) + period, period);
         let servo = Servo::new(world.clone(), schedule, vec![ServedPort::new(link, vec![finger])]);

@@ -77,6 +77,7 @@ fn show(finger: i32) -> impl FnMut(Progress) {
             Step::ReadingEncoders => "reading encoders",
             Step::SeekingStops => "seeking stops",
             Step::TryingMotors => "trying motors",
+            Step::ComparingGauges => "comparing gauges",
             Step::MovingJoints => "moving joints",
             Step::Pressing => "pressing",
             Step::Returning => "returning",
@@ -112,6 +113,7 @@ fn tell(findings: Findings) -> io::Result<()> {
             Ok(())
         }
         Findings::Identified(found) => {
+            writeln!(output, "gauge gain over the configured one: {}", list(found.gauge_gain.as_slice(), 4))?;
             writeln!(output, "motor torque over command, by the gauges: {}", list(found.motor_ratio.as_slice(), 3))?;
             writeln!(output, "viscous joint friction, N cm s/rad:       {}", list(found.joint_viscous.as_slice(), 3))?;
             writeln!(output, "motor travel not explained, cm rms:       {:.5}", found.travel_residual)

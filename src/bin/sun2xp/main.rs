@@ -4,7 +4,10 @@
 
 mod board;
 mod board_faults;
+mod bound;
 mod calibrate;
+mod doctor;
+mod replay;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -22,16 +25,22 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Tool {
     Board(board::Arguments),
+    Bound(bound::Arguments),
     Calibrate(calibrate::Arguments),
+    Doctor(doctor::Arguments),
+    Replay(replay::Arguments),
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().tool {
-        Tool::Board(arguments) => board::run(&arguments),
-        Tool::Calibrate(arguments) => calibrate::run(&arguments),
+        Tool::Board(arguments) => board::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Bound(arguments) => bound::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Doctor(arguments) => doctor::run(&arguments),
+        Tool::Replay(arguments) => replay::run(&arguments),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(status) => status,
         Err(error) => {
             eprintln!("sun2xp: {error}");
             ExitCode::FAILURE

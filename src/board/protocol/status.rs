@@ -17,7 +17,7 @@ impl Status {
     pub const HOLDING: Status = Status(1 << 4);
     /// Encoder counts have been kept since they were last zeroed: the host's zero is good.
     pub const ZERO_VALID: Status = Status(1 << 5);
-    /// The emergency stop input is active, or was since the last Configure.
+    /// The emergency stop input for this finger is active, or was since the last Configure.
     pub const EMERGENCY_STOP: Status = Status(1 << 6);
     /// The motor supply is missing or out of range, or was since the last Configure.
     pub const SUPPLY_FAULT: Status = Status(1 << 7);

@@ -49,13 +49,31 @@ pub struct Identified {
     pub motor_coulomb: Vector4<f64>,
     /// `friction.conduit`.
     pub conduit: Vector4<f64>,
-    /// True torque of each motor over the commanded one, if the gauges are right; or the gauges' gain error, if the torque
-    /// constants are right. One experiment without a reference cannot tell the two apart.
+    /// What `gauge.newton_per_count` is to be multiplied by. Relative to each other the gains are measured; their mean is taken
+    /// from `gauge.reference`.
+    pub gauge_gain: Vector4<f64>,
+    /// True torque of each motor over the commanded one, if the gauges are right by now: without a known weight a common error of
+    /// the gauges cannot be told from one of the motors.
     pub motor_ratio: Vector4<f64>,
     /// `friction.joint_coulomb`, N cm.
     pub joint_coulomb: Vector3<f64>,
     /// Viscous friction of the joints, N cm s/rad.
     pub joint_viscous: Vector3<f64>,
+}
+
+impl Identified {
+    /// The same with every tension `factor` times larger.
+    pub(super) fn scaled(self, factor: f64) -> Self {
+        Self {
+            tendon_stiffness: self.tendon_stiffness * factor,
+            conduit: self.conduit / factor,
+            gauge_gain: self.gauge_gain * factor,
+            motor_ratio: self.motor_ratio * factor,
+            joint_coulomb: self.joint_coulomb * factor,
+            joint_viscous: self.joint_viscous * factor,
+            ..self
+        }
+    }
 }
 
 impl Findings {
@@ -74,6 +92,9 @@ impl Findings {
                 finger.gauge.zero = zeros.gauge;
             }
             Self::Identified(found) => {
+                for (scale, gain) in finger.gauge.newton_per_count.iter_mut().zip(&found.gauge_gain) {
+                    *scale *= gain;
+                }
                 finger.tendon.stiffness = found.tendon_stiffness.into();
                 finger.friction.motor_coulomb = found.motor_coulomb.into();
                 finger.friction.conduit = found.conduit.into();

@@ -1,5 +1,6 @@
-//! Friction of joints and motors, stiffness of tendons.
+//! Gains of gauges, friction of joints and motors, stiffness of tendons.
 
+use super::balance::{Balance, SWING};
 use super::findings::{Findings, Identified};
 use super::instruments::Instruments;
 use super::joint_friction::JointFriction;
@@ -12,7 +13,7 @@ use super::stop_search::StopSearch;
 use super::take_up::TakeUp;
 use super::tendon_stiffness::TendonStiffness;
 use crate::control::signals::Activity;
-use crate::model::configuration::ConfiguredFinger;
+use crate::model::configuration::{ConfiguredFinger, GaugeReference};
 use nalgebra::Vector3;
 use std::ops::ControlFlow::{Break, Continue};
 
@@ -20,6 +21,10 @@ use std::ops::ControlFlow::{Break, Continue};
 const BEYOND: f64 = 0.17;
 /// How near to where it began a joint is brought back, rad.
 const NEAR: f64 = 0.05;
+/// Torque on every joint with which gauges are compared, N cm: wrong ones turn the joints.
+const BALANCING: f64 = 10.0;
+/// Room that a joint keeps to its stops then, beyond its swing, rad.
+const ROOM: f64 = 0.1;
 /// A joint that pulls at its limit for so long on its way back is blocked, s.
 const BLOCKED: f64 = 0.5;
 
@@ -27,7 +32,8 @@ const BLOCKED: f64 = 0.5;
 pub(super) struct Identification {
     torque: f64,
     speed: f64,
-    range: Vector3<f64>,
+    stops: (Vector3<f64>, Vector3<f64>),
+    reference: GaugeReference,
     /// Where it began, rad.
     start: Vector3<f64>,
     stop: Vector3<f64>,
@@ -41,6 +47,7 @@ pub(super) struct Identification {
 #[derive(Clone, Debug)]
 enum Phase {
     Tighten(TakeUp),
+    Balance { lead: JointLead, balance: Balance },
     Seek { lead: JointLead, joint: usize, search: StopSearch },
     Swing { lead: JointLead, friction: JointFriction, joint: usize },
     Press { pressing: Pressing, stiffness: TendonStiffness, friction: MotorFriction },
@@ -49,11 +56,11 @@ enum Phase {
 
 impl Identification {
     pub fn new(finger: &ConfiguredFinger) -> Self {
-        let (lower, upper) = finger.stops();
         Self {
             torque: finger.zeroing.torque,
             speed: finger.zeroing.speed,
-            range: upper - lower,
+            stops: finger.stops(),
+            reference: finger.gauge.reference,
             start: Vector3::zeros(),
             stop: Vector3::zeros(),
             joint_coulomb: Vector3::zeros(),
@@ -62,18 +69,31 @@ impl Identification {
         }
     }
 
-    pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> Stepped {
+    pub fn step(&mut self, instruments: &mut Instruments, sample: &Sample) -> Stepped {
         let going = |step, part, activity| Ok(Continue((activity, Progress { step, part })));
         match &mut self.phase {
             Phase::Tighten(take_up) => match take_up.step(instruments, sample)? {
                 Some(activity) => going(Step::TakingUpSlack, 0.0, activity),
                 None => {
-                    let lead = JointLead::new(instruments, sample, self.torque);
+                    let lead = JointLead::new(instruments, sample, BALANCING);
                     self.start = lead.joints;
-                    self.phase = self.seek(lead, 0);
-                    going(Step::SeekingStops, 0.05, lead.activity(instruments, sample))
+                    let room = SWING + ROOM;
+                    let (low, high) = (self.stops.0.add_scalar(room), self.stops.1.add_scalar(-room));
+                    let centre = Vector3::from_fn(|joint, _| lead.joints[joint].min(high[joint]).max(low[joint]));
+                    self.phase = Phase::Balance { lead, balance: Balance::new(centre) };
+                    going(Step::ComparingGauges, 0.0, lead.activity(instruments, sample))
                 }
             },
+            Phase::Balance { lead, balance } => {
+                lead.measure(instruments, sample);
+                let found = balance.step(instruments, sample, lead)?;
+                let activity = lead.activity(instruments, sample);
+                if let Some(gain) = found {
+                    instruments.gain = gain;
+                    self.phase = self.seek(JointLead::new(instruments, sample, self.torque), 0);
+                }
+                going(Step::ComparingGauges, 0.02, activity)
+            }
             &mut Phase::Seek { ref mut lead, joint, ref mut search } => {
                 lead.measure(instruments, sample);
                 let met = search.step(instruments, lead, self.speed)?;
@@ -119,11 +139,16 @@ impl Identification {
                         let found = Identified {
                             tendon_stiffness,
                             travel_residual,
+                            gauge_gain: instruments.gain,
                             motor_coulomb: coulomb.component_mul(&instruments.radius),
                             conduit,
                             motor_ratio: ratio.map(f64::recip),
                             joint_coulomb: self.joint_coulomb,
                             joint_viscous: self.joint_viscous,
+                        };
+                        let found = match self.reference {
+                            GaugeReference::Gauges => found,
+                            GaugeReference::Motors => found.scaled(ratio.mean()),
                         };
                         let mut lead = JointLead::new(instruments, sample, self.torque);
                         // Still against the stops: led away from there.
@@ -154,7 +179,11 @@ impl Identification {
     }
 
     fn seek(&self, lead: JointLead, joint: usize) -> Phase {
-        Phase::Seek { lead, joint, search: StopSearch::new(joint, -(self.range[joint] + BEYOND)) }
+        Phase::Seek {
+            lead,
+            joint,
+            search: StopSearch::new(joint, -(self.stops.1[joint] - self.stops.0[joint] + BEYOND)),
+        }
     }
 
     fn swing(&self, lead: JointLead, joint: usize) -> Phase {

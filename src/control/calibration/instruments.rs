@@ -30,6 +30,8 @@ pub(super) struct Instruments {
     pub strongest: f64,
     /// What the configured gauge zero makes the tensions too high by, N.
     pub offset: Vector4<f64>,
+    /// What the configured tensions must be multiplied by, as far as it is known.
+    pub gain: Vector4<f64>,
     /// t_min, t_max, N.
     pub minimum: f64,
     pub maximum: f64,
@@ -62,6 +64,7 @@ impl Instruments {
             signed_radius: tendons.radius.component_mul(&Vector4::from(finger.motor.sign.map(f64::from))),
             strongest: Vector4::from(finger.motor.torque_limit).component_div(&tendons.radius).min(),
             offset: Vector4::zeros(),
+            gain: Vector4::repeat(1.0),
             minimum: finger.tendon.minimum,
             maximum: finger.tendon.maximum,
             hold: JointHold::new(finger.links()),
@@ -76,9 +79,9 @@ impl Instruments {
         self.sensors.motor_angles(feedback).component_mul(&self.radius)
     }
 
-    /// Tensions with the gauge offsets known so far, N.
+    /// Tensions with the gauge offsets and gains known so far, N.
     pub fn tensions(&self, feedback: &Feedback) -> Vector4<f64> {
-        self.sensors.tensions(feedback) - self.offset
+        (self.sensors.tensions(feedback) - self.offset).component_mul(&self.gain)
     }
 
     /// theta, rad: eq. 27 with the stretch taken out.
@@ -92,8 +95,8 @@ impl Instruments {
         self.tendons.r.tr_mul(joints) + (tensions - self.pretension).component_mul(&self.compliance)
     }
 
-    /// What the tendon controller, which knows nothing of the offsets yet, must be asked for.
+    /// What the tendon controller, which knows nothing of the offsets and gains yet, must be asked for.
     pub fn ask(&self, tensions: Vector4<f64>) -> Vector4<f64> {
-        tensions + self.offset
+        tensions.component_div(&self.gain) + self.offset
     }
 }

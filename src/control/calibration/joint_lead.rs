@@ -21,6 +21,8 @@ pub(super) struct JointLead {
     tensions: Vector4<f64>,
     /// Largest torque, N cm.
     limit: f64,
+    /// Tension beyond what the torques need, N in the least pulled tendon.
+    pub common: f64,
 }
 
 impl JointLead {
@@ -28,7 +30,7 @@ impl JointLead {
     pub fn new(instruments: &Instruments, sample: &Sample, limit: f64) -> Self {
         let tensions = instruments.tensions(sample.feedback);
         let joints = instruments.joints(&instruments.travel(sample.feedback), &tensions);
-        Self { anchor: joints, moved: Vector3::zeros(), joints, tensions, limit }
+        Self { anchor: joints, moved: Vector3::zeros(), joints, tensions, limit, common: 0.0 }
     }
 
     /// Takes a measurement in.
@@ -59,6 +61,7 @@ impl JointLead {
         // Against the anchor's own speed, so that a moving joint does not lag.
         let slip = sample.report.joint_rates - self.moved / instruments.period;
         let torques = instruments.hold.torques(&(self.anchor - self.joints), &slip, self.limit);
-        Activity::Tense(instruments.ask(instruments.distribution.distribute(&torques).tensions))
+        let common = instruments.pretension * (self.common / instruments.minimum);
+        Activity::Tense(instruments.ask(instruments.distribution.distribute(&torques).tensions + common))
     }
 }

@@ -4,6 +4,7 @@
 //! allocates nothing. What it found, or why it gave up, is its verdict; storing and applying that is the hand's business.
 
 mod average;
+mod balance;
 mod encoder_zero;
 mod findings;
 mod gauge_zero;
@@ -20,6 +21,7 @@ mod signs;
 mod stop_search;
 mod take_up;
 mod tendon_stiffness;
+mod wiring;
 mod zeroing;
 
 pub use findings::{Findings, Identified, Signs, Zeros};

@@ -108,6 +108,27 @@ pub enum Obstacle {
         /// 1 to 4.
         motor: u8,
     },
+    /// What one motor does shows first on the gauge of another tendon.
+    #[error(
+        "what motor {motor} pulls shows first on gauge {gauge}: are gauges {motor} and {gauge} swapped, or motors {motor} and {gauge} with their \
+         encoders, or is a tendon led to the wrong motor?"
+    )]
+    Swapped {
+        /// 1 to 4.
+        motor: u8,
+        /// 1 to 4.
+        gauge: u8,
+    },
+    /// The command of one motor turns another one, as the encoders say.
+    #[error(
+        "the command of motor {motor} turns encoder {encoder}: are the cables of motors {motor} and {encoder} swapped, or those of their encoders?"
+    )]
+    SwappedMotor {
+        /// 1 to 4.
+        motor: u8,
+        /// 1 to 4.
+        encoder: u8,
+    },
     /// A gauge that contradicts itself, or never moved.
     #[error("gauge {tendon} does not rise and fall with the tension: dead, or its cable is swapped with another")]
     SenselessGauge {

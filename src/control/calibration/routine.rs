@@ -18,7 +18,7 @@ pub enum Task {
     Signs,
     /// Zeros of gauges and encoders, the latter by the configured method.
     Zero,
-    /// Friction of motors and joints, stiffness of tendons. The finger moves to its lower stops and presses against them.
+    /// Gains of the gauges, friction of motors and joints, stiffness of tendons. The finger moves to its lower stops and presses against them.
     Identify,
 }
 
@@ -46,6 +46,8 @@ pub enum Step {
     SeekingStops,
     /// Motors turn one by one.
     TryingMotors,
+    /// Joints are moved to and fro at two levels of tension.
+    ComparingGauges,
     /// Joints are moved to and fro.
     MovingJoints,
     /// The finger presses against its stops.
@@ -120,7 +122,7 @@ impl Calibration {
         let stepped = match &mut self.routine {
             Routine::Signs(routine) => routine.step(&self.instruments, sample),
             Routine::Zero(routine) => routine.step(&mut self.instruments, sample),
-            Routine::Identify(routine) => routine.step(&self.instruments, sample),
+            Routine::Identify(routine) => routine.step(&mut self.instruments, sample),
         };
         match stepped {
             Ok(Continue((activity, progress))) => (activity, Verdict::Going(progress)),

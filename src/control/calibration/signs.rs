@@ -10,6 +10,7 @@ use super::findings::{Findings, Signs};
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
 use super::routine::{Progress, Sample, Step, Stepped};
+use super::wiring::Wiring;
 use crate::control::signals::{Activity, Feedback};
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
@@ -73,10 +74,20 @@ pub(super) struct SignSearch {
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    Rest { seconds: f64 },
-    Push { seconds: f64, push: f64, from: f64 },
-    Pause { seconds: f64 },
+    Rest {
+        seconds: f64,
+    },
+    Push {
+        seconds: f64,
+        push: f64,
+        from: Vector4<f64>,
+    },
+    Pause {
+        seconds: f64,
+    },
     Sweep(Sweep),
+    /// Every sign is known.
+    Wiring(Wiring),
 }
 
 /// One motor to and fro.
@@ -124,22 +135,25 @@ impl SignSearch {
         let way = self.measure(instruments, sample.feedback);
         let motor = self.motor;
         let minimum = instruments.minimum;
-        let sweeping = matches!(self.phase, Phase::Sweep(_));
+        let sweeping = matches!(self.phase, Phase::Sweep(_) | Phase::Wiring(_));
         let part = motor as f64 * if sweeping { 0.22 } else { 0.03 } + if sweeping { 0.12 } else { 0.0 };
         let mut torques = Vector4::zeros();
         match &mut self.phase {
             Phase::Rest { seconds } => {
                 *seconds += instruments.period;
                 if *seconds > REST {
-                    self.phase = Phase::Push { seconds: 0.0, push: FIRST_PUSH * minimum, from: way[0] };
+                    self.phase = Phase::Push { seconds: 0.0, push: FIRST_PUSH * minimum, from: way };
                 }
             }
             &mut Phase::Push { ref mut seconds, push, from } => {
                 *seconds += instruments.period;
-                let moved = way[motor] - from;
-                if moved.abs() > TURNED {
-                    self.agrees[motor] = moved.signum();
+                let moved = way - from;
+                if moved[motor].abs() > TURNED {
+                    self.agrees[motor] = moved[motor].signum();
                     self.phase = Phase::Pause { seconds: 0.0 };
+                } else if moved.amax() > TURNED {
+                    let encoder = moved.iamax() as u8 + 1;
+                    return Err(Obstacle::SwappedMotor { motor: motor as u8 + 1, encoder });
                 } else if *seconds > PUSH {
                     let push = push * GROWTH;
                     if push > HARDEST_PUSH * minimum {
@@ -155,7 +169,7 @@ impl SignSearch {
                 if *seconds > PUSH {
                     self.motor = (motor + 1) % 4;
                     self.phase = if motor < 3 {
-                        Phase::Push { seconds: 0.0, push: FIRST_PUSH * minimum, from: way[motor + 1] }
+                        Phase::Push { seconds: 0.0, push: FIRST_PUSH * minimum, from: way }
                     } else {
                         self.target = way;
                         Phase::Sweep(Sweep::new(way[0], FIRST_WAY))
@@ -163,6 +177,7 @@ impl SignSearch {
                 }
             }
             &mut Phase::Sweep(mut sweep) => {
+                let mut next = None;
                 if self.advance(&mut sweep, instruments, sample, &way) {
                     if let Some(side) = sweep.tight_side() {
                         self.tightens[motor] = side;
@@ -170,18 +185,28 @@ impl SignSearch {
                         // Left on the tight side: it takes some slack out for the motors that follow.
                         self.target[motor] = sweep.centre + 0.5 * side * sweep.way;
                         if motor == 3 {
-                            return self.findings().map(Break);
+                            next = Some(Phase::Wiring(Wiring::new()));
+                        } else {
+                            self.motor += 1;
+                            sweep = Sweep::new(self.target[motor + 1], FIRST_WAY);
                         }
-                        self.motor += 1;
-                        sweep = Sweep::new(self.target[motor + 1], FIRST_WAY);
                     } else if sweep.way * 2.0 > LONGEST_WAY {
                         return Err(Obstacle::NothingTightens { motor: motor as u8 + 1 });
                     } else {
                         sweep = Sweep::new(sweep.centre, sweep.way * 2.0);
                     }
                 }
-                self.phase = Phase::Sweep(sweep);
+                self.phase = next.unwrap_or(Phase::Sweep(sweep));
                 torques = self.hold(instruments, &way);
+            }
+            Phase::Wiring(wiring) => {
+                let scale = self.newton_per_count.component_mul(&Vector4::from(self.gauges));
+                let tensions = Vector4::from(sample.feedback.gauge_counts.map(f64::from)).component_mul(&scale);
+                let Some(jerk) = wiring.step(instruments, &tensions)? else {
+                    return self.findings().map(Break);
+                };
+                let inward = Vector4::from(self.agrees).component_mul(&Vector4::from(self.tightens));
+                torques = self.hold(instruments, &way) + jerk.component_mul(&inward).component_mul(&instruments.radius);
             }
         }
         Ok(Continue((Activity::Turn(torques), Progress { step: Step::TryingMotors, part })))

@@ -12,6 +12,9 @@ pub enum Scheme {
     #[default]
     #[serde(rename = "figure 10")]
     Figure10,
+    /// Figure 11: the motor model that turns tensions into torques adapts.
+    #[serde(rename = "figure 11")]
+    Figure11,
     /// Feedback of the whole state of links, elastic tendons and motors.
     #[serde(rename = "state feedback")]
     StateFeedback,
@@ -53,6 +56,8 @@ pub struct ConfiguredController {
     pub stretch_filter: Option<f64>,
     /// Bound on the speed of every joint of the set point, rad/s: a step becomes a straight line in joint space.
     pub set_point_speed: Option<f64>,
+    /// Figure 11: how fast the motor model follows what the gauges show, 1/s.
+    pub adaptation_gain: Option<f64>,
     /// State feedback: alpha, tension commanded for a tension error; the motors then feel 1/alpha of their inertia.
     pub inertia_gain: Option<f64>,
     /// State feedback: damping ratio of the spring.
@@ -76,6 +81,7 @@ impl Default for ConfiguredController {
             speed_filter: None,
             stretch_filter: None,
             set_point_speed: None,
+            adaptation_gain: None,
             inertia_gain: None,
             damping_ratio: None,
             set_point_time: None,

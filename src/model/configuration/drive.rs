@@ -88,11 +88,24 @@ pub struct ConfiguredGauge {
     pub newton_per_count: [f64; 4],
     /// Count without tension.
     pub zero: [f64; 4],
+    /// What identification takes the common scale of the four gauges from.
+    pub reference: GaugeReference,
+}
+
+/// What is believed of the scale of all tensions, which no experiment on a free finger shows.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GaugeReference {
+    /// The gauges: the mean of their configured gains stays.
+    #[default]
+    Gauges,
+    /// The motors: on the average of the four, a motor pulls with the torque that it is commanded, less its friction.
+    Motors,
 }
 
 impl Default for ConfiguredGauge {
     fn default() -> Self {
-        Self { newton_per_count: [100.0 / 4095.0; 4], zero: [0.0; 4] }
+        Self { newton_per_count: [100.0 / 4095.0; 4], zero: [0.0; 4], reference: GaugeReference::default() }
     }
 }
 

@@ -24,12 +24,41 @@ pub enum OutOfRange {
     Clamp,
 }
 
+/// What OpenHand does for the servo threads to be real-time: SCHED_FIFO, locked memory, a core of their own.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RealTime {
+    /// It fails where any of it cannot be had.
+    Enforce,
+    /// It goes on without, and says so.
+    #[default]
+    Try,
+    /// It does not try.
+    Ignore,
+}
+
+/// Whose clock the periods of the servos are counted by.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PeriodClock {
+    /// The host's CLOCK_MONOTONIC.
+    #[default]
+    Host,
+    /// The clock of the board, which its replies tell; of the first, where a thread serves several. Threads that follow different boards
+    /// do not stay staggered.
+    Board,
+}
+
 /// `[hand]`: what all fingers share.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredHand {
     /// Cycles of every finger servo in a second, Hz: 100 to 5000.
     pub rate: f64,
+    /// Whose clock the rate is counted by.
+    pub clock: PeriodClock,
+    /// Whether the servo threads have to be real-time.
+    pub real_time: RealTime,
     /// What the board does when commands stop.
     pub end_state: EndState,
     /// How long *hold* holds, ms: 1 to 60 000.
@@ -46,6 +75,8 @@ pub struct ConfiguredHand {
     pub out_of_range: OutOfRange,
     /// One line on standard error at the first refusal of each kind.
     pub print_refusals: bool,
+    /// Folder into which the last two seconds of a finger that faults are written; none: nowhere.
+    pub black_box: Option<String>,
     /// Gravity in palm coordinates, m/s^2.
     pub gravity: [f64; 3],
 }
@@ -54,6 +85,8 @@ impl Default for ConfiguredHand {
     fn default() -> Self {
         Self {
             rate: 1000.0,
+            clock: PeriodClock::Host,
+            real_time: RealTime::Try,
             end_state: EndState::Release,
             hold_time_ms: 2000,
             hold_torque_limit: 1.0,
@@ -62,6 +95,7 @@ impl Default for ConfiguredHand {
             open_timeout_ms: 5000,
             out_of_range: OutOfRange::Refuse,
             print_refusals: true,
+            black_box: None,
             gravity: [0.0; 3],
         }
     }

@@ -8,8 +8,9 @@ mod hand;
 pub use controller::{ConfiguredController, Law, Scheme};
 pub use drive::{
     ConfiguredEncoder, ConfiguredGauge, ConfiguredGeometry, ConfiguredJoints, ConfiguredMotor, ConfiguredTendon,
+    GaugeReference,
 };
-pub use hand::{ConfiguredHand, EndState, OutOfRange};
+pub use hand::{ConfiguredHand, EndState, OutOfRange, PeriodClock, RealTime};
 
 pub use crate::model::calibrated::{ConfiguredZeroing, ZeroingMethod};
 use crate::model::{ConfiguredFriction, ConfiguredLinks, ConfiguredSimulation, Links, Tendons, TendonsError};

@@ -1,0 +1,53 @@
+//! Time of the calls that a planner makes all the while, as C makes them: on an opened simulated hand whose servos run.
+
+use divan::{Bencher, black_box};
+use std::ffi::c_int;
+
+// The library's own symbols, as a C program sees them.
+use sun2xp as _;
+
+unsafe extern "C" {
+    fn OpenHand() -> c_int;
+    fn CloseHand() -> c_int;
+    fn SendPos(i: c_int, pos: *const f32) -> c_int;
+    fn SendKx(i: c_int, kx: *const f32) -> c_int;
+    fn SendKxD(i: c_int, kx: *const f64) -> c_int;
+    fn GetPos(i: c_int, pos: *mut f32) -> c_int;
+}
+
+fn main() {
+    // SAFETY: no arguments. The configuration is that of the working directory, so the simulated hand of the defaults.
+    assert_eq!(unsafe { OpenHand() }, 0, "the simulated hand opens");
+    divan::main();
+    // SAFETY: as above.
+    assert_eq!(unsafe { CloseHand() }, 0, "the simulated hand closes");
+}
+
+#[divan::bench]
+fn send_pos(bencher: Bencher) {
+    let pos = [0.1f32, 0.5, 1.0];
+    // SAFETY: three values, read during the call.
+    bencher.bench_local(|| unsafe { SendPos(1, black_box(pos.as_ptr())) });
+}
+
+#[divan::bench]
+fn get_pos(bencher: Bencher) {
+    let mut pos = [0.0f32; 3];
+    // SAFETY: room for three values, written during the call.
+    bencher.bench_local(|| unsafe { GetPos(1, black_box(pos.as_mut_ptr())) });
+}
+
+/// With all its checks: symmetric, no negative eigenvalue, within the bound.
+#[divan::bench]
+fn send_kx(bencher: Bencher) {
+    let kx = [3.0f32, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0];
+    // SAFETY: nine values, read during the call.
+    bencher.bench_local(|| unsafe { SendKx(1, black_box(kx.as_ptr())) });
+}
+
+#[divan::bench]
+fn send_kx_double(bencher: Bencher) {
+    let kx = [3.0f64, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0];
+    // SAFETY: nine values, read during the call.
+    bencher.bench_local(|| unsafe { SendKxD(1, black_box(kx.as_ptr())) });
+}

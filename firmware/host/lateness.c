@@ -1,0 +1,86 @@
+/* What no vector can say: it is the arrival of a Command that counts, and not when the main loop gets to it. */
+
+#include "fake_hardware.h"
+#include "../core/protocol.h"
+#include <stdio.h>
+#include <string.h>
+
+static struct finger finger;
+static struct board board;
+static int failures;
+
+static void expect(bool holds, const char *what)
+{
+    if (!holds) {
+        fprintf(stderr, "%s\n", what);
+        failures++;
+    }
+}
+
+static void say(const struct frame *frame)
+{
+    uint8_t wire[WIRE_MOST];
+    fake.output_length = 0;
+    fake_arrive(&board, wire, frame_to_wire(frame, wire));
+}
+
+static void command(void)
+{
+    struct frame frame;
+    frame_begin(&frame, TYPE_COMMAND, 1, 0);
+    frame_put8(&frame, FLAG_ENABLE);
+    for (size_t i = 0; i < MOTORS; i++)
+        frame_put16(&frame, 100);
+    say(&frame);
+}
+
+/* Enabled now, with a watchdog of 20 ms. */
+static void enable(uint32_t now)
+{
+    struct frame frame;
+    memset(&fake, 0, sizeof fake);
+    fake.now = now;
+    finger_start(&finger, &fake_traits[0], 0);
+    board_start(&board, 0, &finger, 1);
+    frame_begin(&frame, TYPE_CONFIGURE, 1, 0);
+    frame_put8(&frame, PROTOCOL_VERSION);
+    frame_put16(&frame, 20);
+    for (size_t i = 0; i < 5; i++)
+        frame_put8(&frame, 0);
+    for (size_t i = 0; i < MOTORS; i++)
+        frame_put16(&frame, 1000);
+    for (size_t i = 0; i < MOTORS; i++)
+        frame_put32(&frame, 0);
+    say(&frame);
+    command();
+    expect(finger.state == FINGER_ENABLED, "not enabled");
+}
+
+int main(void)
+{
+    /* Also where the timer wraps. */
+    static const uint32_t beginnings[] = {0, 0xFFFFFFFFu - 10000, 0x7FFFFFFFu - 10000};
+    for (size_t i = 0; i < 3; i++) {
+        enable(beginnings[i]);
+        fake.now += 30000;
+        fake.delay = 15000;
+        command();
+        expect(finger.state == FINGER_ENABLED, "a Command that came in time was not obeyed");
+        fake.now += 6000;
+        board_poll(&board);
+        expect(finger.state == FINGER_ENDED, "the watchdog counts from when the Command was looked at");
+
+        enable(beginnings[i]);
+        fake.now += 25000;
+        command();
+        expect(finger.state == FINGER_ENDED && fake.currents[0][0] == 0, "a Command that came too late was obeyed");
+
+        /* An interrupt that reads the timer a little after the main loop did. */
+        enable(beginnings[i]);
+        fake.delay = 0u - 50u;
+        command();
+        expect(finger.state == FINGER_ENABLED, "a Command from the near future tripped the watchdog");
+    }
+    printf("lateness: %d failures\n", failures);
+    return failures != 0;
+}

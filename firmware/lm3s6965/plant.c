@@ -1,0 +1,112 @@
+#include "plant.h"
+#include "processor.h"
+#include <string.h>
+
+struct request {
+    uint8_t finger, sample;
+    uint16_t unused;
+    uint32_t now, set_at;
+    int32_t currents[MOTORS];
+};
+
+struct answer {
+    int32_t encoders[MOTORS];
+    uint16_t gauges[MOTORS];
+    uint16_t faults, unused;
+};
+
+/* us. */
+enum { REFRESH = 5000 };
+
+static struct {
+    int32_t currents[MOTORS];
+    uint32_t set_at, asked_at;
+    uint16_t faults;
+} fingers[PLANT_FINGERS];
+
+/* Semihosting. */
+enum { OPEN = 1, WRITE = 5, READ = 6 };
+enum { OPEN_READ_AND_WRITE = 3 };
+
+static int to_plant, from_plant;
+
+static int semihost(int operation, const void *parameters)
+{
+    register int r0 __asm__("r0") = operation;
+    register const void *r1 __asm__("r1") = parameters;
+    __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
+    return r0;
+}
+
+static int open_file(const char *name)
+{
+    const struct {
+        const char *name;
+        uint32_t mode, length;
+    } parameters = {name, OPEN_READ_AND_WRITE, strlen(name)};
+    return semihost(OPEN, &parameters);
+}
+
+static void transfer(int operation, int file, void *bytes, size_t length)
+{
+    struct {
+        int file;
+        void *bytes;
+        size_t length;
+    } parameters = {file, bytes, length};
+    /* The result is how many bytes are left. */
+    while (parameters.length > 0) {
+        size_t left = (size_t)semihost(operation, &parameters);
+        parameters.bytes = (uint8_t *)parameters.bytes + (parameters.length - left);
+        parameters.length = left;
+    }
+}
+
+static void ask(unsigned finger, bool sample, struct answer *answer)
+{
+    struct request request = {.finger = (uint8_t)finger, .sample = sample, .now = timer_microseconds()};
+    request.set_at = fingers[finger].set_at;
+    memcpy(request.currents, fingers[finger].currents, sizeof request.currents);
+    fingers[finger].asked_at = request.now;
+    transfer(WRITE, to_plant, &request, sizeof request);
+    transfer(READ, from_plant, answer, sizeof *answer);
+    fingers[finger].faults = answer->faults;
+}
+
+void plant_start(void)
+{
+    to_plant = open_file("plant_to");
+    from_plant = open_file("plant_from");
+}
+
+void plant_poll(void)
+{
+    for (unsigned finger = 0; finger < PLANT_FINGERS; finger++) {
+        struct answer ignored;
+        if (timer_microseconds() - fingers[finger].asked_at > REFRESH)
+            ask(finger, false, &ignored);
+    }
+}
+
+/* The part of the hardware layer that is the fingers' */
+
+void hal_sample(unsigned finger, struct sensors *sensors)
+{
+    struct answer answer;
+    ask(finger, true, &answer);
+    memcpy(sensors->encoders, answer.encoders, sizeof sensors->encoders);
+    memcpy(sensors->gauges, answer.gauges, sizeof sensors->gauges);
+}
+
+void hal_set_currents(unsigned finger, const int32_t microamperes[MOTORS])
+{
+    if (memcmp(fingers[finger].currents, microamperes, sizeof fingers[finger].currents) == 0)
+        return;
+    memcpy(fingers[finger].currents, microamperes, sizeof fingers[finger].currents);
+    fingers[finger].set_at = timer_microseconds();
+}
+
+uint16_t hal_faults(unsigned finger)
+{
+    return fingers[finger].faults;
+}

@@ -1,0 +1,204 @@
+#include "processor.h"
+#include <string.h>
+
+/* Registers, as the LM3S6965's data sheet and ARM's manual of the Cortex-M3 have them. */
+
+#define REGISTER(name, address) static volatile uint32_t *const name = (volatile uint32_t *)address
+
+REGISTER(clock_interrupts, 0x400FE050u);
+REGISTER(clock_configuration, 0x400FE060u);
+REGISTER(peripheral_clocks, 0x400FE104u);
+REGISTER(port_clocks, 0x400FE108u);
+REGISTER(port_a, 0x40004000u);
+REGISTER(port_f, 0x40025000u);
+REGISTER(timer_mode, 0x40030004u);
+REGISTER(timer_control, 0x4003000Cu);
+REGISTER(timer_interrupt_mask, 0x40030018u);
+REGISTER(timer_interrupt_clear, 0x40030024u);
+REGISTER(timer_reload, 0x40030028u);
+REGISTER(systick_control, 0xE000E010u);
+REGISTER(systick_reload, 0xE000E014u);
+REGISTER(systick_value, 0xE000E018u);
+REGISTER(interrupt_enable, 0xE000E100u);
+REGISTER(interrupt_priorities, 0xE000E400u);
+
+/* Of a port, in words. */
+enum { PORT_DIRECTION = 0x400 / 4, PORT_ALTERNATE = 0x420 / 4, PORT_DIGITAL = 0x51C / 4 };
+
+static struct {
+    volatile uint32_t data, error, unused[4], flags, unused_too, low_power, divider, divider_fraction, line_control, control,
+        interrupt_level, interrupt_mask, interrupts_raw, interrupts, interrupt_clear;
+} *const uart = (void *)0x4000C000u;
+
+enum { RECEIVE_EMPTY = 1 << 4, TRANSMIT_FULL = 1 << 5 };
+/* Received up to the level; room to send; silence after bytes below the level. */
+enum { INTERRUPT_RECEIVED = 1 << 4, INTERRUPT_ROOM = 1 << 5, INTERRUPT_SILENCE = 1 << 6 };
+
+enum { CLOCK_MEGAHERTZ = 50, WAKE_UP_MICROSECONDS = 500, BAUD = 1000000 };
+/* SysTick's 24 bits. */
+enum { SYSTICK_MOST = 0xFFFFFF };
+
+/* Rings between interrupt and main loop. Of the input each index has one writer only; the output is touched with interrupts
+   masked. They hold a burst of 15 Commands, and the answers to them. */
+enum { INPUT_ROOM = 512, OUTPUT_ROOM = 1024 };
+
+static struct {
+    volatile size_t written, taken; /* Counted on for ever; their difference is what waits. */
+    volatile uint8_t bytes[INPUT_ROOM];
+    volatile uint32_t arrived_at[INPUT_ROOM];
+} input;
+
+static struct {
+    size_t begin, end;
+    uint8_t bytes[OUTPUT_ROOM];
+} output;
+
+static void mask_interrupts(void)
+{
+    __asm__ volatile("cpsid i" ::: "memory");
+}
+
+static void unmask_interrupts(void)
+{
+    __asm__ volatile("cpsie i" ::: "memory");
+}
+
+static volatile uint32_t systick_rounds;
+
+void systick_interrupt(void)
+{
+    systick_rounds++;
+}
+
+/* It only wakes the main loop. */
+void wake_up_interrupt(void)
+{
+    *timer_interrupt_clear = 1;
+}
+
+/* SysTick's interrupt goes before the UART's, so that may ask too. */
+uint32_t timer_microseconds(void)
+{
+    static volatile uint32_t latest;
+    uint32_t rounds, left, now;
+    do {
+        rounds = systick_rounds;
+        left = *systick_value;
+    } while (rounds != systick_rounds);
+    now = (uint32_t)(((uint64_t)rounds * (SYSTICK_MOST + 1) + SYSTICK_MOST - left) / CLOCK_MEGAHERTZ);
+    /* The counter may have begun its next round a little before the interrupt tells; time does not run backward meanwhile. */
+    if (now - latest < 0x80000000u)
+        latest = now;
+    return latest;
+}
+
+static void receive(void)
+{
+    while (!(uart->flags & RECEIVE_EMPTY)) {
+        uint8_t byte = (uint8_t)uart->data;
+        size_t place = input.written % INPUT_ROOM;
+        /* What finds no room is lost, as on any UART; the check will tell. */
+        if (input.written - input.taken < INPUT_ROOM) {
+            input.bytes[place] = byte;
+            input.arrived_at[place] = timer_microseconds();
+            input.written++;
+        }
+    }
+}
+
+/* As much as the transmitter takes now; it interrupts when it takes more. */
+static void transmit(void)
+{
+    while (output.begin < output.end && !(uart->flags & TRANSMIT_FULL))
+        uart->data = output.bytes[output.begin++];
+    bool more = output.begin < output.end;
+    if (!more)
+        output.begin = output.end = 0;
+    uart->interrupt_mask = INTERRUPT_RECEIVED | INTERRUPT_SILENCE | (more ? INTERRUPT_ROOM : 0u);
+}
+
+void uart_interrupt(void)
+{
+    uart->interrupt_clear = INTERRUPT_RECEIVED | INTERRUPT_SILENCE | INTERRUPT_ROOM;
+    receive();
+    transmit();
+}
+
+bool uart_take(uint8_t *byte, uint32_t *arrived_at)
+{
+    size_t place = input.taken % INPUT_ROOM;
+    if (input.taken == input.written)
+        return false;
+    *byte = input.bytes[place];
+    *arrived_at = input.arrived_at[place];
+    input.taken++;
+    return true;
+}
+
+void uart_send(const uint8_t *bytes, size_t length)
+{
+    mask_interrupts();
+    if (length <= OUTPUT_ROOM - output.end) {
+        memcpy(output.bytes + output.end, bytes, length);
+        output.end += length;
+    }
+    transmit();
+    unmask_interrupts();
+}
+
+void sleep(void)
+{
+    /* With interrupts masked, a byte that comes between the look and the sleep still ends the sleep. */
+    mask_interrupts();
+    if (input.taken == input.written)
+        __asm__ volatile("wfi" ::: "memory");
+    unmask_interrupts();
+}
+
+void pin_set(unsigned pin, bool high)
+{
+    /* Bits 2 to 9 of the address say which pins are meant. */
+    port_f[1u << pin] = high ? 0xFFu : 0u;
+}
+
+/* 50 MHz: the PLL's 200 MHz, from a crystal of 8 MHz, divided by 4. */
+static void start_clock(void)
+{
+    const uint32_t divided = 3u << 23 | 1u << 22 | 0xEu << 6, bypass = 1u << 11, locked = 1u << 6;
+    *clock_configuration = divided | bypass;
+    while (!(*clock_interrupts & locked))
+        ;
+    *clock_configuration = divided;
+}
+
+static void start_uart(void)
+{
+    enum { WHOLE = CLOCK_MEGAHERTZ * 1000000 / (16 * BAUD), FRACTION_64 = CLOCK_MEGAHERTZ * 1000000 / BAUD * 4 % 64 };
+    /* On pins 0 and 1 of port A. */
+    port_a[PORT_ALTERNATE] = port_a[PORT_DIGITAL] = 3u;
+    uart->divider = WHOLE;
+    uart->divider_fraction = FRACTION_64;
+    uart->line_control = 3u << 5 | 1u << 4; /* Eight bits, FIFOs. */
+    uart->control = 1u << 9 | 1u << 8 | 1u << 0;
+    uart->interrupt_mask = INTERRUPT_RECEIVED | INTERRUPT_SILENCE;
+}
+
+void processor_start(void)
+{
+    start_clock();
+    *peripheral_clocks = 1u << 0 | 1u << 16;
+    *port_clocks = 1u << 0 | 1u << 5;
+    port_f[PORT_DIRECTION] = port_f[PORT_DIGITAL] = 0xFFu;
+    start_uart();
+    *systick_reload = SYSTICK_MOST;
+    *systick_value = 0;
+    *systick_control = 7; /* The processor's clock, interrupt, on. */
+    *timer_mode = 2;      /* Again and again. */
+    *timer_reload = CLOCK_MEGAHERTZ * WAKE_UP_MICROSECONDS - 1;
+    *timer_interrupt_mask = 1;
+    *timer_control = 1;
+    /* Four to a word. UART 0 is interrupt 5, timer 0 is 19; SysTick has priority 0, which goes first. */
+    interrupt_priorities[5 / 4] = 0x80u << 8;
+    interrupt_priorities[19 / 4] = 0x80u << 24;
+    *interrupt_enable = 1u << 5 | 1u << 19;
+}

@@ -1,0 +1,117 @@
+//! `sun2xp bound`: how stiff a finger may be, into the configuration file.
+
+use crate::board::Failure;
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
+use serde::de::value::{Error, StrDeserializer};
+use std::io::{self, Write};
+use std::path::PathBuf;
+use sun2xp::hand;
+use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, Scheme};
+use sun2xp::stability::{Limit, Search, StiffnessBound};
+
+/// Finds the bound on the largest eigenvalue of Kx: the stiffness up to which every finger is stable in every pose.
+///
+/// Controller, links, tendons and motors are those of the configuration, in simulation: without friction, exactly measured, with
+/// one cycle of delay. Poses within the joint limits, axes of Kx and loads are random. Where a pose carries less than the bound the
+/// servo scales Kx down, as it does here; no pose gets less than half. Takes up to a minute for each kind of finger.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The configuration file. Without it: the one that OpenHand would take.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// Writes the bounds into the configuration file, as finger.stiffness.bound.
+    #[arg(long, requires = "config", conflicts_with_all = ["scheme", "rate"])]
+    write: bool,
+    /// Another controller than the configured one: "figure 9", "figure 10", "figure 11" or "state feedback".
+    #[arg(long, value_parser = scheme)]
+    scheme: Option<Scheme>,
+    /// Another rate than the configured one, Hz.
+    #[arg(long, value_name = "HZ", value_parser = rate)]
+    rate: Option<f64>,
+    /// How many poses.
+    #[arg(long, value_name = "N", default_value_t = 2000)]
+    samples: usize,
+    /// Seed of all that is random.
+    #[arg(long, default_value_t = 1990)]
+    seed: u64,
+}
+
+fn scheme(name: &str) -> Result<Scheme, String> {
+    let name: StrDeserializer<Error> = name.into_deserializer();
+    Scheme::deserialize(name).map_err(|error| error.to_string())
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().map_err(|_| format!("{text} is no number"))?;
+    if (100.0..=5000.0).contains(&rate) { Ok(rate) } else { Err(format!("{rate} is outside 100 to 5000 Hz")) }
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut configuration = match &arguments.config {
+        Some(path) => hand::read(path)?,
+        None => hand::configured()?.0,
+    };
+    if let Some(scheme) = arguments.scheme {
+        configuration.fingers.iter_mut().for_each(|finger| finger.controller.scheme = scheme);
+    }
+    configuration.hand.rate = arguments.rate.unwrap_or(configuration.hand.rate);
+    let search = Search { samples: arguments.samples, seed: arguments.seed };
+    let mut found: Vec<StiffnessBound> = Vec::new();
+    for index in 0..FINGERS {
+        let finger = &configuration.fingers[index];
+        let twin = (0..index).find(|&other| alike(finger, &configuration.fingers[other]));
+        let bound = match twin {
+            Some(other) => found[other],
+            None => search
+                .bound(finger, configuration.hand.rate)
+                .map_err(|unusable| format!("finger {}: {} {}", index + 1, unusable.key, unusable.reason))?,
+        };
+        found.push(bound);
+        tell(&configuration, index, &bound, twin)?;
+    }
+    let Some(path) = arguments.config.as_ref().filter(|_| arguments.write) else { return Ok(()) };
+    for (finger, bound) in configuration.fingers.iter_mut().zip(&found) {
+        finger.stiffness.bound = Some(bound.stiffness);
+    }
+    hand::store(path, &configuration)?;
+    writeln!(io::stdout(), "written to {}", path.display())?;
+    Ok(())
+}
+
+/// Whether two fingers differ in nothing that their stability depends on.
+fn alike(one: &ConfiguredFinger, other: &ConfiguredFinger) -> bool {
+    let parts = |of: &ConfiguredFinger| {
+        (of.geometry.clone(), of.motor.clone(), of.tendon.clone(), of.joints.clone(), of.links.clone())
+    };
+    parts(one) == parts(other) && one.friction == other.friction && one.controller == other.controller
+}
+
+fn tell(configuration: &Configuration, index: usize, bound: &StiffnessBound, twin: Option<usize>) -> io::Result<()> {
+    let mut output = io::stdout().lock();
+    let number = index + 1;
+    writeln!(output, "finger {number}: {:.1} N/cm at {} Hz", bound.stiffness, configuration.hand.rate)?;
+    if let Some(twin) = twin {
+        return writeln!(output, "    like finger {}", twin + 1);
+    }
+    let degrees = |pose: nalgebra::Vector3<f64>| format!("{:.0?} degrees", pose.map(f64::to_degrees).as_slice());
+    match bound.limit {
+        Limit::Unstable(pose) => writeln!(output, "    more is unstable at {}", degrees(pose))?,
+        Limit::Scaled(pose) => writeln!(output, "    of more, less than half could be carried at {}", degrees(pose))?,
+    }
+    writeln!(
+        output,
+        "    {} samples stable; {:.1} % of the poses carry less, the softest {:.2} of it: there the servo scales Kx down",
+        bound.samples,
+        100.0 * bound.scaled,
+        bound.least_scale
+    )?;
+    let (near, unstable, distance) = bound.near_axis;
+    match unstable {
+        0 => writeln!(output, "    {near} samples with the tip within 3 cm of the axis of joint 0: all stable"),
+        _ => writeln!(
+            output,
+            "    not covered: of {near} samples with the tip within 3 cm of the axis of joint 0 {unstable} are unstable, up to {distance:.1} cm"
+        ),
+    }
+}

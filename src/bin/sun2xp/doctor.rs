@@ -1,0 +1,66 @@
+//! `sun2xp doctor`: whether this machine can run the hand as it is configured.
+
+use crate::board::Failure;
+use serde::Serialize;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+use sun2xp::hand::{self, Finding, Verdict};
+
+/// Looks at kernel, limits, cores and ports, measures wake-ups and round trips, and says what to change. Motors stay off.
+///
+/// Exit status 0: the hand can run as configured. 1: it cannot, or not at its rate.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The configuration file. Without it: the one that OpenHand would read.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// How long to measure.
+    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
+    seconds: f64,
+    /// For machines: one JSON object, with `pass` and `findings`.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Examination<'a> {
+    pass: bool,
+    findings: &'a [Finding],
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let configuration = match &arguments.config {
+        Some(path) => hand::read(path)?,
+        None => hand::configured()?.0,
+    };
+    let findings = hand::examine(&configuration, Path::new("/"), Duration::from_secs_f64(arguments.seconds))?;
+    let pass = findings.iter().all(|finding| finding.verdict < Verdict::Failure);
+    let mut output = io::stdout().lock();
+    if arguments.json {
+        writeln!(output, "{}", serde_json::to_string_pretty(&Examination { pass, findings: &findings })?)?;
+    } else {
+        findings.iter().try_for_each(|finding| tell(&mut output, finding))?;
+        writeln!(output, "{}", if pass { "pass" } else { "fail" })?;
+    }
+    Ok(if pass { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn tell(output: &mut impl Write, finding: &Finding) -> io::Result<()> {
+    let mark = match finding.verdict {
+        Verdict::Good => "good   ",
+        Verdict::Warning => "warning",
+        Verdict::Failure => "FAILURE",
+    };
+    writeln!(output, "{mark}  {}: {}", finding.subject, finding.found)?;
+    if finding.advice.is_empty() { Ok(()) } else { writeln!(output, "         {}", finding.advice) }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.1..=60.0).contains(&seconds) => Ok(seconds),
+        _ => Err("0.1 to 60 seconds".into()),
+    }
+}

@@ -1,0 +1,236 @@
+//! The last two seconds of a finger, kept at all times: the servo leaves one record a cycle in a ring, whoever collects the reports
+//! keeps the newest.
+//!
+//! A replay needs the state of the controller where the records begin. The servo leaves a copy of it every few cycles, and the
+//! records that are kept begin at such a keyframe. Rejected: the state in every record, which takes three times the memory; a second
+//! controller that follows two seconds behind, which computes everything twice.
+
+use crate::control::{Command, Feedback, Report, State};
+use crate::finger::recording::{Origin, Recording};
+use crate::finger::{ControlInput, Stage};
+use crate::model::configuration::{ConfiguredFinger, ConfiguredHand};
+use crate::realtime::{CycleTiming, Memory};
+use nalgebra::Vector3;
+use rtrb::{Consumer, Producer, RingBuffer};
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+
+/// How much is kept, s.
+const KEPT: f64 = 2.0;
+
+/// How long nobody may collect before records are lost, s.
+const UNCOLLECTED: f64 = 0.5;
+
+/// Keyframes in a second.
+const KEYFRAMES: f64 = 8.0;
+
+/// One cycle of one finger. `S` is its [`Stage`], in a file the words for it.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct CycleRecord<S = Stage> {
+    /// Counted from open, the first is 1.
+    pub cycle: u64,
+    /// When it began, ns of the monotonic clock.
+    pub began: u64,
+    /// Where the finger was between open and close when it ended.
+    pub stage: S,
+    /// Where its time went, ns.
+    pub timing: CycleTiming,
+    /// What the reply measured; none: it was lost.
+    pub feedback: Option<Feedback>,
+    /// Status bits of the newest reply.
+    pub status: u16,
+    /// What the controller did; none where the finger faulted before it could.
+    pub control: Option<ControlRecord>,
+}
+
+/// What the controller was given, and what it made of it.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct ControlRecord {
+    /// Number of the controller.
+    pub controller: u32,
+    /// Number of the controller from which it took over in this cycle; else its own.
+    pub previous: u32,
+    /// What it was told.
+    pub input: ControlInput,
+    /// What the motors were told in the next cycle.
+    pub command: Command,
+    /// What it found and decided.
+    pub report: Report,
+}
+
+/// The state before a cycle.
+struct Keyframe {
+    cycle: u64,
+    state: State,
+}
+
+/// What a controller was made from.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct ControllerSource {
+    /// Counted from open, the first is 0.
+    pub number: u32,
+    /// In the finger's frame, m/s^2.
+    pub gravity: Vector3<f64>,
+    /// Everything else.
+    pub finger: ConfiguredFinger,
+}
+
+/// The servo's end. Nothing here waits or allocates.
+pub struct Recorder {
+    records: Producer<CycleRecord>,
+    keyframes: Producer<Keyframe>,
+    /// Cycles from one keyframe to the next.
+    apart: u64,
+}
+
+/// The collector's end: the last two seconds.
+pub struct BlackBox {
+    arriving: Consumer<CycleRecord>,
+    keyframes_arriving: Consumer<Keyframe>,
+    records: VecDeque<CycleRecord>,
+    keyframes: VecDeque<Keyframe>,
+    /// Cycles.
+    length: u64,
+    finger: i32,
+    hand: ConfiguredHand,
+    controllers: Vec<ControllerSource>,
+    /// A fault has come in that [`BlackBox::faulted`] has not told yet.
+    faulted: bool,
+}
+
+impl BlackBox {
+    /// An empty one for finger 1, 2 or 3, whose first controller is made from `controller`; and the servo's end of it.
+    pub fn new(finger: i32, hand: &ConfiguredHand, controller: ControllerSource) -> (Recorder, Self) {
+        let cycles = |seconds: f64| (seconds * hand.rate).ceil() as usize;
+        let apart = cycles(1.0 / KEYFRAMES);
+        let (mut records, mut arriving) = RingBuffer::new(cycles(UNCOLLECTED));
+        let (keyframes, keyframes_arriving) = RingBuffer::new(cycles(UNCOLLECTED).div_ceil(apart) + 1);
+        touch(&mut records, &mut arriving);
+        let recorder = Recorder { records, keyframes, apart: apart as u64 };
+        let black_box = Self {
+            arriving,
+            keyframes_arriving,
+            records: VecDeque::new(),
+            keyframes: VecDeque::new(),
+            length: cycles(KEPT) as u64,
+            finger,
+            hand: hand.clone(),
+            controllers: vec![controller],
+            faulted: false,
+        };
+        (recorder, black_box)
+    }
+
+    /// Keeps what another controller is made from, to be called before the servo gets it. Returns its number.
+    pub fn announce(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>) -> u32 {
+        let number = self.controllers.last().map_or(0, |last| last.number + 1);
+        self.controllers.push(ControllerSource { number, gravity, finger });
+        number
+    }
+
+    /// Takes in what the servo has left, and forgets what is too old.
+    pub fn collect(&mut self) {
+        while let Ok(record) = self.arriving.pop() {
+            self.faulted |= matches!(record.stage, Stage::Faulted(_));
+            // A gap: nobody collected for too long, or the finger was faulted. What was before cannot be replayed across it.
+            if self.records.back().is_some_and(|last| last.cycle + 1 != record.cycle) {
+                self.records.clear();
+            }
+            self.records.push_back(record);
+        }
+        // After the records: a keyframe is left before the record of its cycle.
+        while let Ok(keyframe) = self.keyframes_arriving.pop() {
+            self.keyframes.push_back(keyframe);
+        }
+        self.forget();
+    }
+
+    fn forget(&mut self) {
+        let (Some(first), Some(newest)) = (self.records.front(), self.records.back()) else { return };
+        let (first, newest) = (first.cycle, newest.cycle);
+        // One that is old enough stays.
+        while self.keyframes.get(1).is_some_and(|next| next.cycle + self.length <= newest + 1)
+            || self.keyframes.front().is_some_and(|oldest| oldest.cycle < first)
+        {
+            self.keyframes.pop_front();
+        }
+        let from = self.keyframes.front().map_or(newest + 1, |oldest| oldest.cycle);
+        let too_old = self.records.partition_point(|record| record.cycle < from);
+        self.records.drain(..too_old);
+        let controls = self.records.iter().filter_map(|record| record.control.as_ref());
+        let needed = controls.map(|control| control.controller.min(control.previous)).min();
+        if let Some(needed) = needed {
+            self.controllers.retain(|controller| controller.number >= needed);
+        }
+    }
+
+    /// Whether a fault has come in since the last such call.
+    pub fn faulted(&mut self) -> bool {
+        std::mem::take(&mut self.faulted)
+    }
+
+    /// A copy of what is kept; none before the first cycle.
+    pub fn recording(&self) -> Option<Recording> {
+        let state = self.keyframes.front()?.state;
+        let origin =
+            Origin { finger: self.finger, hand: self.hand.clone(), controllers: self.controllers.clone(), state };
+        Some(Recording::new(origin, self.records.iter().map(CycleRecord::in_words).collect()))
+    }
+}
+
+impl Recorder {
+    /// Leaves the state before a cycle, if its turn has come or the records `begin` with it.
+    pub fn keyframe(&mut self, cycle: u64, state: &State, begin: bool) {
+        if begin || cycle.is_multiple_of(self.apart) {
+            // Where nobody collects it is lost, like the records.
+            let _ = self.keyframes.push(Keyframe { cycle, state: *state });
+        }
+    }
+
+    /// What its end of the rings touches.
+    pub fn memory(&mut self) -> Memory {
+        let mut memory = Memory::default();
+        memory.add(self.records.buffer());
+        memory.add(self.keyframes.buffer());
+        add_room(&mut self.records, &mut memory);
+        add_room(&mut self.keyframes, &mut memory);
+        memory
+    }
+
+    /// Leaves a record.
+    pub fn record(&mut self, record: CycleRecord) {
+        let _ = self.records.push(record);
+    }
+}
+
+impl CycleRecord {
+    /// The stage in words.
+    fn in_words(&self) -> CycleRecord<String> {
+        let Self { cycle, began, stage, timing, feedback, status, control } = *self;
+        CycleRecord { cycle, began, stage: stage.to_string(), timing, feedback, status, control }
+    }
+}
+
+fn add_room<T>(ring: &mut Producer<T>, memory: &mut Memory) {
+    let every = ring.slots();
+    if let Ok(mut room) = ring.write_chunk_uninit(every) {
+        let (first, second) = room.as_mut_slices();
+        memory.add(first);
+        memory.add(second);
+    }
+}
+
+/// Writes to every page of a ring: the servo shall not be the first to.
+fn touch(records: &mut Producer<CycleRecord>, arriving: &mut Consumer<CycleRecord>) {
+    let blank = CycleRecord {
+        cycle: 0,
+        began: 0,
+        stage: Stage::Opening,
+        timing: CycleTiming::default(),
+        feedback: None,
+        status: 0,
+        control: None,
+    };
+    while records.push(blank).is_ok() {}
+    while arriving.pop().is_ok() {}
+}

@@ -1,0 +1,46 @@
+//! What a servo could not do in time, counted.
+
+use crate::finger::FingerReport;
+
+/// How many cycles a finger had, and what went wrong in them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Losses {
+    /// Cycles.
+    pub cycles: u64,
+    /// Cycles that were not over when the next one should have begun.
+    pub overruns: u64,
+    /// Periods skipped because of that.
+    pub skipped_periods: u64,
+    /// Cycles without a valid reply in time.
+    pub lost_replies: u64,
+    /// Replies that came when their cycle was over.
+    pub late_replies: u64,
+    /// Damaged or foreign frames on the finger's port.
+    pub damaged_frames: u64,
+}
+
+impl Losses {
+    /// Since open.
+    pub fn of(report: &FingerReport) -> Self {
+        Self {
+            cycles: report.cycles,
+            overruns: report.overruns,
+            skipped_periods: report.skipped_periods,
+            lost_replies: report.lost_replies,
+            late_replies: report.late_replies,
+            damaged_frames: report.damaged_frames,
+        }
+    }
+
+    /// Since `earlier`.
+    pub fn since(&self, earlier: &Self) -> Self {
+        Self {
+            cycles: self.cycles - earlier.cycles,
+            overruns: self.overruns - earlier.overruns,
+            skipped_periods: self.skipped_periods - earlier.skipped_periods,
+            lost_replies: self.lost_replies - earlier.lost_replies,
+            late_replies: self.late_replies - earlier.late_replies,
+            damaged_frames: self.damaged_frames - earlier.damaged_frames,
+        }
+    }
+}

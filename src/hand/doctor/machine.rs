@@ -1,0 +1,272 @@
+//! What the files of /proc and /sys say of the kernel, its limits and its cores.
+
+use crate::hand::doctor::{Finding, Verdict, lacking};
+use crate::model::configuration::Configuration;
+use std::fs::read_to_string;
+use std::path::Path;
+
+/// What three servo threads lock, with room, bytes: stacks, timings on their way, mailboxes.
+const LOCKED: u64 = 4 << 20;
+
+const CAP_IPC_LOCK: u32 = 14;
+const CAP_SYS_NICE: u32 = 23;
+
+/// The limits file that README tells to write.
+const LIMITS: &str = "/etc/security/limits.d/sun2xp.conf";
+
+pub(super) fn findings(configuration: &Configuration, root: &Path) -> Vec<Finding> {
+    let read = |path: &str| read_to_string(root.join(path)).unwrap_or_default();
+    let (limits, status) = (read("proc/self/limits"), read("proc/self/status"));
+    let isolated = read("sys/devices/system/cpu/isolated");
+    let mut findings = vec![
+        kernel(&read("proc/version"), read("sys/kernel/realtime").trim() == "1"),
+        throttling(
+            read("proc/sys/kernel/sched_rt_runtime_us").trim(),
+            read("proc/sys/kernel/sched_rt_period_us").trim(),
+        ),
+        scheduling(configuration, limit(&limits, "Max realtime priority"), has(&status, CAP_SYS_NICE)),
+        memory(configuration, limit(&limits, "Max locked memory"), has(&status, CAP_IPC_LOCK)),
+        cores(configuration, &listed(field(&status, "Cpus_allowed_list:")), &listed(&isolated)),
+    ];
+    let online = listed(&read("sys/devices/system/cpu/online"));
+    findings.push(governor(&online, |core| {
+        read_to_string(root.join(format!("sys/devices/system/cpu/cpu{core}/cpufreq/scaling_governor"))).ok()
+    }));
+    findings
+}
+
+fn kernel(version: &str, realtime: bool) -> Finding {
+    let release = version.split(' ').nth(2).unwrap_or("of unknown release");
+    if realtime || version.contains("PREEMPT_RT") {
+        return Finding::good("kernel", format!("Linux {release}, PREEMPT_RT"));
+    }
+    let advice = "An ordinary kernel has a good median, but no bound on the worst wake-up. A PREEMPT_RT kernel has: \
+                  apt install linux-image-rt-amd64 on Debian, and boot it";
+    Finding::new(Verdict::Warning, "kernel", format!("Linux {release}, without PREEMPT_RT"), advice)
+}
+
+/// `runtime` us of every `period` us are left to real-time threads.
+fn throttling(runtime: &str, period: &str) -> Finding {
+    let subject = "real-time throttling";
+    let mend = "sudo sysctl kernel.sched_rt_runtime_us=950000";
+    match (runtime.parse::<i64>(), period.parse::<i64>()) {
+        (Ok(-1), _) => Finding::new(
+            Verdict::Warning,
+            subject,
+            "off",
+            format!(
+                "A real-time thread that never sleeps would stop its core for good, and the ports with it. To have it back: {mend}"
+            ),
+        ),
+        (Ok(runtime), Ok(period)) if period > 0 => {
+            let share = 100 * runtime / period;
+            let found = format!("real-time threads get {share} % of the time, {runtime} of {period} us");
+            match share {
+                0 => Finding::new(Verdict::Failure, subject, found, format!("No real-time thread runs. {mend}")),
+                1..50 => Finding::new(
+                    Verdict::Warning,
+                    subject,
+                    found,
+                    format!("Servos may be stopped in the middle of a period. {mend}"),
+                ),
+                _ => Finding::good(subject, found),
+            }
+        }
+        _ => Finding::good(subject, "this kernel has none"),
+    }
+}
+
+fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) -> Finding {
+    let subject = "real-time priority";
+    let wanted = configuration.fingers.iter().map(|finger| finger.priority).max().unwrap_or(0);
+    let limit = limit.unwrap_or(0);
+    if wanted == 0 {
+        let advice = "The servos have the jitter of ordinary threads: set finger.priority to 80";
+        return Finding::new(Verdict::Warning, subject, "finger.priority is 0", advice);
+    }
+    if capable || limit >= wanted.into() {
+        let by = if capable { "CAP_SYS_NICE".into() } else { format!("the rtprio limit {limit}") };
+        return Finding::good(subject, format!("{wanted} is permitted by {by}"));
+    }
+    let advice = format!(
+        "The servos would have the jitter of ordinary threads. Write `@realtime - rtprio 90` into {LIMITS}, join the group \
+         (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
+    );
+    lacking(configuration, subject, format!("{wanted} is wanted, the rtprio limit is {limit}"), advice)
+}
+
+fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> Finding {
+    let subject = "locked memory";
+    // None: unlimited.
+    if capable || limit.is_none_or(|limit| limit >= LOCKED) {
+        let by = if capable { "CAP_IPC_LOCK" } else { "the memlock limit" };
+        return Finding::good(subject, format!("permitted by {by}"));
+    }
+    let kilobytes = limit.unwrap_or(0) / 1024;
+    let advice = format!(
+        "Where memory is short a servo may wait for its own pages. Write `@realtime - memlock unlimited` into {LIMITS} and log in again"
+    );
+    let found = format!("the memlock limit is {kilobytes} kB, the servos want {} kB", LOCKED / 1024);
+    lacking(configuration, subject, found, advice)
+}
+
+fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -> Finding {
+    let subject = "cores";
+    let mut wanted: Vec<usize> = configuration.fingers.iter().filter_map(|finger| finger.core).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    let found = format!("configured {wanted:?}, allowed {allowed:?}, isolated {isolated:?}");
+    if let Some(core) = wanted.iter().find(|core| !allowed.contains(core)) {
+        let advice =
+            format!("The servo cannot run on core {core}: set finger.core to one that is allowed (taskset -p $$)");
+        return lacking(configuration, subject, found, advice);
+    }
+    if let Some(core) = wanted.iter().find(|core| !isolated.contains(core)) {
+        let advice = format!(
+            "Others run on core {core} too, and make the servo late: boot with isolcpus={core} nohz_full={core}"
+        );
+        return Finding::new(Verdict::Warning, subject, found, advice);
+    }
+    if wanted.is_empty() && !isolated.is_empty() {
+        let advice = "Nobody uses the isolated cores: set finger.core to one of them";
+        return Finding::new(Verdict::Warning, subject, found, advice);
+    }
+    Finding::good(subject, found)
+}
+
+fn governor(online: &[usize], read: impl Fn(usize) -> Option<String>) -> Finding {
+    let subject = "frequency governor";
+    let slow = online.iter().find_map(|&core| {
+        let governor = read(core)?.trim().to_string();
+        (governor != "performance").then_some((core, governor))
+    });
+    match slow {
+        Some((core, governor)) => {
+            let advice = "A core that has slowed down wakes up late: sudo cpupower frequency-set -g performance";
+            Finding::new(Verdict::Warning, subject, format!("{governor} on core {core}"), advice)
+        }
+        None if online.iter().any(|&core| read(core).is_some()) => Finding::good(subject, "performance"),
+        None => Finding::good(subject, "none: hypervisor or firmware decides"),
+    }
+}
+
+/// The soft limit in a line of /proc/self/limits, none: unlimited, or not there.
+fn limit(limits: &str, name: &str) -> Option<u64> {
+    field(limits, name).split_whitespace().next()?.parse().ok()
+}
+
+/// Whether an effective capability is in /proc/self/status.
+fn has(status: &str, capability: u32) -> bool {
+    u64::from_str_radix(field(status, "CapEff:"), 16).is_ok_and(|bits| bits & 1 << capability != 0)
+}
+
+/// What follows a name at the beginning of a line.
+fn field<'a>(text: &'a str, name: &str) -> &'a str {
+    text.lines().find_map(|line| line.strip_prefix(name)).unwrap_or("").trim()
+}
+
+/// The kernel's lists of cores: `0-2,5`.
+fn listed(list: &str) -> Vec<usize> {
+    let range = |part: &str| {
+        let (first, last) = part.split_once('-').unwrap_or((part, part));
+        Some(first.parse::<usize>().ok()?..=last.parse::<usize>().ok()?)
+    };
+    list.trim().split(',').filter_map(range).flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::configuration::RealTime;
+    use std::fs;
+    use tempfile::TempDir;
+
+    /// A machine as it should be.
+    const GOOD: [(&str, &str); 9] = [
+        ("proc/version", "Linux version 6.1.0-18-rt-amd64 (debian) #1 SMP PREEMPT_RT Debian 6.1.76-1\n"),
+        ("proc/sys/kernel/sched_rt_runtime_us", "950000\n"),
+        ("proc/sys/kernel/sched_rt_period_us", "1000000\n"),
+        (
+            "proc/self/limits",
+            "Limit  Soft Limit  Hard Limit  Units\nMax locked memory   unlimited  unlimited  bytes\nMax realtime priority  90  90\n",
+        ),
+        ("proc/self/status", "Name:\tx\nCapEff:\t0000000000000000\nCpus_allowed_list:\t0-3\n"),
+        ("sys/devices/system/cpu/isolated", "2-3\n"),
+        ("sys/devices/system/cpu/online", "0-3\n"),
+        ("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance\n"),
+        ("sys/devices/system/cpu/cpu3/cpufreq/scaling_governor", "performance\n"),
+    ];
+
+    /// What is found where one file of a good machine differs.
+    fn found(path: &str, text: &str, change: impl FnOnce(&mut Configuration)) -> Vec<Finding> {
+        let root = TempDir::new().expect("a folder");
+        for (file, text) in GOOD.into_iter().chain([(path, text)]) {
+            let file = root.path().join(file);
+            fs::create_dir_all(file.parent().expect("a folder")).expect("made");
+            fs::write(file, text).expect("written");
+        }
+        let mut configuration = Configuration::default();
+        configuration.fingers.iter_mut().for_each(|finger| finger.core = Some(2));
+        change(&mut configuration);
+        findings(&configuration, root.path())
+    }
+
+    #[test]
+    fn a_good_machine_is_good() {
+        let findings = found("proc/x", "", |_| {});
+        assert_eq!(findings.len(), 6);
+        assert!(findings.iter().all(|finding| finding.verdict == Verdict::Good), "{findings:#?}");
+    }
+
+    #[test]
+    fn every_fault_is_found_alone_with_its_remedy() {
+        use Verdict::{Failure, Warning};
+        let limits = |memory, priority| {
+            format!("Max locked memory  {memory}  {memory} bytes\nMax realtime priority  {priority}  0\n")
+        };
+        let status = |capabilities, cores| format!("CapEff:\t{capabilities}\nCpus_allowed_list:\t{cores}\n");
+        for (path, text, subject, verdict, remedy) in [
+            ("proc/version", "Linux version 6.1.0 #1 SMP PREEMPT_DYNAMIC".into(), "kernel", Warning, "linux-image-rt"),
+            ("proc/sys/kernel/sched_rt_runtime_us", "-1".into(), "real-time throttling", Warning, "950000"),
+            ("proc/sys/kernel/sched_rt_runtime_us", "0".into(), "real-time throttling", Failure, "950000"),
+            ("proc/sys/kernel/sched_rt_runtime_us", "200000".into(), "real-time throttling", Warning, "950000"),
+            ("proc/self/limits", limits("unlimited", "0"), "real-time priority", Warning, "rtprio 90"),
+            ("proc/self/limits", limits("65536", "90"), "locked memory", Warning, "memlock unlimited"),
+            ("proc/self/status", status("0", "0-1"), "cores", Warning, "finger.core"),
+            ("sys/devices/system/cpu/isolated", "3".into(), "cores", Warning, "isolcpus=2"),
+            (
+                "sys/devices/system/cpu/cpu3/cpufreq/scaling_governor",
+                "powersave".into(),
+                "frequency governor",
+                Warning,
+                "cpupower",
+            ),
+        ] {
+            let findings = found(path, &text, |_| {});
+            let bad: Vec<_> = findings.iter().filter(|finding| finding.verdict != Verdict::Good).collect();
+            assert_eq!(bad.len(), 1, "{path} {text}: {findings:#?}");
+            assert_eq!((bad[0].subject.as_str(), bad[0].verdict), (subject, verdict), "{bad:?}");
+            assert!(bad[0].advice.contains(remedy), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn capabilities_do_instead_of_limits_and_enforcing_makes_failures() {
+        let none = "Max locked memory  0  0 bytes\nMax realtime priority  0  0\n";
+        let failures =
+            found("proc/self/limits", none, |configuration| configuration.hand.real_time = RealTime::Enforce);
+        assert_eq!(failures.iter().filter(|finding| finding.verdict == Verdict::Failure).count(), 2, "{failures:#?}");
+
+        let (wanted, limits) = (Configuration::default(), Some(0));
+        assert_eq!(scheduling(&wanted, limits, true).verdict, Verdict::Good);
+        assert_eq!(memory(&wanted, limits, true).verdict, Verdict::Good);
+        let status = "CapEff:\t0000000000804000\n";
+        assert!(has(status, CAP_IPC_LOCK) && has(status, CAP_SYS_NICE) && !has(status, 0) && !has("", CAP_SYS_NICE));
+    }
+
+    #[test]
+    fn lists_of_cores_are_read() {
+        assert_eq!(listed("0-2,5\n"), [0, 1, 2, 5]);
+        assert_eq!(listed("\n"), [0; 0]);
+    }
+}

@@ -1,0 +1,86 @@
+//! Wake-ups of threads like the servo's, against the period.
+
+use crate::hand::HandError;
+use crate::hand::doctor::{Finding, Verdict, lacking};
+use crate::hand::missing::missing;
+use crate::hand::servo_threads::priority;
+use crate::model::configuration::{Configuration, FINGERS};
+use crate::realtime::{Schedule, WakeUp, measure_wake_up, now};
+use std::time::Duration;
+
+/// Threads are ready after this, ns.
+const HEAD_START: u64 = 10_000_000;
+
+/// Wake-ups later than this part of the period, 99 of 100, take what the reply needs.
+const LATE: f64 = 0.1;
+
+/// Later than this, and a period is lost every now and then.
+const TOO_LATE: f64 = 0.5;
+
+/// What wakes up as the servos would, all at once and staggered as they are.
+pub(super) fn wake_ups(configuration: &Configuration, duration: Duration) -> Result<Vec<Finding>, HandError> {
+    let period = (1e9 / configuration.hand.rate).round() as u64;
+    let cycles = (duration.as_nanos() as u64 / period).max(1);
+    let mut threads: Vec<u8> = (0..FINGERS).map(|finger| configuration.thread(finger)).collect();
+    threads.sort_unstable();
+    threads.dedup();
+    let first = now() + HEAD_START;
+    let measuring: Result<Vec<_>, _> = threads
+        .iter()
+        .enumerate()
+        .map(|(place, &thread)| {
+            let schedule = Schedule::staggered(first, period, place, threads.len());
+            measure_wake_up(priority(configuration, thread), schedule, cycles).map(|measuring| (thread, measuring))
+        })
+        .collect();
+    let measuring = measuring.map_err(|source| HandError::System { doing: "start a thread", source })?;
+    // A thread that panicked has nothing to tell.
+    let measured = measuring.into_iter().filter_map(|(thread, measuring)| Some((thread, measuring.join().ok()?)));
+    Ok(measured.map(|(thread, wake_up)| judge(configuration, thread, wake_up)).collect())
+}
+
+fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding {
+    let subject = format!("wake-up of servo thread {thread}");
+    let WakeUp { late, had, timer_slack } = wake_up;
+    let period = 1e6 / configuration.hand.rate;
+    let found = format!(
+        "median {:.0}, 99 % {:.0}, worst {:.0} us of a period of {period:.0} us; timer slack {timer_slack} ns",
+        late.median, late.p99, late.maximum
+    );
+    let verdict = match late.p99 / period {
+        share if share > TOO_LATE => Verdict::Failure,
+        share if share > LATE => Verdict::Warning,
+        _ => Verdict::Good,
+    };
+    if verdict > Verdict::Good {
+        let advice = "Something keeps the core from this thread: other real-time threads, a busy or paused virtual machine, power \
+                      saving. Isolate a core for it (finger.core), or lower hand.rate";
+        return Finding::new(verdict, subject, found, advice);
+    }
+    if let Some(missing) = missing(vec![had]).first() {
+        return lacking(configuration, &subject, found, missing.to_string());
+    }
+    Finding::good(subject, found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::realtime::{Distribution, Realtime};
+
+    #[test]
+    fn wake_ups_are_judged_by_the_period() {
+        let judged = |rate, p99, had| {
+            let mut configuration = Configuration::default();
+            configuration.hand.rate = rate;
+            let late = Distribution { p99, ..Distribution::default() };
+            judge(&configuration, 1, WakeUp { late, had, timer_slack: 1 })
+        };
+        assert_eq!(judged(1000.0, 90.0, Realtime::default()).verdict, Verdict::Good);
+        assert_eq!(judged(1000.0, 110.0, Realtime::default()).verdict, Verdict::Warning);
+        assert_eq!(judged(5000.0, 110.0, Realtime::default()).verdict, Verdict::Failure);
+        let scheduling = Some(std::io::Error::from_raw_os_error(libc::EPERM));
+        let refused = judged(1000.0, 90.0, Realtime { scheduling, ..Realtime::default() });
+        assert!(refused.verdict == Verdict::Warning && refused.advice.contains("rtprio"), "{refused:?}");
+    }
+}

@@ -1,0 +1,198 @@
+//! The ports of a hand: whether they can be opened, hold bytes back, and how long a round trip to the board takes.
+
+use crate::board::protocol::Command;
+use crate::board::{Link, LinkError, OutgoingCommand, Port, PortError, SimulatedPort, Terms};
+use crate::finger::REPLY_WINDOW;
+use crate::hand::HandError;
+use crate::hand::doctor::{Finding, Verdict};
+use crate::hand::opening::ports;
+use crate::hand::servo_threads::priority;
+use crate::model::configuration::{Configuration, FINGERS};
+use crate::realtime::{Clock, CycleTiming, Distribution, Histograms, MonotonicClock, Schedule, Stage, now, spawn};
+use std::os::unix::fs::MetadataExt;
+use std::path::Path;
+use std::time::Duration;
+
+/// Round trips longer than this part of the reply window, 99 of 100, leave little room for a bad day.
+const LONG: f64 = 0.75;
+
+/// Lost replies beyond this part of all are no accident.
+const TOO_MANY_LOST: f64 = 0.01;
+
+pub(super) fn findings(
+    configuration: &Configuration,
+    simulated: &[Option<SimulatedPort>; FINGERS],
+    root: &Path,
+    duration: Duration,
+) -> Result<Vec<Finding>, HandError> {
+    let ports = ports(configuration, simulated);
+    let each = duration / ports.len() as u32;
+    let mut findings = Vec::new();
+    for (path, fingers) in ports {
+        let subject = format!("port {}", path.display());
+        let mut link = match Link::open(&path, configuration.fingers[fingers[0]].baud) {
+            Ok(link) => link,
+            Err(error) => {
+                findings.push(Finding::new(Verdict::Failure, subject, "cannot be opened", advice(&error, root, &path)));
+                continue;
+            }
+        };
+        findings.push(latency(subject, link.transport().latency_timer_ms()));
+        let priority = priority(configuration, configuration.thread(fingers[0]));
+        let owned = configuration.clone();
+        let measuring = spawn("sun2xp doctor", priority, move |_| round_trips(&owned, &mut link, &fingers, each))
+            .map_err(|source| HandError::System { doing: "start a thread", source })?;
+        // A thread that panicked has nothing to tell.
+        if let Ok(measured) = measuring.join() {
+            findings.push(judge(configuration, format!("round trip on {}", path.display()), measured));
+        }
+    }
+    Ok(findings)
+}
+
+/// What the error says, and of a port without permission also whose it is.
+fn advice(error: &LinkError, root: &Path, path: &Path) -> String {
+    let group = match error {
+        LinkError::Port(PortError::Forbidden(_)) => std::fs::metadata(path).ok().and_then(|file| {
+            let groups = std::fs::read_to_string(root.join("etc/group")).ok()?;
+            group_name(&groups, file.gid()).map(str::to_owned)
+        }),
+        _ => None,
+    };
+    match group {
+        Some(group) => format!("{error}. Its group is {group}: sudo usermod -aG {group} $USER"),
+        None => error.to_string(),
+    }
+}
+
+/// The name of a group in the text of /etc/group.
+fn group_name(groups: &str, id: u32) -> Option<&str> {
+    groups.lines().find_map(|line| {
+        let mut fields = line.split(':');
+        let name = fields.next()?;
+        (fields.nth(1)?.parse() == Ok(id)).then_some(name)
+    })
+}
+
+fn latency(subject: String, timer_ms: Option<u32>) -> Finding {
+    match timer_ms {
+        Some(milliseconds) if milliseconds > 1 => Finding::new(
+            Verdict::Failure,
+            subject,
+            format!("opened; its adapter holds bytes back for {milliseconds} ms"),
+            "Every reply waits for the adapter's latency timer: write 1 to latency_timer under /sys/bus/usb-serial/devices, or let the \
+             udev rule of README do so",
+        ),
+        Some(_) => Finding::good(subject, "opened; its adapter has the shortest latency timer"),
+        None => Finding::good(subject, "opened, and nobody else has it; no latency timer"),
+    }
+}
+
+/// Round trips and how many got no reply of every finger.
+struct Measured {
+    times: Distribution,
+    lost: u64,
+}
+
+/// Exchanges frames with every finger on a port, as its servo would, but with motors off.
+fn round_trips(
+    configuration: &Configuration,
+    link: &mut Link<Port>,
+    fingers: &[usize],
+    duration: Duration,
+) -> Result<Measured, LinkError> {
+    let hand = &configuration.hand;
+    let deadline = now() + u64::from(hand.open_timeout_ms) * 1_000_000;
+    for &finger in fingers {
+        let terms = Terms::new(hand, &configuration.fingers[finger]);
+        link.shake_hands(configuration.address(finger), &terms, deadline)?;
+    }
+    let period = (1e9 / hand.rate).round() as u64;
+    let (mut histograms, mut lost) = (Histograms::new(), 0);
+    let mut schedule = Schedule::new(now() + period, period);
+    for cycle in 0..duration.as_nanos() as u64 / period {
+        MonotonicClock.sleep_until(schedule.next());
+        let sequence = cycle as u8;
+        let mut commands = [OutgoingCommand::default(); FINGERS];
+        for (command, &finger) in commands.iter_mut().zip(fingers) {
+            *command =
+                OutgoingCommand { address: configuration.address(finger), sequence, command: Command::default() };
+        }
+        let began = now();
+        link.send(&commands[..fingers.len()])?;
+        // Longer than the servo would wait, to know how long it takes.
+        let deadline = began + period;
+        let mut missing = fingers.len();
+        while missing > 0
+            && let Some(received) = link.receive(deadline)?
+        {
+            missing -= usize::from(received.sequence == sequence);
+        }
+        if missing == 0 {
+            let mut timing = CycleTiming::default();
+            timing.note(Stage::Wire, began, now());
+            histograms.record(&timing);
+        } else {
+            lost += 1;
+        }
+        schedule.advance(now());
+    }
+    Ok(Measured { times: histograms.distribution(Stage::Wire), lost })
+}
+
+fn judge(configuration: &Configuration, subject: String, measured: Result<Measured, LinkError>) -> Finding {
+    let Measured { times, lost } = match measured {
+        Ok(measured) => measured,
+        Err(error) => return Finding::new(Verdict::Failure, subject, "none", error.to_string()),
+    };
+    let window = 1e6 / configuration.hand.rate * REPLY_WINDOW;
+    let found = format!(
+        "median {:.0}, 99 % {:.0}, worst {:.0} us, where {window:.0} us are allowed; {lost} of {} lost",
+        times.median,
+        times.p99,
+        times.maximum,
+        times.count + lost
+    );
+    let share_lost = lost as f64 / (times.count + lost).max(1) as f64;
+    let verdict = match times.p99 / window {
+        share if share > 1.0 || share_lost > TOO_MANY_LOST => Verdict::Failure,
+        share if share > LONG => Verdict::Warning,
+        _ => return Finding::good(subject, found),
+    };
+    let advice = "Replies come too late for their cycle: raise the baud rate of board and finger.baud, give the adapter a port of its own \
+                  on the machine, shorten its latency timer, or lower hand.rate";
+    Finding::new(verdict, subject, found, advice)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn round_trips_are_judged_by_the_reply_window() {
+        let judged = |p99, lost| {
+            let times = Distribution { count: 1000, p99, ..Distribution::default() };
+            judge(&Configuration::default(), "x".into(), Ok(Measured { times, lost })).verdict
+        };
+        // 850 us at 1000 Hz.
+        assert_eq!(judged(600.0, 0), Verdict::Good);
+        assert_eq!(judged(700.0, 5), Verdict::Warning);
+        assert_eq!(judged(900.0, 0), Verdict::Failure);
+        assert_eq!(judged(600.0, 20), Verdict::Failure);
+        let silent = Err(LinkError::Silent { milliseconds: 500 });
+        let finding = judge(&Configuration::default(), "x".into(), silent);
+        assert!(finding.verdict == Verdict::Failure && finding.advice.contains("switched on"), "{finding:?}");
+    }
+
+    #[test]
+    fn latency_timers_are_judged() {
+        let verdicts = [None, Some(1), Some(2), Some(16)].map(|timer| latency("x".into(), timer).verdict);
+        assert_eq!(verdicts, [Verdict::Good, Verdict::Good, Verdict::Failure, Verdict::Failure]);
+    }
+
+    #[test]
+    fn the_group_of_a_port_is_named() {
+        let groups = "root:x:0:\ndialout:x:20:somebody\n";
+        assert_eq!((group_name(groups, 20), group_name(groups, 7)), (Some("dialout"), None));
+    }
+}

@@ -1,0 +1,43 @@
+//! What a hand's servo threads lack to be real-time.
+
+use crate::realtime::Realtime;
+use std::io;
+use thiserror::Error;
+
+/// Something that a servo thread was to have and cannot have. The texts name the remedy.
+#[derive(Debug, Error)]
+pub enum Missing {
+    /// SCHED_FIFO.
+    #[error("the servo cannot run under SCHED_FIFO ({0}): allow it with CAP_SYS_NICE or an rtprio limit (ulimit -r)")]
+    Scheduling(io::Error),
+    /// Locked memory.
+    #[error(
+        "the servo's memory cannot be locked ({0}): allow it with CAP_IPC_LOCK or a memlock limit of 8 MiB (ulimit -l)"
+    )]
+    Memory(io::Error),
+    /// The configured core.
+    #[error(
+        "the servo cannot run on its core ({0}): set `finger.core` to one that this process may use (taskset -p $$)"
+    )]
+    Core(io::Error),
+}
+
+impl Missing {
+    /// What the system said.
+    pub fn errno(&self) -> i32 {
+        let (Self::Scheduling(source) | Self::Memory(source) | Self::Core(source)) = self;
+        source.raw_os_error().unwrap_or(libc::EIO)
+    }
+}
+
+/// What is missing to any of the threads, one of a kind.
+pub(super) fn missing(had: Vec<Realtime>) -> Vec<Missing> {
+    let (mut scheduling, mut memory, mut core) = (None, None, None);
+    for had in had {
+        scheduling = scheduling.or(had.scheduling);
+        memory = memory.or(had.memory);
+        core = core.or(had.core);
+    }
+    let kinds = [scheduling.map(Missing::Scheduling), memory.map(Missing::Memory), core.map(Missing::Core)];
+    kinds.into_iter().flatten().collect()
+}

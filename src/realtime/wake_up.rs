@@ -1,0 +1,55 @@
+//! How late a thread is woken on this machine: what a servo will meet, measured without one.
+#![allow(unsafe_code)]
+
+use crate::realtime::{
+    Clock, CycleTiming, Distribution, Histograms, MonotonicClock, Priority, Realtime, Schedule, Stage, spawn,
+};
+use std::io;
+use std::thread::JoinHandle;
+
+/// What was measured.
+#[derive(Debug)]
+pub struct WakeUp {
+    /// From the scheduled beginning of a period to the thread's first instruction.
+    pub late: Distribution,
+    /// What the thread was given.
+    pub had: Realtime,
+    /// How late the kernel may let an ordinary thread's timers be, ns.
+    pub timer_slack: u64,
+}
+
+/// Starts a thread that wakes up `cycles` times as `schedule` says, and does nothing else.
+///
+/// # Errors
+/// The system refuses a thread.
+pub fn measure_wake_up(priority: Priority, mut schedule: Schedule, cycles: u64) -> io::Result<JoinHandle<WakeUp>> {
+    spawn("sun2xp doctor", priority, move |had| {
+        let mut histograms = Histograms::new();
+        for _ in 0..cycles {
+            let beginning = schedule.next();
+            MonotonicClock.sleep_until(beginning);
+            let mut timing = CycleTiming::default();
+            timing.note(Stage::WakeUp, beginning, MonotonicClock.now());
+            histograms.record(&timing);
+            schedule.advance(MonotonicClock.now());
+        }
+        // SAFETY: PR_GET_TIMERSLACK takes nothing and tells of the calling thread; it does not fail.
+        let timer_slack = u64::try_from(unsafe { libc::prctl(libc::PR_GET_TIMERSLACK) }).unwrap_or(0);
+        WakeUp { late: histograms.distribution(Stage::WakeUp), had, timer_slack }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::realtime::now;
+
+    #[test]
+    fn every_wake_up_is_counted_and_timers_are_exact() {
+        let schedule = Schedule::new(now(), 200_000);
+        let thread = measure_wake_up(Priority::default(), schedule, 50).expect("a thread");
+        let measured = thread.join().expect("no panic");
+        assert_eq!((measured.late.count, measured.timer_slack), (50, 1));
+        assert!(measured.late.maximum >= measured.late.median && measured.had.scheduling.is_none());
+    }
+}

@@ -1,0 +1,205 @@
+//! The motion of a finger near a rest: plant, controller and the one cycle of delay between sample and torque.
+
+use super::growth;
+use crate::control::{Activity, Controller, Feedback, Law, Measured, Report, SetPoint, State, TensionDistribution};
+use crate::model::Tendons;
+use crate::model::configuration::{ConfiguredFinger, Unusable};
+use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
+use nalgebra::{DVector, Matrix3, Vector3, Vector4};
+
+/// How long the filters and integrals of the controller have to come to rest, s.
+const SETTLING: f64 = 0.3;
+
+/// How long the motion is watched, s; and how long where that does not decide.
+const WATCHED: f64 = 1.0;
+const WATCHED_LONG: f64 = 4.0;
+
+/// A largest modulus less than this from 1 does not decide.
+const SLOW: f64 = 2e-5;
+
+/// Between two looks, s: apart enough that the eigenvalues left are, too.
+const STRIDE: f64 = 0.005;
+
+/// A nudge that has grown by so much will not come back.
+const GONE: f64 = 1e3;
+
+/// A nudge of which so little is left says nothing: the finger itself is not at rest to the last bit.
+const LOST: f64 = 1e-4;
+
+/// A finger that has moved by so much is not at its rest any more, rad.
+const FAR: f64 = 0.1;
+
+/// A finger as it is left to itself: at `joints`, rad, which a force on the tip holds `deflection`, rad, away from where its
+/// spring Kx, N/cm, is anchored.
+#[derive(Clone, Copy, Debug)]
+pub struct Rest {
+    /// rad.
+    pub joints: Vector3<f64>,
+    /// Of the joints, rad. Without any the tendons 1 and 4 share t_min, where eq. 20 has a kink.
+    pub deflection: Vector3<f64>,
+    /// N/cm.
+    pub stiffness: Matrix3<f64>,
+}
+
+/// A finger without Coulomb friction, exactly measured, that is what its controller believes it to be.
+///
+/// Friction and quantisation only add a small motion that stays, or end one.
+pub struct OneCycleMap {
+    finger: ConfiguredFinger,
+    tendons: Tendons,
+    controller: Controller,
+    distribution: TensionDistribution,
+    /// Plant steps in a cycle.
+    steps: usize,
+}
+
+impl OneCycleMap {
+    /// The finger with its configured scheme, law and gains. Of rates that the plant's step does not divide the next lower one.
+    ///
+    /// # Errors
+    /// The key that makes no controller.
+    pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
+        let finger = as_believed(finger);
+        let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
+        let steps = (1.0 / (rate * PLANT_STEP_SECONDS) - 1e-6).ceil().max(1.0);
+        let maximum = Vector4::repeat(finger.tendon.maximum);
+        Ok(Self {
+            controller: Controller::new(&finger, 1.0 / (steps * PLANT_STEP_SECONDS))?,
+            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, maximum)?,
+            steps: steps as usize,
+            tendons,
+            finger,
+        })
+    }
+
+    /// The part of its stiffness that the servo gives the finger at `rest`, 0 to 1.
+    pub fn scale(&self, rest: &Rest) -> f64 {
+        let mut finger = self.start(rest, &self.tendons.pretension(self.finger.tendon.minimum));
+        self.cycle(&mut finger);
+        finger.report.stiffness_scale
+    }
+
+    /// The largest modulus of an eigenvalue of the one-cycle map at `rest`; none where the finger does not stay there, or loses
+    /// a tendon.
+    ///
+    /// Two fingers, one of them nudged by next to nothing: how their difference goes on is the linear map and nothing else.
+    pub fn largest_eigenvalue(&self, rest: &Rest) -> Option<f64> {
+        let links = self.finger.links();
+        let jacobian = links.jacobian(&rest.joints);
+        let anchored = rest.joints + rest.deflection;
+        let away = match self.finger.controller.law {
+            Law::Report => jacobian * rest.deflection,
+            Law::Exact => links.tip(&anchored) - links.tip(&rest.joints),
+        };
+        let pull = rest.stiffness * away * self.scale(rest);
+        let tensions = self.distribution.distribute(&jacobian.tr_mul(&pull)).tensions;
+        let mut finger = self.start(rest, &tensions);
+        finger.plant.set_external_force(-pull);
+        self.run(&mut finger, SETTLING);
+
+        let modulus = self.watch(rest, &mut finger, WATCHED)?;
+        // A mode so slow is told from one that grows by a longer look only.
+        if modulus < 1.0 - SLOW { Some(modulus) } else { self.watch(rest, &mut finger, WATCHED_LONG) }
+    }
+
+    fn watch(&self, rest: &Rest, finger: &mut Moving, seconds: f64) -> Option<f64> {
+        let mut nudged = finger.clone();
+        for (motor, angle) in [3e-5, -2e-5, 1e-5, 4e-5].into_iter().enumerate() {
+            nudged.plant.turn_motor(motor, angle);
+        }
+        let mut differences: Vec<DVector<f64>> = Vec::new();
+        for _ in 0..(seconds / STRIDE) as usize {
+            self.run(finger, STRIDE);
+            self.run(&mut nudged, STRIDE);
+            let (a, b) = (&finger.plant, &nudged.plant);
+            if a.tensions().min() <= 0.0 || (a.joints() - rest.joints).amax() > FAR {
+                return None;
+            }
+            // In proportion to one another, as far as a finger with a ratio of 1 to 20 and modes at 30 rad/s has one.
+            let joints = (a.joints() - b.joints()) * 20.0;
+            let rates = (a.joint_rates() - b.joint_rates()) * 0.7;
+            let motors = a.motor_angles() - b.motor_angles();
+            let difference = DVector::from_iterator(10, joints.iter().chain(&rates).chain(&motors).copied());
+            let grown = differences.first().map_or(1.0, |first| difference.norm() / first.norm());
+            differences.push(difference);
+            if !(LOST..GONE).contains(&grown) {
+                break;
+            }
+        }
+        Some(growth(&differences).powf(1.0 / self.cycles(STRIDE) as f64))
+    }
+
+    /// A finger that rests with these tensions, N, before its first cycle.
+    fn start(&self, rest: &Rest, tensions: &Vector4<f64>) -> Moving {
+        let mut finger = self.finger.clone();
+        finger.simulation.start_degrees = rest.joints.map(f64::to_degrees).into();
+        let mut plant = Plant::new(&finger, Vector3::zeros()).expect("the tendons of a controller that was made");
+        plant.release_brake();
+        let stretch = (tensions - plant.tensions()).component_div(&Vector4::from(finger.simulation.tendon_stiffness));
+        for motor in 0..4 {
+            plant.turn_motor(motor, stretch[motor] / self.tendons.radius[motor]);
+        }
+        let (motor_counts, gauge_counts) = Sensors::new(&finger).read(&plant);
+        let hard_finger = SetPoint::hard_finger(rest.joints + rest.deflection, rest.stiffness);
+        Moving {
+            torques: tensions.component_mul(&self.tendons.radius),
+            plant,
+            state: self.controller.start(&Feedback { motor_counts, gauge_counts }),
+            activity: Activity::Follow(SetPoint { law: finger.controller.law, ..hard_finger }),
+            report: Report::default(),
+        }
+    }
+
+    fn cycles(&self, seconds: f64) -> usize {
+        (seconds / (self.steps as f64 * PLANT_STEP_SECONDS)).round().max(1.0) as usize
+    }
+
+    fn run(&self, finger: &mut Moving, seconds: f64) {
+        (0..self.cycles(seconds)).for_each(|_| self.cycle(finger));
+    }
+
+    fn cycle(&self, finger: &mut Moving) {
+        let plant = &mut finger.plant;
+        let measured = Measured { motor_angles: plant.motor_angles(), tensions: plant.tensions() };
+        // What the last cycle commanded acts during this one.
+        (0..self.steps).for_each(|_| plant.step((finger.torques * 0.01).into()));
+        let (command, report) = self.controller.cycle_measured(&mut finger.state, Some(&measured), &finger.activity);
+        finger.torques = command.motor_torques;
+        finger.report = report;
+    }
+}
+
+#[derive(Clone)]
+struct Moving {
+    plant: Plant,
+    state: State,
+    activity: Activity,
+    /// The command that acts next, N cm.
+    torques: Vector4<f64>,
+    report: Report,
+}
+
+/// A simulation of what the controller believes of the finger, without Coulomb friction and noise; the controller knows. Set
+/// points are not slowed down.
+fn as_believed(finger: &ConfiguredFinger) -> ConfiguredFinger {
+    let mut finger = finger.clone();
+    finger.motor.sign = [1; 4];
+    finger.controller.set_point_speed = Some(1e3);
+    finger.friction.motor_coulomb = [0.0; 4];
+    finger.friction.conduit = [0.0; 4];
+    finger.friction.joint_coulomb = [0.0; 3];
+    let simulation = &mut finger.simulation;
+    simulation.masses = finger.links.masses;
+    simulation.link_radii = finger.links.radii;
+    simulation.tendon_stiffness = finger.tendon.stiffness;
+    simulation.rotor_inertia = finger.motor.inertia;
+    simulation.motor_viscous_friction = finger.motor.viscous_friction;
+    simulation.joint_viscous_friction = finger.friction.joint_viscous.map(|friction| friction * 0.01);
+    simulation.joint_coulomb_friction = [0.0; 3];
+    simulation.motor_coulomb_friction = [0.0; 4];
+    simulation.conduit_friction = 0.0;
+    simulation.motor_constant_ratio = [1.0; 4];
+    simulation.gauge_noise = 0.0;
+    simulation.surface = None;
+    finger
+}

@@ -1,0 +1,94 @@
+//! `sun2xp doctor` as its users run it: on the simulated hand, on ports that do not serve, and for machines.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use sun2xp::board::{Pace, Port, SimulatedBoard, SimulatedPort};
+use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::Priority;
+
+/// Runs it with a configuration, and checks that exit status, `pass` and the verdicts agree; the findings.
+fn examined(configuration: &str) -> Vec<Value> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("named.toml");
+    fs::write(&file, configuration).expect("written");
+    let run = doctor(&file, &["--json"]);
+    let told: Value = serde_json::from_slice(&run.0).unwrap_or_else(|error| panic!("{error}: {run:?}"));
+    let findings = told["findings"].as_array().expect("an array").clone();
+    let failed = findings.iter().any(|finding| finding["verdict"] == "failure");
+    assert_eq!((told["pass"].as_bool(), run.1), (Some(!failed), Some(i32::from(failed))), "{told:#}");
+    for finding in &findings {
+        let good = finding["verdict"] == "good";
+        assert_eq!(good, finding["advice"] == "", "what is not good has a remedy: {finding:#}");
+    }
+    findings
+}
+
+fn doctor(configuration: &Path, options: &[&str]) -> (Vec<u8>, Option<i32>) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+    let run = command.args(["doctor", "--seconds", "0.5", "--config"]).arg(configuration).args(options).output();
+    let run = run.expect("the tool can be started");
+    (run.stdout, run.status.code())
+}
+
+fn find<'a>(findings: &'a [Value], subject: &str) -> &'a Value {
+    let of = |finding: &&Value| finding["subject"].as_str().is_some_and(|told| told.starts_with(subject));
+    findings.iter().find(of).unwrap_or_else(|| panic!("no {subject}: {findings:#?}"))
+}
+
+#[test]
+fn the_simulated_hand_is_examined_whole() {
+    let findings = examined("[hand]\nrate = 500\n");
+    for subject in
+        ["kernel", "real-time throttling", "real-time priority", "locked memory", "cores", "frequency governor"]
+    {
+        find(&findings, subject);
+    }
+    let measured = |name: &'static str| {
+        findings.iter().filter(move |finding| finding["subject"].as_str().is_some_and(|told| told.starts_with(name)))
+    };
+    assert_eq!((measured("wake-up").count(), measured("port").count(), measured("round trip").count()), (3, 3, 3));
+    for finding in measured("round trip") {
+        // 0.25 s on three ports, at 500 Hz.
+        let found = finding["found"].as_str().expect("a text");
+        assert!(found.starts_with("median ") && found.contains("of 41 lost"), "{found}");
+    }
+}
+
+#[test]
+fn a_port_that_does_not_serve_fails_with_its_remedy() {
+    let findings = examined("[finger.2]\nport = '/dev/there-is-no-such-port'\n");
+    let missing = find(&findings, "port /dev/there-is-no-such-port");
+    assert_eq!(missing["verdict"], "failure");
+    assert!(missing["advice"].as_str().is_some_and(|advice| advice.contains("/dev/serial/by-id")), "{missing}");
+
+    let board = SimulatedBoard::new(&Configuration::default(), &[2]).expect("a board");
+    let board = SimulatedPort::start(board, Pace::Patient, Priority::default()).expect("a pseudo-terminal");
+    let taken = Port::open(&board.path(), 1_000_000).expect("the port");
+    let configuration = format!("[finger.3]\nport = '{}'\n", board.path().display());
+    let findings = examined(&configuration);
+    let busy = find(&findings, &format!("port {}", board.path().display()));
+    assert!(busy["advice"].as_str().is_some_and(|advice| advice.contains("in use")), "{busy}");
+
+    // A board with another address answers, and is not the finger's.
+    drop(taken);
+    let findings = examined(&configuration.replace("port", "address = 9\nport"));
+    let foreign = find(&findings, &format!("round trip on {}", board.path().display()));
+    assert_eq!(foreign["verdict"], "failure");
+    assert!(foreign["advice"].as_str().is_some_and(|advice| advice.contains("finger.address")), "{foreign}");
+}
+
+#[test]
+fn people_get_lines_and_a_configuration_that_cannot_be_used_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("named.toml");
+    fs::write(&file, "").expect("written");
+    let (told, _) = doctor(&file, &[]);
+    let told = String::from_utf8(told).expect("text");
+    assert!(told.contains("  kernel: Linux "), "{told}");
+    assert!(told.ends_with("pass\n") || told.ends_with("fail\n"), "{told}");
+
+    fs::write(&file, "[hand]\nrat = 1\n").expect("written");
+    assert_eq!(doctor(&file, &["--json"]), (Vec::new(), Some(1)));
+}

@@ -1,0 +1,236 @@
+//! The reference firmware on an emulated Cortex-M3, and the physics that stands in for its motors and sensors.
+
+use std::ffi::CString;
+use std::fs::{File, OpenOptions};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::OpenOptionsExt;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::thread::JoinHandle;
+
+use nalgebra::Vector3;
+use sun2xp::board::protocol::Status;
+use sun2xp::model::configuration::Configuration;
+use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
+use tempfile::TempDir;
+
+const FIRMWARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/firmware");
+
+/// Compiles the image.
+pub fn build(folder: &Path) -> PathBuf {
+    needs("arm-none-eabi-gcc", "gcc-arm-none-eabi libnewlib-arm-none-eabi");
+    let output = Command::new("make")
+        .args(["-C", FIRMWARE, "lm3s6965"])
+        .arg(format!("BUILD={}", folder.display()))
+        .output()
+        .expect("make runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    folder.join("lm3s6965.elf")
+}
+
+fn needs(program: &str, packages: &str) {
+    assert!(
+        Command::new(program).arg("--version").stdout(Stdio::null()).status().is_ok(),
+        "this test needs {program}: apt-get install --no-install-recommends {packages}"
+    );
+}
+
+/// Ends with the test, also with one that fails.
+pub struct Machine {
+    process: Child,
+    /// One for all three fingers.
+    pub port: PathBuf,
+    /// Keeps the terminal's host end open: the emulator throws away what it sends to a closed one, and looks only once a second
+    /// whether it was opened.
+    _end: File,
+    _folder: TempDir,
+    requests: File,
+    plants: Arc<[Mutex<Finger>; 3]>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Machine {
+    pub fn start(image: &Path) -> Self {
+        needs("qemu-system-arm", "qemu-system-arm");
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        let [to_plant, from_plant] = ["plant_to", "plant_from"].map(|name| pipe(&folder.path().join(name)));
+        let mut command = Command::new("qemu-system-arm");
+        // SAFETY: the call is safe between fork and exec.
+        unsafe {
+            command.pre_exec(|| {
+                go_first();
+                Ok(())
+            })
+        };
+        let mut process = command
+            .args(["-M", "lm3s6965evb", "-display", "none", "-monitor", "none", "-serial", "pty"])
+            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+            .arg(image)
+            // The firmware opens the plant's pipes by their names.
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the emulator starts");
+        let lines = BufReader::new(process.stdout.take().expect("the emulator's output is a pipe")).lines();
+        // "char device redirected to /dev/pts/3 (label serial0)"
+        let port: PathBuf = lines
+            .map(|line| line.expect("the emulator's output is text"))
+            .find_map(|line| Some(line.split_whitespace().find(|word| word.starts_with("/dev/"))?.into()))
+            .expect("the emulator names a terminal");
+        let end = OpenOptions::new().read(true).write(true).custom_flags(libc::O_NOCTTY).open(&port);
+        let requests = to_plant.try_clone().expect("a second descriptor");
+        let plants = Arc::new(std::array::from_fn(|index| Mutex::new(Finger::new(index))));
+        let thread = {
+            let plants = plants.clone();
+            std::thread::spawn(move || {
+                go_first();
+                serve(to_plant, from_plant, &plants);
+            })
+        };
+        Self {
+            process,
+            port,
+            _end: end.expect("the terminal opens"),
+            _folder: folder,
+            requests,
+            plants,
+            thread: Some(thread),
+        }
+    }
+
+    /// 0 to 2. The physics stands still meanwhile, so be brief.
+    pub fn finger(&self, index: usize) -> MutexGuard<'_, Finger> {
+        self.plants[index].lock().expect("no panic holding it")
+    }
+}
+
+impl Drop for Machine {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+        let _ = self.requests.write_all(&[END; REQUEST_LENGTH]);
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}
+
+/// The calling thread, and what it starts, before the rest of a busy machine where that is permitted: no microcontroller waits for a
+/// compiler.
+fn go_first() {
+    let parameters = libc::sched_param { sched_priority: 10 };
+    // SAFETY: the parameters outlive the call.
+    unsafe { libc::sched_setscheduler(0, libc::SCHED_RR, &parameters) };
+}
+
+/// What the firmware asked last, in its own time, us.
+#[derive(Clone, Copy, Default)]
+pub struct Asked {
+    /// Requests that a host's Command or Configure led to.
+    pub samples: u32,
+    pub sampled_at: u32,
+    /// When the currents were last changed.
+    pub set_at: u32,
+    /// uA.
+    pub currents: [i32; 4],
+}
+
+/// A finger without a board.
+pub struct Finger {
+    pub plant: Plant,
+    sensors: Sensors,
+    /// N m/A.
+    torque_constants: [f64; 4],
+    /// Where its physics has got to in the firmware's time, us.
+    time: Option<u32>,
+    /// Time that is not a whole step yet, s.
+    rest: f64,
+    /// How much further it may move before the next sample, s. No real finger waits, but on a busy machine planner, emulator
+    /// and plant are all later than any loop can bear.
+    motion_left: f64,
+    /// Present from now on.
+    pub faults: Status,
+    pub asked: Asked,
+}
+
+/// s.
+const LONGEST_MOTION: f64 = 0.004;
+
+impl Finger {
+    fn new(index: usize) -> Self {
+        let mut finger = Configuration::default().fingers[index].clone();
+        finger.simulation.seed += index as u64;
+        Self {
+            plant: Plant::new(&finger, Vector3::zeros()).expect("a good finger"),
+            sensors: Sensors::new(&finger),
+            // 1 N cm/A is 0.01 N m/A.
+            torque_constants: finger.motor.torque_constant.map(|constant| 0.01 * constant),
+            time: None,
+            rest: 0.0,
+            motion_left: 0.0,
+            faults: Status::default(),
+            asked: Asked::default(),
+        }
+    }
+
+    fn answer(&mut self, request: &[u8; REQUEST_LENGTH]) -> Vec<u8> {
+        let word = |offset: usize| u32::from_le_bytes(std::array::from_fn(|byte| request[offset + byte]));
+        let (sample, now) = (request[1] == 1, word(4));
+        let currents = std::array::from_fn(|motor| word(12 + 4 * motor) as i32);
+        self.asked.set_at = word(8);
+        self.asked.currents = currents;
+        self.advance(now.wrapping_sub(self.time.unwrap_or(now)), currents);
+        self.time = Some(now);
+        if sample {
+            self.asked.samples += 1;
+            self.asked.sampled_at = now;
+            self.motion_left = LONGEST_MOTION;
+        }
+        let (encoders, gauges) = self.sensors.read(&self.plant);
+        let encoders = encoders.iter().flat_map(|count| count.to_le_bytes());
+        let gauges = gauges.iter().flat_map(|count| count.to_le_bytes());
+        encoders.chain(gauges).chain(self.faults.0.to_le_bytes()).chain([0; 2]).collect()
+    }
+
+    fn advance(&mut self, microseconds: u32, currents: [i32; 4]) {
+        let driven = currents != [0; 4];
+        if driven {
+            self.plant.release_brake();
+        }
+        let mut seconds = (1e-6 * f64::from(microseconds)).min(2.0 * LONGEST_MOTION);
+        if driven {
+            seconds = seconds.min(self.motion_left);
+            self.motion_left -= seconds;
+        }
+        self.rest += seconds;
+        let torques = std::array::from_fn(|motor| 1e-6 * f64::from(currents[motor]) * self.torque_constants[motor]);
+        while self.rest >= PLANT_STEP_SECONDS {
+            self.rest -= PLANT_STEP_SECONDS;
+            self.plant.step(torques);
+        }
+    }
+}
+
+/// As in firmware/lm3s6965/plant.h.
+const REQUEST_LENGTH: usize = 28;
+
+/// In place of a finger: the machine is being taken down.
+const END: u8 = 0xFF;
+
+/// Both ends at once, so that neither opening nor reading depends on who came first.
+fn pipe(path: &Path) -> File {
+    let name = CString::new(path.as_os_str().as_bytes()).expect("a path without zeros");
+    // SAFETY: the name is a C string.
+    assert_eq!(unsafe { libc::mkfifo(name.as_ptr(), 0o600) }, 0, "{}", path.display());
+    OpenOptions::new().read(true).write(true).open(path).expect("a pipe")
+}
+
+fn serve(mut requests: File, mut answers: File, plants: &[Mutex<Finger>; 3]) {
+    let mut request = [0; REQUEST_LENGTH];
+    while requests.read_exact(&mut request).is_ok() && request[0] != END {
+        let finger = &plants[usize::from(request[0])];
+        let answer = finger.lock().expect("no panic holding it").answer(&request);
+        answers.write_all(&answer).expect("the firmware takes the answer");
+    }
+}

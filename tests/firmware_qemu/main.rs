@@ -1,0 +1,231 @@
+//! The library against the reference firmware on an emulated Cortex-M3: the same protocol core that a lab ports, compiled for
+//! a microcontroller, with its own interrupts and its own time.
+
+mod machine;
+
+use machine::{Machine, build};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+use sun2xp::board::protocol::Status;
+use sun2xp::finger::{FaultKind, Stage};
+use sun2xp::hand::{Hand, HandError, read};
+use sun2xp::model::configuration::Configuration;
+
+/// One machine at a time: two share no processor well.
+fn alone() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// `keys` are of the table `[hand]`.
+fn configuration(port: &Path, keys: &str) -> Configuration {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let path = folder.path().join("sun2xp.toml");
+    // The fingers live in the emulated time, which a busy machine makes slow; so opening may take long.
+    let text =
+        format!("[hand]\nopen_timeout_ms = 60000\n{keys}\n[finger]\nthread = 1\nport = \"{}\"\n", port.display());
+    std::fs::write(&path, text).expect("the configuration is written");
+    read(&path).expect("the configuration is good")
+}
+
+const TARGETS: [[f64; 3]; 3] = [[0.1, 0.4, 0.9], [-0.1, 0.6, 1.1], [0.0, 0.7, 0.8]];
+
+/// rad.
+const CLOSE: f64 = 0.02;
+
+/// A busy machine moves the finger more slowly than time passes.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn farthest(found: [[f64; 3]; 3], wanted: [[f64; 3]; 3]) -> f64 {
+    let pairs = found.as_flattened().iter().zip(wanted.as_flattened());
+    pairs.map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max)
+}
+
+/// Sends all fingers to their targets, and says where they are when they have stood there for a while.
+fn settled(hand: &Hand) -> Result<[[f64; 3]; 3], HandError> {
+    for (finger, target) in (1..).zip(TARGETS) {
+        hand.send_position(finger, target)?;
+    }
+    let begin = Instant::now();
+    let mut since = begin;
+    loop {
+        let [one, two, three] = [hand.position(1)?, hand.position(2)?, hand.position(3)?];
+        let positions = [one, two, three];
+        if farthest(positions, TARGETS) > CLOSE {
+            since = Instant::now();
+        } else if since.elapsed() > Duration::from_millis(500) {
+            return Ok(positions);
+        }
+        assert!(begin.elapsed() < PATIENCE, "after {PATIENCE:?} at {positions:?} instead of {TARGETS:?}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn a_hand_settles_where_it_does_on_the_simulated_board() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let image = build(folder.path());
+    // An emulator holds the rate that its machine leaves it; what a busy one does not hold shows as a lost link.
+    for rate in [500, 250, 100] {
+        let keys = format!("rate = {rate}.0\nwatchdog_ms = 1000");
+        let machine = Machine::start(&image);
+        let outcome = Hand::open(configuration(&machine.port, &keys)).and_then(|hand| {
+            let positions = settled(&hand)?;
+            let joints = [0, 1, 2].map(|finger| machine.finger(finger).plant.joints().into());
+            Ok((positions, joints, hand.status(1)?))
+        });
+        let (positions, joints, status) = match outcome {
+            Ok(outcome) => outcome,
+            Err(HandError::Faulted { fault, .. })
+                if rate > 100 && matches!(fault.kind, FaultKind::LostReplies | FaultKind::Watchdog) =>
+            {
+                eprintln!("{rate} Hz is more than this machine holds: {fault}");
+                continue;
+            }
+            Err(error) => panic!("{rate} Hz: {error}"),
+        };
+        let simulated = Hand::open(configuration(Path::new("simulated"), &keys)).expect("simulated boards answer");
+        let expected = settled(&simulated).expect("the simulated hand runs");
+        eprintln!(
+            "{rate} Hz: {:.4} rad from the simulated hand, {:.4} rad from the truth, {} of {} replies lost",
+            farthest(positions, expected),
+            farthest(joints, positions),
+            status.losses.lost_replies,
+            status.losses.cycles
+        );
+        assert!(farthest(positions, expected) < CLOSE, "{positions:?} instead of {expected:?}");
+        assert!(farthest(joints, expected) < CLOSE, "truly at {joints:?} instead of {expected:?}");
+        return;
+    }
+}
+
+#[test]
+fn its_emergency_stop_stops_the_hand() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let machine = Machine::start(&build(folder.path()));
+    let hand = Hand::open(configuration(&machine.port, "rate = 100.0\nwatchdog_ms = 1000")).expect("all fingers open");
+    assert_ne!(machine.finger(1).asked.currents, [0; 4]);
+    machine.finger(1).faults = Status::EMERGENCY_STOP;
+    let begin = Instant::now();
+    let fault = loop {
+        if let Stage::Faulted(fault) = hand.status(2).expect("a finger").stage {
+            break fault;
+        }
+        assert!(begin.elapsed() < PATIENCE, "the emergency stop goes unnoticed");
+        std::thread::sleep(Duration::from_millis(1));
+    };
+    assert_eq!(fault.kind, FaultKind::EmergencyStopInput, "{fault}");
+    assert_eq!(machine.finger(1).asked.currents, [0; 4]);
+    assert!(hand.position(1).is_ok() && hand.position(3).is_ok(), "the input is finger 2's");
+}
+
+/// In the environment of a process that is this test as a planner: the port, and the keys of `[hand]`.
+const PLANNER: &str = "SUN2XP_TEST_PLANNER";
+
+/// A planner that holds the hand where it is, until it is killed.
+fn plan(port_and_keys: &str) -> ! {
+    let (port, keys) = port_and_keys.split_once('\n').expect("a port and keys");
+    loop {
+        // A pause of the machine may trip the short watchdog; then it begins again.
+        let Ok(hand) = Hand::open(configuration(Path::new(port), keys)) else { continue };
+        while (1..=3).all(|finger| hand.position(finger).is_ok()) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+}
+
+struct Planner(Child);
+
+impl Planner {
+    fn start(machine: &Machine, keys: &str) -> Self {
+        let program = std::env::current_exe().expect("the test's own program");
+        let process = Command::new(program)
+            .args(["--exact", "a_killed_planner_leaves_the_motors_in_their_end_state"])
+            .env(PLANNER, format!("{}\n{keys}", machine.port.display()))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the planner starts");
+        Self(process)
+    }
+
+    /// With SIGKILL.
+    fn kill(&mut self) {
+        self.0.kill().expect("the planner lives");
+        self.0.wait().expect("the planner is ours");
+    }
+}
+
+impl Drop for Planner {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Until it holds; false after a while in vain.
+fn wait_until(mut holds: impl FnMut() -> bool) -> bool {
+    let begin = Instant::now();
+    while begin.elapsed() < PATIENCE {
+        if holds() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    false
+}
+
+/// How long after the last command each finger's currents changed, us in the firmware's time. None where a pause of the
+/// machine ended a finger before the planner was killed.
+fn kill_a_planner(machine: &Machine, keys: &str, in_end_state: impl Fn([i32; 4]) -> bool) -> Option<[u32; 3]> {
+    let mut planner = Planner::start(machine, keys);
+    let running = || (0..3).all(|finger| !in_end_state(machine.finger(finger).asked.currents));
+    let begun = [0, 1, 2].map(|finger| machine.finger(finger).asked.samples);
+    let moved_on = || (0..3).all(|finger| machine.finger(finger).asked.samples > begun[finger] + 200);
+    assert!(wait_until(|| moved_on() && running()), "the planner does not get the hand to run");
+    planner.kill();
+    let killed = [0, 1, 2].map(|finger| machine.finger(finger).asked);
+    // Commands that are under way arrive yet.
+    assert!(wait_until(|| (0..3).all(|finger| in_end_state(machine.finger(finger).asked.currents))), "motors go on");
+    let figures = [0, 1, 2].map(|finger| {
+        let asked = machine.finger(finger).asked;
+        asked.set_at.wrapping_sub(asked.sampled_at)
+    });
+    killed.iter().all(|asked| !in_end_state(asked.currents)).then_some(figures)
+}
+
+#[test]
+fn a_killed_planner_leaves_the_motors_in_their_end_state() {
+    if let Ok(port_and_keys) = std::env::var(PLANNER) {
+        plan(&port_and_keys);
+    }
+    let _alone = alone();
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let machine = Machine::start(&build(folder.path()));
+    let none = |currents: [i32; 4]| currents == [0; 4];
+    // 0.1 N cm over 2.34 N cm/A are 42 735 uA; a tendon's least tension asks for more.
+    let held = |currents: [i32; 4]| !none(currents) && currents.iter().all(|current| current.abs() <= 42_736);
+
+    // The watchdog counts from the arrival of a command, which may wait for a ms or two before the sample that the plant sees.
+    let watchdog = 16_000..20_000;
+    let release = "rate = 250.0\nwatchdog_ms = 18\nend_state = \"release\"";
+    let hold = "rate = 250.0\nwatchdog_ms = 18\nend_state = \"hold\"\nhold_torque_limit = 0.1\nhold_time_ms = 300";
+    for (name, keys) in [("release", release), ("hold", hold)] {
+        let mut figures = Vec::new();
+        for _ in 0..5 {
+            figures.extend(match name {
+                "release" => kill_a_planner(&machine, keys, none),
+                _ => kill_a_planner(&machine, keys, held),
+            });
+            assert!(wait_until(|| (0..3).all(|finger| none(machine.finger(finger).asked.currents))), "held for ever");
+        }
+        eprintln!("{name}: us from the last command to the end state, three fingers each time: {figures:?}");
+        // The emulated processor stands still where its machine does, in its own time too: what counts is the best.
+        let best = figures.iter().flatten().min().expect("the planner ran when it was killed");
+        assert!(watchdog.contains(best), "{name}: {best} us");
+    }
+}

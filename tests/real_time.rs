@@ -1,0 +1,81 @@
+//! Real time by configuration: what becomes of limits that are too small.
+#![allow(unsafe_code)]
+
+#[allow(dead_code)]
+mod c;
+
+use c::{Bench, STRICT, c_compilers};
+use std::fs;
+use std::os::unix::process::CommandExt;
+use std::process::Command;
+use sun2xp::hand::Hand;
+use sun2xp::model::configuration::{Configuration, RealTime};
+
+#[test]
+fn without_an_attempt_nothing_is_had() {
+    // Its turn, and slow: a thread that is not real-time waits for all others of the machine.
+    let _turn = Bench::new();
+    let mut configuration = Configuration::default();
+    (configuration.hand.real_time, configuration.hand.rate) = (RealTime::Ignore, 200.0);
+    let status = Hand::open(configuration).expect("the simulated hand").status(1).expect("status");
+    assert_eq!((status.realtime, status.memory_locked, status.on_core), (false, false, true));
+}
+
+const CAP_IPC_LOCK: libc::c_ulong = 14;
+const CAP_SYS_NICE: libc::c_ulong = 23;
+
+/// Runs `opens.c`, which opens and closes the hand, without a right: exit status, standard output, standard error.
+fn opened_without(
+    right: (libc::__rlimit_resource_t, libc::c_ulong),
+    configuration: &str,
+) -> (Option<i32>, String, String) {
+    let bench = Bench::new();
+    fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
+    let mut command = Command::new(bench.build(c_compilers()[0], STRICT, &["opens.c"]));
+    let give_up = move || {
+        let (limit, capability) = right;
+        let nothing = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+        // SAFETY: system calls on plain values. Who has no such capability cannot drop it, and need not.
+        unsafe {
+            libc::setrlimit(limit, &nothing);
+            libc::prctl(libc::PR_CAPBSET_DROP, capability, 0, 0, 0);
+        }
+        Ok(())
+    };
+    // SAFETY: only system calls between fork and exec.
+    unsafe { command.pre_exec(give_up) };
+    let run = bench.run(command);
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (run.status.code(), text(&run.stdout), text(&run.stderr))
+}
+
+#[test]
+fn a_planner_without_memlock_has_its_hand_and_is_told() {
+    let right = (libc::RLIMIT_MEMLOCK, CAP_IPC_LOCK);
+    let (status, _, printed) = opened_without(right, "[hand]\nrate = 200\n");
+    assert_eq!(status, Some(0), "{printed}");
+    let lines: Vec<_> = printed.lines().filter(|line| line.contains("memory cannot be locked")).collect();
+    assert!(lines.len() == 1 && lines[0].contains("memlock"), "{printed}");
+
+    let (status, told, printed) = opened_without(right, "[hand]\nrate = 200\nreal_time = \"ignore\"\n");
+    assert_eq!(status, Some(0), "{told}{printed}");
+    assert!(!printed.contains("locked"), "{printed}");
+}
+
+#[test]
+fn enforced_real_time_is_had_or_refused_with_the_remedy() {
+    let enforce = "[hand]\nreal_time = \"enforce\"\n";
+    let (status, told, _) = opened_without((libc::RLIMIT_RTPRIO, CAP_SYS_NICE), enforce);
+    assert_eq!(status, Some(2), "{told}");
+    assert!(told.contains("OpenHand: no real time: ") && told.contains("rtprio"), "{told}");
+
+    let (status, told, _) = opened_without((libc::RLIMIT_MEMLOCK, CAP_IPC_LOCK), enforce);
+    assert_eq!(status, Some(2), "{told}");
+    // Who may not have SCHED_FIFO either is told of that.
+    assert!(told.contains("memlock") || told.contains("rtprio"), "{told}");
+
+    let (status, told, _) =
+        opened_without((libc::RLIMIT_CORE, CAP_IPC_LOCK), &format!("{enforce}[finger]\ncore = 1023\n"));
+    assert_eq!(status, Some(2), "{told}");
+    assert!(told.contains("finger.core") || told.contains("rtprio"), "{told}");
+}
