@@ -6,6 +6,7 @@ use super::gravity_compensation::GravityCompensation;
 use super::joint_positions::JointPositions;
 use super::joint_stiffness::JointStiffness;
 use super::low_pass::LowPass;
+use super::monitors::{Alarms, Monitors, Watch};
 use super::motor_heating::{Heat, MotorHeating};
 use super::motor_torque::MotorTorque;
 use super::release::Release;
@@ -58,6 +59,7 @@ pub struct Controller {
     soft_limits: SoftLimits,
     gravity: GravityCompensation,
     heating: MotorHeating,
+    monitors: Monitors,
     /// Motor radii, m.
     radius: Vector4<f64>,
     /// N.
@@ -135,6 +137,7 @@ impl Controller {
             soft_limits: SoftLimits::new(finger),
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
+            monitors: Monitors::new(finger, &tendons, rate)?,
             period: 1.0 / rate,
             sensors: Sensors::new(finger)?,
             speed_filter: LowPass::new(gains.speed_filter, rate),
@@ -267,6 +270,13 @@ impl Controller {
         let motor_torques = self.motor_torque.torques(&state.pulls);
         state.report.motor_torques = motor_torques;
         (Command { motor_torques }, state.report)
+    }
+
+    /// What is wrong with a finger that follows, after a cycle with `feedback`, `age` periods after the one before. `full_scale`: the
+    /// gauges' largest count.
+    pub fn watch(&self, watch: &mut Watch, state: &State, feedback: &Feedback, age: u32, full_scale: u16) -> Alarms {
+        let heat = self.heating.part(&state.heat);
+        self.monitors.watch(watch, feedback, &state.report, &state.pulls, &heat, age, full_scale)
     }
 
     /// The part of a spring's K_theta, N cm/rad, that the pose can carry.

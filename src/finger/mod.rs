@@ -12,6 +12,7 @@ mod recording;
 mod replay;
 mod servo;
 mod single;
+mod watching;
 
 pub use alarm::{Alarm, stop_all, stop_calls};
 pub use black_box::{BlackBox, ControlRecord, ControllerSource, CycleRecord, Recorder};

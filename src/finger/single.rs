@@ -4,10 +4,11 @@ mod life;
 
 use crate::board::protocol::{Command as BoardCommand, Configured, Identity, Status};
 use crate::board::{LinkCounters, OutgoingCommand, Received};
-use crate::control::calibration::Calibration;
+use crate::control::calibration::{Calibration, Verdict};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Adjustable, Mailbox, ServoEnd, mailbox};
+use crate::finger::watching::Watching;
 use crate::finger::{
     Alarm, ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage, stop_calls,
 };
@@ -27,6 +28,9 @@ const CLOCK_UNKNOWN_MS: f64 = 60.0;
 
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
+
+/// So long, ms, a warning stays after it was last given.
+const WARNING_MS: f64 = 1000.0;
 
 /// One finger: its controller, its place in the protocol, its mailbox.
 pub struct FingerServo {
@@ -58,6 +62,7 @@ pub struct FingerServo {
     /// Sequence number of the reply that was taken last.
     last_answer: u8,
     link: LinkWatch,
+    watching: Watching,
     alarm: Alarm,
     /// The board's clock at the last measurement, us modulo 65 536; none before the first.
     sampled_at: Option<u16>,
@@ -81,6 +86,8 @@ struct Limits {
     tension: u32,
     settled: u32,
     ramp: u32,
+    /// How long a warning stays.
+    warning: u32,
 }
 
 impl Adjustable {
@@ -120,6 +127,7 @@ impl FingerServo {
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
+        let link = LinkWatch::new(hand, finger.simulated());
         let law = finger.controller.law;
         let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
         let report = FingerReport {
@@ -173,7 +181,8 @@ impl FingerServo {
             toggle: false,
             answered: false,
             last_answer: 0,
-            link: LinkWatch::new(hand, finger.simulated()),
+            watching: Watching::new(hand.rate, link.most(), identity.gauge_bits),
+            link,
             alarm: Alarm::new(false, stop_calls()),
             sampled_at: None,
             sample_age: 0,
@@ -182,6 +191,7 @@ impl FingerServo {
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
+                warning: cycles(WARNING_MS),
             },
             settled_cycles: 0,
             stage_cycles: 0,
@@ -293,9 +303,13 @@ impl FingerServo {
         (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
+        self.watching.note_status(reply.status);
+        let zero_lost = self.status.has(Status::ZERO_VALID) && !reply.status.has(Status::ZERO_VALID);
         self.status = reply.status;
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
             self.fault(Fault::stopped(reply.status));
+        } else if zero_lost {
+            self.fault(Fault::of(FaultKind::ZeroLost, f64::from(reply.status.0)));
         }
     }
 
@@ -311,6 +325,11 @@ impl FingerServo {
         self.report.last = began;
         if self.report.cycles == 1 {
             self.report.first = began;
+        }
+        if self.under_control()
+            && let Some(fault) = self.watching.note_period(self.answered, skipped, heard.damaged)
+        {
+            self.fault(fault);
         }
         if self.under_control() {
             self.count_replies();
@@ -346,10 +365,12 @@ impl FingerServo {
         let Adjustable { controller, number, .. } = &self.adjustable;
         let feedback = self.answered.then_some(&self.feedback);
         let before = previous.as_ref().map(|previous| &previous.controller);
+        let adjusted = before.is_some();
         let (command, report) = input.run(controller, before, &mut self.state, feedback);
         (self.command, self.report.cycle) = (command, report);
         let previous = previous.map_or(*number, |previous| previous.number);
         let record = ControlRecord { controller: *number, previous, input, command, report };
+        self.watch(adjusted);
         self.move_on();
         record
     }
@@ -381,15 +402,38 @@ impl FingerServo {
         !matches!(self.report.stage, Stage::Closed | Stage::Faulted(_))
     }
 
+    /// The monitors of a finger that is a spring.
+    fn watch(&mut self, adjusted: bool) {
+        if adjusted {
+            self.watching.adjusted();
+        }
+        if self.report.stage == Stage::Running {
+            let feedback = self.answered.then_some(&self.feedback);
+            if let Some(fault) = self.watching.spring(&self.adjustable.controller, &self.state, feedback) {
+                self.fault(fault);
+            }
+        }
+        let failed = match self.report.calibration {
+            Some(Verdict::Refused(_)) if self.report.stage == Stage::Limp => {
+                Some(Fault::new(FaultKind::CalibrationFailed))
+            }
+            _ => None,
+        };
+        self.report.warnings.note(failed.or(self.watching.warning()), self.limits.warning);
+    }
+
     fn count_replies(&mut self) {
         if self.answered {
-            self.anew |= self.link.answered();
+            if self.link.answered() {
+                self.anew = true;
+                self.watching.begin();
+            }
             return;
         }
         self.report.lost_replies += 1;
         if let Some(lost) = self.link.missed() {
             let milliseconds = f64::from(lost) * self.limits.period_ms;
-            self.fault(Fault::of(FaultKind::LostReplies, milliseconds));
+            self.fault(self.watching.silence(milliseconds));
         }
     }
 }

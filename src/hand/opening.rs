@@ -87,12 +87,22 @@ pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<Simulate
     Ok(ports)
 }
 
+/// What opening the ports has given.
+pub(super) struct Opened {
+    /// For the servo threads.
+    pub lines: Vec<Line>,
+    /// By finger.
+    pub reached: Vec<Reached>,
+    /// Where the ports are mended.
+    pub workshops: Vec<Workshop>,
+}
+
 /// Opens every port and shakes hands with every finger on it. `limp`: the motors shall stay off.
 pub(super) fn reach(
     configuration: &Configuration,
     simulated: &[Option<SimulatedPort>; FINGERS],
     limp: bool,
-) -> Result<(Vec<Line>, Vec<Reached>, Vec<Workshop>), HandError> {
+) -> Result<Opened, HandError> {
     // An emergency stop from here on counts.
     let alarm = Alarm::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
     let (mut lines, mut reached, mut workshops) = (Vec::new(), Vec::new(), Vec::new());
@@ -119,7 +129,7 @@ pub(super) fn reach(
         workshops.push(Workshop::new(path, baud, reconnect, boards, borrower));
     }
     reached.sort_by_key(|finger| finger.index);
-    Ok((lines, reached, workshops))
+    Ok(Opened { lines, reached, workshops })
 }
 
 /// Every port, with the fingers on it, 0 to 2, one at least.
@@ -129,7 +139,7 @@ pub(super) fn ports(
 ) -> Vec<(PathBuf, Vec<usize>)> {
     let mut ports: Vec<(PathBuf, Vec<usize>)> = Vec::new();
     for (index, finger) in configuration.fingers.iter().enumerate() {
-        let path = simulated[index].as_ref().map_or_else(|| PathBuf::from(&finger.port), |port| port.path().into());
+        let path = simulated[index].as_ref().map_or_else(|| PathBuf::from(&finger.port), |port| port.path());
         match ports.iter_mut().find(|(known, _)| *known == path) {
             Some((_, fingers)) => fingers.push(index),
             None => ports.push((path, vec![index])),

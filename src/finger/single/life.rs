@@ -98,6 +98,7 @@ impl FingerServo {
                     let joints = self.report.cycle.joints;
                     self.report.set_point = SetPoint { joints, ..self.initial };
                     self.activity = Activity::Follow(self.report.set_point);
+                    self.watching.begin();
                     self.enter(Stage::Running);
                 }
             }
