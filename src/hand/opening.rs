@@ -35,6 +35,16 @@ pub(super) struct Reached {
     pub black_box: BlackBox,
 }
 
+/// A whole hand.
+pub(super) struct Connected {
+    /// What the servos get.
+    pub lines: Vec<Line>,
+    /// What the planners get, in the order of the fingers.
+    pub reached: Vec<Reached>,
+    /// What is needed to mend a port.
+    pub workshops: Vec<Workshop>,
+}
+
 /// A port with its fingers, and the thread that shall serve it.
 pub(super) struct Line {
     /// 1 to 3.
@@ -92,7 +102,7 @@ pub(super) fn reach(
     configuration: &Configuration,
     simulated: &[Option<SimulatedPort>; FINGERS],
     limp: bool,
-) -> Result<(Vec<Line>, Vec<Reached>, Vec<Workshop>), HandError> {
+) -> Result<Connected, HandError> {
     // An emergency stop from here on counts.
     let alarm = Alarm::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
     let (mut lines, mut reached, mut workshops) = (Vec::new(), Vec::new(), Vec::new());
@@ -119,7 +129,7 @@ pub(super) fn reach(
         workshops.push(Workshop::new(path, baud, reconnect, boards, borrower));
     }
     reached.sort_by_key(|finger| finger.index);
-    Ok((lines, reached, workshops))
+    Ok(Connected { lines, reached, workshops })
 }
 
 /// Every port, with the fingers on it, 0 to 2, one at least.
