@@ -181,10 +181,10 @@
    What goes wrong with a finger has a number that never changes (FAULT_..., below), a
    text, a likely cause and a remedy: FaultText. A fault stops the finger: its motors go
    to the configured end state, its calls are refused with EIO, and HandError says why,
-   until CloseHand and OpenHand. A warning is told and the finger goes on: it stays for
-   a second after it was last seen. GetFault tells both. Some faults make OpenHand
-   refuse; their numbers stand in the text of HandError. docs/faults.md lists all, with
-   how and how fast each is found. */
+   until RecoverHand, or CloseHand and OpenHand. A warning is told and the finger goes
+   on: it stays for a second after it was last seen. GetFault tells both. Some faults
+   make OpenHand refuse; their numbers stand in the text of HandError. docs/faults.md
+   lists all, with how and how fast each is found. */
 
 #ifndef SUN2XP_H
 #define SUN2XP_H
@@ -262,8 +262,8 @@ extern "C" {
 
 /*
  FingerStatus.State: the finger has stopped by itself, its motors are in the
- configured end state, and its calls are refused with EIO and the reason. CloseHand
- and OpenHand start again.
+ configured end state, and its calls are refused with EIO and the reason. RecoverHand,
+ or CloseHand and OpenHand, start again.
  */
 #define FINGER_FAULTED 2
 

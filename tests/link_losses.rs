@@ -7,11 +7,12 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
+use sun2xp::board::protocol::Status;
 use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, Terms, Transport};
 use sun2xp::finger::{
     BlackBox, ControllerSource, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage,
 };
-use sun2xp::model::configuration::Configuration;
+use sun2xp::model::configuration::{Configuration, EndState};
 use sun2xp::realtime::{Clock, Schedule};
 
 const MS: u64 = 1_000_000;
@@ -242,6 +243,31 @@ fn each_mishap_costs_its_own_period_and_no_more() {
     }
 }
 
+/// As after SIGKILL: from one moment to the next nobody commands the board.
+#[test]
+fn a_board_without_its_planner_is_in_its_end_state_within_the_watchdogs_time() {
+    for (end_state, rest) in [(EndState::Release, 0.0), (EndState::Hold, 0.2)] {
+        let mut configuration = Configuration::default();
+        (configuration.hand.end_state, configuration.hand.hold_torque_limit) = (end_state, 0.2);
+        let mut rig = Rig::new(&mut configuration);
+        rig.cycles(200);
+        let last = rig.report().last;
+        drop(rig.servo);
+        let mut world = rig.world.borrow_mut();
+        let mut now = last;
+        while !world.cable.board().finger(1).expect("finger 1").status().has(Status::ENDED) {
+            now += MS / 10;
+            world.cable.advance_to(now);
+            assert!(now - last < 25 * MS, "never ends");
+        }
+        let strongest = world.cable.board().finger(1).expect("finger 1").motor_torques().amax();
+        println!("{end_state:?}: in its end state {:.1} ms after the last command", (now - last) as f64 * 1e-6);
+        // The physics move on in steps of their own.
+        assert!(now - last <= 20 * MS + MS / 2, "{} ns", now - last);
+        assert!((strongest - rest).abs() < 1e-3, "{strongest} N cm");
+    }
+}
+
 #[test]
 fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
     let mut rig = Rig::new(&mut Configuration::default());
@@ -270,7 +296,6 @@ fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
     rig.servo.cycle();
     let ended = Transport::now(&End(rig.world.clone())) - good;
     let status = rig.world.borrow_mut().cable.board().finger(1).expect("finger 1").status();
-    use sun2xp::board::protocol::Status;
     assert!(status.has(Status::ENDED) && !status.has(Status::WATCHDOG_TRIPPED), "{status:?}");
     assert!(ended <= 21 * MS, "told after {ended} ns");
     println!("at rest {at_rest} ns after the last good reply, told to stop within {ended} ns");

@@ -16,8 +16,8 @@ use std::ffi::{c_int, c_uint, c_ulong};
 pub const FINGER_RUNNING: c_int = 1;
 
 /// FingerStatus.State: the finger has stopped by itself, its motors are in the
-/// configured end state, and its calls are refused with EIO and the reason. CloseHand
-/// and OpenHand start again.
+/// configured end state, and its calls are refused with EIO and the reason. RecoverHand,
+/// or CloseHand and OpenHand, start again.
 pub const FINGER_FAULTED: c_int = 2;
 
 /// FingerStatus.State: the motors are off, after a calibration that was refused (which

@@ -35,6 +35,16 @@ pub(super) struct Reached {
     pub black_box: BlackBox,
 }
 
+/// A whole hand.
+pub(super) struct Connected {
+    /// What the servos get.
+    pub lines: Vec<Line>,
+    /// What the planners get, in the order of the fingers.
+    pub reached: Vec<Reached>,
+    /// What is needed to mend a port.
+    pub workshops: Vec<Workshop>,
+}
+
 /// A port with its fingers, and the thread that shall serve it.
 pub(super) struct Line {
     /// 1 to 3.
@@ -87,22 +97,12 @@ pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<Simulate
     Ok(ports)
 }
 
-/// What opening the ports has given.
-pub(super) struct Opened {
-    /// For the servo threads.
-    pub lines: Vec<Line>,
-    /// By finger.
-    pub reached: Vec<Reached>,
-    /// Where the ports are mended.
-    pub workshops: Vec<Workshop>,
-}
-
 /// Opens every port and shakes hands with every finger on it. `limp`: the motors shall stay off.
 pub(super) fn reach(
     configuration: &Configuration,
     simulated: &[Option<SimulatedPort>; FINGERS],
     limp: bool,
-) -> Result<Opened, HandError> {
+) -> Result<Connected, HandError> {
     // An emergency stop from here on counts.
     let alarm = Alarm::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
     let (mut lines, mut reached, mut workshops) = (Vec::new(), Vec::new(), Vec::new());
@@ -129,7 +129,7 @@ pub(super) fn reach(
         workshops.push(Workshop::new(path, baud, reconnect, boards, borrower));
     }
     reached.sort_by_key(|finger| finger.index);
-    Ok(Opened { lines, reached, workshops })
+    Ok(Connected { lines, reached, workshops })
 }
 
 /// Every port, with the fingers on it, 0 to 2, one at least.

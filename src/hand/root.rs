@@ -5,7 +5,7 @@ use crate::control::calibration::Verdict;
 use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::announcement::say;
 use crate::hand::dispatcher::Dispatcher;
-use crate::hand::opening::{Opened, check, check_folder, reach, simulate};
+use crate::hand::opening::{Connected, check, check_folder, reach, simulate};
 use crate::hand::recovery::Recovery;
 use crate::hand::servo_threads::{Given, PortServo, start};
 use crate::hand::{HandError, configured};
@@ -118,7 +118,7 @@ impl Hand {
         check(&configuration)?;
         check_folder(&configuration)?;
         let simulated = simulate(&configuration)?;
-        let Opened { lines, reached, workshops } = reach(&configuration, &simulated, limp)?;
+        let Connected { lines, reached, workshops } = reach(&configuration, &simulated, limp)?;
         let recovery = Recovery::new(workshops);
         let dispatcher = Dispatcher::new(reached);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOPPING;
