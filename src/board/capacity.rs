@@ -40,10 +40,16 @@ pub struct TooFast {
     pub fastest_rate: f64,
 }
 
-/// The share of a period that the line is busy, 0 to [`USABLE_SHARE`].
+/// How long one exchange with so many fingers takes on the line, us. `more`: bytes that a reply may once have in addition.
 ///
 /// The line is full duplex: the first reply may begin while the second command is still going out, and replies are longer
 /// than commands, so that an exchange takes one command, the board's turnaround and all replies.
+pub fn exchange_microseconds(baud: u32, fingers: usize, more: usize) -> f64 {
+    let bytes = Kind::Command.wire_length() + fingers * (Kind::Reply.wire_length() + more);
+    bytes as f64 * BITS_PER_BYTE / f64::from(baud) * 1e6 + f64::from(TURNAROUND_MICROSECONDS)
+}
+
+/// The share of a period that the line is busy, 0 to [`USABLE_SHARE`].
 pub fn capacity(baud: u32, fingers: usize, rate: f64) -> Result<f64, TooFast> {
     const USUAL_BAUDS: [u32; 9] =
         [115_200, 230_400, 460_800, 500_000, 921_600, 1_000_000, 2_000_000, 3_000_000, 4_000_000];
@@ -52,7 +58,7 @@ pub fn capacity(baud: u32, fingers: usize, rate: f64) -> Result<f64, TooFast> {
     let turnaround_us = f64::from(TURNAROUND_MICROSECONDS);
     let microseconds = |bits: f64| bits / f64::from(baud) * 1e6;
 
-    let needed_us = microseconds(command_bits + reply_bits) + turnaround_us;
+    let needed_us = exchange_microseconds(baud, fingers, 0);
     let period_us = 1e6 / rate;
     let usable_us = USABLE_SHARE * period_us;
     if needed_us <= usable_us {

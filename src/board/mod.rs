@@ -15,7 +15,7 @@ mod simulated_port;
 mod terms;
 mod transport;
 
-pub use capacity::{TooFast, USABLE_SHARE, capacity};
+pub use capacity::{TooFast, USABLE_SHARE, capacity, exchange_microseconds};
 pub use link::{Link, LinkCounters, OutgoingCommand, Received};
 pub use link_error::LinkError;
 pub use port::{Port, PortError};

@@ -15,7 +15,7 @@ use super::signals::{Activity, Command, Feedback, Measured, Report, SetPoint};
 use super::slack::{Slack, SlackTakeUp, Slackness, TakeUp};
 use super::slew::Slew;
 use super::soft_limits::SoftLimits;
-use super::spring_transition::{Spring, SpringTransition};
+use super::spring_transition::{Spring, SpringStages, SpringTransition};
 use super::state_feedback::{Decision, StateFeedback, StateFeedbackState};
 use super::stillness::Stillness;
 use super::tendon_controller::TendonController;
@@ -24,7 +24,7 @@ use super::tension_integral::{TendonInput, TendonState};
 use super::transition::Transition;
 use super::usable::positive;
 use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::{Matrix3, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
 /// A tendon counts as tight from this part of t_min on.
@@ -55,6 +55,7 @@ pub struct Controller {
     motor_damping: f64,
     state_feedback: Option<StateFeedback>,
     admissible: AdmissibleStiffness,
+    spring_transition: SpringTransition,
     soft_limits: SoftLimits,
     gravity: GravityCompensation,
     heating: MotorHeating,
@@ -79,7 +80,7 @@ pub struct State {
     tendons: TendonState,
     transition: Transition,
     /// The spring that is followed.
-    spring: Option<SpringTransition>,
+    spring: Option<SpringStages>,
     /// What the controller before this one would pull next, N at the tendon.
     goes_on_from: Option<Vector4<f64>>,
     stillness: Stillness,
@@ -125,11 +126,14 @@ impl Controller {
             Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
             Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };
+        // What shakes the tensions shall stay within their bounds.
+        let reserve = state_feedback.as_ref().map_or(0.0, |law| law.reserve);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
         let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
         Ok(Self {
             admissible: AdmissibleStiffness::new(finger, &tendons, rate).ok_or_else(soft)?,
+            spring_transition: SpringTransition::new(rate),
             soft_limits: SoftLimits::new(finger),
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
@@ -142,7 +146,11 @@ impl Controller {
             slack: SlackTakeUp::new(finger.links(), &tendons, finger.tendon.minimum, rate),
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
-            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, strongest)?,
+            distribution: TensionDistribution::new(
+                &tendons,
+                finger.tendon.minimum + reserve,
+                strongest.add_scalar(-reserve),
+            )?,
             tendons: TendonController::new(finger.controller.scheme, &gains, rate),
             motor_torque,
             motor_damping: gains.motor_damping,
@@ -236,24 +244,18 @@ impl Controller {
                 law.idle(elastic);
             }
         }
-        match *activity {
-            Activity::Release { ramp } => self.let_go(state, ramp),
-            Activity::Follow(set_point) if observed => {
-                let spring = self.carried(state, set_point);
-                self.follow_by_state(state, &spring);
-            }
+        match activity {
+            &Activity::Release { ramp } => self.let_go(state, ramp),
+            Activity::Follow(set_point) if observed => self.follow_by_state(state, set_point),
             Activity::TakeUpSlack if measured.is_some() => {
                 let gravity = self.gravity.torques(&state.report.joints);
                 self.take_up_slack(state, &Vector4::zeros(), gravity);
             }
-            Activity::Tighten(offset) if measured.is_some() => self.take_up_slack(state, &offset, Vector3::zeros()),
-            Activity::Follow(set_point) if measured.is_some() => {
-                let spring = self.carried(state, set_point);
-                self.follow(state, &spring);
-            }
-            Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
-            Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),
-            Activity::Turn(torques) => self.turn(state, torques),
+            Activity::Tighten(offset) if measured.is_some() => self.take_up_slack(state, offset, Vector3::zeros()),
+            Activity::Follow(set_point) if measured.is_some() => self.follow(state, set_point),
+            &Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
+            &Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),
+            &Activity::Turn(torques) => self.turn(state, torques),
             Activity::TakeUpSlack
             | Activity::Tighten(_)
             | Activity::Follow(_)
@@ -277,14 +279,10 @@ impl Controller {
         self.monitors.watch(watch, feedback, &state.report, &state.pulls, &heat, age, full_scale)
     }
 
-    /// The spring of this cycle, with as much of its stiffness as the pose can carry.
-    fn carried(&self, state: &mut State, set_point: SetPoint) -> Spring {
-        let target = Spring::from(set_point);
-        let spring = state.spring.get_or_insert_with(|| SpringTransition::new(target)).advance(&target, self.period);
-        let k_theta = self.joint_stiffness.joint_stiffness(&spring, &state.report.joints);
-        let scale = self.admissible.scale(&k_theta);
-        state.report.stiffness_scale = scale;
-        Spring { stiffness: spring.stiffness * scale, ..spring }
+    /// The part of a spring's K_theta, N cm/rad, that the pose can carry.
+    fn carried(&self, report: &mut Report, k_theta: &Matrix3<f64>) -> f64 {
+        report.stiffness_scale = self.admissible.scale(k_theta);
+        report.stiffness_scale
     }
 
     /// Keeps the observers of state feedback going in every activity; whether it can decide.
@@ -360,18 +358,21 @@ impl Controller {
     }
 
     /// The spring, from its anchor to the joints. It begins without deflection.
-    fn follow(&self, state: &mut State, spring: &Spring) {
+    fn follow(&self, state: &mut State, set_point: &SetPoint) {
+        let spring = self.spring_transition.advance(&mut state.spring, set_point);
+        let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
+        spring.soften(self.carried(&mut state.report, &spring.k_theta));
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
             _ => (state.report.joints, true),
         };
-        self.slew.advance(&mut anchor, &spring.joints);
+        self.slew.advance(&mut anchor, &set_point.joints);
         state.doing = Doing::Following(anchor);
-        let spring = Spring { joints: anchor, ..*spring };
-        let torques = self.joint_stiffness.torques(&spring, &state.report.joints, &state.report.joint_rates);
-        let push = self.soft_limits.push(&state.report.joints);
-        let damped = push.stiffness.component_mul(&state.report.joint_rates) * LIMIT_DAMPING;
-        let torques = torques + push.torque - damped + self.gravity.torques(&state.report.joints);
+        let Report { joints, joint_rates, .. } = &state.report;
+        let torques = spring.torques(&anchor) - spring.damper(joint_rates);
+        let push = self.soft_limits.push(joints);
+        let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
+        let torques = torques + push.torque - damped + self.gravity.torques(joints);
         let Distribution { tensions: desired, scale } = self.distribution.distribute(&torques);
         self.bring(state, desired, begins);
         state.report.joint_torques = torques;
@@ -379,7 +380,11 @@ impl Controller {
     }
 
     /// The spring by state feedback. It begins without deflection.
-    fn follow_by_state(&self, state: &mut State, spring: &Spring) {
+    fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
+        let spring = self.spring_transition.advance(&mut state.spring, set_point);
+        let k_theta = self.joint_stiffness.joint_stiffness(spring, &state.report.joints);
+        let scale = self.carried(&mut state.report, &k_theta);
+        let spring = &Spring { stiffness: spring.stiffness * scale, ..*spring };
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };

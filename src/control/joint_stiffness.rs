@@ -2,7 +2,7 @@
 
 use super::spring_transition::Spring;
 use crate::model::Links;
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6x3, Vector3, Vector6};
 
 /// Kx at which `rate_time` holds, N/cm.
 const REFERENCE_STIFFNESS: f64 = 3.0;
@@ -25,6 +25,21 @@ pub struct JointStiffness {
     damping: Vector3<f64>,
 }
 
+/// A spring at a pose: found once a cycle, because its sines and products are what a cycle spends most on.
+#[derive(Clone, Debug)]
+pub(super) struct PosedSpring<'a> {
+    of: &'a JointStiffness,
+    joints: Vector3<f64>,
+    exact: f64,
+    damping: f64,
+    /// K J, before any scaling.
+    stiffened: Matrix6x3<f64>,
+    /// The part of its stiffness that the spring has.
+    scale: f64,
+    /// K_theta of eq. 6, N cm/rad.
+    pub k_theta: Matrix3<f64>,
+}
+
 impl JointStiffness {
     /// `rate_time`: beta at 3 N/cm, s.
     pub fn new(links: Links, rate_time: f64) -> Self {
@@ -35,28 +50,28 @@ impl JointStiffness {
 
     /// tau of spring and damper, N cm, at joint angles (rad) and rates (rad/s).
     pub fn torques(&self, spring: &Spring, joints: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64> {
-        let damping = self.damping(&self.joint_stiffness(spring, joints), spring.damping);
-        self.spring(spring, joints) - damping * rates
+        let posed = self.posed(spring, joints);
+        posed.torques(&spring.joints) - posed.damper(rates)
     }
 
     /// K_theta of eq. 6, N cm/rad.
     pub fn joint_stiffness(&self, spring: &Spring, joints: &Vector3<f64>) -> Matrix3<f64> {
-        let jacobian = self.links.spatial_jacobian(joints);
-        jacobian.tr_mul(&(spring.stiffness * jacobian))
+        self.posed(spring, joints).k_theta
     }
 
     /// tau of the spring alone, N cm: K_theta (theta_d - theta) by eqs. 3 and 6, or J^T f by eqs. 1 and 2 with the deflection
     /// of the tip itself.
     pub fn spring(&self, spring: &Spring, joints: &Vector3<f64>) -> Vector3<f64> {
+        self.posed(spring, joints).torques(&spring.joints)
+    }
+
+    /// A spring at joint angles, rad.
+    pub(super) fn posed(&self, spring: &Spring, joints: &Vector3<f64>) -> PosedSpring<'_> {
         let jacobian = self.links.spatial_jacobian(joints);
-        let mut deflection = Vector6::zeros();
-        if spring.exact < 1.0 {
-            deflection += jacobian * (spring.joints - joints) * (1.0 - spring.exact);
-        }
-        if spring.exact > 0.0 {
-            deflection += self.deflection(&spring.joints, joints) * spring.exact;
-        }
-        jacobian.tr_mul(&(spring.stiffness * deflection))
+        let stiffened = spring.stiffness * jacobian;
+        let k_theta = jacobian.tr_mul(&stiffened);
+        let Spring { exact, damping, .. } = *spring;
+        PosedSpring { of: self, joints: *joints, exact, damping, stiffened, scale: 1.0, k_theta }
     }
 
     /// Translation (cm) and rotation vector (rad) from the tip's pose at `joints` to that at `desired`.
@@ -72,12 +87,36 @@ impl JointStiffness {
         deflection.fixed_rows_mut::<3>(3).copy_from(&rotation);
         deflection
     }
+}
 
-    /// The damper of a finger with `k_theta`, N cm s/rad: symmetric, positive definite, in proportion to `ratio`.
-    pub fn damping(&self, k_theta: &Matrix3<f64>, ratio: f64) -> Matrix3<f64> {
+impl PosedSpring<'_> {
+    /// Leaves this part of the stiffness.
+    pub fn soften(&mut self, part: f64) {
+        self.scale *= part;
+        self.k_theta *= part;
+    }
+
+    /// tau, N cm, of the spring between `desired`, rad, and the joints.
+    pub fn torques(&self, desired: &Vector3<f64>) -> Vector3<f64> {
+        let mut torques = Vector3::zeros();
+        if self.exact < 1.0 {
+            torques += self.k_theta * (desired - self.joints) * (1.0 - self.exact);
+        }
+        if self.exact > 0.0 {
+            // K is symmetric: J^T K d = (K J)^T d.
+            let deflection = self.of.deflection(desired, &self.joints);
+            torques += self.stiffened.tr_mul(&deflection) * (self.scale * self.exact);
+        }
+        torques
+    }
+
+    /// tau of the damper, N cm, at joint rates, rad/s: its matrix is symmetric, positive definite, and in proportion to the
+    /// spring's relative damping.
+    pub fn damper(&self, rates: &Vector3<f64>) -> Vector3<f64> {
         // beta^2 K_ref / K_jj to the power 1/4; without stiffness in a joint there is nothing to damp it with.
-        let root = k_theta.diagonal().zip_map(&self.damping, |k, damping| (damping / k.max(1e-6)).sqrt().sqrt());
-        let b = Matrix3::from_diagonal(&root);
-        (b * k_theta * b + Matrix3::identity() * LIMP_DAMPING) * ratio
+        let stiffness = self.k_theta.diagonal();
+        let b = stiffness.zip_map(&self.of.damping, |k, damping| (damping / k.max(1e-6)).sqrt().sqrt());
+        let damped = (self.k_theta * rates.component_mul(&b)).component_mul(&b) + rates * LIMP_DAMPING;
+        damped * self.damping
     }
 }

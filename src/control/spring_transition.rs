@@ -22,43 +22,59 @@ pub struct Spring {
 
 impl From<SetPoint> for Spring {
     fn from(SetPoint { joints, law, stiffness, damping }: SetPoint) -> Self {
-        let exact = match law {
-            Law::Report => 0.0,
-            Law::Exact => 1.0,
-        };
-        Self { joints, exact, stiffness, damping }
+        Self { joints, exact: share(law), stiffness, damping }
+    }
+}
+
+/// Of the exact law.
+fn share(law: Law) -> f64 {
+    match law {
+        Law::Report => 0.0,
+        Law::Exact => 1.0,
     }
 }
 
 impl Spring {
-    /// Moves all but the anchor toward `target` by a part of the way.
-    fn approach(&mut self, target: &Self, part: f64) {
-        self.exact += (target.exact - self.exact) * part;
-        self.stiffness += (target.stiffness - self.stiffness) * part;
-        self.damping += (target.damping - self.damping) * part;
+    /// Moves all but the anchor by a part of the way.
+    fn approach(&mut self, exact: f64, stiffness: &Matrix6<f64>, damping: f64, part: f64) {
+        self.exact += (exact - self.exact) * part;
+        self.stiffness += (stiffness - self.stiffness) * part;
+        self.damping += (damping - self.damping) * part;
     }
 }
 
 /// Two equal first-order stages in a row, so that the torque does not even bend sharply, and a planner that sends a new spring in
 /// every cycle is followed all the while. The spring itself goes over, and not its torque: between two springs within the bound
 /// every one is within it.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug)]
 pub(super) struct SpringTransition {
+    /// What a stage moves by in a cycle.
+    part: f64,
+}
+
+/// The two stages.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+pub(super) struct SpringStages {
     first: Spring,
     second: Spring,
 }
 
 impl SpringTransition {
-    /// Begins with a spring as it is.
-    pub fn new(spring: Spring) -> Self {
-        Self { first: spring, second: spring }
+    /// Cycles a second.
+    pub fn new(rate: f64) -> Self {
+        Self { part: -(-1.0 / (STAGE * rate)).exp_m1() }
     }
 
-    /// The spring of this cycle, on the way to `target`. Its anchor is that of `target`.
-    pub fn advance(&mut self, target: &Spring, period: f64) -> Spring {
-        let part = -(-period / STAGE).exp_m1();
-        self.first.approach(target, part);
-        self.second.approach(&self.first, part);
-        Spring { joints: target.joints, ..self.second }
+    /// The spring of this cycle, on the way to that of `set_point`, whose anchor it has. Begins with it as it is.
+    pub fn advance<'a>(&self, stages: &'a mut Option<SpringStages>, set_point: &SetPoint) -> &'a Spring {
+        let begin = || {
+            let spring = Spring::from(*set_point);
+            SpringStages { first: spring, second: spring }
+        };
+        let SpringStages { first, second } = stages.get_or_insert_with(begin);
+        first.approach(share(set_point.law), &set_point.stiffness, set_point.damping, self.part);
+        second.approach(first.exact, &first.stiffness, first.damping, self.part);
+        second.joints = set_point.joints;
+        second
     }
 }

@@ -21,8 +21,12 @@ impl Links {
 
     /// Jacobian of [`Links::tip`], eq. 8, cm/rad: row = x, y, z; column = joint.
     pub fn jacobian(&self, theta: &Vector3<f64>) -> Matrix3<f64> {
+        self.jacobian_turned(theta[0].sin_cos(), theta)
+    }
+
+    /// [`Links::jacobian`] with the sine and cosine of joint 0, which are wanted elsewhere too.
+    fn jacobian_turned(&self, (s0, c0): (f64, f64), theta: &Vector3<f64>) -> Matrix3<f64> {
         let [l0, l1, l2] = self.0;
-        let (s0, c0) = theta[0].sin_cos();
         let (s1, c1) = theta[1].sin_cos();
         let (s2, c2) = theta[2].sin_cos();
         let s12 = c1 * s2 + s1 * c2; // eq. 11
@@ -55,7 +59,7 @@ impl Links {
     pub fn spatial_jacobian(&self, theta: &Vector3<f64>) -> Matrix6x3<f64> {
         let (s0, c0) = theta[0].sin_cos();
         let mut jacobian = Matrix6x3::zeros();
-        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.jacobian(theta));
+        jacobian.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.jacobian_turned((s0, c0), theta));
         #[rustfmt::skip]
         let axes = Matrix3::new(
             0.0, c0, c0,

@@ -113,7 +113,7 @@ fn tip_is_the_commanded_spring_and_is_not_without_stretch_compensation() {
 
 #[test]
 fn without_damping_the_finger_does_not_rest() {
-    for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11] {
+    for scheme in [Scheme::Figure9, Scheme::Figure10] {
         let mut finger = finger_with(scheme);
         finger.controller.motor_damping = Some(0.0);
         finger.controller.rate_time = Some(0.0);

@@ -8,6 +8,7 @@ mod bound;
 mod calibrate;
 mod doctor;
 mod replay;
+mod schedule;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -29,6 +30,7 @@ enum Tool {
     Calibrate(calibrate::Arguments),
     Doctor(doctor::Arguments),
     Replay(replay::Arguments),
+    Schedule(schedule::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
         Tool::Replay(arguments) => replay::run(&arguments),
+        Tool::Schedule(arguments) => schedule::run(&arguments).map(|()| ExitCode::SUCCESS),
     };
     match result {
         Ok(status) => status,

@@ -1,0 +1,120 @@
+//! One whole servo step against the same arithmetic in C by hand (`step.c`, -O3).
+//!
+//!     cargo bench --bench handwritten
+//!
+//! First a closed loop is run and recorded, and both must give the same motor torques in every cycle of it. Then both repeat it in
+//! turn. Statistics are off in both: what is timed is from counts to motor torques and report.
+
+mod by_hand;
+#[path = "../recorded_run/mod.rs"]
+mod recorded_run;
+
+use by_hand::{ByHand, Gains, Parameters, PlainFeedback, PlainReport, PlainSetPoint, PlainState, Step};
+use recorded_run::{CYCLES, CYCLES_A_SET_POINT, RATE, Recording, lost};
+use std::error::Error;
+use std::hint::black_box;
+use std::time::Instant;
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+
+/// How often both repeat the recorded run.
+const ROUNDS: usize = 301;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let by_hand = ByHand::compile()?;
+    println!("| scheme | this library | C by hand | ratio |\n|---|---|---|---|");
+    for (scheme, name, step) in
+        [(Scheme::Figure9, "Figure 9", by_hand.figure9), (Scheme::Figure10, "Figure 10", by_hand.figure10)]
+    {
+        let gains = Gains::new(scheme);
+        let mut finger = ConfiguredFinger::default();
+        finger.controller.scheme = scheme;
+        gains.configure(&mut finger);
+        let parameters = Parameters::new(&finger, &gains, RATE)?;
+        let recording = Recording::new(finger)?;
+        let plain = Plain::new(&recording, &parameters, by_hand.start, step);
+        plain.check(&recording)?;
+        let (ours, theirs) = time(&recording, &plain);
+        println!("| {name} | {ours:.1} ns | {theirs:.1} ns | {:.3} |", ours / theirs);
+    }
+    println!("\nMedians of {ROUNDS} runs of {} cycles each, in turn; {}, {}.", CYCLES, rustc(), by_hand.compiler);
+    Ok(())
+}
+
+fn rustc() -> String {
+    let version = std::process::Command::new("rustc").arg("--version").output();
+    version.map_or("rustc".into(), |output| String::from_utf8_lossy(&output.stdout).trim().into())
+}
+
+/// The recorded run in the structures of `step.c`.
+struct Plain<'a> {
+    parameters: &'a Parameters,
+    start: by_hand::Start,
+    step: Step,
+    feedback: Vec<PlainFeedback>,
+    set_points: Vec<PlainSetPoint>,
+}
+
+impl<'a> Plain<'a> {
+    fn new(recording: &Recording, parameters: &'a Parameters, start: by_hand::Start, step: Step) -> Self {
+        let feedback = recording.feedback.iter().map(PlainFeedback::from).collect();
+        Self {
+            parameters,
+            start,
+            step,
+            feedback,
+            set_points: recording.set_points.iter().map(PlainSetPoint::from).collect(),
+        }
+    }
+
+    /// Every cycle of the run; `see` is given its number and the motor torques.
+    fn run(&self, lost: impl Fn(usize) -> bool, mut see: impl FnMut(usize, &[f64; 4])) {
+        let (mut state, mut torques, mut report) = (PlainState::default(), [0.0; 4], PlainReport::default());
+        // SAFETY: all structures are those of step.c, and alive.
+        unsafe { (self.start)(self.parameters, &mut state, &self.feedback[0]) };
+        for (cycle, feedback) in self.feedback.iter().enumerate() {
+            let set_point = &self.set_points[cycle / CYCLES_A_SET_POINT];
+            let feedback = if lost(cycle) { std::ptr::null() } else { feedback };
+            // SAFETY: as above; step.c takes null for a lost reply.
+            unsafe { (self.step)(self.parameters, &mut state, feedback, set_point, &mut torques, &mut report) };
+            see(cycle, black_box(&torques));
+        }
+        black_box(&report);
+    }
+
+    fn check(&self, recording: &Recording) -> Result<(), String> {
+        let mut worst: f64 = 0.0;
+        self.run(lost, |cycle, torques| {
+            let theirs = &recording.torques[cycle];
+            let largest = theirs.amax();
+            let apart = (0..4).map(|motor| (torques[motor] - theirs[motor]).abs()).fold(0.0, f64::max);
+            worst = worst.max(apart / largest);
+        });
+        if worst.is_nan() || worst > 1e-9 {
+            return Err(format!("the two differ by {worst:e} of the torque: one of them is wrong"));
+        }
+        eprintln!("the same torques within {worst:.1e}; {}", recording.seen());
+        Ok(())
+    }
+}
+
+/// ns a step: ours, C by hand.
+fn time(recording: &Recording, plain: &Plain) -> (f64, f64) {
+    let per_step = |begun: Instant| begun.elapsed().as_secs_f64() * 1e9 / CYCLES as f64;
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    for _ in 0..ROUNDS {
+        let begun = Instant::now();
+        recording.repeat(|controller, state, feedback, activity| {
+            black_box(controller.cycle(state, feedback, activity));
+        });
+        ours.push(per_step(begun));
+        let begun = Instant::now();
+        plain.run(lost, |_, _| {});
+        theirs.push(per_step(begun));
+    }
+    (median(ours), median(theirs))
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}

@@ -1,0 +1,157 @@
+//! Instructions of one servo step, counted by callgrind: the same on every run, so that a rise is a change of the code.
+//!
+//!     cargo bench --bench instructions                    counts, and compares with recorded.toml
+//!     cargo bench --bench instructions -- --record        counts, and writes recorded.toml anew
+//!
+//! More than 2 % above what is recorded is a failure. Another compiler or C library makes other code: then nothing is compared, and
+//! said so. Record again when such a version becomes the usual one, or when a rise is meant.
+
+#[allow(dead_code, reason = "what the comparison with C needs of it")]
+#[path = "../recorded_run/mod.rs"]
+mod recorded_run;
+
+use clap::Parser;
+use recorded_run::{CYCLES, Recording};
+use serde::de::IntoDeserializer;
+use serde::de::value::{Error as ValueError, StrDeserializer};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
+use sun2xp::control::{Activity, Controller, Feedback, State};
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+
+/// As in a configuration.
+const SCHEMES: [&str; 3] = ["figure 9", "figure 10", "state feedback"];
+
+/// What a step may need above what is recorded.
+const RISE: f64 = 0.02;
+
+const RECORD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions/recorded.toml");
+
+/// The C library chooses its sines by what the processor has: without these it takes those that every processor can run.
+const PLAIN_PROCESSOR: &str =
+    "glibc.cpu.hwcaps=-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-FMA4,-AVX_Fast_Unaligned_Load,-ERMS";
+
+#[derive(Parser)]
+struct Arguments {
+    /// Writes what is counted into the file that later counts are compared with.
+    #[arg(long)]
+    record: bool,
+    /// Runs the steps of this scheme: what callgrind counts.
+    #[arg(long, hide = true)]
+    scheme: Option<String>,
+    /// `cargo bench` passes it.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+/// recorded.toml.
+#[derive(Deserialize, Serialize)]
+struct Record {
+    /// `rustc --version`.
+    rustc: String,
+    /// Version of the C library.
+    libc: String,
+    /// Instructions a step, by scheme.
+    instructions: BTreeMap<String, f64>,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    if let Some(scheme) = &arguments.scheme {
+        return steps(scheme);
+    }
+    let counted = SCHEMES.iter().map(|scheme| Ok((scheme.to_string(), count(scheme)?)));
+    let instructions = counted.collect::<Result<BTreeMap<String, f64>, Box<dyn Error>>>()?;
+    let rustc = first_line(&std::env::var("RUSTC").unwrap_or("rustc".into()))?;
+    // "ldd (Debian GLIBC 2.36-9+deb12u14) 2.36"
+    let libc = first_line("ldd")?.split_whitespace().last().unwrap_or_default().to_string();
+    let now = Record { rustc, libc, instructions };
+    if arguments.record {
+        let text = format!(
+            "# Instructions of one servo step, counted by callgrind. Written by: cargo bench --bench instructions -- --record\n{}",
+            toml_edit::ser::to_string_pretty(&now)?
+        );
+        std::fs::write(RECORD, text)?;
+    }
+    let recorded: Record = toml_edit::de::from_str(&std::fs::read_to_string(RECORD)?)?;
+    compare(&now, &recorded)
+}
+
+/// The recorded run of a scheme.
+fn steps(scheme: &str) -> Result<(), Box<dyn Error>> {
+    let mut finger = ConfiguredFinger::default();
+    let name: StrDeserializer<ValueError> = scheme.into_deserializer();
+    finger.controller.scheme = Scheme::deserialize(name)?;
+    let recording = Recording::new(finger)?;
+    recording.repeat(|controller, state, feedback, activity| {
+        counted_step(controller, state, feedback, activity);
+    });
+    Ok(())
+}
+
+/// Callgrind counts while this function runs.
+#[inline(never)]
+fn counted_step(controller: &Controller, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) {
+    black_box(controller.cycle(state, feedback, activity));
+}
+
+/// Instructions a step.
+fn count(scheme: &str) -> Result<f64, Box<dyn Error>> {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("instructions.callgrind");
+    let run = Command::new("valgrind")
+        .args(["--tool=callgrind", "--toggle-collect=*counted_step*"])
+        .arg(format!("--callgrind-out-file={}", file.display()))
+        .arg(std::env::current_exe()?)
+        .args(["--scheme", scheme])
+        .env("GLIBC_TUNABLES", PLAIN_PROCESSOR)
+        .output()
+        .map_err(|error| format!("cannot run valgrind ({error}): install it"))?;
+    if !run.status.success() {
+        return Err(format!("valgrind: {}", String::from_utf8_lossy(&run.stderr)).into());
+    }
+    let text = std::fs::read_to_string(file)?;
+    let total = text.lines().find_map(|line| line.strip_prefix("totals: ")).ok_or("callgrind has counted nothing")?;
+    Ok(total.trim().parse::<f64>()? / CYCLES as f64)
+}
+
+fn compare(now: &Record, recorded: &Record) -> Result<(), Box<dyn Error>> {
+    println!("| scheme | instructions a step | recorded |\n|---|---|---|");
+    let mut risen = Vec::new();
+    for (scheme, count) in &now.instructions {
+        let before =
+            recorded.instructions.get(scheme).ok_or_else(|| format!("{scheme} is not recorded: {HOW_TO_RECORD}"))?;
+        println!("| {scheme} | {count:.1} | {before:.1} |");
+        if *count > before * (1.0 + RISE) {
+            risen.push(format!("{scheme}: {count:.1}, recorded {before:.1}"));
+        }
+    }
+    println!("\n{}; C library {}", now.rustc, now.libc);
+    if (&now.rustc, &now.libc) != (&recorded.rustc, &recorded.libc) {
+        eprintln!(
+            "NOT COMPARED: these counts are of another compiler or C library than the recorded ones ({}; {}). {HOW_TO_RECORD}",
+            recorded.rustc, recorded.libc
+        );
+        return Ok(());
+    }
+    if risen.is_empty() {
+        return Ok(());
+    }
+    Err(format!(
+        "a step needs over {:.0} % more instructions: {}. Where that is meant: {HOW_TO_RECORD}",
+        100.0 * RISE,
+        risen.join("; ")
+    )
+    .into())
+}
+
+const HOW_TO_RECORD: &str =
+    "cargo bench --bench instructions -- --record, and commit benches/instructions/recorded.toml";
+
+fn first_line(program: &str) -> Result<String, Box<dyn Error>> {
+    let output = Command::new(program).arg("--version").output().map_err(|error| format!("{program}: {error}"))?;
+    Ok(String::from_utf8_lossy(&output.stdout).lines().next().unwrap_or_default().into())
+}

@@ -1,0 +1,69 @@
+//! cyclictest: what the machine can do, measured by somebody else.
+
+use crate::Failure;
+use crate::percentiles::Percentiles;
+use std::process::{Child, Command, Stdio};
+
+/// Latencies are counted up to this, ns; longer ones count as this long.
+const LONGEST: u64 = 1_000_000;
+
+/// Three threads of it, staggered over the period as servo threads are.
+pub struct Cyclictest(Child);
+
+/// What one of its threads has measured.
+pub struct Measured {
+    pub latency: Percentiles,
+    /// Wake-ups that were counted.
+    pub count: usize,
+    /// Of them those later than [`LONGEST`].
+    pub late: u64,
+}
+
+impl Cyclictest {
+    pub fn start(priority: u8, period_us: u64, seconds: u64) -> Result<Self, Failure> {
+        let child = Command::new("cyclictest")
+            .args(["--quiet", "--mlockall", "--threads=3", "--nsecs"])
+            .arg(format!("--priority={priority}"))
+            .arg(format!("--interval={period_us}"))
+            .arg(format!("--aligned={}", period_us / 3))
+            .arg(format!("--duration={seconds}"))
+            .arg(format!("--histogram={LONGEST}"))
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(|error| format!("cannot run cyclictest ({error}): install rt-tests"))?;
+        Ok(Self(child))
+    }
+
+    /// Waits for its end.
+    pub fn finish(self) -> Result<Vec<Measured>, Failure> {
+        let output = self.0.wait_with_output()?;
+        if !output.status.success() {
+            return Err("cyclictest failed: it needs the permission for SCHED_FIFO (root, or an rtprio limit)".into());
+        }
+        let text = String::from_utf8(output.stdout)?;
+        let mut latencies: Vec<Vec<u64>> = vec![Vec::new(); 3];
+        // One line a latency: it, and how often each thread has met it.
+        for line in text.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit())) {
+            let numbers: Vec<u64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
+            let [latency, counts @ ..] = &numbers[..] else { continue };
+            for (thread, &count) in latencies.iter_mut().zip(counts) {
+                thread.extend(std::iter::repeat_n(*latency, count as usize));
+            }
+        }
+        let listed = |name: &str| -> Result<Vec<u64>, Failure> {
+            let line = text.lines().find_map(|line| line.strip_prefix(name)).ok_or("cyclictest has another output")?;
+            Ok(line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?)
+        };
+        let (overflows, maxima) = (listed("# Histogram Overflows:")?, listed("# Max Latencies:")?);
+        let measured = latencies.into_iter().zip(overflows).zip(maxima).map(|((mut latencies, late), maximum)| {
+            latencies.extend(std::iter::repeat_n(LONGEST, late as usize));
+            let count = latencies.len();
+            Measured {
+                latency: Percentiles { maximum: maximum as f64 * 1e-3, ..Percentiles::of(latencies) },
+                count,
+                late,
+            }
+        });
+        Ok(measured.collect())
+    }
+}

@@ -1,0 +1,48 @@
+//! Fingers on simulated boards behind pseudo-terminals, to be served on a clock of the caller's choice.
+
+use crate::Failure;
+use rtrb::{Consumer, RingBuffer};
+use sun2xp::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms};
+use sun2xp::finger::{BlackBox, ControllerSource, FingerServo, Mailbox, ServedPort};
+use sun2xp::model::configuration::{Configuration, FINGERS};
+use sun2xp::realtime::{CycleTiming, Priority, Schedule, now};
+
+/// One finger: what its planner, its servo thread and its board have.
+pub struct Finger {
+    pub mailbox: Mailbox,
+    pub port: ServedPort<Port>,
+    pub schedule: Schedule,
+    /// The board lives as long as this.
+    pub board: SimulatedPort,
+    /// Where the servo leaves its timings and records; nobody looks.
+    pub uncollected: (Consumer<CycleTiming>, BlackBox),
+}
+
+/// All fingers of a hand, each on its own port, with cycles of so many ns; the phases staggered.
+pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> Result<Vec<Finger>, Failure> {
+    let first = now() + 100_000_000;
+    let reach_one = |index: usize| {
+        let finger = &configuration.fingers[index];
+        let board = SimulatedBoard::new(configuration, &[index])?;
+        let board = SimulatedPort::start(board, Pace::Patient, Priority { fifo: board_priority, core: None })?;
+        let mut link = Link::open(&board.path(), finger.baud)?;
+        let terms = Terms::new(&configuration.hand, finger);
+        let (identity, configured) = link.shake_hands(configuration.address(index), &terms, now() + 1_000_000_000)?;
+        let (producer, timings) = RingBuffer::new(16);
+        let stiffness = finger.initial_stiffness();
+        let source = ControllerSource { number: 0, gravity: configuration.gravity(index), finger: finger.clone() };
+        let (recorder, black_box) = BlackBox::new(index as i32 + 1, &configuration.hand, source);
+        let (servo, mailbox) =
+            FingerServo::new(configuration, index, stiffness, &identity, &configured, producer, recorder)
+                .map_err(|unusable| unusable.reason)?;
+        let schedule = Schedule::new(first + period * index as u64 / FINGERS as u64, period);
+        Ok(Finger {
+            mailbox,
+            port: ServedPort::new(link, vec![servo]),
+            schedule,
+            board,
+            uncollected: (timings, black_box),
+        })
+    };
+    (0..FINGERS).map(reach_one).collect()
+}

@@ -1,0 +1,26 @@
+//! Medians and percentiles.
+
+/// Median, 99th percentile and maximum, us.
+#[derive(Clone, Copy, Default)]
+pub struct Percentiles {
+    pub median: f64,
+    pub p99: f64,
+    pub maximum: f64,
+}
+
+impl Percentiles {
+    /// Of times in ns.
+    pub fn of(mut times: Vec<u64>) -> Self {
+        times.sort_unstable();
+        let at =
+            |part: f64| times.get((times.len() as f64 * part) as usize).map_or(f64::NAN, |&time| time as f64 * 1e-3);
+        Self { median: at(0.5), p99: at(0.99), maximum: times.last().map_or(f64::NAN, |&time| time as f64 * 1e-3) }
+    }
+}
+
+pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
+}

@@ -1,0 +1,112 @@
+//! Whether planners that call as fast as they can delay the servo.
+
+use crate::Failure;
+use crate::percentiles::median;
+use std::hint::{black_box, spin_loop};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::thread::sleep;
+use std::time::Duration;
+use sun2xp::hand::{Hand, HandError};
+use sun2xp::model::configuration::{Configuration, FINGERS};
+use sun2xp::realtime::Stage;
+
+/// Wake-up of the servos with two threads calling SendPos and GetPos as fast as they can, and without.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// How often each is measured, in turn.
+    #[arg(long, default_value_t = 5)]
+    repeats: usize,
+    /// How long each time, s.
+    #[arg(long, default_value_t = 5)]
+    seconds: u64,
+}
+
+impl Default for Arguments {
+    fn default() -> Self {
+        Self { repeats: 5, seconds: 5 }
+    }
+}
+
+/// What the two threads do meanwhile.
+#[derive(Clone, Copy, PartialEq)]
+enum Planners {
+    Quiet,
+    /// They use the cores, but not the library: what the load alone does.
+    Spinning,
+    Calling,
+}
+
+const KINDS: [(Planners, &str); 3] = [
+    (Planners::Quiet, "no planner"),
+    (Planners::Spinning, "two threads that spin"),
+    (Planners::Calling, "two that call"),
+];
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let hand = Hand::open(Configuration::default())?;
+    let mut wake_ups = [const { Vec::new() }; 3];
+    let calls = AtomicU64::new(0);
+    for _ in 0..arguments.repeats {
+        for ((kind, _), wake_ups) in KINDS.into_iter().zip(&mut wake_ups) {
+            let ended = AtomicBool::new(false);
+            std::thread::scope(|scope| -> Result<(), Failure> {
+                let planners = [1, 2].map(|finger| {
+                    let (hand, ended, calls) = (&hand, &ended, &calls);
+                    scope.spawn(move || plan(hand, finger, kind, ended, calls))
+                });
+                let measured = measure(&hand, arguments.seconds);
+                ended.store(true, Relaxed);
+                for planner in planners {
+                    planner.join().map_err(|_| "a planner panicked")??;
+                }
+                wake_ups.extend(measured?);
+                Ok(())
+            })?;
+        }
+    }
+    println!("| | wake-up, median | 99 % | against spinning, median | 99 % |\n|---|---|---|---|---|");
+    let of = |kind: usize, part: fn(&(f64, f64)) -> f64| median(wake_ups[kind].iter().map(part));
+    let (spinning, spinning_p99) = (of(1, |wake| wake.0), of(1, |wake| wake.1));
+    for (kind, (_, name)) in KINDS.iter().enumerate() {
+        let (middle, p99) = (of(kind, |wake| wake.0), of(kind, |wake| wake.1));
+        println!("| {name} | {middle:.1} us | {p99:.1} us | {:.2} | {:.2} |", middle / spinning, p99 / spinning_p99);
+    }
+    let seconds = arguments.repeats as u64 * arguments.seconds;
+    println!(
+        "\nMedians over three fingers and {} repeats of {} s; {:.1} million calls a second.\n",
+        arguments.repeats,
+        arguments.seconds,
+        calls.load(Relaxed) as f64 / seconds as f64 * 1e-6
+    );
+    Ok(())
+}
+
+/// One planner, until it is told to end.
+fn plan(hand: &Hand, finger: i32, kind: Planners, ended: &AtomicBool, calls: &AtomicU64) -> Result<(), HandError> {
+    let start = hand.position(finger)?;
+    while !ended.load(Relaxed) {
+        match kind {
+            Planners::Quiet => sleep(Duration::from_millis(10)),
+            Planners::Spinning => spin_loop(),
+            Planners::Calling => {
+                for _ in 0..100 {
+                    hand.send_position(finger, start)?;
+                    black_box(hand.position(finger)?);
+                }
+                calls.fetch_add(200, Relaxed);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Median and 99 % of the wake-up of each finger, us.
+fn measure(hand: &Hand, seconds: u64) -> Result<Vec<(f64, f64)>, Failure> {
+    let fingers = 1..=FINGERS as i32;
+    // What begins is not what is measured.
+    sleep(Duration::from_millis(200));
+    fingers.clone().try_for_each(|finger| hand.reset_timing(finger))?;
+    sleep(Duration::from_secs(seconds));
+    let timings = fingers.map(|finger| hand.timing(finger, Stage::WakeUp).map(|wake| (wake.median, wake.p99)));
+    Ok(timings.collect::<Result<_, _>>()?)
+}

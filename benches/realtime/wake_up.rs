@@ -1,0 +1,112 @@
+//! Wake-up latency of three servo-like threads against cyclictest at the same priority and interval, in turn.
+
+use crate::Failure;
+use crate::cyclictest::Cyclictest;
+use crate::percentiles::{Percentiles, median};
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::process::{Child, Command, Stdio};
+use sun2xp::realtime::{Clock, MonotonicClock, Priority, Schedule, now, spawn};
+
+/// Wake-up latency of three servo-like threads, and of cyclictest.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// How often both are measured, idle and under load.
+    #[arg(long, default_value_t = 5)]
+    repeats: usize,
+    /// How long each time, s.
+    #[arg(long, default_value_t = 5)]
+    seconds: u64,
+}
+
+impl Default for Arguments {
+    fn default() -> Self {
+        Self { repeats: 5, seconds: 5 }
+    }
+}
+
+const PRIORITY: u8 = 80;
+const PERIOD_US: u64 = 1000;
+
+/// The threads may be so much later than cyclictest's.
+const GOAL: f64 = 1.1;
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let _awake = keep_awake();
+    println!("| load | of | this library | cyclictest | ratio | goal |\n|---|---|---|---|---|---|");
+    for (load, busy) in [("idle", false), ("stress-ng", true)] {
+        let _stress = if busy { Some(Stress::start()?) } else { None };
+        let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+        for _ in 0..arguments.repeats {
+            ours.extend(servo_threads(arguments.seconds)?);
+            let measured = Cyclictest::start(PRIORITY, PERIOD_US, arguments.seconds)?.finish()?;
+            theirs.extend(measured.into_iter().map(|thread| thread.latency));
+        }
+        let row = |name: &str, part: fn(&Percentiles) -> f64, goal: &str| {
+            let [ours, theirs] = [&ours, &theirs].map(|all| median(all.iter().map(part)));
+            println!("| {load} | {name} | {ours:.1} us | {theirs:.1} us | {:.2} | {goal} |", ours / theirs);
+        };
+        row("median", |latency| latency.median, &format!("<= {GOAL}"));
+        row("99 %", |latency| latency.p99, &format!("<= {GOAL}"));
+        row("worst", |latency| latency.maximum, "");
+    }
+    println!("\nMedians over three threads and {} repeats of {} s.\n", arguments.repeats, arguments.seconds);
+    Ok(())
+}
+
+/// cyclictest keeps the processor out of deep sleep while it runs. So the same must hold while the library is measured.
+fn keep_awake() -> Option<File> {
+    let mut latency = OpenOptions::new().write(true).open("/dev/cpu_dma_latency").ok()?;
+    latency.write_all(&0i32.to_ne_bytes()).ok()?;
+    Some(latency)
+}
+
+/// Latencies of three threads that do nothing but wake up, each in its phase of the period.
+fn servo_threads(seconds: u64) -> Result<Vec<Percentiles>, Failure> {
+    let first = now() + 10_000_000;
+    let cycles = (seconds * 1_000_000 / PERIOD_US) as usize;
+    let threads = (0..3).map(|place| {
+        let mut schedule = Schedule::new(first + place * PERIOD_US * 1000 / 3, PERIOD_US * 1000);
+        spawn("servo", Priority { fifo: PRIORITY, core: None }, move |had| {
+            let mut latencies = Vec::with_capacity(cycles);
+            for _ in 0..cycles {
+                let beginning = schedule.next();
+                MonotonicClock.sleep_until(beginning);
+                let woken = MonotonicClock.now();
+                latencies.push(woken.saturating_sub(beginning));
+                schedule.advance(woken);
+            }
+            had.scheduling.map_or(Ok(latencies), Err)
+        })
+    });
+    let threads: Vec<_> = threads.collect::<Result<_, _>>()?;
+    let mut all = Vec::new();
+    for thread in threads {
+        all.push(Percentiles::of(thread.join().map_err(|_| "a thread panicked")??));
+    }
+    Ok(all)
+}
+
+/// Work for every core, memory and the disk's caches.
+struct Stress(Child);
+
+impl Stress {
+    fn start() -> Result<Self, Failure> {
+        let child = Command::new("stress-ng")
+            .args(["--cpu=0", "--vm=1", "--vm-bytes=64M", "--switch=1", "--quiet"])
+            .stdout(Stdio::null())
+            .spawn()
+            .map_err(|error| format!("cannot run stress-ng ({error}): install it"))?;
+        std::thread::sleep(std::time::Duration::from_secs(1));
+        Ok(Self(child))
+    }
+}
+
+impl Drop for Stress {
+    fn drop(&mut self) {
+        // Its parent passes the signal on to its workers.
+        // SAFETY: a process that this one has started and not yet waited for.
+        unsafe { libc::kill(self.0.id() as libc::pid_t, libc::SIGINT) };
+        let _ = self.0.wait();
+    }
+}

@@ -1,0 +1,111 @@
+//! A closed loop of controller and simulated finger that passes through what a finger meets, recorded.
+
+use nalgebra::{Matrix3, Vector3, Vector4};
+use std::error::Error;
+use sun2xp::control::{Activity, Controller, Feedback, Report, SetPoint, State};
+use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::plant::{Plant, Sensors};
+
+pub const RATE: f64 = 1000.0;
+
+/// For so many cycles a set point is held.
+pub const CYCLES_A_SET_POINT: usize = 500;
+
+/// Joints, rad, and Kx relative to [`STIFFNESS`].
+const SET_POINTS: [([f64; 3], f64); 6] = [
+    ([0.3, 0.6, 1.2], 1.0),
+    ([-0.4, 0.2, 0.8], 1.0),
+    // Beyond the soft limit of joint 2: the limit pushes back.
+    ([0.0, 0.5, -0.3], 1.0),
+    ([0.2, 0.9, 1.5], 0.3),
+    // Stiffer than the tendons: the stiffness is scaled, then the torque.
+    ([0.5, 0.3, 0.7], 40.0),
+    ([0.0, 0.5, 1.0], 1.0),
+];
+
+#[rustfmt::skip]
+const STIFFNESS: Matrix3<f64> = Matrix3::new(
+    3.0, 0.2, 0.1,
+    0.2, 4.0, 0.3,
+    0.1, 0.3, 2.0,
+);
+
+pub const CYCLES: usize = CYCLES_A_SET_POINT * SET_POINTS.len();
+
+/// While this set point is held, the fingertip is pushed with so much, N: more than the tendons can hold.
+const PUSHED: usize = 3;
+const PUSH: Vector3<f64> = Vector3::new(0.0, 8.0, 25.0);
+
+/// Whether the reply of a cycle is lost.
+pub fn lost(cycle: usize) -> bool {
+    cycle % 97 == 96
+}
+
+pub struct Recording {
+    finger: ConfiguredFinger,
+    pub controller: Controller,
+    pub set_points: Vec<SetPoint>,
+    activities: Vec<Activity>,
+    pub feedback: Vec<Feedback>,
+    pub torques: Vec<Vector4<f64>>,
+    reports: Vec<Report>,
+}
+
+impl Recording {
+    pub fn new(finger: ConfiguredFinger) -> Result<Self, Box<dyn Error>> {
+        let controller = Controller::new(&finger, RATE).map_err(|unusable| unusable.reason)?;
+        let mut plant = Plant::new(&finger, Vector3::zeros())?;
+        let mut sensors = Sensors::new(&finger);
+        plant.release_brake();
+        let set_points: Vec<SetPoint> = SET_POINTS
+            .iter()
+            .map(|&(joints, stiffness)| SetPoint::hard_finger(joints.into(), STIFFNESS * stiffness))
+            .collect();
+        let activities: Vec<Activity> = set_points.iter().copied().map(Activity::Follow).collect();
+        let (mut feedback, mut torques, mut reports) = (Vec::new(), Vec::new(), Vec::new());
+        let mut read = |plant: &Plant| {
+            let (motor_counts, gauge_counts) = sensors.read(plant);
+            Feedback { motor_counts, gauge_counts }
+        };
+        let mut state = None;
+        let mut acting = plant.tensions() * 0.0475;
+        for cycle in 0..CYCLES {
+            let now = read(&plant);
+            feedback.push(now);
+            let set_point = cycle / CYCLES_A_SET_POINT;
+            plant.set_external_force(if set_point == PUSHED { PUSH } else { Vector3::zeros() });
+            // The command of the last cycle acts during this one.
+            for _ in 0..10 {
+                plant.step((acting * 0.01).into());
+            }
+            let state = state.get_or_insert_with(|| controller.start(&now));
+            let (command, report) = controller.cycle(state, (!lost(cycle)).then_some(&now), &activities[set_point]);
+            acting = command.motor_torques;
+            torques.push(acting);
+            reports.push(report);
+        }
+        Ok(Self { finger, controller, set_points, activities, feedback, torques, reports })
+    }
+
+    /// The run once more; `cycle` is given what a cycle is given, and whether it has a reply.
+    pub fn repeat(&self, mut cycle: impl FnMut(&Controller, &mut State, Option<&Feedback>, &Activity)) {
+        let mut state = self.controller.start(&self.feedback[0]);
+        for (number, feedback) in self.feedback.iter().enumerate() {
+            let activity = &self.activities[number / CYCLES_A_SET_POINT];
+            cycle(&self.controller, &mut state, (!lost(number)).then_some(feedback), activity);
+        }
+    }
+
+    /// What the run has passed through: a comparison on a run where nothing happens would say nothing.
+    pub fn seen(&self) -> String {
+        let cycles = |met: fn(&Report) -> bool| self.reports.iter().filter(|report| met(report)).count();
+        let (low, high) = self.finger.joint_limits();
+        let beyond = self.reports.iter().filter(|report| report.joints.inf(&high).sup(&low) != report.joints).count();
+        format!(
+            "of {CYCLES} cycles {} were scaled in stiffness, {} in torque, {beyond} beyond a soft limit, {} without reply",
+            cycles(|report| report.stiffness_scale < 1.0),
+            cycles(|report| report.torque_scale < 1.0),
+            (0..CYCLES).filter(|&cycle| lost(cycle)).count()
+        )
+    }
+}

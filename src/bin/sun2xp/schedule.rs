@@ -1,0 +1,150 @@
+//! `sun2xp schedule`: whether every cycle of a configured hand ends in time, at which rate that ends, and what another sensor
+//! would cost.
+
+use crate::board::Failure;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::thread::sleep;
+use std::time::Duration;
+use sun2xp::hand::{self, Costs, Hand, Limit, Scheduled, Sensor, fastest_rate, off_line_schedule};
+use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::{Distribution, Stage};
+
+/// The highest rate that a hand can be configured for, Hz.
+const HIGHEST_RATE: u32 = 5000;
+
+/// Whether every cycle of the hand ends in time: response times from worst cases, line times and the allocation of fingers.
+///
+/// The worst cases of this machine are measured on the simulated hand, with the rate, threads, cores and priorities of the
+/// configuration, or read from --costs: a TOML file with `wake_up`, `write` (of one port), `read` (and decode one reply) and
+/// `compute` (one finger), all in us. Lines are as configured; a simulated port counts as a serial line of its baud. The analysis
+/// holds for any phases of the threads. Exit status 1: a deadline may be missed.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The configuration; without it the default one.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// Worst cases instead of a measurement.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["measure", "p999"])]
+    costs: Option<PathBuf>,
+    /// For so long the simulated hand is measured, s.
+    #[arg(long, value_name = "SECONDS", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    measure: u64,
+    /// Leave out one cycle in a thousand of each cost: on a virtual machine a pause of the whole machine is in every maximum.
+    #[arg(long)]
+    p999: bool,
+    /// Another sensor: bytes more in each reply.
+    #[arg(long, value_name = "N", default_value_t = 16)]
+    sensor_bytes: usize,
+    /// Another sensor: computation more for each finger, us.
+    #[arg(long, value_name = "US", default_value_t = 20.0, value_parser = not_negative)]
+    sensor_compute: f64,
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if f64::is_finite(number) && number >= 0.0 => Ok(number),
+        _ => Err("not a number of 0 or more".into()),
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let configuration = match &arguments.config {
+        Some(file) => hand::read(file)?,
+        None => Configuration::default(),
+    };
+    let costs = match &arguments.costs {
+        Some(file) => read(file)?,
+        None => measure(&configuration, arguments)?,
+    };
+    let none = Sensor::default();
+    let sensor = Sensor { bytes: arguments.sensor_bytes, compute: arguments.sensor_compute };
+    let rate = configuration.hand.rate;
+    let schedule = off_line_schedule(&configuration, rate, &costs, &none);
+    let more = off_line_schedule(&configuration, rate, &costs, &sensor);
+
+    let mut out = io::stdout().lock();
+    let Costs { wake_up, write, read, compute } = costs;
+    writeln!(out, "Worst cases, us: wake-up {wake_up:.1}, write {write:.1}, read {read:.1}, compute {compute:.1}\n")?;
+    table(&mut out, &schedule, &format!("{rate:.0} Hz"))?;
+    let title = format!("{rate:.0} Hz and {} bytes, {:.0} us more a finger", sensor.bytes, sensor.compute);
+    table(&mut out, &more, &title)?;
+    let [fastest, with_sensor] =
+        [&none, &sensor].map(|sensor| fastest_rate(&configuration, &costs, sensor, HIGHEST_RATE));
+    let limited = |rate: u32, sensor| limits(&off_line_schedule(&configuration, f64::from(rate + 1), &costs, sensor));
+    writeln!(out, "Every deadline is met up to {fastest} Hz: {}.", limited(fastest, &none))?;
+    writeln!(out, "With the sensor up to {with_sensor} Hz: {}.", limited(with_sensor, &sensor))?;
+    out.flush()?;
+    if schedule.iter().any(|thread| thread.limit.is_some()) {
+        return Err(format!("at {rate:.0} Hz a deadline may be missed: lower hand.rate, raise finger.baud or spread the fingers over cores").into());
+    }
+    Ok(())
+}
+
+fn read(file: &PathBuf) -> Result<Costs, Failure> {
+    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", file.display());
+    let text = std::fs::read_to_string(file).map_err(|error| named(&error))?;
+    let costs: Costs = toml_edit::de::from_str(&text).map_err(|error| named(&error))?;
+    if [costs.wake_up, costs.write, costs.read, costs.compute].iter().any(|cost| !(cost.is_finite() && *cost >= 0.0)) {
+        return Err(named(&"a cost is not a number of 0 or more").into());
+    }
+    Ok(costs)
+}
+
+fn measure(configuration: &Configuration, arguments: &Arguments) -> Result<Costs, Failure> {
+    let mut simulated = configuration.clone();
+    simulated.fingers.iter_mut().for_each(|finger| finger.port = "simulated".into());
+    let hand = Hand::open(simulated)?;
+    (1..=3).try_for_each(|finger| hand.reset_timing(finger))?;
+    sleep(Duration::from_secs(arguments.measure));
+    let worst = |stage| -> Result<f64, Failure> {
+        let part = |timing: Distribution| if arguments.p999 { timing.p999 } else { timing.maximum };
+        let timings = (1..=3).map(|finger| hand.timing(finger, stage).map(part));
+        Ok(timings.collect::<Result<Vec<f64>, _>>()?.into_iter().fold(0.0, f64::max))
+    };
+    Ok(Costs {
+        wake_up: worst(Stage::WakeUp)?,
+        write: worst(Stage::Write)?,
+        read: worst(Stage::Read)? + worst(Stage::Decode)?,
+        compute: worst(Stage::Compute)?,
+    })
+}
+
+fn table(out: &mut impl Write, schedule: &[Scheduled], title: &str) -> io::Result<()> {
+    writeln!(out, "{title}:\n")?;
+    writeln!(out, "| thread | fingers | core | priority | computes | line busy | replies by | done by | deadlines |")?;
+    writeln!(out, "|---|---|---|---|---|---|---|---|---|")?;
+    for thread in schedule {
+        let fingers = thread.fingers.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+        let core = thread.core.map_or("any".into(), |core| core.to_string());
+        let by = |time: Option<f64>| time.map_or("-".into(), |time| format!("{time:.0} us"));
+        writeln!(
+            out,
+            "| {} | {fingers} | {core} | {} | {:.1} % | {:.0} % | {} | {} | {} |",
+            thread.thread,
+            thread.priority,
+            100.0 * thread.load,
+            100.0 * thread.line,
+            by(thread.response.map(|response| response.0)),
+            by(thread.response.map(|response| response.1)),
+            thread.limit.map_or("met", missed)
+        )?;
+    }
+    writeln!(out)
+}
+
+/// What ends it, thread by thread.
+fn limits(schedule: &[Scheduled]) -> String {
+    let first = schedule
+        .iter()
+        .find_map(|thread| thread.limit.map(|limit| format!("then {}, thread {}", missed(limit), thread.thread)));
+    first.unwrap_or_else(|| "the highest rate there is".into())
+}
+
+fn missed(limit: Limit) -> &'static str {
+    match limit {
+        Limit::Line => "the line is too busy",
+        Limit::Replies => "replies may come too late",
+        Limit::Cycle => "a cycle may not be done in time",
+    }
+}

@@ -1,0 +1,218 @@
+//! Whether every cycle of a configured hand ends in time, found off-line, as section 6.2 of the report wants: from worst cases,
+//! the times on the lines, and which finger is on which thread, core and port.
+
+use crate::board::{USABLE_SHARE, exchange_microseconds};
+use crate::finger::REPLY_WINDOW;
+use crate::model::configuration::{Configuration, FINGERS};
+use crate::realtime::{PeriodicThread, response_times};
+use serde::Deserialize;
+
+/// Worst cases of one machine, us.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Costs {
+    /// From the scheduled beginning of a cycle to the thread's first instruction.
+    pub wake_up: f64,
+    /// Handing the commands of one port to the system.
+    pub write: f64,
+    /// Taking one reply from the system and decoding it.
+    pub read: f64,
+    /// The pure core of one finger, and its report.
+    pub compute: f64,
+}
+
+/// What another sensor would add to every finger.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sensor {
+    /// Bytes in each reply.
+    pub bytes: usize,
+    /// Computation in each cycle, us.
+    pub compute: f64,
+}
+
+/// One servo thread of the schedule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scheduled {
+    /// 1 to 3.
+    pub thread: u8,
+    /// The core it is bound to.
+    pub core: Option<usize>,
+    /// SCHED_FIFO priority.
+    pub priority: u8,
+    /// 1 to 3, in the order in which they are served.
+    pub fingers: Vec<usize>,
+    /// The part of a period that the thread computes.
+    pub load: f64,
+    /// The part of a period that its busiest line is busy.
+    pub line: f64,
+    /// When the replies are there and when the cycle is done, us after its scheduled beginning at the latest; none where there is
+    /// no bound within the period.
+    pub response: Option<(f64, f64)>,
+    /// Which deadline may be missed first.
+    pub limit: Option<Limit>,
+}
+
+/// A deadline that may be missed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// The line is busy for more of a period than it may be.
+    Line,
+    /// Replies come after the part of a period in which they are awaited.
+    Replies,
+    /// The cycle may not be done when the next one begins.
+    Cycle,
+}
+
+/// The schedule of a hand at a rate, Hz, with one entry a servo thread. Ports that are `simulated` count as serial lines of the
+/// configured baud.
+pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor: &Sensor) -> Vec<Scheduled> {
+    let numbers = (1..=FINGERS as u8).filter(|&number| (0..FINGERS).any(|index| hand.thread(index) == number));
+    let threads: Vec<(u8, Vec<usize>)> =
+        numbers.map(|number| (number, (0..FINGERS).filter(|&index| hand.thread(index) == number).collect())).collect();
+    let period = 1e6 / rate;
+    let tasks: Vec<PeriodicThread> =
+        threads.iter().map(|(_, fingers)| task(hand, fingers, period, costs, sensor)).collect();
+    let responses = response_times(&tasks);
+    let timed = threads.into_iter().zip(tasks).zip(responses);
+    timed
+        .map(|(((thread, fingers), task), response)| {
+            let line = longest_exchange(hand, &fingers, sensor) / period;
+            let window = task.wake_up as f64 * 1e-3 + REPLY_WINDOW * period;
+            let response = response.map(|response| (response.waited as f64 * 1e-3, response.done as f64 * 1e-3));
+            let limit = match response {
+                _ if line > USABLE_SHARE => Some(Limit::Line),
+                None => Some(Limit::Cycle),
+                Some((replies, _)) if replies > window => Some(Limit::Replies),
+                Some(_) => None,
+            };
+            let load = (task.before + task.after) as f64 * 1e-3 / period;
+            let fingers = fingers.iter().map(|index| index + 1).collect();
+            Scheduled { thread, core: task.core, priority: task.priority, fingers, load, line, response, limit }
+        })
+        .collect()
+}
+
+/// The highest whole rate, Hz, up to `most`, at which every deadline is met; 0 where there is none.
+pub fn fastest_rate(hand: &Configuration, costs: &Costs, sensor: &Sensor, most: u32) -> u32 {
+    let met = |rate: u32| {
+        off_line_schedule(hand, rate.into(), costs, sensor).iter().all(|scheduled| scheduled.limit.is_none())
+    };
+    // A longer period moves every deadline away and nothing nearer.
+    let (mut met_at, mut missed_at) = (0, most + 1);
+    while missed_at - met_at > 1 {
+        let rate = met_at + (missed_at - met_at) / 2;
+        if met(rate) { met_at = rate } else { missed_at = rate }
+    }
+    met_at
+}
+
+fn task(hand: &Configuration, fingers: &[usize], period: f64, costs: &Costs, sensor: &Sensor) -> PeriodicThread {
+    // Fingers on one thread have one core and one priority: the configuration was checked.
+    let first = &hand.fingers[fingers[0]];
+    let ports = lines(hand, fingers).count() as f64;
+    // Up for what is asked, down for what there is.
+    let needed = |microseconds: f64| (microseconds * 1e3).ceil() as u64;
+    PeriodicThread {
+        core: first.core,
+        priority: first.priority,
+        period: (period * 1e3) as u64,
+        wake_up: needed(costs.wake_up),
+        before: needed(ports * costs.write),
+        waiting: needed(longest_exchange(hand, fingers, sensor)),
+        after: needed(fingers.len() as f64 * (costs.read + costs.compute + sensor.compute)),
+    }
+}
+
+/// The ports of a thread, as a finger on each and how many there are on it. Every simulated finger has a port of its own.
+fn lines<'a>(hand: &'a Configuration, fingers: &'a [usize]) -> impl Iterator<Item = (usize, usize)> + 'a {
+    let shares =
+        |a: usize, b: usize| a == b || (!hand.fingers[a].simulated() && hand.fingers[a].port == hand.fingers[b].port);
+    fingers
+        .iter()
+        .filter(move |&&finger| !fingers.iter().any(|&earlier| earlier < finger && shares(earlier, finger)))
+        .map(move |&finger| (finger, fingers.iter().filter(|&&other| shares(finger, other)).count()))
+}
+
+/// us.
+fn longest_exchange(hand: &Configuration, fingers: &[usize], sensor: &Sensor) -> f64 {
+    lines(hand, fingers)
+        .map(|(finger, sharing)| exchange_microseconds(hand.fingers[finger].baud, sharing, sensor.bytes))
+        .fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COSTS: Costs = Costs { wake_up: 100.0, write: 10.0, read: 5.0, compute: 15.0 };
+
+    /// Each finger on its own core: 100 + 10 until the commands are out, 550 on the line (17 bytes, 100 us, 28 bytes), 20 after.
+    #[test]
+    fn three_fingers_on_three_cores() {
+        let mut hand = Configuration::default();
+        for (core, finger) in hand.fingers.iter_mut().enumerate() {
+            finger.core = Some(core);
+        }
+        let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
+        assert_eq!(schedule.len(), 3);
+        for (index, thread) in schedule.iter().enumerate() {
+            assert_eq!(
+                (thread.thread as usize, thread.core, &thread.fingers[..]),
+                (index + 1, Some(index), &[index + 1][..])
+            );
+            assert_eq!((thread.response, thread.limit), (Some((660.0, 680.0)), None));
+            assert!((thread.load - 0.03).abs() < 1e-9 && (thread.line - 0.55).abs() < 1e-9);
+        }
+        // The line is what ends it: 550 us are 80 % of a period at 1454.5 Hz.
+        assert_eq!(fastest_rate(&hand, &COSTS, &Sensor::default(), 5000), 1454);
+        assert_eq!(off_line_schedule(&hand, 1455.0, &COSTS, &Sensor::default())[0].limit, Some(Limit::Line));
+        // Ten bytes more are 100 us more; at 2 megabaud 225 + 100 + 50 us, 80 % of a period at 2133 Hz.
+        let sensor = Sensor { bytes: 10, compute: 50.0 };
+        assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &sensor)[0].response, Some((760.0, 830.0)));
+        hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
+        // 100 + 10 + 375 + 70 = 555: the cycle would be done at up to 1801 Hz.
+        assert_eq!(fastest_rate(&hand, &COSTS, &sensor, 5000), 1801);
+        assert_eq!(off_line_schedule(&hand, 1802.0, &COSTS, &sensor)[0].limit, Some(Limit::Cycle));
+    }
+
+    /// On one core each may have to wait for two cycles of both others: 680 + 4 * 30.
+    #[test]
+    fn three_fingers_on_one_core() {
+        let mut hand = Configuration::default();
+        hand.fingers.iter_mut().for_each(|finger| finger.core = Some(1));
+        let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
+        assert!(schedule.iter().all(|thread| thread.response == Some((780.0, 800.0))), "{schedule:?}");
+        // Not bound to cores they may meet on one.
+        hand.fingers.iter_mut().for_each(|finger| finger.core = None);
+        assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[2].response, Some((780.0, 800.0)));
+    }
+
+    /// One thread: the lines are busy side by side, the fingers computed one after the other.
+    #[test]
+    fn three_fingers_on_one_thread() {
+        let mut hand = Configuration::default();
+        hand.fingers.iter_mut().for_each(|finger| finger.thread = 1);
+        let [thread] = &off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[..] else { panic!("one thread") };
+        assert_eq!(thread.response, Some((680.0, 740.0)));
+        // On one port the replies are behind each other: 100 + 10 + 170 + 100 + 3 * 280 + 60 is more than a period.
+        hand.fingers.iter_mut().for_each(|finger| finger.port = "/dev/ttyUSB0".into());
+        assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[0].limit, Some(Limit::Line));
+        hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
+        let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
+        assert_eq!(schedule[0].response, Some((715.0, 775.0)));
+        assert_eq!((&schedule[0].fingers[..], schedule[0].limit), (&[1, 2, 3][..], None));
+    }
+
+    /// A slow wake-up is not the board's fault: replies are awaited from the awakening on.
+    #[test]
+    fn replies_are_awaited_from_the_awakening_on() {
+        let hand = Configuration::default();
+        let costs = Costs { wake_up: 300.0, write: 10.0, read: 1.0, compute: 1.0 };
+        assert_eq!(off_line_schedule(&hand, 1000.0, &costs, &Sensor::default())[0].limit, None);
+        // 310 + 550 us of 850, each finger on its own core.
+        let mut apart = hand.clone();
+        apart.fingers.iter_mut().enumerate().for_each(|(core, finger)| finger.core = Some(core));
+        let costs = Costs { wake_up: 9.0, write: 310.0, ..costs };
+        assert_eq!(off_line_schedule(&apart, 1000.0, &costs, &Sensor::default())[0].limit, Some(Limit::Replies));
+    }
+}

@@ -1,0 +1,154 @@
+//! Response times of periodic threads, found off-line: what section 6.2 of the report asks for.
+
+/// One servo thread as the analysis sees it: in every period it computes, waits for the line without the core, and computes
+/// again. Times in ns, all of them worst cases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PeriodicThread {
+    /// The core it is bound to; none: any, so that it may meet every other thread on one core.
+    pub core: Option<usize>,
+    /// SCHED_FIFO priority: the higher number runs.
+    pub priority: u8,
+    /// From one beginning to the next.
+    pub period: u64,
+    /// From the scheduled beginning to the first instruction.
+    pub wake_up: u64,
+    /// What it computes before it waits.
+    pub before: u64,
+    /// How long it waits.
+    pub waiting: u64,
+    /// What it computes after that.
+    pub after: u64,
+}
+
+/// Bounds on when a thread has got how far, ns after the scheduled beginning of its period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Response {
+    /// The wait is over.
+    pub waited: u64,
+    /// The cycle is done: never more than the period.
+    pub done: u64,
+}
+
+impl PeriodicThread {
+    fn computing(&self) -> u64 {
+        self.before + self.after
+    }
+
+    fn alone(&self) -> u64 {
+        self.wake_up + self.before + self.waiting + self.after
+    }
+
+    /// Whether `other` may keep this one from its core. Threads of one priority run in the order in which they became ready:
+    /// each may have to wait for the other, but never longer than if the other had the higher priority.
+    fn waits_for(&self, other: &Self) -> bool {
+        let meet = match (self.core, other.core) {
+            (Some(own), Some(others)) => own == others,
+            _ => true,
+        };
+        meet && other.priority >= self.priority
+    }
+}
+
+/// A bound for each thread, whatever their phases; none where a thread may still be busy when its next period begins, or waits
+/// for one that may.
+///
+/// Within any window w thread j computes no more than ceil((w + R_j - C_j) / T_j) times its C_j, wherever it waits in between:
+/// a cycle that reaches into the window began R_j before it at the earliest. So the least solution of
+/// R_i = wake-up + computing + waiting + sum over j of ceil((R_i + R_j - C_j) / T_j) C_j, for all i at once, is a bound.
+pub fn response_times(threads: &[PeriodicThread]) -> Vec<Option<Response>> {
+    let mut done: Vec<Option<u64>> = threads.iter().map(|thread| within(thread, thread.alone())).collect();
+    loop {
+        let next: Vec<Option<u64>> =
+            (0..threads.len()).map(|own| finish(threads, &done, own, threads[own].alone(), done[own]?)).collect();
+        if next == done {
+            break;
+        }
+        done = next;
+    }
+    let respond = |own: usize| {
+        let thread = &threads[own];
+        let alone = thread.alone() - thread.after;
+        let mut waited = alone;
+        loop {
+            let next = finish(threads, &done, own, alone, waited)?;
+            if next == waited {
+                return Some(Response { waited, done: done[own]? });
+            }
+            waited = next;
+        }
+    };
+    (0..threads.len()).map(respond).collect()
+}
+
+fn within(thread: &PeriodicThread, time: u64) -> Option<u64> {
+    (time <= thread.period).then_some(time)
+}
+
+/// `alone` and what the others compute within `window`.
+fn finish(threads: &[PeriodicThread], done: &[Option<u64>], own: usize, alone: u64, window: u64) -> Option<u64> {
+    let thread = &threads[own];
+    let mut time = alone;
+    for (other, done) in threads.iter().zip(done).enumerate().filter(|(index, _)| *index != own).map(|(_, pair)| pair) {
+        if thread.waits_for(other) && other.computing() > 0 {
+            let cycles = (window + (*done)? - other.computing()).div_ceil(other.period);
+            time += cycles * other.computing();
+        }
+    }
+    within(thread, time)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn thread(core: usize, priority: u8, period: u64, parts: [u64; 4]) -> PeriodicThread {
+        let [wake_up, before, waiting, after] = parts;
+        PeriodicThread { core: Some(core), priority, period, wake_up, before, waiting, after }
+    }
+
+    fn done(threads: &[PeriodicThread]) -> Vec<Option<u64>> {
+        response_times(threads).iter().map(|response| response.map(|response| response.done)).collect()
+    }
+
+    /// 10 + 20 + 300 + 40, and 40 less until the wait is over.
+    #[test]
+    fn alone_it_takes_what_it_takes() {
+        let [Some(response)] = response_times(&[thread(0, 80, 1000, [10, 20, 300, 40])])[..] else { panic!("met") };
+        assert_eq!(response, Response { waited: 330, done: 370 });
+    }
+
+    /// The textbook's three tasks without waiting: C 3, 3, 5, T 7, 12, 20, R 3, 6, 20.
+    #[test]
+    fn without_waiting_it_is_the_classical_analysis() {
+        let tasks =
+            [(3, 7, 3), (2, 12, 3), (1, 20, 5)].map(|(priority, period, c)| thread(0, priority, period, [0, c, 0, 0]));
+        // R_j - C_j is 0 for the first and 3 for the second: R_3 = 5 + 3 ceil(R/7) + 3 ceil((R + 3)/12) = 5 + 9 + 6 = 20.
+        assert_eq!(done(&tasks), [Some(3), Some(6), Some(20)]);
+    }
+
+    /// By hand: R_2 = 100 + 30 ceil((R_2 + 530 - 30)/1000): one cycle of the other in 130 + 500 < 1000.
+    #[test]
+    fn a_thread_that_waits_may_come_twice() {
+        let other = thread(0, 90, 1000, [0, 10, 500, 20]);
+        assert_eq!(done(&[other, thread(0, 80, 1000, [0, 100, 0, 0])]), [Some(530), Some(130)]);
+        // 600 + 30 * 2, as 660 + 500 > 1000.
+        assert_eq!(done(&[other, thread(0, 80, 1000, [0, 600, 0, 0])]), [Some(530), Some(660)]);
+        // Another core, and a lower priority, do not matter.
+        assert_eq!(done(&[other, thread(1, 80, 1000, [0, 600, 0, 0])]), [Some(530), Some(600)]);
+        assert_eq!(done(&[thread(0, 70, 1000, [0, 9, 0, 0]), thread(0, 80, 1000, [0, 600, 0, 0])])[1], Some(600));
+        let anywhere = PeriodicThread { core: None, ..other };
+        assert_eq!(done(&[anywhere, thread(1, 80, 1000, [0, 600, 0, 0])]), [Some(530), Some(660)]);
+    }
+
+    #[test]
+    fn what_may_be_late_has_no_bound_and_neither_has_who_waits_for_it() {
+        let late = thread(0, 90, 1000, [0, 600, 500, 0]);
+        assert_eq!(
+            done(&[late, thread(0, 80, 1000, [0, 10, 0, 0]), thread(1, 80, 1000, [0, 10, 0, 0])]),
+            [None, None, Some(10)]
+        );
+        // Two of one priority that fill the core.
+        let half = thread(0, 80, 1000, [0, 501, 0, 0]);
+        assert_eq!(done(&[half, half]), [None, None]);
+    }
+}

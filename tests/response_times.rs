@@ -1,0 +1,145 @@
+//! The off-line analysis against a simulation of the scheduler that knows nothing of it: no simulated cycle may take longer than
+//! the bound, whatever the phases, and however much less than its worst case each part takes.
+
+use proptest::prelude::*;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+use sun2xp::realtime::{PeriodicThread, response_times};
+
+/// One thread in the simulation: what is left of the cycle it is in.
+struct Running<'a> {
+    thread: &'a PeriodicThread,
+    /// When the present cycle began, or the next one will.
+    began: u64,
+    doing: Doing,
+    /// When it became ready to compute: who was first goes first among equals.
+    ready_since: u64,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Doing {
+    /// Until it wakes up.
+    Sleeping(u64),
+    /// Left to compute, before the wait.
+    Before(u64),
+    Waiting(u64),
+    /// Left to compute, after the wait.
+    After(u64),
+}
+
+impl Running<'_> {
+    fn ready(&self) -> bool {
+        matches!(self.doing, Doing::Before(_) | Doing::After(_))
+    }
+}
+
+/// The longest a cycle of each thread took, from its scheduled beginning, in so many ticks. One tick is 1 ns; every core runs the
+/// ready thread of the highest priority.
+fn simulate(threads: &[PeriodicThread], cores: usize, ticks: u64, seed: u64) -> Vec<u64> {
+    let mut random = Pcg64::seed_from_u64(seed);
+    // Mostly the worst case, sometimes anything below.
+    let mut up_to =
+        move |most: u64| if random.next_u32() % 4 > 0 { most } else { u64::from(random.next_u32()) % (most + 1) };
+    let mut longest = vec![0; threads.len()];
+    let mut running: Vec<Running> = threads
+        .iter()
+        .map(|thread| {
+            let began = up_to(thread.period);
+            Running { thread, began, doing: Doing::Sleeping(began + up_to(thread.wake_up)), ready_since: 0 }
+        })
+        .collect();
+    for now in 0..ticks {
+        // What takes no time at all, possibly several things in a row.
+        for (index, it) in running.iter_mut().enumerate() {
+            loop {
+                it.doing = match it.doing {
+                    Doing::Sleeping(until) if until <= now => {
+                        it.ready_since = now;
+                        Doing::Before(up_to(it.thread.before))
+                    }
+                    Doing::Before(0) => Doing::Waiting(now + up_to(it.thread.waiting)),
+                    Doing::Waiting(until) if until <= now => {
+                        it.ready_since = now;
+                        Doing::After(up_to(it.thread.after))
+                    }
+                    Doing::After(0) => {
+                        longest[index] = longest[index].max(now - it.began);
+                        it.began += it.thread.period;
+                        Doing::Sleeping(it.began.max(now) + up_to(it.thread.wake_up))
+                    }
+                    _ => break,
+                }
+            }
+        }
+        let mut taken = vec![false; cores];
+        let mut order: Vec<usize> = (0..running.len()).filter(|&index| running[index].ready()).collect();
+        order.sort_by_key(|&index| {
+            (std::cmp::Reverse(running[index].thread.priority), running[index].ready_since, index)
+        });
+        for index in order {
+            let it = &mut running[index];
+            let core = it.thread.core.or_else(|| taken.iter().position(|taken| !taken));
+            if let Some(core) = core.filter(|&core| !taken[core]) {
+                taken[core] = true;
+                if let Doing::Before(left) | Doing::After(left) = &mut it.doing {
+                    *left -= 1;
+                }
+            }
+        }
+    }
+    longest
+}
+
+fn thread() -> impl Strategy<Value = PeriodicThread> {
+    let parts = (0..5u64, 0..8u64, 0..30u64, 0..12u64);
+    // Of one period mostly, as servo threads are.
+    let period = prop_oneof![3 => Just(60u64), 1 => 25..90u64];
+    (prop_oneof![4 => (0..2usize).prop_map(Some), 1 => Just(None)], 1..4u8, period, parts).prop_map(
+        |(core, priority, period, (wake_up, before, waiting, after))| PeriodicThread {
+            core,
+            priority,
+            period,
+            wake_up,
+            before,
+            waiting,
+            after,
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn no_cycle_takes_longer_than_its_bound(threads in prop::collection::vec(thread(), 1..5), seed in any::<u64>()) {
+        let bounds = response_times(&threads);
+        let took = simulate(&threads, 2, 6000, seed);
+        for (index, bound) in bounds.iter().enumerate() {
+            if let Some(bound) = bound {
+                prop_assert!(took[index] <= bound.done, "thread {index} took {} of {bound:?}: {threads:#?}", took[index]);
+            }
+        }
+    }
+}
+
+/// Without wake-up and waiting, and with all phases alike, the bound is what happens: an analysis that always says "late" fails.
+#[test]
+fn the_bound_is_reached() {
+    let threads = [(3, 7, 3), (2, 12, 3), (1, 20, 5)].map(|(priority, period, after)| PeriodicThread {
+        core: Some(0),
+        priority,
+        period,
+        wake_up: 0,
+        before: 0,
+        waiting: 0,
+        after,
+    });
+    let bounds: Vec<u64> = response_times(&threads).iter().map(|bound| bound.expect("met").done).collect();
+    let mut took = vec![0; 3];
+    for seed in 0..200 {
+        for (worst, took) in took.iter_mut().zip(simulate(&threads, 1, 2000, seed)) {
+            *worst = took.max(*worst);
+        }
+    }
+    assert_eq!(took, bounds);
+}

@@ -1,0 +1,50 @@
+//! `sun2xp schedule` from a file of costs to its verdict.
+
+use std::process::{Command, Output};
+
+fn schedule(configuration: &str, costs: &str) -> Output {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("written");
+        path
+    };
+    Command::new(env!("CARGO_BIN_EXE_sun2xp"))
+        .args(["schedule", "--sensor-bytes", "10", "--sensor-compute", "50", "--config"])
+        .arg(file("sun2xp.toml", configuration))
+        .arg("--costs")
+        .arg(file("costs.toml", costs))
+        .output()
+        .expect("the tool runs")
+}
+
+const COSTS: &str = "wake_up = 100\nwrite = 10\nread = 5\ncompute = 15\n";
+
+#[test]
+fn a_hand_that_meets_its_deadlines() {
+    let output = schedule("[finger.1]\ncore = 0\n[finger.2]\ncore = 1\n[finger.3]\ncore = 2\n", COSTS);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{output:?}");
+    for part in [
+        "| 3 | 3 | 2 | 80 | 3.0 % | 55 % | 660 us | 680 us | met |",
+        "| 3 | 3 | 2 | 80 | 8.0 % | 65 % | 760 us | 830 us | met |",
+        "met up to 1454 Hz: then the line is too busy, thread 1",
+        // 100 + 10 + 650 + 70 us.
+        "With the sensor up to 1204 Hz: then a cycle may not be done in time, thread 1",
+    ] {
+        assert!(text.contains(part), "{part:?} is not in:\n{text}");
+    }
+}
+
+#[test]
+fn a_hand_that_may_miss_one_and_costs_that_are_none() {
+    let output = schedule("[finger]\ncore = 0\n", &COSTS.replace("15", "150"));
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("a cycle may not be done in time"), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("lower hand.rate"), "{output:?}");
+    for (wrong, part) in [("compute = -1", "costs.toml"), ("compute = 1\nsleep = 2", "sleep"), ("", "compute")] {
+        let output = schedule("", &COSTS.replace("compute = 15", wrong));
+        assert_eq!(output.status.code(), Some(1));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(part), "{output:?}");
+    }
+}
