@@ -218,6 +218,10 @@ faults! {
         "a motor is near what it may bear for ever, and its torque is being limited",
         "the finger presses or holds more than it can for ever",
         "Ask for less, or let it rest";
+    46 Companion "COMPANION" Fault Finger Nothing "stopped with another",
+        "another finger of the hand has faulted, and hand.on_fault is \"hand\"",
+        "what the fault of that finger says",
+        "Mend that, then RecoverHand for every finger";
 }
 
 #[cfg(test)]
