@@ -15,7 +15,10 @@ use rtrb::Producer;
 const TENSION_SETTLED: f64 = 0.02;
 
 /// A simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to stop the hand.
-const SIMULATION_PATIENCE_MS: f64 = 1000.0;
+const SIMULATION_PATIENCE_MS: f64 = 5000.0;
+
+/// So long, ms, a simulated board has to answer before its command is sent again: either may have been thrown away.
+const REPEAT_MS: f64 = 200.0;
 
 /// So long, ms, the last command is repeated where replies stay away. Then the motors are let go until one comes: a torque that
 /// nobody watches winds a tendon up, or off its motor, within some ms, and the watchdog does not see it, as commands go on.
@@ -60,6 +63,9 @@ pub struct FingerServo {
     sequence: u8,
     toggle: bool,
     answered: bool,
+    /// A simulated finger and its controller go on together: the next command leaves when the last one was answered, however late,
+    /// and a cycle without a reply is none for the controller. The board stands still meanwhile.
+    in_step: bool,
     lost_in_a_row: u32,
     /// The board's clock at the last measurement, us modulo 65 536; none before the first.
     sampled_at: Option<u16>,
@@ -81,6 +87,7 @@ pub struct FingerServo {
 struct Limits {
     period_ms: f64,
     lost: u32,
+    repeat: u32,
     blind: u32,
     tension: u32,
     settled: u32,
@@ -172,14 +179,16 @@ impl FingerServo {
             board: *identity,
             sequence: 0,
             toggle: false,
-            answered: false,
+            answered: true,
+            in_step: finger.simulated(),
             lost_in_a_row: 0,
             sampled_at: None,
             sample_age: 0,
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
                 lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
-                blind: cycles(BLIND_MS).max(LEAST_BLIND),
+                repeat: cycles(REPEAT_MS),
+                blind: if finger.simulated() { u32::MAX } else { cycles(BLIND_MS).max(LEAST_BLIND) },
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
@@ -219,14 +228,18 @@ impl FingerServo {
         }
     }
 
-    /// Begins a cycle: the command that the last one found, if the finger is under control.
+    /// Begins a cycle: the command that the last one found, if the finger is under control and the command due.
     pub fn begin(&mut self) -> Option<OutgoingCommand> {
         if !self.under_control() {
             return None;
         }
-        self.sequence = self.sequence.wrapping_add(1);
-        self.toggle = !self.toggle;
-        self.answered = false;
+        if self.answered || !self.in_step {
+            self.sequence = self.sequence.wrapping_add(1);
+            self.toggle = !self.toggle;
+            self.answered = false;
+        } else if !self.lost_in_a_row.is_multiple_of(self.limits.repeat) {
+            return None;
+        }
         let torques = self.command.motor_torques.map(|torque| self.board.torque_count(torque)).into();
         let command = BoardCommand { toggle: self.toggle, enable: true, torques };
         Some(OutgoingCommand { address: self.address, sequence: self.sequence, command })
@@ -295,7 +308,8 @@ impl FingerServo {
             self.count_replies();
         }
         let recorded = self.recording || self.under_control();
-        let control = self.under_control().then(|| self.control(skipped));
+        let controls = self.under_control() && (self.answered || !self.in_step);
+        let control = controls.then(|| self.control(if self.in_step { 0 } else { skipped }));
         if recorded {
             self.record = Some(CycleRecord {
                 cycle: self.report.cycles,

@@ -48,7 +48,7 @@ impl Board {
     pub fn start(fingers: &[&str]) -> Self {
         let mut program = Program::new(env!("CARGO_BIN_EXE_sun2xp"));
         program
-            .args(["board", "--patient", "--priority", "20"])
+            .args(["board", "--patient", "500", "--priority", "20"])
             .args(fingers.iter().flat_map(|finger| ["--finger", finger]));
         let mut process = program.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("a board");
         let orders = process.stdin.take().expect("its input");
