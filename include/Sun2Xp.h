@@ -181,10 +181,10 @@
    What goes wrong with a finger has a number that never changes (FAULT_..., below), a
    text, a likely cause and a remedy: FaultText. A fault stops the finger: its motors go
    to the configured end state, its calls are refused with EIO, and HandError says why,
-   until CloseHand and OpenHand. A warning is told and the finger goes on: it stays for
-   a second after it was last seen. GetFault tells both. Some faults make OpenHand
-   refuse; their numbers stand in the text of HandError. docs/faults.md lists all, with
-   how and how fast each is found. */
+   until RecoverHand, or CloseHand and OpenHand. A warning is told and the finger goes
+   on: it stays for a second after it was last seen. GetFault tells both. Some faults
+   make OpenHand refuse; their numbers stand in the text of HandError. docs/faults.md
+   lists all, with how and how fast each is found. */
 
 #ifndef SUN2XP_H
 #define SUN2XP_H
@@ -248,6 +248,7 @@
 #define FAULT_TORQUE_NOT_ADMITTED    43 /* torque not admitted */
 #define FAULT_CALIBRATION_FAILED     44 /* calibration failed */
 #define FAULT_WARM_MOTOR             45 /* warm motor */
+#define FAULT_COMPANION              46 /* stopped with another */
 
 #ifdef __cplusplus
 extern "C" {
@@ -261,8 +262,8 @@ extern "C" {
 
 /*
  FingerStatus.State: the finger has stopped by itself, its motors are in the
- configured end state, and its calls are refused with EIO and the reason. CloseHand
- and OpenHand start again.
+ configured end state, and its calls are refused with EIO and the reason. RecoverHand,
+ or CloseHand and OpenHand, start again.
  */
 #define FINGER_FAULTED 2
 
@@ -461,9 +462,17 @@ struct FingerTiming {
      */
     unsigned long LateReplies;
     /*
-     Damaged or foreign frames on the finger's port.
+     Pieces of bytes on the finger's port that were no frame: damaged, cut short, noise.
      */
     unsigned long CorruptReplies;
+    /*
+     Replies that came once more.
+     */
+    unsigned long DuplicateReplies;
+    /*
+     Whole frames on the finger's port that nobody waited for.
+     */
+    unsigned long ForeignFrames;
 };
 
 /*
@@ -1080,6 +1089,58 @@ int GetFault(int i, struct Fault *Fault);
  Threads: any.
  */
 const char *FaultText(int Number);
+
+/*
+ StopHand - emergency stop
+
+     int StopHand(void);
+
+ Every finger faults (FAULT_EMERGENCY_STOP_CALL) at the beginning of its next cycle: its
+ board is told to go to the configured end state, and its calls are refused with EIO.
+ It stays so until RecoverHand, or CloseHand and OpenHand. Without a hand it does
+ nothing, and a hand that is opened later knows nothing of it. It is no safety function:
+ it needs this process, this machine and the cable.
+
+ Returns 0.
+
+ Threads: any, and signal handlers: it is async-signal-safe, sets no errno and waits for
+ nothing. In a forked child it does nothing.
+
+     signal(SIGINT, OnInterrupt);     with     void OnInterrupt(int s) { StopHand(); }
+ */
+int StopHand(void);
+
+/*
+ RecoverHand - make a faulted finger a spring again
+
+     int RecoverHand(int i);
+
+   i        finger, 1 to 3
+
+ Asks the finger's board who it is and configures it anew; opens the port anew where it
+ has failed and finger.reconnect is true. Then the tendons are brought under tension,
+ and the finger holds the pose that it is found in, at the configured initial stiffness.
+ Fingers that share the port recover with it. A finger that is not faulted goes on as it
+ is. What made the finger fault must be mended before: GetFault, FaultText.
+
+ Waits until the finger holds its pose or faults again: up to some seconds.
+
+ Returns 0, or -1 with
+   EIO      the finger faults again, or its board is another one than at OpenHand or has
+            lost its zero; HandError says which
+   EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
+   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and
+            finger.reconnect is false
+   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: it is not there yet, or
+            the board does not answer. Call again
+   EINVAL   no such finger
+   EPERM    forked child
+
+ Threads: any.
+
+     while (RecoverHand(1) != 0) { fprintf(stderr, "%s\n", HandError()); sleep(1); }
+ */
+int RecoverHand(int i);
 
 #ifdef __cplusplus
 }

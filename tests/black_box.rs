@@ -107,7 +107,10 @@ fn an_eventful_run_that_ends_in_a_fault_is_written_and_replayed() {
         let adjusted = controls(&recording).filter(|control| control.previous != control.controller).count();
         assert_eq!(adjusted, 3);
         assert!(controls(&recording).any(|control| control.input.anew_from.is_some()), "never begun anew");
-        assert!(controls(&recording).any(|control| control.input.let_go), "never let go");
+        assert!(
+            controls(&recording).any(|control| control.input.fading.is_some_and(|fading| fading.left == 0.0)),
+            "never at rest"
+        );
 
         let (status, told) = replayed(file);
         assert_eq!(status, Some(0), "{told}");

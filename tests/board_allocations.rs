@@ -43,7 +43,7 @@ static ALLOCATOR: Counting = Counting;
 fn a_cycle_allocates_nothing_whether_answered_or_not() {
     let board = SimulatedBoard::new(&Configuration::default(), &[0]).unwrap();
     let board = SimulatedPort::start(board, Pace::RealTime, Priority::default()).unwrap();
-    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    let mut link = Link::open(&board.path(), 1_000_000).unwrap();
     let terms = Terms::new(&ConfiguredHand { watchdog_ms: 500, ..Default::default() }, &ConfiguredFinger::default());
     link.shake_hands(1, &terms, now() + 2000 * MS).unwrap();
 

@@ -29,7 +29,7 @@ fn pull() -> Command {
 #[test]
 fn cycles_over_a_pseudo_terminal() {
     let board = board();
-    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    let mut link = Link::open(&board.path(), 1_000_000).unwrap();
     for address in 1..=3 {
         link.shake_hands(address, &terms(), realtime::now() + 2000 * MS).unwrap();
     }
@@ -53,7 +53,7 @@ fn cycles_over_a_pseudo_terminal() {
 #[test]
 fn a_deadline_is_kept_when_nothing_comes() {
     let board = board();
-    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    let mut link = Link::open(&board.path(), 1_000_000).unwrap();
     let deadline = realtime::now() + 20 * MS;
     assert_eq!(link.receive(deadline).unwrap(), None);
     assert!(realtime::now() >= deadline);
@@ -62,12 +62,12 @@ fn a_deadline_is_kept_when_nothing_comes() {
 #[test]
 fn a_port_has_one_user_at_a_time_also_after_one_that_left_no_word() {
     let board = board();
-    let first = Link::open(board.path(), 1_000_000).unwrap();
-    let busy = Link::open(board.path(), 1_000_000).unwrap_err();
+    let first = Link::open(&board.path(), 1_000_000).unwrap();
+    let busy = Link::open(&board.path(), 1_000_000).unwrap_err();
     assert_eq!(busy.errno(), libc::EBUSY);
     assert!(busy.to_string().contains(&*board.path().to_string_lossy()), "{busy}");
     drop(first);
-    let mut second = Link::open(board.path(), 1_000_000).unwrap();
+    let mut second = Link::open(&board.path(), 1_000_000).unwrap();
     second.shake_hands(1, &terms(), realtime::now() + 2000 * MS).unwrap();
 }
 
@@ -99,9 +99,9 @@ fn exclusive(path: &Path) -> bool {
 #[test]
 fn exclusive_use_ends_with_its_user() {
     let board = board();
-    let link = Link::open(board.path(), 1_000_000).unwrap();
+    let link = Link::open(&board.path(), 1_000_000).unwrap();
     drop(link);
-    assert!(!exclusive(board.path()));
+    assert!(!exclusive(&board.path()));
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn exclusive_use_does_not_outlive_a_user_that_was_killed() {
     assert_eq!(unsafe { libc::ioctl(port.as_raw_fd(), libc::TIOCEXCL) }, 0);
     drop(port);
     let waiting = Instant::now();
-    while exclusive(board.path()) {
+    while exclusive(&board.path()) {
         assert!(waiting.elapsed() < Duration::from_secs(10), "still marked");
         std::thread::yield_now();
     }
@@ -121,13 +121,13 @@ fn exclusive_use_does_not_outlive_a_user_that_was_killed() {
 #[test]
 fn answers_that_the_last_host_did_not_fetch_do_not_reach_the_next() {
     let board = board();
-    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    let mut link = Link::open(&board.path(), 1_000_000).unwrap();
     link.shake_hands(1, &terms(), realtime::now() + 2000 * MS).unwrap();
     for sequence in 0..50 {
         link.send(&[OutgoingCommand { address: 1, sequence, command: pull() }]).unwrap();
     }
     drop(link);
-    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    let mut link = Link::open(&board.path(), 1_000_000).unwrap();
     // The first host's motors still follow; the handshake waits for the watchdog.
     link.shake_hands(1, &terms(), realtime::now() + 5000 * MS).unwrap();
     link.send(&[OutgoingCommand { address: 1, sequence: 99, command: pull() }]).unwrap();
@@ -138,7 +138,7 @@ fn answers_that_the_last_host_did_not_fetch_do_not_reach_the_next() {
 #[test]
 fn the_end_of_the_board_is_an_error_and_not_a_silence() {
     let board = board();
-    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    let mut link = Link::open(&board.path(), 1_000_000).unwrap();
     drop(board);
     let error = link.receive(realtime::now() + 5000 * MS).unwrap_err();
     assert!(matches!(error, LinkError::Port(PortError::Vanished)), "{error:?}");
@@ -157,7 +157,7 @@ fn opening_what_cannot_be_opened_says_why() {
 #[test]
 fn silence_on_a_real_clock_ends_the_torque() {
     let board = board();
-    let mut link = Link::open(board.path(), 1_000_000).unwrap();
+    let mut link = Link::open(&board.path(), 1_000_000).unwrap();
     let short = Terms { watchdog_ms: 20, ..terms() };
     link.shake_hands(1, &short, realtime::now() + 2000 * MS).unwrap();
     link.send(&[OutgoingCommand { address: 1, sequence: 0, command: pull() }]).unwrap();

@@ -95,3 +95,31 @@ fn the_end_of_its_input_does_not_end_it() {
     }
     assert!(board.process.try_wait().unwrap().is_none());
 }
+
+#[test]
+fn things_break_while_it_runs_and_are_mended() {
+    let mut board = Board::start(&["--finger", "1", "--order", "cut 1 2"]);
+    let port = board.line();
+    let tensions = |board: &mut Board| numbers(&board.order("state 1"), "tensions", 4);
+    assert_eq!(tensions(&mut board)[1], 0.0, "cut by --order");
+    assert_eq!(board.order("mend 1"), "ok");
+    assert!(tensions(&mut board)[1] > 1.0);
+    assert!(board.order("jam 7 1").starts_with("error this board has no finger 7"));
+    assert!(board.order("jam 1 7").starts_with("error"));
+
+    // A line that carries nothing, then a good one.
+    assert_eq!(board.order("drop 1"), "ok");
+    assert!(matches!(shake_hands(Path::new(&port), 1), Err(LinkError::Silent { .. })));
+    assert_eq!(board.order("good"), "ok");
+    shake_hands(Path::new(&port), 1).unwrap();
+
+    // The port vanishes under its user; the next one serves.
+    let mut link = Link::open(Path::new(&port), 1_000_000).unwrap();
+    assert_eq!(board.order("unplug"), "ok");
+    let met = link.receive(realtime::now() + 1000 * MS);
+    assert!(matches!(met, Err(LinkError::Port(PortError::Vanished))), "{met:?}");
+    drop(link);
+    let answer = board.order("replug");
+    let port = answer.strip_prefix("ok ").unwrap_or_else(|| panic!("{answer}"));
+    shake_hands(Path::new(port), 1).unwrap();
+}

@@ -115,6 +115,11 @@ fn a_finger_is_zeroed() {
 }
 
 #[test]
+fn a_signal_handler_stops_the_hand_and_the_planner_recovers_it() {
+    succeed(&strict(&[]), &["stopped.c"]);
+}
+
+#[test]
 fn a_black_box_is_written_and_replayed() {
     let bench = Bench::new();
     let program = bench.build(c_compilers()[0], &strict(&[]), &["black_box.c"]);

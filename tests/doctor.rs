@@ -65,7 +65,7 @@ fn a_port_that_does_not_serve_fails_with_its_remedy() {
 
     let board = SimulatedBoard::new(&Configuration::default(), &[2]).expect("a board");
     let board = SimulatedPort::start(board, Pace::patient(500.0), Priority::default()).expect("a pseudo-terminal");
-    let taken = Port::open(board.path(), 1_000_000).expect("the port");
+    let taken = Port::open(&board.path(), 1_000_000).expect("the port");
     let configuration = format!("[finger.3]\nport = '{}'\n", board.path().display());
     let findings = examined(&configuration);
     let busy = find(&findings, &format!("port {}", board.path().display()));

@@ -27,6 +27,7 @@ fn the_committed_header_is_the_one_of_the_exports() {
         .with_src(root.join("src/capi/black_box_calls.rs"))
         .with_src(root.join("src/capi/calibration_calls.rs"))
         .with_src(root.join("src/capi/fault_calls.rs"))
+        .with_src(root.join("src/capi/recovery_calls.rs"))
         .generate()
         .expect("the exports can be parsed")
         .write(&mut made);

@@ -1,5 +1,6 @@
 //! A servo and its simulated board on a machine that runs neither in time, nor what carries their bytes, on simulated time.
 
+use nalgebra::Vector3;
 use rand_distr::{Distribution, Exp};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng;
@@ -8,7 +9,9 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 use sun2xp::board::{Link, Pace, PacedTime, PortError, SimulatedBoard, Terms, Transport};
-use sun2xp::finger::{BlackBox, ControllerSource, FingerServo, Mailbox, ServedPort, Servo, Stage};
+use sun2xp::finger::{
+    BlackBox, ControllerSource, Fault, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage,
+};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleTiming, Schedule};
 
@@ -52,6 +55,11 @@ impl World {
         }
         let milliseconds = Exp::new(1.0 / mean).expect("a mean").sample(&mut self.random);
         (milliseconds * MILLISECOND as f64) as u64
+    }
+
+    /// The true joints, rad.
+    fn pose(&mut self) -> Vector3<f64> {
+        self.board.fingers()[0].plant().joints()
     }
 
     fn advance_to(&mut self, time: u64) {
@@ -166,39 +174,87 @@ impl Rig {
             self.servo.cycle();
         }
     }
+
+    /// Cycles until the report is as wanted, for so many seconds of the wall at most.
+    fn run_until(&mut self, seconds: f64, wanted: impl Fn(&FingerReport) -> bool) {
+        let end = self.world.borrow().now + (seconds * 1e9) as u64;
+        while !wanted(&self.mailbox.report()) && self.world.borrow().now < end {
+            self.servo.cycle();
+        }
+    }
 }
 
 #[test]
-fn experiment() {
+fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
+    let none = Load::default();
     for load in [
-        Load { carrier: 0.5, ..Load::default() },
-        Load { carrier: 2.0, ..Load::default() },
-        Load { carrier: 5.0, ..Load::default() },
-        Load { carrier: 10.0, ..Load::default() },
-        Load { carrier: 30.0, ..Load::default() },
-        Load { board: 3.0, ..Load::default() },
-        Load { board: 10.0, ..Load::default() },
-        Load { servo: 3.0, ..Load::default() },
-        Load { servo: 10.0, ..Load::default() },
+        Load { carrier: 0.5, ..none },
+        Load { carrier: 5.0, ..none },
+        Load { board: 3.0, ..none },
+        Load { board: 10.0, ..none },
+        Load { servo: 3.0, ..none },
+        Load { servo: 10.0, ..none },
         Load { carrier: 2.0, board: 2.0, servo: 2.0 },
-        Load { carrier: 5.0, board: 5.0, servo: 5.0 },
     ] {
         for seed in 0..3 {
             let mut rig = Rig::new(seed);
+            let start = rig.world.borrow_mut().pose();
             rig.world.borrow_mut().load = load;
-            rig.run(5.0);
-            let opened = rig.mailbox.report().stage;
-            let start = rig.mailbox.report().cycle.joints;
-            for turn in 0..20 {
-                let there = if turn % 2 == 0 { [0.2, 0.6, 1.1] } else { [0.0, 0.5, 1.0] };
-                let _ = rig.mailbox.send(|set_point| set_point.joints = there.into());
-                rig.run(0.5);
-            }
+            // Its own time passes more slowly.
+            rig.run_until(60.0, |report| report.stage != Stage::Opening);
             let report = rig.mailbox.report();
-            println!(
-                "{load:?} {seed}: {opened:?} {start:?} {:?} lost {} of {} late {} at {:?}",
-                report.stage, report.lost_replies, report.cycles, report.late_replies, report.cycle.joints
-            );
+            assert_eq!(report.stage, Stage::Running, "{load:?}, {seed}: {report:?}");
+            let turned = (rig.world.borrow_mut().pose() - start).amax();
+            assert!(turned < 0.02, "{load:?}, {seed}: turned by {turned} rad while slack was taken up");
+
+            let target = Vector3::new(0.2, 0.6, 1.1);
+            rig.mailbox.send(|set_point| set_point.joints = target).expect("under control");
+            let arrived = |report: &FingerReport| {
+                (report.cycle.joints - target).amax() < 0.01 && report.cycle.joint_rates.amax() < 0.5
+            };
+            rig.run_until(60.0, arrived);
+            let off = (rig.world.borrow_mut().pose() - target).amax();
+            assert!(off < 0.02, "{load:?}, {seed}: {off} rad away, {:?}", rig.mailbox.report());
         }
     }
+}
+
+#[test]
+fn a_command_or_reply_that_was_thrown_away_is_made_good() {
+    let mut rig = Rig::new(0);
+    rig.run_until(60.0, |report| report.stage != Stage::Opening);
+    for _ in 0..3 {
+        rig.run(0.01);
+        {
+            let mut world = rig.world.borrow_mut();
+            world.load.carrier = 1e9;
+            world.carrier_runs = u64::MAX;
+        }
+        rig.run(0.005);
+        {
+            let mut world = rig.world.borrow_mut();
+            world.to_board.clear();
+            world.from_board.clear();
+            world.load.carrier = 0.0;
+            world.carrier_runs = 0;
+        }
+        let lost = rig.mailbox.report().lost_replies;
+        rig.run(0.3);
+        let report = rig.mailbox.report();
+        assert_eq!(report.stage, Stage::Running);
+        // The command is repeated after 0.2 s.
+        assert!((150..250).contains(&(report.lost_replies - lost)), "{report:?}");
+    }
+}
+
+#[test]
+fn a_simulated_board_that_never_answers_again_faults_its_finger() {
+    let mut rig = Rig::new(0);
+    rig.run_until(60.0, |report| report.stage != Stage::Opening);
+    rig.world.borrow_mut().carrier_runs = u64::MAX;
+    rig.run(4.9);
+    assert_eq!(rig.mailbox.report().stage, Stage::Running);
+    rig.run(0.2);
+    let stage = rig.mailbox.report().stage;
+    assert!(matches!(stage, Stage::Faulted(Fault { kind: FaultKind::LostReplies, .. })), "{stage:?}");
 }

@@ -26,7 +26,7 @@ pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> 
         let board = SimulatedBoard::new(configuration, &[index])?;
         let pace = Pace::patient(configuration.hand.rate);
         let board = SimulatedPort::start(board, pace, Priority { fifo: board_priority, core: None })?;
-        let mut link = Link::open(board.path(), finger.baud)?;
+        let mut link = Link::open(&board.path(), finger.baud)?;
         let terms = Terms::new(&configuration.hand, finger);
         let (identity, configured) = link.shake_hands(configuration.address(index), &terms, now() + 1_000_000_000)?;
         let (producer, timings) = RingBuffer::new(16);

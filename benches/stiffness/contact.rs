@@ -60,7 +60,7 @@ pub fn wall_off(tip: &Vector3<f64>, outward: &Vector3<f64>, stiffness: f64) -> S
 }
 
 /// Root mean square about the mean.
-fn residual(tips: &[Vector3<f64>]) -> f64 {
+pub fn residual(tips: &[Vector3<f64>]) -> f64 {
     let mean = tips.iter().sum::<Vector3<f64>>() / tips.len() as f64;
     (tips.iter().map(|tip| (tip - mean).norm_squared()).sum::<f64>() / tips.len() as f64).sqrt()
 }

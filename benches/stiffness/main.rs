@@ -9,6 +9,7 @@ mod cases;
 mod closed_loop;
 mod contact;
 mod fits;
+mod identification;
 mod motion;
 mod parallel;
 mod plots;
@@ -45,7 +46,7 @@ struct Arguments {
     /// others are compared with.
     #[arg(long, value_delimiter = ',', value_parser = scheme, default_values = ["figure 10", "state feedback"])]
     controllers: Vec<Scheme>,
-    /// Only rows whose names contain this.
+    /// Only rows whose names contain this, or one of several texts separated by semicolons.
     #[arg(long, default_value = "")]
     only: String,
     /// Where step responses and ellipsoids are drawn.

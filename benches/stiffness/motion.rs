@@ -2,8 +2,9 @@
 
 use crate::cases::{Case, Friction};
 use crate::closed_loop::{ClosedLoop, Senses};
+use crate::contact::residual;
 use crate::parallel::{each, least, worst};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector4};
 use sun2xp::model::configuration::ConfiguredFinger;
 
 /// What a set of steps came to.
@@ -110,4 +111,25 @@ pub fn reach(case: &Case) -> (f64, f64) {
         (worst(finger.tips(0.3).iter().map(|tip| (tip - anchor).norm())), finger.least_true)
     });
     (worst(all.iter().map(|one| one.0)), least(all.iter().map(|one| one.1)))
+}
+
+/// A finger that holds its pose, with friction: how much the commanded pull of a tendon changes from cycle to cycle, N rms, and how
+/// much the tip moves, cm rms; worst over poses and tendons.
+pub fn at_rest(case: &Case, stiffness: f64) -> (f64, f64) {
+    let all = each(&case.poses(), |_, pose| {
+        let mut finger = ClosedLoop::at(case, pose, Friction::Default, &(Matrix3::identity() * stiffness));
+        finger.run(0.5);
+        let radius = Vector4::from(finger.finger.geometry.motor_radius);
+        let cycles = finger.cycles(1.0);
+        let (mut changes, mut tips) = (Vector4::<f64>::zeros(), Vec::with_capacity(cycles));
+        for _ in 0..cycles {
+            let before = finger.report.motor_torques;
+            finger.cycle();
+            let change = (finger.report.motor_torques - before).component_div(&radius);
+            changes += change.component_mul(&change);
+            tips.push(finger.plant.tip());
+        }
+        ((changes.max() / cycles as f64).sqrt(), residual(&tips))
+    });
+    (worst(all.iter().map(|one| one.0)), worst(all.iter().map(|one| one.1)))
 }

@@ -47,6 +47,28 @@ pub struct LinkCounters {
     pub unsent: u64,
 }
 
+impl LinkCounters {
+    /// Together with what passed through another link.
+    pub fn plus(&self, other: &Self) -> Self {
+        self.with(other, u64::saturating_add)
+    }
+
+    /// Without what passed through another link.
+    pub fn less(&self, other: &Self) -> Self {
+        self.with(other, u64::saturating_sub)
+    }
+
+    fn with(&self, other: &Self, of: impl Fn(u64, u64) -> u64) -> Self {
+        Self {
+            bytes: of(self.bytes, other.bytes),
+            frames: of(self.frames, other.frames),
+            damaged: of(self.damaged, other.damaged),
+            foreign: of(self.foreign, other.foreign),
+            unsent: of(self.unsent, other.unsent),
+        }
+    }
+}
+
 /// How long an answer to a handshake frame may take before the frame is sent again, ns. A USB bridge in its slowest setting
 /// answers after some 35 ms.
 const PATIENCE: u64 = 50_000_000;
@@ -196,6 +218,10 @@ impl<T: Transport> Link<T> {
     /// Sends the Commands of all fingers on the port, 15 at most, in one write. What the port does not take at once is
     /// lost and counted: the missing Reply will tell the same.
     pub fn send(&mut self, commands: &[OutgoingCommand]) -> Result<(), LinkError> {
+        // Half a Reply of the last period is of no use any more, and must not take the next one with it.
+        if self.unread.is_empty() {
+            self.decoder.abandon();
+        }
         let mut bytes = [0; 1 + MOST_FINGERS * Kind::Command.wire_length()];
         // The first byte is left for a delimiter.
         let mut length = 1;

@@ -2,6 +2,7 @@
 
 use super::port::PortError;
 use super::simulated_board::SimulatedBoard;
+use super::simulated_line::{LineFault, SimulatedLine};
 use super::transport::Transport;
 use std::collections::VecDeque;
 
@@ -10,13 +11,16 @@ use std::collections::VecDeque;
 pub struct SimulatedCable {
     board: SimulatedBoard,
     now: u64,
+    /// From the board to the host.
+    line: SimulatedLine,
     to_host: VecDeque<u8>,
+    plugged: bool,
 }
 
 impl SimulatedCable {
     /// With the clock at 0.
     pub fn new(board: SimulatedBoard) -> Self {
-        Self { board, now: 0, to_host: VecDeque::new() }
+        Self { board, now: 0, line: SimulatedLine::new(), to_host: VecDeque::new(), plugged: true }
     }
 
     /// What is at the other end.
@@ -24,24 +28,53 @@ impl SimulatedCable {
         &mut self.board
     }
 
+    /// The line becomes bad: this happens to each frame from the board with this probability, until `until`, ns. A stall always
+    /// happens. Chance begins anew with this seed.
+    pub fn inject(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
+        self.line.inject(fault, probability, until, seed);
+    }
+
+    /// The line is good again.
+    pub fn clear(&mut self) {
+        self.line.clear();
+    }
+
+    /// Pulls the cable out, or puts it in again: reads and writes meet a port that has vanished, and what was on its way is lost.
+    pub fn set_plugged(&mut self, plugged: bool) {
+        self.plugged = plugged;
+        if !plugged {
+            self.line.cut();
+            self.to_host.clear();
+        }
+    }
+
     /// Lets time pass until `time`, ns.
     pub fn advance_to(&mut self, time: u64) {
         self.now = self.now.max(time);
         self.board.advance(self.now);
+        let to_host = &mut self.to_host;
+        self.line.arrive(self.now, &mut |frame| to_host.extend(frame));
     }
 }
 
 impl Transport for SimulatedCable {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
-        let to_host = &mut self.to_host;
-        self.board.receive(self.now, bytes, &mut |answer| to_host.extend(answer));
+        if !self.plugged {
+            return Err(PortError::Vanished);
+        }
+        let Self { board, now, line, to_host, .. } = self;
+        board.receive(*now, bytes, &mut |answer| line.carry(*now, answer, &mut |frame| to_host.extend(frame)));
         Ok(bytes.len())
     }
 
     /// Time passes only while there is nothing to read.
     fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
+        if !self.plugged {
+            return Err(PortError::Vanished);
+        }
         if self.to_host.is_empty() {
-            self.advance_to(deadline);
+            let arrival = self.line.next_arrival().unwrap_or(deadline);
+            self.advance_to(arrival.min(deadline));
         }
         let taken = buffer.len().min(self.to_host.len());
         for (place, byte) in buffer.iter_mut().zip(self.to_host.drain(..taken)) {

@@ -6,7 +6,7 @@ use super::protocol::{
 };
 use crate::model::TendonsError;
 use crate::model::configuration::{ConfiguredFinger, EndState};
-use crate::plant::{Plant, Sensors};
+use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 use nalgebra::{Vector3, Vector4};
 
 /// In [`Identity::board_kind`].
@@ -57,6 +57,7 @@ pub struct SimulatedFinger {
     counts_per_revolution: u32,
     /// Damaged frames on the port when this finger last replied.
     damaged_before: u64,
+    zero_valid: bool,
 }
 
 impl SimulatedFinger {
@@ -79,6 +80,7 @@ impl SimulatedFinger {
             torque_limit: (strongest * 1e7 / torque_unit).ceil() as u16,
             counts_per_revolution: if counts.iter().all(|&count| count == counts[0]) { counts[0] } else { 0 },
             damaged_before: 0,
+            zero_valid: true,
         })
     }
 
@@ -111,7 +113,8 @@ impl SimulatedFinger {
             State::Ended { holds_until: None } => Status::CONFIGURED | Status::ENDED,
             State::Ended { holds_until: Some(_) } => Status::CONFIGURED | Status::ENDED | Status::HOLDING,
         };
-        state | Status::ZERO_VALID | self.latched
+        let zero = if self.zero_valid { Status::ZERO_VALID } else { Status::default() };
+        state | zero | self.latched
     }
 
     /// Faults that are present from now on: bits of [`Status::FAULTS`]. They take the torque off at once.
@@ -124,6 +127,19 @@ impl SimulatedFinger {
                 self.state = State::Ended { holds_until: None };
             }
         }
+    }
+
+    /// Faults beside those that are present already.
+    pub(super) fn add_faults(&mut self, faults: Status) {
+        self.set_faults(self.present | faults);
+    }
+
+    pub(super) fn set_zero_valid(&mut self, valid: bool) {
+        self.zero_valid = valid;
+    }
+
+    pub(super) fn sensors(&mut self) -> &mut Sensors {
+        &mut self.sensors
     }
 
     /// As after the loss of power: nothing is remembered, the motors are off. The encoders are absolute.
@@ -150,6 +166,7 @@ impl SimulatedFinger {
         }
         let newton_metres = self.motor_torques() * 0.01;
         self.plant.step(newton_metres.into());
+        self.sensors.pass(PLANT_STEP_SECONDS);
     }
 
     pub(super) fn greet(&self, hello: &Hello, addresses: u16) -> Frame {

@@ -7,16 +7,18 @@
 
 use super::simulated_board::SimulatedBoard;
 use super::simulated_finger::SimulatedFinger;
+use super::simulated_line::{LineFault, SimulatedLine};
 use super::simulated_pace::{Pace, PacedTime};
 use crate::realtime::{self, Priority, spawn};
 use parking_lot::Mutex;
 use std::ffi::CStr;
 use std::io;
 use std::os::fd::{AsRawFd, FromRawFd, OwnedFd, RawFd};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::JoinHandle;
+use std::thread::{JoinHandle, sleep};
+use std::time::Duration;
 
 /// How often the physics moves on while no bytes come.
 const TICK_MS: i32 = 1;
@@ -28,37 +30,74 @@ const SILENCE: u64 = 100_000_000;
 /// A simulated board with a port of its own and a thread that runs it. Dropping it ends both.
 #[derive(Debug)]
 pub struct SimulatedPort {
-    path: PathBuf,
-    board: Arc<Mutex<SimulatedBoard>>,
+    shared: Arc<Mutex<Shared>>,
     ended: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
     /// The process that has the thread. A forked child inherits this value, but not the thread.
     process: u32,
 }
 
+/// What the board's thread and its owner both use.
+#[derive(Debug)]
+struct Shared {
+    board: SimulatedBoard,
+    /// From the board to the host.
+    line: SimulatedLine,
+    /// None while the cable is out.
+    terminal: Option<Arc<PseudoTerminal>>,
+    /// The board's clock, ns.
+    time: u64,
+}
+
 impl SimulatedPort {
     /// Starts the board. Its thread asks for this priority, and goes on without where that is not permitted.
     pub fn start(board: SimulatedBoard, pace: Pace, priority: Priority) -> io::Result<Self> {
-        let terminal = PseudoTerminal::open()?;
-        let path = terminal.path.clone();
-        let board = Arc::new(Mutex::new(board));
+        let terminal = Some(Arc::new(PseudoTerminal::open()?));
+        let shared = Arc::new(Mutex::new(Shared { board, line: SimulatedLine::new(), terminal, time: 0 }));
         let ended = Arc::new(AtomicBool::new(false));
         let thread = {
-            let (board, ended) = (board.clone(), ended.clone());
+            let (shared, ended) = (shared.clone(), ended.clone());
             // Not real-time is good enough for a simulation.
-            spawn("sun2xp board", priority, move |_| run(&terminal, &board, pace, &ended))?
+            spawn("sun2xp board", priority, move |_| run(&shared, pace, &ended))?
         };
-        Ok(Self { path, board, ended, thread: Some(thread), process: std::process::id() })
+        Ok(Self { shared, ended, thread: Some(thread), process: std::process::id() })
     }
 
-    /// The port to open.
-    pub fn path(&self) -> &Path {
-        &self.path
+    /// The port to open; empty while the cable is out. Another one after it was out.
+    pub fn path(&self) -> PathBuf {
+        self.shared.lock().terminal.as_ref().map(|terminal| terminal.path.clone()).unwrap_or_default()
+    }
+
+    /// Pulls the cable out: for the host the port vanishes, and what was on its way is lost. The board goes on.
+    pub fn unplug(&self) {
+        let mut shared = self.shared.lock();
+        shared.terminal = None;
+        shared.line.cut();
+    }
+
+    /// Puts the cable in again: a new port, for which see [`SimulatedPort::path`].
+    pub fn plug_in(&self) -> io::Result<()> {
+        let terminal = PseudoTerminal::open()?;
+        self.shared.lock().terminal.get_or_insert(Arc::new(terminal));
+        Ok(())
+    }
+
+    /// The line becomes bad: this happens to each frame from the board with this probability, for so long, ns. A stall always
+    /// happens. Chance begins anew with this seed.
+    pub fn inject(&self, fault: LineFault, probability: f64, time: u64, seed: u64) {
+        let mut shared = self.shared.lock();
+        let until = shared.time.saturating_add(time);
+        shared.line.inject(fault, probability, until, seed);
+    }
+
+    /// The line is good again.
+    pub fn clear(&self) {
+        self.shared.lock().line.clear();
     }
 
     /// Looks at the board or changes it. The board stands still meanwhile, so be brief.
     pub fn with_board<R>(&self, look: impl FnOnce(&mut SimulatedBoard) -> R) -> R {
-        look(&mut self.board.lock())
+        look(&mut self.shared.lock().board)
     }
 
     /// The same with one finger; none where the board has no such address.
@@ -78,24 +117,40 @@ impl Drop for SimulatedPort {
     }
 }
 
-fn run(terminal: &PseudoTerminal, board: &Mutex<SimulatedBoard>, pace: Pace, ended: &AtomicBool) {
+fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
     let mut input = [0; 512];
-    let mut time = PacedTime::new(pace, realtime::now());
+    let mut clock = PacedTime::new(pace, realtime::now());
     let mut forgotten = false;
     while !ended.load(Ordering::Relaxed) {
-        let taken = terminal.read(&mut input, TICK_MS);
-        let board_time = time.wake(realtime::now(), taken > 0);
+        let terminal = shared.lock().terminal.clone();
+        let taken = match &terminal {
+            Some(terminal) => terminal.read(&mut input, TICK_MS),
+            None => {
+                sleep(Duration::from_millis(TICK_MS as u64));
+                0
+            }
+        };
+        let board_time = clock.wake(realtime::now(), taken > 0);
 
-        let mut board = board.lock();
+        let mut shared = shared.lock();
+        let Shared { board, line, time, .. } = &mut *shared;
+        *time = board_time;
         if taken > 0 {
             forgotten = false;
-            board.receive(board_time, &input[..taken], &mut |answer| terminal.write(answer));
-        } else {
-            board.advance(board_time);
         }
-        drop(board);
+        let Some(terminal) = terminal else {
+            board.advance(board_time);
+            continue;
+        };
+        let mut send = |frame: &[u8]| terminal.write(frame);
+        line.arrive(board_time, &mut send);
+        match taken {
+            0 => board.advance(board_time),
+            _ => board.receive(board_time, &input[..taken], &mut |answer| line.carry(board_time, answer, &mut send)),
+        }
+        drop(shared);
 
-        if !forgotten && time.silence() > SILENCE {
+        if !forgotten && clock.silence() > SILENCE {
             forgotten = true;
             terminal.forget_last_host();
         }
@@ -104,6 +159,7 @@ fn run(terminal: &PseudoTerminal, board: &Mutex<SimulatedBoard>, pace: Pace, end
 
 /// Both ends of a pseudo-terminal. The host's end stays open here too: with it closed, every hang-up of a host would end in
 /// read errors at the board's end.
+#[derive(Debug)]
 struct PseudoTerminal {
     board_end: OwnedFd,
     host_end: OwnedFd,

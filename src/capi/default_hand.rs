@@ -3,7 +3,7 @@
 use crate::capi::process;
 use crate::capi::refusal::{self, Refusal};
 use crate::control::calibration::Task;
-use crate::hand::{self, Calibrating, Hand, Standing};
+use crate::hand::{self, Calibrating, Hand, Recovering, Standing};
 use parking_lot::{Mutex, RwLock};
 use std::thread::sleep;
 use std::time::Duration;
@@ -57,6 +57,15 @@ pub(super) fn with<T, E: Into<Refusal>>(call: impl FnOnce(&Hand) -> Result<T, E>
     let hand = HAND.read();
     let hand = hand.as_ref().ok_or(Refusal::NoHand)?;
     call(hand).map_err(E::into)
+}
+
+/// Makes a faulted finger of the open hand a spring again. The hand is looked at from time to time and not kept from being closed.
+pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
+    let recovering = with(|hand| Recovering::begin(hand, finger))?;
+    while !with(|hand| recovering.poll(hand))? {
+        sleep(LOOKING);
+    }
+    Ok(())
 }
 
 /// Calibrates a finger of the open hand and stores what was found. The hand is looked at from time to time and not kept from

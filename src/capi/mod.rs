@@ -17,5 +17,6 @@ mod fault_calls;
 mod fingertip_calls;
 mod memory;
 mod process;
+mod recovery_calls;
 mod refusal;
 mod status_calls;

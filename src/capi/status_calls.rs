@@ -16,8 +16,8 @@ use std::ffi::{c_int, c_uint, c_ulong};
 pub const FINGER_RUNNING: c_int = 1;
 
 /// FingerStatus.State: the finger has stopped by itself, its motors are in the
-/// configured end state, and its calls are refused with EIO and the reason. CloseHand
-/// and OpenHand start again.
+/// configured end state, and its calls are refused with EIO and the reason. RecoverHand,
+/// or CloseHand and OpenHand, start again.
 pub const FINGER_FAULTED: c_int = 2;
 
 /// FingerStatus.State: the motors are off, after a calibration that was refused (which
@@ -136,8 +136,12 @@ pub struct FingerTiming {
     pub LostReplies: c_ulong,
     /// Replies that came when their cycle was over.
     pub LateReplies: c_ulong,
-    /// Damaged or foreign frames on the finger's port.
+    /// Pieces of bytes on the finger's port that were no frame: damaged, cut short, noise.
     pub CorruptReplies: c_ulong,
+    /// Replies that came once more.
+    pub DuplicateReplies: c_ulong,
+    /// Whole frames on the finger's port that nobody waited for.
+    pub ForeignFrames: c_ulong,
 }
 
 /// GetStatus - rate, jitter and losses of a finger's servo
@@ -289,6 +293,8 @@ fn timing(stage: c_int, times: &Distribution, losses: &Losses) -> FingerTiming {
         LostReplies: count(losses.lost_replies),
         LateReplies: count(losses.late_replies),
         CorruptReplies: count(losses.damaged_frames),
+        DuplicateReplies: count(losses.duplicate_replies),
+        ForeignFrames: count(losses.foreign_frames),
     }
 }
 

@@ -6,6 +6,7 @@ use super::gravity_compensation::GravityCompensation;
 use super::joint_positions::JointPositions;
 use super::joint_stiffness::JointStiffness;
 use super::low_pass::LowPass;
+use super::monitors::{Alarms, Monitors, Watch};
 use super::motor_heating::{Heat, MotorHeating};
 use super::motor_torque::MotorTorque;
 use super::release::Release;
@@ -58,6 +59,7 @@ pub struct Controller {
     soft_limits: SoftLimits,
     gravity: GravityCompensation,
     heating: MotorHeating,
+    monitors: Monitors,
     /// Motor radii, m.
     radius: Vector4<f64>,
     /// N.
@@ -124,6 +126,8 @@ impl Controller {
             Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
             Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };
+        // What shakes the tensions shall stay within their bounds.
+        let reserve = state_feedback.as_ref().map_or(0.0, |law| law.reserve);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
         let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
@@ -133,6 +137,7 @@ impl Controller {
             soft_limits: SoftLimits::new(finger),
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
+            monitors: Monitors::new(finger, &tendons, rate)?,
             period: 1.0 / rate,
             sensors: Sensors::new(finger)?,
             speed_filter: LowPass::new(gains.speed_filter, rate),
@@ -141,7 +146,11 @@ impl Controller {
             slack: SlackTakeUp::new(finger.links(), &tendons, finger.tendon.minimum, rate),
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
-            distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, strongest)?,
+            distribution: TensionDistribution::new(
+                &tendons,
+                finger.tendon.minimum + reserve,
+                strongest.add_scalar(-reserve),
+            )?,
             tendons: TendonController::new(finger.controller.scheme, &gains, rate),
             motor_torque,
             motor_damping: gains.motor_damping,
@@ -261,6 +270,13 @@ impl Controller {
         let motor_torques = self.motor_torque.torques(&state.pulls);
         state.report.motor_torques = motor_torques;
         (Command { motor_torques }, state.report)
+    }
+
+    /// What is wrong with a finger that follows, after a cycle with `feedback`, `age` periods after the one before. `full_scale`: the
+    /// gauges' largest count.
+    pub fn watch(&self, watch: &mut Watch, state: &State, feedback: &Feedback, age: u32, full_scale: u16) -> Alarms {
+        let heat = self.heating.part(&state.heat);
+        self.monitors.watch(watch, feedback, &state.report, &state.pulls, &heat, age, full_scale)
     }
 
     /// The part of a spring's K_theta, N cm/rad, that the pose can carry.

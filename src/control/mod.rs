@@ -20,6 +20,7 @@ mod joint_hold;
 mod joint_positions;
 mod joint_stiffness;
 mod low_pass;
+pub mod monitors;
 mod motor_heating;
 mod motor_torque;
 mod reference;

@@ -33,12 +33,17 @@ impl MotorHeating {
         heat.0 += (pulls.component_mul(pulls) - heat.0) * self.gain;
     }
 
+    /// Part of the heat that each motor bears for ever, 0 to 1 and beyond.
+    pub fn part(&self, heat: &Heat) -> Vector4<f64> {
+        heat.0.component_div(&self.continuous.component_mul(&self.continuous))
+    }
+
     /// Largest pull of each motor now, N.
     pub fn limit(&self, heat: &Heat) -> Vector4<f64> {
+        let part = self.part(heat);
         Vector4::from_fn(|motor, _| {
             let (largest, continuous) = (self.largest[motor], self.continuous[motor]);
-            let part = heat.0[motor] / (continuous * continuous);
-            largest + (continuous - largest) * ((part - WARM) / (1.0 - WARM)).clamp(0.0, 1.0)
+            largest + (continuous - largest) * ((part[motor] - WARM) / (1.0 - WARM)).clamp(0.0, 1.0)
         })
     }
 }

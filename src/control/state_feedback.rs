@@ -26,8 +26,8 @@ use serde::{Deserialize, Serialize};
 /// Noise of a gauge that the observers reckon with, N rms.
 const GAUGE_NOISE: f64 = 0.03;
 
-/// Speed of the reference from which the friction of the joints is fed forward whole, rad/s.
-const JOINT_CREEP: f64 = 0.05;
+/// Of the low-pass on the motion of the joints beside the reference, rad/s: above it dither and noise are, below it pushes.
+const DRIFT_BANDWIDTH: f64 = 60.0;
 
 /// After so many lost replies in a row what is predicted says nothing any more: the command stays as it is.
 const BLIND: u32 = 20;
@@ -49,8 +49,12 @@ pub(super) struct StateFeedback {
     r: Matrix3x4<f64>,
     /// R^T (R R^T)^-1, 1/m: its transpose turns the travel of tendons into joint angles, and a common stretch into nothing.
     pseudo_inverse: Matrix4x3<f64>,
+    /// The tensions that no joint feels, of length 1.
+    common: Vector4<f64>,
     /// R m R^T / alpha, kg m^2: what the joints feel of the motors.
     felt_motors: Matrix3<f64>,
+    /// The same as the damping reckons with it.
+    damped_motors: Matrix3<f64>,
     /// kg, N s/m and N/m at the tendon.
     mass: Vector4<f64>,
     viscous: Vector4<f64>,
@@ -59,14 +63,23 @@ pub(super) struct StateFeedback {
     inertia_gain: f64,
     /// c, N s/m.
     relative_damping: f64,
+    /// alpha and c of what the tendons have in common, over those of what turns the joints.
+    common_gain: f64,
+    common_damping: f64,
     /// N m s/rad and N m.
     joint_viscous: Vector3<f64>,
     joint_coulomb: Vector3<f64>,
+    /// Of the low-pass on the drift, a cycle.
+    drift_gain: f64,
+    /// Rate of fed forward joint friction over the spring's damping.
+    rubbing: f64,
     /// s beyond the next sample.
     ahead: f64,
     /// Radius of each motor, m, and half a count of its encoder, rad: a count is rounded down.
     radius: Vector4<f64>,
     half_count: Vector4<f64>,
+    /// What the tensions of a finger at rest swing by, N: the dither, and six times the noise of a gauge.
+    pub reserve: f64,
 }
 
 /// What it remembers.
@@ -83,6 +96,8 @@ pub(super) struct StateFeedbackState {
     /// noise of one cycle must not be kept.
     transition: Transition,
     reference: ReferenceState,
+    /// How fast the joints move beside the reference, low-passed, rad/s.
+    drift: Vector3<f64>,
     dither: DitherState,
     /// Measured joint angles, rad, and joint rates, rad/s.
     pub joints: Vector3<f64>,
@@ -157,6 +172,9 @@ impl StateFeedback {
         let (mean_mass, mean_stiffness) = (mass.mean(), stiffness.mean());
         let frequency = (mean_stiffness / link_mass + alpha * mean_stiffness / mean_mass).sqrt();
         let relative_damping = 2.0 * numbers.relative_damping * mean_mass * frequency;
+        let shaken = joint_coulomb * numbers.dither;
+        let felt_motors = r * Matrix4x3::from_fn(|tendon, joint| mass[tendon] * r[(joint, tendon)]) / alpha;
+        let common = tendons.pretension(1.0).normalize();
         Ok(Self {
             period: 1.0 / rate,
             observers: [observer(0)?, observer(1)?, observer(2)?, observer(3)?],
@@ -165,25 +183,32 @@ impl StateFeedback {
             damping: DampingDesign {
                 ratio: numbers.damping_ratio,
                 least_frequency: numbers.least_frequency,
-                lag: relative_damping / (alpha * mean_stiffness),
+                lag: numbers.lag * relative_damping / (alpha * mean_stiffness),
             },
             reference: Reference::new(numbers.reference_time, rate),
             slew: Slew::new(set_point_speed, rate),
-            dither: Dither::new(joint_coulomb * numbers.dither, numbers.dither_frequency, rate),
+            dither: Dither::new(shaken, numbers.dither_frequency, rate),
+            reserve: (pseudo_inverse.abs() * shaken).max() + 6.0 * GAUGE_NOISE,
             friction: FrictionFeedForward {
                 coulomb: Vector4::from(finger.friction.motor_coulomb).component_div(&tendons.radius),
                 conduit: finger.friction.conduit.into(),
             },
             r,
             pseudo_inverse,
-            felt_motors: r * Matrix4x3::from_fn(|tendon, joint| mass[tendon] * r[(joint, tendon)]) / alpha,
+            common,
+            felt_motors,
+            damped_motors: felt_motors * numbers.felt,
             mass,
             viscous,
             stiffness,
             inertia_gain: alpha,
             relative_damping,
+            common_gain: numbers.common_gain,
+            common_damping: numbers.common_damping,
             joint_viscous: Vector3::from(finger.friction.joint_viscous) * 0.01,
             joint_coulomb,
+            drift_gain: -(-DRIFT_BANDWIDTH / rate).exp_m1(),
+            rubbing: numbers.rubbing,
             ahead: numbers.ahead / rate,
             radius,
             half_count: Vector4::from_fn(|motor, _| 0.5 * count[motor] * f64::from(finger.encoder.sign[motor])),
@@ -203,6 +228,7 @@ impl StateFeedback {
             anchor: joints,
             transition: Transition::default(),
             reference: self.reference.start(&joints),
+            drift: Vector3::zeros(),
             dither: self.dither.start(),
             joints,
             joint_rates: Vector3::zeros(),
@@ -272,6 +298,7 @@ impl StateFeedback {
             // Without deflection.
             state.anchor = state.joints;
             state.reference = self.reference.start(&state.joints);
+            state.drift = Vector3::zeros();
             state.dither = self.dither.start();
         }
         let motion: [TendonMotion; 4] = std::array::from_fn(|tendon| self.motion(state, tendon));
@@ -292,14 +319,20 @@ impl StateFeedback {
         let k_theta = k_theta * 0.01;
         let inertia = self.dynamics.inertia(&state.joints);
         let felt = self.felt_motors + inertia;
-        let damping = self.damping.damping(&felt, &inertia, &k_theta, spring.damping);
-        let moving = reference.rates.map(|rate| (rate / JOINT_CREEP).clamp(-1.0, 1.0));
+        let damped = self.damped_motors + inertia;
+        let damping = self.damping.damping(&damped, &inertia, &k_theta, spring.damping);
+        state.drift += (rates - reference.rates - state.drift) * self.drift_gain;
+        let moving = reference.rates + state.drift;
+        let rubbing = Vector3::from_fn(|joint, _| {
+            let most = self.joint_coulomb[joint];
+            (self.rubbing * damping[(joint, joint)] * moving[joint]).clamp(-most, most)
+        });
         let held = self.joint_stiffness.spring(&spring, &joints) + push.torque + gravity.torques(&joints);
         let torque = held * 0.01 - damping * (rates - reference.rates)
             + felt * reference.accelerations
             + self.dynamics.coriolis(&joints, &reference.rates)
             + self.joint_viscous.component_mul(&reference.rates)
-            + self.joint_coulomb.component_mul(&moving);
+            + rubbing;
         let joint_torques = torque * 100.0;
         let distribution = distribution.distribute(&joint_torques);
         if begins {
@@ -315,19 +348,21 @@ impl StateFeedback {
         let (shake, shake_rates) =
             (self.pseudo_inverse * shake, self.pseudo_inverse * quarter_ahead * self.dither.frequency);
         let omega_squared = self.dither.frequency * self.dither.frequency;
-        let pulls = Vector4::from_fn(|tendon, _| {
-            let stretching = (tension_rates[tendon] + shake_rates[tendon]) / self.stiffness[tendon];
-            let yielding = self.mass[tendon] / self.stiffness[tendon];
-            tensions[tendon]
-                + self.inertia_gain * (desired[tendon] + shake[tendon] - tensions[tendon])
-                // The share of the joints' speed must be exactly 1: with 0.94 it was a drag of three times D.
-                - self.relative_damping * (motor_speeds[tendon] - speeds[tendon] - stretching)
-                - disturbances[tendon]
-                + self.viscous[tendon] * motor_rates[tendon]
-                + yielding * (tension_accelerations[tendon] - omega_squared * shake[tendon])
-        });
+        let error = self.softer_in_common(&(desired + shake - tensions), self.common_gain);
+        // The share of the joints' speed must be exactly 1: with 0.94 it was a drag of three times D.
+        let stretching = motor_speeds - speeds - (tension_rates + shake_rates).component_div(&self.stiffness);
+        let stretching = self.softer_in_common(&stretching, self.common_damping);
+        let yielding = (tension_accelerations - shake * omega_squared).component_div(&self.stiffness);
+        let pulls = tensions + error * self.inertia_gain - stretching * self.relative_damping - disturbances
+            + self.viscous.component_mul(&motor_rates)
+            + self.mass.component_mul(&yielding);
         let against_friction = self.friction.pulls(&motor_speeds, &tensions);
         Decision { pulls: pulls + against_friction, against_friction, joint_torques, distribution }
+    }
+
+    /// `values` with this part of what the tendons have in common.
+    fn softer_in_common(&self, values: &Vector4<f64>, part: f64) -> Vector4<f64> {
+        values + self.common * (self.common.dot(values) * (part - 1.0))
     }
 
     fn motion(&self, state: &StateFeedbackState, tendon: usize) -> TendonMotion {

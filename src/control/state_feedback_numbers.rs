@@ -24,9 +24,21 @@ pub(super) struct Numbers {
     pub ahead: f64,
     /// Least frequency that is damped, rad/s.
     pub least_frequency: f64,
+    /// The lag of the tensions, and the inertia of the motors, that the spring's damping reckons with, over what
+    /// alpha makes of them.
+    pub lag: f64,
+    pub felt: f64,
+    /// alpha and the damping of motors against links for what the tendons have in common, over those for what turns the joints:
+    /// motors that are not alike turn the one into the other.
+    pub common_gain: f64,
+    pub common_damping: f64,
+    /// Rate of fed forward joint friction over the spring's damping, at most: friction that is believed too large must not undo
+    /// the damping.
+    pub rubbing: f64,
     /// s, of each pole of the reference.
     pub reference_time: f64,
-    /// Amplitude of the dither over the joints' Coulomb friction, and its frequency, Hz. 50 Hz is near a mode of the fingers.
+    /// Amplitude of the dither over the joints' Coulomb friction, and its frequency, Hz: the lower it is, the less a motor must
+    /// give for it, and the more the tip moves.
     pub dither: f64,
     pub dither_frequency: f64,
 }
@@ -34,13 +46,20 @@ pub(super) struct Numbers {
 /// rad/s, damped however soft the finger.
 const LEAST_FREQUENCY: f64 = 4.0;
 
-/// alpha, zeta, relative zeta, disturbance and link bandwidth (rad/s), ahead, reference time (s).
-type Row = (f64, [f64; 7]);
+/// Hz.
+const DITHER_FREQUENCY: f64 = 40.0;
+
+/// See [`Numbers::rubbing`].
+const RUBBING: f64 = 0.4;
+
+/// alpha, zeta, relative zeta, disturbance and link bandwidth (rad/s), ahead, lag, common gain, common damping, felt, reference
+/// time (s).
+type Row = (f64, [f64; 11]);
 
 const TABLE: [Row; 3] = [
-    (500.0, [0.45, 0.4, 0.12, 40.0, 800.0, 0.0, 0.012]),
-    (1000.0, [4.0, 0.5, 0.8, 200.0, 2000.0, 0.3, 0.008]),
-    (2000.0, [4.0, 0.5, 0.8, 200.0, 2000.0, 0.3, 0.008]),
+    (500.0, [0.45, 0.4, 0.12, 40.0, 800.0, 0.0, 1.0, 0.3, 1.0, 1.0, 0.012]),
+    (1000.0, [2.3, 0.178, 0.31, 13000.0, 1634.0, -0.12, 0.015, 0.043, 0.266, 10.2, 0.008]),
+    (2000.0, [3.58, 0.274, 0.557, 30900.0, 1140.0, -0.359, 0.042, 0.095, 0.184, 9.03, 0.008]),
 ];
 
 impl Numbers {
@@ -48,7 +67,19 @@ impl Numbers {
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
         let apart = |row: &Row| (row.0 / rate).ln().abs();
         let nearest = TABLE.iter().fold(&TABLE[0], |best, row| if apart(row) < apart(best) { row } else { best });
-        let [inertia_gain, damping_ratio, relative_damping, disturbance, link, ahead, reference_time] = nearest.1;
+        let [
+            inertia_gain,
+            damping_ratio,
+            relative_damping,
+            disturbance,
+            link,
+            ahead,
+            lag,
+            common_gain,
+            common_damping,
+            felt,
+            reference_time,
+        ] = nearest.1;
         // A bandwidth is a number of radians in a cycle.
         let scale = rate / nearest.0;
         let numbers = Self {
@@ -58,10 +89,15 @@ impl Numbers {
             disturbance_bandwidth: disturbance * scale,
             link_bandwidth: link * scale,
             ahead,
+            lag,
+            felt,
+            common_gain,
+            common_damping,
+            rubbing: RUBBING,
             least_frequency: LEAST_FREQUENCY,
             reference_time: configured.set_point_time.unwrap_or(reference_time / scale.min(1.0)),
             dither: configured.dither.unwrap_or(2.0),
-            dither_frequency: (80.0 * scale.min(1.0)).min(rate / 6.0),
+            dither_frequency: DITHER_FREQUENCY.min(rate / 12.0),
         };
         positive("controller.inertia_gain", &[numbers.inertia_gain])?;
         positive("controller.damping_ratio", &[numbers.damping_ratio])?;

@@ -2,6 +2,7 @@
 //! through [`ControlInput::run`].
 
 use crate::control::{Activity, Command, Controller, Feedback, Report, State};
+use crate::finger::Fading;
 use serde::{Deserialize, Serialize};
 
 /// What a controller is told in a cycle, besides the reply.
@@ -13,8 +14,8 @@ pub struct ControlInput {
     pub activity: Activity,
     /// Periods that will be skipped after this one, because the servo is late.
     pub skipped: u64,
-    /// So many replies were lost in a row that the motors are let go.
-    pub let_go: bool,
+    /// So many replies were lost in a row that the motors are led to rest.
+    pub fading: Option<Fading>,
 }
 
 impl ControlInput {
@@ -38,8 +39,8 @@ impl ControlInput {
         for _ in 0..self.skipped {
             (command, report) = controller.cycle(state, None, &self.activity);
         }
-        if self.let_go {
-            command = Command::default();
+        if let Some(fading) = &self.fading {
+            command.motor_torques = fading.torques(&command.motor_torques);
         }
         (command, report)
     }

@@ -15,8 +15,12 @@ pub struct Losses {
     pub lost_replies: u64,
     /// Replies that came when their cycle was over.
     pub late_replies: u64,
-    /// Damaged or foreign frames on the finger's port.
+    /// Replies that came once more.
+    pub duplicate_replies: u64,
+    /// Pieces of bytes on the finger's port that were no frame.
     pub damaged_frames: u64,
+    /// Whole frames on the finger's port that nobody waited for.
+    pub foreign_frames: u64,
 }
 
 impl Losses {
@@ -28,7 +32,9 @@ impl Losses {
             skipped_periods: report.skipped_periods,
             lost_replies: report.lost_replies,
             late_replies: report.late_replies,
+            duplicate_replies: report.duplicate_replies,
             damaged_frames: report.damaged_frames,
+            foreign_frames: report.foreign_frames,
         }
     }
 
@@ -40,7 +46,9 @@ impl Losses {
             skipped_periods: self.skipped_periods - earlier.skipped_periods,
             lost_replies: self.lost_replies - earlier.lost_replies,
             late_replies: self.late_replies - earlier.late_replies,
+            duplicate_replies: self.duplicate_replies - earlier.duplicate_replies,
             damaged_frames: self.damaged_frames - earlier.damaged_frames,
+            foreign_frames: self.foreign_frames - earlier.foreign_frames,
         }
     }
 }

@@ -73,8 +73,14 @@ pub struct FingerReport {
     pub lost_replies: u64,
     /// Replies that came when their cycle was over.
     pub late_replies: u64,
-    /// Damaged or foreign frames on the finger's port.
+    /// Replies that came once more.
+    pub duplicate_replies: u64,
+    /// Pieces of bytes on the finger's port that were no frame.
     pub damaged_frames: u64,
+    /// Whole frames on the finger's port that nobody waited for.
+    pub foreign_frames: u64,
+    /// How often it has gone on after a fault.
+    pub recoveries: u32,
     /// What the finger is warned of.
     pub warnings: Warnings,
     /// When the first cycle began, ns of the monotonic clock.

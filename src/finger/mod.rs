@@ -1,18 +1,25 @@
 //! One finger's servo thread and its mailboxes: the shell around the pure core.
 
+mod alarm;
 mod black_box;
 mod control_input;
 mod faults;
+mod lending;
+mod link_watch;
 mod losses;
 mod mailbox;
 mod recording;
 mod replay;
 mod servo;
 mod single;
+mod watching;
 
+pub use alarm::{Alarm, stop_all, stop_calls};
 pub use black_box::{BlackBox, ControlRecord, ControllerSource, CycleRecord, Recorder};
 pub use control_input::ControlInput;
 pub use faults::{Description, Fault, FaultKind, Part, Quantity, Severity, Warnings};
+pub use lending::{Borrower, Lender, Lent, Mended, lending};
+pub use link_watch::Fading;
 pub use losses::Losses;
 pub use mailbox::{Adjustable, FingerReport, Mailbox, Order, Stage};
 pub use recording::{Origin, Recording, RecordingError};

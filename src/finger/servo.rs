@@ -1,9 +1,10 @@
 //! A servo thread: periods by absolute deadlines, one transaction a finger and period.
 
-use crate::board::{Link, LinkError, OutgoingCommand, Transport};
-use crate::finger::{Fault, FaultKind, FingerServo};
+use crate::board::{Link, LinkCounters, LinkError, OutgoingCommand, Transport};
+use crate::finger::{Fault, FaultKind, FingerServo, Lender, Lent, Mended};
 use crate::model::configuration::FINGERS;
 use crate::realtime::{Clock, Follower, Memory, Schedule, Stage};
+use rtrb::PushError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The part of a period, from the thread's awakening, in which replies are awaited; the rest is for computing.
@@ -11,14 +12,26 @@ pub const REPLY_WINDOW: f64 = 0.85;
 
 /// A port with the fingers behind it.
 pub struct ServedPort<T> {
-    link: Link<T>,
+    /// None while it is lent.
+    link: Option<Link<T>>,
+    /// The port has failed.
+    failed: bool,
+    lender: Option<Lender<T>>,
     fingers: Vec<FingerServo>,
+    /// What was heard on links before this one.
+    heard_before: LinkCounters,
 }
 
 impl<T: Transport> ServedPort<T> {
     /// `fingers` have shaken hands over `link`.
     pub fn new(link: Link<T>, fingers: Vec<FingerServo>) -> Self {
-        Self { link, fingers }
+        Self { link: Some(link), failed: false, lender: None, fingers, heard_before: LinkCounters::default() }
+    }
+
+    /// The same port, whose link is lent when all of its fingers have faulted, to be mended.
+    pub fn lent_through(mut self, lender: Lender<T>) -> Self {
+        self.lender = Some(lender);
+        self
     }
 }
 
@@ -90,6 +103,10 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         let beginning = self.schedule.next();
         self.clock.sleep_until(beginning);
         let began = self.clock.now();
+        for port in &mut self.ports {
+            port.exchange();
+            port.fingers.iter_mut().for_each(FingerServo::listen);
+        }
         self.send_stops();
         let mut sending = began;
         for port in &mut self.ports {
@@ -111,9 +128,9 @@ impl<T: Transport, C: Clock> Servo<T, C> {
             self.schedule.shift(follower.correction(reading, 1 + skipped));
         }
         for port in &mut self.ports {
-            let damaged = port.link.counters().damaged;
+            let heard = port.heard();
             for finger in &mut port.fingers {
-                finger.end(began, overrun, damaged);
+                finger.end(began, overrun, &heard);
                 let computed = self.clock.now();
                 finger.note(Stage::Compute, computing, computed);
                 finger.note(Stage::Whole, beginning, computed);
@@ -126,10 +143,13 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     /// The last thing to do when a cycle panicked: every finger faulted, every board told to stop.
     fn fail(&mut self) {
         let now = self.clock.now();
-        for finger in self.ports.iter_mut().flat_map(|port| &mut port.fingers) {
-            finger.fault(Fault::new(FaultKind::ServoPanic));
-            finger.end(now, None, 0);
-            finger.tell();
+        for port in &mut self.ports {
+            let heard = port.heard();
+            for finger in &mut port.fingers {
+                finger.fault(Fault::new(FaultKind::ServoPanic));
+                finger.end(now, None, &heard);
+                finger.tell();
+            }
         }
         self.confirm_stops();
     }
@@ -139,9 +159,11 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     fn confirm_stops(&mut self) {
         self.send_stops();
         for port in &mut self.ports {
+            // A link that was lent has stopped its boards before.
+            let Some(link) = &mut port.link else { continue };
             for finger in &port.fingers {
                 let deadline = self.clock.now() + CONFIRMATION;
-                while self.clock.now() < deadline && matches!(port.link.stop(finger.address(), deadline), Ok(false)) {}
+                while self.clock.now() < deadline && matches!(link.stop(finger.address(), deadline), Ok(false)) {}
             }
         }
     }
@@ -149,9 +171,9 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     fn send_stops(&mut self) {
         for port in &mut self.ports {
             for finger in &mut port.fingers {
-                if finger.stopping() {
-                    // Nobody is left to tell: the board's watchdog does the rest.
-                    let _ = port.link.stop(finger.address(), 0);
+                if let (true, Some(link)) = (finger.stopping(), &mut port.link) {
+                    // Where nobody is left to tell, the board's watchdog does the rest.
+                    port.failed |= matches!(link.stop(finger.address(), 0), Err(LinkError::Port(_)));
                 }
             }
         }
@@ -159,6 +181,32 @@ impl<T: Transport, C: Clock> Servo<T, C> {
 }
 
 impl<T: Transport> ServedPort<T> {
+    /// Lends the link when no finger uses it any more, and takes back a mended one.
+    fn exchange(&mut self) {
+        let Some(lender) = &mut self.lender else { return };
+        let all_at_rest = self.fingers.iter().all(FingerServo::at_rest);
+        if let Some(link) = self.link.take_if(|_| all_at_rest) {
+            self.heard_before = self.heard_before.plus(&link.counters());
+            // There is room: it is the only link.
+            if let Err(PushError::Full(lent)) = lender.lend.push(Lent { link, failed: self.failed }) {
+                self.link = Some(lent.link);
+            }
+        } else if let Ok(Mended { link, configured, stop_calls }) = lender.mended.pop() {
+            self.failed = false;
+            // Of the same link, or of a new one: it goes on from what was counted.
+            self.heard_before = self.heard_before.less(&link.counters());
+            self.link = Some(link);
+            for (finger, configured) in self.fingers.iter_mut().zip(configured) {
+                configured.into_iter().for_each(|configured| finger.recover(&configured, stop_calls));
+            }
+        }
+    }
+
+    /// What was heard since open.
+    fn heard(&self) -> LinkCounters {
+        self.link.as_ref().map_or(self.heard_before, |link| self.heard_before.plus(&link.counters()))
+    }
+
     /// All commands of the port back to back, so that replies overlap the commands that follow.
     fn send(&mut self) {
         let mut commands = [OutgoingCommand::default(); FINGERS];
@@ -167,14 +215,16 @@ impl<T: Transport> ServedPort<T> {
             *place = command;
             count += 1;
         }
-        if let Err(error) = self.link.send(&commands[..count]) {
+        let Some(link) = &mut self.link else { return };
+        if let Err(error) = link.send(&commands[..count]) {
             self.fail(&error);
         }
     }
 
     fn receive(&mut self, deadline: u64, sent: u64, clock: &impl Clock) {
         while self.fingers.iter().any(FingerServo::waiting) {
-            match self.link.receive(deadline) {
+            let Some(link) = &mut self.link else { return };
+            match link.receive(deadline) {
                 Ok(Some(received)) => {
                     let mut addressed = self.fingers.iter_mut().find(|finger| finger.address() == received.address);
                     let Some(finger) = addressed.take_if(|finger| finger.awaits(&received)) else {
@@ -186,7 +236,7 @@ impl<T: Transport> ServedPort<T> {
                         continue;
                     };
                     finger.take(&received);
-                    let (ready, read) = self.link.arrival();
+                    let (ready, read) = link.arrival();
                     finger.note(Stage::Wire, sent, ready);
                     finger.note(Stage::Read, ready, read);
                     finger.note(Stage::Decode, read, clock.now());
@@ -210,6 +260,7 @@ impl<T: Transport> ServedPort<T> {
     }
 
     fn fail(&mut self, error: &LinkError) {
+        self.failed |= matches!(error, LinkError::Port(_));
         self.fingers.iter_mut().for_each(|finger| finger.fault(error.into()));
     }
 }

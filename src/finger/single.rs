@@ -1,31 +1,24 @@
 //! One finger in its servo thread: from reply to command, and from open to close.
 
+mod life;
+
 use crate::board::protocol::{Command as BoardCommand, Configured, Identity, Status};
-use crate::board::{OutgoingCommand, Received};
-use crate::control::calibration::{Calibration, Sample, Verdict};
+use crate::board::{LinkCounters, OutgoingCommand, Received};
+use crate::control::calibration::{Calibration, Verdict};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
-use crate::finger::mailbox::{Adjustable, Mailbox, Order, ServoEnd, mailbox};
-use crate::finger::{ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage};
+use crate::finger::link_watch::LinkWatch;
+use crate::finger::mailbox::{Adjustable, Mailbox, ServoEnd, mailbox};
+use crate::finger::watching::Watching;
+use crate::finger::{
+    Alarm, ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage, stop_calls,
+};
 use crate::model::configuration::{Configuration, EndState, Unusable};
 use crate::realtime::{self, CycleTiming, Memory};
-use nalgebra::{Matrix3, Vector3, Vector4};
+use nalgebra::{Matrix3, Vector3};
 use rtrb::Producer;
 
 /// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
 const TENSION_SETTLED: f64 = 0.02;
-
-/// A simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to stop the hand.
-const SIMULATION_PATIENCE_MS: f64 = 5000.0;
-
-/// So long, ms, a simulated board has to answer before its command is sent again: either may have been thrown away.
-const REPEAT_MS: f64 = 200.0;
-
-/// So long, ms, the last command is repeated where replies stay away. Then the motors are let go until one comes: a torque that
-/// nobody watches winds a tendon up, or off its motor, within some ms, and the watchdog does not see it, as commands go on.
-const BLIND_MS: f64 = 10.0;
-
-/// At slow rates so many lost replies in a row are let pass all the same.
-const LEAST_BLIND: u32 = 3;
 
 /// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
 const BEYOND_LIMITS: f64 = 0.5;
@@ -35,6 +28,9 @@ const CLOCK_UNKNOWN_MS: f64 = 60.0;
 
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
+
+/// So long, ms, a warning stays after it was last given.
+const WARNING_MS: f64 = 1000.0;
 
 /// One finger: its controller, its place in the protocol, its mailbox.
 pub struct FingerServo {
@@ -63,10 +59,11 @@ pub struct FingerServo {
     sequence: u8,
     toggle: bool,
     answered: bool,
-    /// A simulated finger and its controller go on together: the next command leaves when the last one was answered, however late,
-    /// and a cycle without a reply is none for the controller. The board stands still meanwhile.
-    in_step: bool,
-    lost_in_a_row: u32,
+    /// Sequence number of the reply that was taken last.
+    last_answer: u8,
+    link: LinkWatch,
+    watching: Watching,
+    alarm: Alarm,
     /// The board's clock at the last measurement, us modulo 65 536; none before the first.
     sampled_at: Option<u16>,
     /// Periods from that measurement to this cycle.
@@ -86,12 +83,11 @@ pub struct FingerServo {
 /// Times of the configuration, in cycles.
 struct Limits {
     period_ms: f64,
-    lost: u32,
-    repeat: u32,
-    blind: u32,
     tension: u32,
     settled: u32,
     ramp: u32,
+    /// How long a warning stays.
+    warning: u32,
 }
 
 impl Adjustable {
@@ -131,6 +127,7 @@ impl FingerServo {
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
+        let link = LinkWatch::new(hand, finger.simulated());
         let law = finger.controller.law;
         let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
         let report = FingerReport {
@@ -144,7 +141,10 @@ impl FingerServo {
             skipped_periods: 0,
             lost_replies: 0,
             late_replies: 0,
+            duplicate_replies: 0,
             damaged_frames: 0,
+            foreign_frames: 0,
+            recoveries: 0,
             warnings: Default::default(),
             first: 0,
             last: 0,
@@ -180,18 +180,18 @@ impl FingerServo {
             sequence: 0,
             toggle: false,
             answered: true,
-            in_step: finger.simulated(),
-            lost_in_a_row: 0,
+            last_answer: 0,
+            watching: Watching::new(hand.rate, link.most(), identity.gauge_bits),
+            link,
+            alarm: Alarm::new(false, stop_calls()),
             sampled_at: None,
             sample_age: 0,
             limits: Limits {
                 period_ms: 1000.0 / hand.rate,
-                lost: cycles(if finger.simulated() { SIMULATION_PATIENCE_MS } else { hand.watchdog_ms.into() }),
-                repeat: cycles(REPEAT_MS),
-                blind: if finger.simulated() { u32::MAX } else { cycles(BLIND_MS).max(LEAST_BLIND) },
                 tension: cycles(hand.open_timeout_ms.into()),
                 settled: cycles(TENSION_SETTLED * 1e3),
                 ramp: cycles(hand.release_ramp_ms.into()),
+                warning: cycles(WARNING_MS),
             },
             settled_cycles: 0,
             stage_cycles: 0,
@@ -214,6 +214,24 @@ impl FingerServo {
         &self.memory
     }
 
+    /// The same finger, to be stopped by this alarm.
+    pub fn with(mut self, alarm: Alarm) -> Self {
+        self.alarm = alarm;
+        self
+    }
+
+    /// Begins a period: stops where an emergency stop was called for, or another finger has faulted.
+    pub fn listen(&mut self) {
+        if let Some(kind) = self.alarm.heard() {
+            self.fault(Fault::new(kind));
+        }
+    }
+
+    /// Whether the finger has faulted, and its board been told.
+    pub fn at_rest(&self) -> bool {
+        matches!(self.report.stage, Stage::Faulted(_)) && self.stops_left == 0 && !self.mailbox.closing()
+    }
+
     /// The address of the finger on its port.
     pub fn address(&self) -> u8 {
         self.address
@@ -233,11 +251,11 @@ impl FingerServo {
         if !self.under_control() {
             return None;
         }
-        if self.answered || !self.in_step {
+        if self.answered || !self.link.in_step() {
             self.sequence = self.sequence.wrapping_add(1);
             self.toggle = !self.toggle;
             self.answered = false;
-        } else if !self.lost_in_a_row.is_multiple_of(self.limits.repeat) {
+        } else if !self.link.repeats() {
             return None;
         }
         let torques = self.command.motor_torques.map(|torque| self.board.torque_count(torque)).into();
@@ -262,9 +280,12 @@ impl FingerServo {
         received.sequence == self.sequence && self.waiting()
     }
 
-    /// Counts a reply that this cycle does not await.
+    /// Counts a reply that this cycle does not await: it came once more, or when its cycle was over.
     pub fn pass_over(&mut self, received: &Received) {
-        self.report.late_replies += u64::from(received.sequence != self.sequence);
+        match received.sequence == self.last_answer {
+            true => self.report.duplicate_replies += 1,
+            false => self.report.late_replies += 1,
+        }
     }
 
     /// The board's clock as this cycle's command arrived, us modulo 65 536; none without a reply.
@@ -275,6 +296,7 @@ impl FingerServo {
     /// Takes in the reply that answers this cycle's command.
     pub fn take(&mut self, received: &Received) {
         self.answered = true;
+        self.last_answer = received.sequence;
         let reply = &received.reply;
         // This cycle's command took effect as it was sampled; what it was computed from was sampled before.
         if let Some(before) = self.sampled_at
@@ -285,31 +307,45 @@ impl FingerServo {
         (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
+        self.watching.note_status(reply.status);
+        let zero_lost = self.status.has(Status::ZERO_VALID) && !reply.status.has(Status::ZERO_VALID);
         self.status = reply.status;
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
             self.fault(Fault::stopped(reply.status));
+        } else if zero_lost {
+            self.fault(Fault::of(FaultKind::ZeroLost, f64::from(reply.status.0)));
         }
     }
 
     /// Ends a cycle: computes the next command and reports. `overrun`: the next cycle should have begun already, and so many periods are
     /// skipped.
-    pub fn end(&mut self, began: u64, overrun: Option<u64>, damaged_frames: u64) {
+    pub fn end(&mut self, began: u64, overrun: Option<u64>, heard: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
         self.sample_age += 1 + skipped;
         self.report.cycles += 1;
         self.report.overruns += u64::from(overrun.is_some());
         self.report.skipped_periods += skipped;
-        self.report.damaged_frames = damaged_frames;
+        (self.report.damaged_frames, self.report.foreign_frames) = (heard.damaged, heard.foreign);
         self.report.last = began;
         if self.report.cycles == 1 {
             self.report.first = began;
+        }
+        if self.under_control()
+            // A machine that is busy is no noise on the line.
+            && let Some(fault) =
+                self.watching.note_period(self.answered || self.link.in_step(), skipped, heard.damaged)
+        {
+            self.fault(fault);
         }
         if self.under_control() {
             self.count_replies();
         }
         let recorded = self.recording || self.under_control();
-        let controls = self.under_control() && (self.answered || !self.in_step);
-        let control = controls.then(|| self.control(if self.in_step { 0 } else { skipped }));
+        if self.under_control() {
+            self.black_box.keyframe(self.report.cycles, &self.state, !self.recording);
+        }
+        let controls = self.under_control() && (self.answered || !self.link.in_step());
+        let control = controls.then(|| self.control(skipped));
         if recorded {
             self.record = Some(CycleRecord {
                 cycle: self.report.cycles,
@@ -332,17 +368,18 @@ impl FingerServo {
         let input = ControlInput {
             anew_from: std::mem::take(&mut self.anew).then_some(self.feedback),
             activity: self.activity,
-            skipped: skipped.min(self.limits.lost.into()),
-            let_go: self.lost_in_a_row >= self.limits.blind,
+            skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.most().into()) },
+            fading: self.link.fading(),
         };
-        self.black_box.keyframe(self.report.cycles, &self.state, !self.recording);
         let Adjustable { controller, number, .. } = &self.adjustable;
         let feedback = self.answered.then_some(&self.feedback);
         let before = previous.as_ref().map(|previous| &previous.controller);
+        let adjusted = before.is_some();
         let (command, report) = input.run(controller, before, &mut self.state, feedback);
         (self.command, self.report.cycle) = (command, report);
         let previous = previous.map_or(*number, |previous| previous.number);
         let record = ControlRecord { controller: *number, previous, input, command, report };
+        self.watch(adjusted);
         self.move_on();
         record
     }
@@ -365,6 +402,7 @@ impl FingerServo {
     /// Stops the finger for a reason.
     pub fn fault(&mut self, fault: Fault) {
         if self.under_control() {
+            self.alarm.raise(fault.kind);
             self.enter(Stage::Faulted(fault));
         }
     }
@@ -373,143 +411,38 @@ impl FingerServo {
         !matches!(self.report.stage, Stage::Closed | Stage::Faulted(_))
     }
 
-    /// A spring pulls a finger that is believed to be where it cannot be with all it has.
-    fn check_pose(&mut self) {
-        let (low, high) = self.adjustable.pose;
-        let joints = self.report.cycle.joints;
-        if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
-            let value = joints[joint].to_degrees();
-            self.fault(Fault { kind: FaultKind::ImpossiblePose, part: joint as u8, value });
+    /// The monitors of a finger that is a spring.
+    fn watch(&mut self, adjusted: bool) {
+        if adjusted {
+            self.watching.adjusted();
         }
+        if self.report.stage == Stage::Running {
+            let feedback = self.answered.then_some(&self.feedback);
+            if let Some(fault) = self.watching.spring(&self.adjustable.controller, &self.state, feedback) {
+                self.fault(fault);
+            }
+        }
+        let failed = match self.report.calibration {
+            Some(Verdict::Refused(_)) if self.report.stage == Stage::Limp => {
+                Some(Fault::new(FaultKind::CalibrationFailed))
+            }
+            _ => None,
+        };
+        self.report.warnings.note(failed.or(self.watching.warning()), self.limits.warning);
     }
 
     fn count_replies(&mut self) {
         if self.answered {
-            if self.lost_in_a_row >= self.limits.blind {
-                // The motors were let go: begin with what the tendons pull now, and not with what was commanded then.
+            if self.link.answered() {
                 self.anew = true;
+                self.watching.begin();
             }
-            self.lost_in_a_row = 0;
             return;
         }
         self.report.lost_replies += 1;
-        self.lost_in_a_row += 1;
-        // Counted in attempts, not in time: a machine that pauses everything has lost no reply.
-        if self.lost_in_a_row >= self.limits.lost {
-            let milliseconds = f64::from(self.lost_in_a_row) * self.limits.period_ms;
-            self.fault(Fault::of(FaultKind::LostReplies, milliseconds));
+        if let Some(lost) = self.link.missed() {
+            let milliseconds = f64::from(lost) * self.limits.period_ms;
+            self.fault(self.watching.silence(milliseconds));
         }
-    }
-
-    /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
-    fn take_commands(&mut self) -> Option<Adjustable> {
-        let order = self.mailbox.new_order();
-        // After the order: what was handed over with it is there.
-        let new = self.mailbox.new_adjustable();
-        let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
-        if let Some(order) = order {
-            self.report.orders += 1;
-            if let Order::Restart { .. } = order {
-                previous = None;
-            }
-            self.carry_out(order);
-        }
-        if let Some(set_point) = self.mailbox.new_set_point()
-            && let Activity::Follow(_) = self.activity
-        {
-            self.report.set_point = set_point;
-            self.activity = Activity::Follow(set_point);
-        }
-        if self.mailbox.closing() && self.report.stage != Stage::Closing {
-            self.enter(Stage::Closing);
-            self.calibration = None;
-            if self.end_state == EndState::Hold {
-                self.enter(Stage::Closed);
-            } else {
-                let ramp = f64::from(self.limits.ramp) * self.limits.period_ms * 1e-3;
-                self.activity = Activity::Release { ramp };
-            }
-        }
-        previous
-    }
-
-    fn carry_out(&mut self, order: Order) {
-        match order {
-            Order::Nothing => {}
-            Order::Calibrate(calibration) => {
-                self.calibration = Some(calibration);
-                self.report.calibration = None;
-                self.enter(Stage::Calibrating);
-            }
-            Order::Restart { limp } => {
-                self.anew = true;
-                if limp {
-                    self.go_limp();
-                } else {
-                    self.activity = Activity::TakeUpSlack;
-                    self.settled_cycles = 0;
-                    self.enter(Stage::Opening);
-                }
-            }
-        }
-    }
-
-    /// One step of the calibration, if there is one: it decides what the finger does.
-    fn calibrate(&mut self) {
-        let Some(calibration) = &mut self.calibration else { return };
-        if !self.answered {
-            return;
-        }
-        let zero_valid = self.status.has(Status::ZERO_VALID);
-        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid };
-        let (activity, verdict) = calibration.cycle(&sample);
-        self.activity = activity;
-        self.report.calibration = Some(verdict);
-        if !matches!(verdict, Verdict::Going(_)) {
-            self.calibration = None;
-            self.go_limp();
-        }
-    }
-
-    fn go_limp(&mut self) {
-        self.activity = Activity::Turn(Vector4::zeros());
-        self.enter(Stage::Limp);
-    }
-
-    /// Decides what the finger does next by what the cycle has found.
-    fn move_on(&mut self) {
-        self.stage_cycles += 1;
-        match self.report.stage {
-            Stage::Opening if self.report.cycle.under_tension => {
-                // Without a reply it says what was, not what is.
-                self.settled_cycles += u32::from(self.answered);
-                if self.settled_cycles >= self.limits.settled {
-                    self.check_pose();
-                    if !self.under_control() {
-                        return;
-                    }
-                    let joints = self.report.cycle.joints;
-                    self.report.set_point = SetPoint { joints, ..self.initial };
-                    self.activity = Activity::Follow(self.report.set_point);
-                    self.enter(Stage::Running);
-                }
-            }
-            Stage::Opening => {
-                self.settled_cycles = 0;
-                if self.stage_cycles >= self.limits.tension {
-                    let slackest = self.report.cycle.slackest;
-                    let value = self.report.cycle.tensions[slackest];
-                    self.fault(Fault { kind: FaultKind::SlackTendon, part: slackest as u8 + 1, value });
-                }
-            }
-            Stage::Running => self.check_pose(),
-            Stage::Closing if self.stage_cycles > self.limits.ramp => self.enter(Stage::Closed),
-            _ => {}
-        }
-    }
-
-    fn enter(&mut self, stage: Stage) {
-        self.report.stage = stage;
-        self.stage_cycles = 0;
     }
 }

@@ -16,6 +16,7 @@ use toml_edit::{Document, Item, Table};
 const PERMANENT: &[&str] = &[
     "port",
     "baud",
+    "reconnect",
     "address",
     "thread",
     "core",

@@ -220,6 +220,16 @@ pub enum HandError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A faulted finger whose port another one uses.
+    #[error(
+        "finger {0} shares its port with a finger that runs: they recover together, so stop that one first (StopHand, CloseHand)"
+    )]
+    PortInUse(i32),
+    /// A port that has failed, and is not to be opened again.
+    #[error(
+        "the port of finger {0} has failed: set `finger.reconnect = true` to have it opened again, or CloseHand, OpenHand"
+    )]
+    NotReconnected(i32),
     /// A black box that cannot be written.
     #[error("cannot write the black box to {}: {source}. Name a file in a folder that this user can write to", path.display())]
     BlackBox {
@@ -266,7 +276,8 @@ impl HandError {
             Self::Link { source, .. } => source.errno(),
             Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } | Self::NoAnswer(_) => libc::ETIMEDOUT,
             Self::Calibration { .. } => libc::ECANCELED,
-            Self::Busy(_) => libc::EBUSY,
+            Self::NotReconnected(_) => libc::ENODEV,
+            Self::Busy(_) | Self::PortInUse(_) => libc::EBUSY,
             Self::Store { source, .. } | Self::BlackBox { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
             Self::NotSimulated(_) => libc::ENOTSUP,
         }

@@ -16,9 +16,11 @@ mod fingertip;
 mod missing;
 mod off_line_schedule;
 mod opening;
+mod recovery;
 mod root;
 mod servo_threads;
 
+pub use crate::finger::stop_all;
 pub use black_box::save;
 pub use calibrating::{Calibrating, Standing};
 pub use calibration_file::store;
@@ -29,4 +31,5 @@ pub use faults::FingerFault;
 pub use fingertip::FingerTip;
 pub use missing::Missing;
 pub use off_line_schedule::{Costs, Limit, Scheduled, Sensor, fastest_rate, off_line_schedule};
+pub use recovery::Recovering;
 pub use root::{FingerStatus, Hand};

@@ -1,13 +1,15 @@
 //! From a configuration to ports with fingers behind them: everything that happens before a servo thread runs.
 
+use crate::board::protocol::Status;
 use crate::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms, capacity};
 use crate::control::InverseKinematics;
-use crate::finger::{BlackBox, ControllerSource, FingerServo, Mailbox, ServedPort};
+use crate::finger::{Alarm, BlackBox, ControllerSource, FingerServo, Mailbox, ServedPort, lending, stop_calls};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::announcement::say;
+use crate::hand::recovery::{KnownBoard, Workshop};
 use crate::model::Refusal;
-use crate::model::configuration::{Configuration, FINGERS, RealTime, Unusable};
+use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
 use crate::realtime::{CycleTiming, Priority, now};
 use nalgebra::Matrix3;
 use rtrb::{Consumer, RingBuffer};
@@ -31,6 +33,16 @@ pub(super) struct Reached {
     pub timings: Consumer<CycleTiming>,
     /// Where it leaves its cycles.
     pub black_box: BlackBox,
+}
+
+/// A whole hand.
+pub(super) struct Connected {
+    /// What the servos get.
+    pub lines: Vec<Line>,
+    /// What the planners get, in the order of the fingers.
+    pub reached: Vec<Reached>,
+    /// What is needed to mend a port.
+    pub workshops: Vec<Workshop>,
 }
 
 /// A port with its fingers, and the thread that shall serve it.
@@ -90,23 +102,34 @@ pub(super) fn reach(
     configuration: &Configuration,
     simulated: &[Option<SimulatedPort>; FINGERS],
     limp: bool,
-) -> Result<(Vec<Line>, Vec<Reached>), HandError> {
-    let (mut lines, mut reached) = (Vec::new(), Vec::new());
+) -> Result<Connected, HandError> {
+    // An emergency stop from here on counts.
+    let alarm = Alarm::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
+    let (mut lines, mut reached, mut workshops) = (Vec::new(), Vec::new(), Vec::new());
     for (path, sharing) in ports(configuration, simulated) {
         let first = sharing[0];
         let failed = |source| HandError::Link { finger: first + 1, source };
         let mut link = Link::open(&path, configuration.fingers[first].baud).map_err(failed)?;
         warn_of_latency(link.transport());
-        let mut fingers = Vec::new();
-        for index in sharing {
-            let (servo, finger) = shake_hands(configuration, index, &mut link)?;
+        let (mut fingers, mut boards) = (Vec::new(), Vec::new());
+        for &index in &sharing {
+            let (servo, finger, board) = shake_hands(configuration, index, &mut link)?;
+            let servo = servo.with(alarm.clone());
             fingers.push(if limp { servo.limp() } else { servo });
             reached.push(finger);
+            boards.push(board);
         }
-        lines.push(Line { thread: configuration.thread(first), port: ServedPort::new(link, fingers) });
+        let (lender, borrower) = lending();
+        lines.push(Line {
+            thread: configuration.thread(first),
+            port: ServedPort::new(link, fingers).lent_through(lender),
+        });
+        let baud = configuration.fingers[first].baud;
+        let reconnect = sharing.iter().any(|&index| configuration.fingers[index].reconnect);
+        workshops.push(Workshop::new(path, baud, reconnect, boards, borrower));
     }
     reached.sort_by_key(|finger| finger.index);
-    Ok((lines, reached))
+    Ok(Connected { lines, reached, workshops })
 }
 
 /// Every port, with the fingers on it, 0 to 2, one at least.
@@ -116,7 +139,7 @@ pub(super) fn ports(
 ) -> Vec<(PathBuf, Vec<usize>)> {
     let mut ports: Vec<(PathBuf, Vec<usize>)> = Vec::new();
     for (index, finger) in configuration.fingers.iter().enumerate() {
-        let path = simulated[index].as_ref().map_or_else(|| PathBuf::from(&finger.port), |port| port.path().into());
+        let path = simulated[index].as_ref().map_or_else(|| PathBuf::from(&finger.port), |port| port.path());
         match ports.iter_mut().find(|(known, _)| *known == path) {
             Some((_, fingers)) => fingers.push(index),
             None => ports.push((path, vec![index])),
@@ -140,14 +163,13 @@ fn shake_hands(
     configuration: &Configuration,
     index: usize,
     link: &mut Link<Port>,
-) -> Result<(FingerServo, Reached), HandError> {
+) -> Result<(FingerServo, Reached, KnownBoard), HandError> {
     let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
     let unusable = |unusable| HandError::Unusable { section: format!("finger.{}", index + 1), unusable };
-    let address = configuration.address(index);
+    let (address, terms) = (configuration.address(index), Terms::new(hand, finger));
     let deadline = now() + u64::from(hand.open_timeout_ms) * 1_000_000;
-    let (identity, configured) = link
-        .shake_hands(address, &Terms::new(hand, finger), deadline)
-        .map_err(|source| HandError::Link { finger: index + 1, source })?;
+    let (identity, configured) =
+        link.shake_hands(address, &terms, deadline).map_err(|source| HandError::Link { finger: index + 1, source })?;
     let counts = identity.counts_per_revolution;
     if counts != 0 && finger.encoder.counts_per_revolution.iter().any(|&configured| configured != counts) {
         let reason = format!("the board of finger {} says that its encoders have {counts}", index + 1);
@@ -160,7 +182,9 @@ fn shake_hands(
     let (servo, mailbox) =
         FingerServo::new(configuration, index, stiffness, &identity, &configured, producer, recorder)
             .map_err(unusable)?;
-    Ok((servo, Reached { index, mailbox, admission: admission(configuration, index), timings, black_box }))
+    let zero_valid = configured.status.has(Status::ZERO_VALID);
+    let board = KnownBoard { finger: index as i32 + 1, address, terms, identity, zero_valid }; // 1 to 3
+    Ok((servo, Reached { index, mailbox, admission: admission(configuration, index), timings, black_box }, board))
 }
 
 pub(super) fn admission(configuration: &Configuration, index: usize) -> Admission {

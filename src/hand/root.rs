@@ -5,7 +5,8 @@ use crate::control::calibration::Verdict;
 use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::announcement::say;
 use crate::hand::dispatcher::Dispatcher;
-use crate::hand::opening::{check, check_folder, reach, simulate};
+use crate::hand::opening::{Connected, check, check_folder, reach, simulate};
+use crate::hand::recovery::Recovery;
 use crate::hand::servo_threads::{Given, PortServo, start};
 use crate::hand::{HandError, configured};
 use crate::model::configuration::{Configuration, FINGERS};
@@ -35,6 +36,7 @@ const LOOKING: Duration = Duration::from_millis(1);
 pub struct Hand {
     pub(super) dispatcher: Dispatcher,
     servos: Vec<JoinHandle<PortServo>>,
+    pub(super) recovery: Recovery,
     simulated: [Option<SimulatedPort>; FINGERS],
     /// As it is now: planners may adjust it, and calibration changes what it finds.
     pub(super) configuration: RwLock<Configuration>,
@@ -116,19 +118,23 @@ impl Hand {
         check(&configuration)?;
         check_folder(&configuration)?;
         let simulated = simulate(&configuration)?;
-        let (lines, reached) = reach(&configuration, &simulated, limp)?;
+        let Connected { lines, reached, workshops } = reach(&configuration, &simulated, limp)?;
+        let recovery = Recovery::new(workshops);
         let dispatcher = Dispatcher::new(reached);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOPPING;
         let configuration = RwLock::new(configuration);
         let servos = Vec::new();
         let given = Given::default();
-        let mut hand = Self { dispatcher, servos, simulated, configuration, file, given, ending, process: id() };
+        let mut hand =
+            Self { dispatcher, servos, recovery, simulated, configuration, file, given, ending, process: id() };
         // From here on, dropping the hand closes it.
         let folder = hand.configuration.read().hand.black_box.clone().map(PathBuf::from);
         let collecting = hand.dispatcher.start_collecting(folder);
         collecting.map_err(|source| HandError::System { doing: "start the thread that collects reports", source })?;
         hand.given = start(&hand.configuration.read(), lines, &mut hand.servos)?;
         hand.wait_for_every_finger()?;
+        let reconnecting = hand.recovery.start();
+        reconnecting.map_err(|source| HandError::System { doing: "start the thread that looks for ports", source })?;
         Ok(hand)
     }
 
@@ -275,6 +281,7 @@ impl Drop for Hand {
             // A forked child: the threads and the motors are its parent's.
             self.servos.drain(..).for_each(std::mem::forget);
             self.dispatcher.forget_collector();
+            self.recovery.forget();
             return;
         }
         self.dispatcher.members().iter().for_each(|member| member.mailbox.close());

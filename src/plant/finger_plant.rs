@@ -32,6 +32,7 @@ pub struct Plant {
     motor: Vector4<f64>,
     motor_dot: Vector4<f64>,
     braked: bool,
+    jammed: [bool; 4],
     external_force: Vector3<f64>,
     surface: Option<Surface>,
 }
@@ -59,6 +60,7 @@ impl Plant {
             motor: tendons.motor_angles_at(&theta),
             motor_dot: Vector4::zeros(),
             braked: true,
+            jammed: [false; 4],
             external_force: Vector3::zeros(),
             surface: simulation.surface,
             tendons,
@@ -69,6 +71,7 @@ impl Plant {
     /// `motor.sign` is +1. The motors give at most their torque limit.
     pub fn step(&mut self, motor_torques: [f64; 4]) {
         let h = PLANT_STEP_SECONDS;
+        self.tendons.slip(&self.theta, &self.motor);
         let tensions = self.tensions();
 
         let force = self.external_force + self.contact_force();
@@ -87,6 +90,9 @@ impl Plant {
         if !self.braked {
             let pull = self.tendons.radius.component_mul(&tensions);
             self.motor_dot = self.motors.next_speeds(&self.motor_dot, &motor_torques.into(), &pull, h);
+            for motor in (0..4).filter(|&motor| self.jammed[motor]) {
+                self.motor_dot[motor] = 0.0;
+            }
             self.motor += self.motor_dot * h;
         }
     }
@@ -119,6 +125,27 @@ impl Plant {
     /// Turns a motor by hand, rad: negative unwinds its tendon.
     pub fn turn_motor(&mut self, motor: usize, angle: f64) {
         self.motor[motor] += angle;
+    }
+
+    /// Tears a tendon, 0 to 3.
+    pub fn cut_tendon(&mut self, tendon: usize) {
+        self.tendons.cut(tendon);
+    }
+
+    /// From now on a tendon slips where it is clamped, and bears no more than so much, N.
+    pub fn loosen_tendon(&mut self, tendon: usize, grip: f64) {
+        self.tendons.loosen(tendon, grip);
+    }
+
+    /// Blocks a motor, 0 to 3.
+    pub fn jam_motor(&mut self, motor: usize) {
+        self.jammed[motor] = true;
+    }
+
+    /// Tendons and motors whole again.
+    pub fn mend(&mut self) {
+        self.tendons.mend();
+        self.jammed = [false; 4];
     }
 
     /// Tendon tensions, N.

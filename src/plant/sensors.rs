@@ -20,6 +20,15 @@ pub struct Sensors {
     gauge_zero: [f64; 4],
     gauge_noise: f64,
     random: Pcg64,
+    /// Counts that a dead gauge shows for ever.
+    dead: [Option<u16>; 4],
+    /// Drift of each gauge so far, N, and its speed, N/s.
+    drift: [f64; 4],
+    drift_speed: [f64; 4],
+    /// Counts by which an encoder is off.
+    jumped: [i32; 4],
+    /// What the gauges showed last.
+    shown: [u16; 4],
 }
 
 impl Sensors {
@@ -35,6 +44,38 @@ impl Sensors {
             gauge_zero: finger.gauge.zero,
             gauge_noise: finger.simulation.gauge_noise,
             random: Pcg64::seed_from_u64(finger.simulation.seed),
+            dead: [None; 4],
+            drift: [0.0; 4],
+            drift_speed: [0.0; 4],
+            jumped: [0; 4],
+            shown: [0; 4],
+        }
+    }
+
+    /// From now on a gauge shows this count, or the one that it shows now.
+    pub fn kill_gauge(&mut self, gauge: usize, count: Option<u16>) {
+        self.dead[gauge] = Some(count.unwrap_or(self.shown[gauge]));
+    }
+
+    /// From now on a gauge drifts, N/s.
+    pub fn let_gauge_drift(&mut self, gauge: usize, speed: f64) {
+        self.drift_speed[gauge] = speed;
+    }
+
+    /// An encoder gains or loses counts.
+    pub fn jump(&mut self, encoder: usize, counts: i32) {
+        self.jumped[encoder] = self.jumped[encoder].wrapping_add(counts);
+    }
+
+    /// Sensors that are whole and right again.
+    pub fn mend(&mut self) {
+        (self.dead, self.drift, self.drift_speed, self.jumped) = ([None; 4], [0.0; 4], [0.0; 4], [0; 4]);
+    }
+
+    /// Lets time pass, s: gauges drift.
+    pub fn pass(&mut self, seconds: f64) {
+        for gauge in 0..4 {
+            self.drift[gauge] += self.drift_speed[gauge] * seconds;
         }
     }
 
@@ -44,14 +85,16 @@ impl Sensors {
         let motor_counts = std::array::from_fn(|motor| {
             let counts = (angles[motor] * self.counts_per_radian[motor]).floor();
             // A counter wraps.
-            self.encoder_zero[motor].wrapping_add(counts as i64 as i32)
+            self.encoder_zero[motor].wrapping_add(counts as i64 as i32).wrapping_add(self.jumped[motor])
         });
         let gauge_counts = std::array::from_fn(|tendon| {
             let noise: f64 = StandardNormal.sample(&mut self.random);
-            let tension = tensions[tendon] + self.gauge_noise * noise;
+            let tension = tensions[tendon] + self.drift[tendon] + self.gauge_noise * noise;
             let counts = tension / self.newton_per_count[tendon] + self.gauge_zero[tendon];
-            counts.round().clamp(0.0, GAUGE_FULL_SCALE) as u16
+            let counts = counts.round().clamp(0.0, GAUGE_FULL_SCALE) as u16;
+            self.dead[tendon].unwrap_or(counts)
         });
+        self.shown = gauge_counts;
         (motor_counts, gauge_counts)
     }
 }

@@ -15,6 +15,12 @@ pub(super) struct ElasticTendons {
     stiffness: Vector4<f64>,
     /// Stretch at motor angle zero and theta = 0, m.
     home_stretch: Vector4<f64>,
+    /// Torn ones bear nothing.
+    cut: [bool; 4],
+    /// What a slipping one bears at most, N; infinite where none slips.
+    grip: Vector4<f64>,
+    /// How much longer slipping has made them, m.
+    slipped: Vector4<f64>,
 }
 
 impl ElasticTendons {
@@ -26,12 +32,41 @@ impl ElasticTendons {
             radius: tendons.radius * 0.01,
             home_stretch: tendons.pretension(finger.tendon.minimum).component_div(&stiffness),
             stiffness,
+            cut: [false; 4],
+            grip: Vector4::repeat(f64::INFINITY),
+            slipped: Vector4::zeros(),
         })
     }
 
     /// Tensions, N, at joint angles and motor angles, rad. A slack tendon has none.
     pub fn tensions(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> Vector4<f64> {
         self.stretch(theta, motor).component_mul(&self.stiffness)
+    }
+
+    /// Tears a tendon.
+    pub fn cut(&mut self, tendon: usize) {
+        self.cut[tendon] = true;
+    }
+
+    /// From now on a tendon slips where it is clamped, and bears no more than so much, N.
+    pub fn loosen(&mut self, tendon: usize, grip: f64) {
+        self.grip[tendon] = grip;
+    }
+
+    /// All tendons as they were in the beginning.
+    pub fn mend(&mut self) {
+        self.cut = [false; 4];
+        self.grip = Vector4::repeat(f64::INFINITY);
+        self.slipped = Vector4::zeros();
+    }
+
+    /// Lets those slip that bear more than their grip.
+    pub fn slip(&mut self, theta: &Vector3<f64>, motor: &Vector4<f64>) {
+        if self.grip.min() == f64::INFINITY {
+            return;
+        }
+        let beyond = (self.tensions(theta, motor) - self.grip).map(|beyond| beyond.max(0.0));
+        self.slipped += beyond.component_div(&self.stiffness);
     }
 
     /// tau = R t, eq. 13, N m.
@@ -51,6 +86,7 @@ impl ElasticTendons {
     }
 
     fn stretch(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> Vector4<f64> {
-        (self.radius.component_mul(motor) - self.r.tr_mul(theta) + self.home_stretch).map(|stretch| stretch.max(0.0))
+        let stretch = self.radius.component_mul(motor) - self.r.tr_mul(theta) + self.home_stretch - self.slipped;
+        Vector4::from_fn(|tendon, _| if self.cut[tendon] { 0.0 } else { stretch[tendon].max(0.0) })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::rig::{Loop, SCHEMES, finger_with, spring};
 use nalgebra::{Vector3, Vector4};
+use sun2xp::control::monitors::Symptom;
 use sun2xp::control::{Activity, Controller, Feedback};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
@@ -70,6 +71,7 @@ fn a_motor_that_is_warm_is_limited_to_what_it_can_give_for_ever() {
     finger.motor.continuous_torque = [1.0; 4];
     finger.motor.thermal_time = 0.5;
     let mut servo = Loop::new(&finger, 1000.0);
+    servo.right_alarms = &[Symptom::OverheatedMotor];
     let far = spring(Vector3::new(3.0, 0.3, 0.6), 6.0);
     let mut first = 0.0f64;
     for _ in 0..400 {

@@ -3,6 +3,7 @@
 use nalgebra::{Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
+use sun2xp::control::monitors::{Symptom, Watch};
 use sun2xp::control::{Activity, Command, Controller, Feedback, Report, SetPoint, State};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
@@ -25,6 +26,11 @@ pub struct Loop {
     /// Largest change of a motor's command from one cycle to the next, N at the tendon.
     pub largest_jump: f64,
     pub report: Report,
+    /// What the monitors make of it.
+    watch: Watch,
+    unwatched: u32,
+    /// What they may find, as the test makes it happen.
+    pub right_alarms: &'static [Symptom],
 }
 
 impl Loop {
@@ -59,6 +65,9 @@ impl Loop {
             least_true: 0.0,
             largest_jump: 0.0,
             report: Report::default(),
+            watch: Watch::default(),
+            unwatched: 0,
+            right_alarms: &[],
         };
         it.forget();
         it.plant.release_brake();
@@ -77,11 +86,13 @@ impl Loop {
     pub fn adjust(&mut self, belief: &ConfiguredFinger) {
         let controller = Controller::new(belief, self.rate).unwrap();
         self.previous = Some(std::mem::replace(&mut self.controller, controller));
+        self.watch.adjusted();
     }
 
     /// Another controller, without telling it so.
     pub fn replace(&mut self, belief: &ConfiguredFinger) {
         self.controller = Controller::new(belief, self.rate).unwrap();
+        self.watch.adjusted();
     }
 
     /// From now on this part of the replies is lost.
@@ -108,11 +119,26 @@ impl Loop {
             None => self.controller.cycle(&mut self.state, feedback, activity),
             Some(previous) => self.controller.take_over(&previous, &mut self.state, feedback, activity),
         };
+        self.watch(feedback, activity);
         let jump = (command.motor_torques - self.command.motor_torques).amax() / 0.0475;
         self.largest_jump = self.largest_jump.max(jump);
         self.least_commanded = self.least_commanded.min(report.desired_tensions.min());
         self.command = command;
         self.report = report;
+    }
+
+    fn watch(&mut self, feedback: Option<&Feedback>, activity: &Activity) {
+        self.unwatched += 1;
+        match (feedback, activity) {
+            (Some(feedback), Activity::Follow(_)) => {
+                let age = std::mem::take(&mut self.unwatched);
+                let alarms = self.controller.watch(&mut self.watch, &self.state, feedback, age, u16::MAX);
+                let fault = alarms.fault.filter(|alarm| !self.right_alarms.contains(&alarm.symptom));
+                assert_eq!(fault, None, "a false alarm: {:?}", self.report);
+            }
+            (None, Activity::Follow(_)) => {}
+            _ => (self.watch, self.unwatched) = (Watch::default(), 0),
+        }
     }
 
     pub fn run(&mut self, seconds: f64, activity: &Activity) {

@@ -59,7 +59,7 @@ fn a_board_that_falls_silent_faults_its_finger_and_its_watchdog_ends_it() {
     goes(&hand, 1, TARGET);
     boards[0].signal(libc::SIGSTOP);
     let text = fault_text(&hand, 1);
-    assert!(text.contains("lost replies (1000 ms)"), "{text}");
+    assert!(text.contains("lost replies (998 ms)"), "{text}");
     goes(&hand, 2, TARGET);
     close(hand);
     boards[0].signal(libc::SIGCONT);

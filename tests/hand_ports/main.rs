@@ -7,4 +7,5 @@ mod endings;
 mod faults;
 mod motion;
 mod opening;
+mod recovery;
 mod rig;

@@ -46,9 +46,19 @@ pub struct State {
 impl Board {
     /// A board with these fingers. It asks for the priority that simulated boards have in the library, and is as patient.
     pub fn start(fingers: &[&str]) -> Self {
+        Self::start_with(&[], fingers)
+    }
+
+    /// The same with a link to its port.
+    pub fn start_at(link: &str, fingers: &[&str]) -> Self {
+        Self::start_with(&["--link", link], fingers)
+    }
+
+    fn start_with(options: &[&str], fingers: &[&str]) -> Self {
         let mut program = Program::new(env!("CARGO_BIN_EXE_sun2xp"));
         program
             .args(["board", "--patient", "500", "--priority", "20"])
+            .args(options)
             .args(fingers.iter().flat_map(|finger| ["--finger", finger]));
         let mut process = program.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("a board");
         let orders = process.stdin.take().expect("its input");

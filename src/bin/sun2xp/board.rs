@@ -1,5 +1,6 @@
 //! `sun2xp board`: a simulated board as a program of its own.
 
+use crate::board_faults::Trouble;
 use nalgebra::Vector3;
 use std::error::Error;
 use std::io::{self, BufRead, Write};
@@ -22,6 +23,29 @@ use sun2xp::realtime::Priority;
 ///     state FINGER                           true joints (rad), tip (cm) and tensions (N), torques of the motors (N cm),
 ///                                            status bits as in a Reply
 ///     quit
+///
+/// What is broken stays so until `mend` or `good`. Parts are counted from 1 to 4; a probability is of each frame from the board, and
+/// without MS it is for ever:
+///
+///     cut FINGER TENDON                      a torn tendon
+///     slack FINGER TENDON GRIP               a tendon that slips and bears no more than GRIP, N
+///     jam FINGER MOTOR                       a motor that does not turn
+///     hot FINGER MOTOR                       a driver that switches off for heat
+///     dead-gauge FINGER GAUGE [COUNT]        a gauge that shows COUNT, or what it shows now
+///     drift-gauge FINGER GAUGE SPEED         a gauge that drifts, N/s
+///     jump FINGER ENCODER COUNTS             an encoder that gains counts
+///     zero-lost FINGER                       a board that no longer vouches for its counts
+///     emergency FINGER, supply FINGER, sensor FINGER
+///                                            the emergency stop input, the motor supply, a sensor that cannot be read
+///     reset FINGER                           power lost for a moment
+///     mend FINGER                            all that is whole again
+///     drop PROBABILITY [MS]                  frames are lost
+///     corrupt PROBABILITY [MS]               a bit is turned over
+///     delay PROBABILITY LATER [MS]           frames come LATER ms later
+///     duplicate PROBABILITY [MS], reorder PROBABILITY [MS]
+///     stall MS                               nothing comes, then everything
+///     good                                   a good line again
+///     unplug, replug                         the port vanishes; another one comes, whose path is answered
 ///
 /// Positions and forces are in the finger's frame, lengths in cm. The end of standard input does not end the program, so that it
 /// can run detached; `quit` or a signal does.
@@ -56,6 +80,9 @@ pub struct Arguments {
     /// Seed of the gauge noise; each finger's own follows from it.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// An order to carry out at the start; may be repeated.
+    #[arg(long = "order", value_name = "ORDER")]
+    orders: Vec<String>,
     /// A symbolic link to the port, made now and removed by `quit`. A symbolic link that is there is replaced.
     #[arg(long, value_name = "PATH")]
     link: Option<PathBuf>,
@@ -89,9 +116,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pace = arguments.patient.map_or(Pace::RealTime, Pace::patient);
     let port = SimulatedPort::start(board, pace, Priority { fifo: arguments.priority, core: None })?;
     if let Some(link) = &arguments.link {
-        make_link(port.path(), link)?;
+        make_link(&port.path(), link)?;
     }
     say(&port.path().display().to_string())?;
+    let desk =
+        Desk { port: &port, configuration: &configuration, link: arguments.link.as_deref(), seed: arguments.seed };
+    for order in &arguments.orders {
+        let order = Order::read(order)?.ok_or("an --order is empty")?;
+        let answer = desk.carry_out(&order)?;
+        if answer.starts_with("error") {
+            return Err(answer.into());
+        }
+    }
 
     for line in io::stdin().lock().lines() {
         let line = line?;
@@ -102,7 +138,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 }
                 return Ok(());
             }
-            Ok(Some(Order::For(number, action))) => say(&carry_out(&port, &configuration, number, &action))?,
+            Ok(Some(order)) => say(&desk.carry_out(&order)?)?,
             Ok(None) => {}
             Err(error) => say(&format!("error {error}"))?,
         }
@@ -129,17 +165,45 @@ fn make_link(port: &Path, link: &Path) -> Result<(), Failure> {
         .map_err(|error| format!("cannot make the symbolic link {}: {error}", link.display()).into())
 }
 
-fn carry_out(port: &SimulatedPort, configuration: &Configuration, number: u8, action: &Action) -> String {
-    let index = usize::from(number).wrapping_sub(1);
-    let address = (index < FINGERS).then(|| configuration.address(index));
-    address
-        .and_then(|address| port.with_finger(address, |finger| action.apply(finger)))
-        .unwrap_or_else(|| format!("error this board has no finger {number}"))
+/// Where orders are carried out.
+struct Desk<'a> {
+    port: &'a SimulatedPort,
+    configuration: &'a Configuration,
+    link: Option<&'a Path>,
+    seed: Option<u64>,
+}
+
+impl Desk<'_> {
+    /// The answer.
+    fn carry_out(&self, order: &Order) -> Result<String, Failure> {
+        let address = |number: u8| {
+            let index = usize::from(number).checked_sub(1).filter(|&index| index < FINGERS)?;
+            Some(self.configuration.address(index))
+        };
+        match order {
+            Order::For(number, action) => {
+                let found =
+                    address(*number).and_then(|address| self.port.with_finger(address, |finger| action.apply(finger)));
+                Ok(found.unwrap_or_else(|| format!("error this board has no finger {number}")))
+            }
+            Order::Trouble(trouble) => {
+                let answer = trouble.happen(self.port, self.seed.unwrap_or_default(), address);
+                if *trouble == Trouble::PlugIn
+                    && let Some(link) = self.link
+                {
+                    make_link(&self.port.path(), link)?;
+                }
+                Ok(answer)
+            }
+            Order::Quit => Err("quit is no order for the start".into()),
+        }
+    }
 }
 
 #[derive(Debug, PartialEq)]
 enum Order {
     For(u8, Action),
+    Trouble(Trouble),
     Quit,
 }
 
@@ -155,6 +219,9 @@ impl Order {
     /// None: an empty line.
     fn read(line: &str) -> Result<Option<Self>, String> {
         let words: Vec<&str> = line.split_whitespace().collect();
+        if let Some(trouble) = Trouble::read(&words)? {
+            return Ok(Some(Order::Trouble(trouble)));
+        }
         let (name, finger, numbers) = match words[..] {
             [] => return Ok(None),
             ["quit"] => return Ok(Some(Order::Quit)),

@@ -3,6 +3,7 @@
 #![deny(unsafe_code)]
 
 mod board;
+mod board_faults;
 mod bound;
 mod calibrate;
 mod doctor;

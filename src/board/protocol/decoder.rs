@@ -43,6 +43,12 @@ impl Decoder {
         frame_length.and_then(|length| Packet::unchecked(&self.frame[..length]))
     }
 
+    /// Gives up a frame that has only begun: what comes now is the beginning of another.
+    pub fn abandon(&mut self) {
+        let begun = std::mem::take(&mut self.stuffed_length) > 0;
+        self.counters.damaged += u64::from(begun);
+    }
+
     /// What came in so far.
     pub fn counters(&self) -> DecoderCounters {
         self.counters

@@ -2,6 +2,7 @@
 
 mod at_link;
 mod fault;
+mod from_monitors;
 mod kind;
 mod table;
 mod warnings;

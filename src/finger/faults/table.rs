@@ -91,7 +91,7 @@ faults! {
         "the cable is out, the board has no power, or there is too much noise on the line",
         "Check cable and power, then CloseHand and OpenHand";
     14 DamagedReplies "DAMAGED_REPLIES" Fault Finger Share "damaged replies",
-        "most replies of the last moment came in damaged (their CRC is wrong)",
+        "replies come in damaged (their CRC is wrong), too many to go on",
         "interference, a bad earth, a cable too long for the baud rate",
         "Check the cable's screen and earth, or lower finger.baud";
     15 LineNoise "LINE_NOISE" Warning Finger Share "noise on the line",
@@ -218,6 +218,10 @@ faults! {
         "a motor is near what it may bear for ever, and its torque is being limited",
         "the finger presses or holds more than it can for ever",
         "Ask for less, or let it rest";
+    46 Companion "COMPANION" Fault Finger Nothing "stopped with another",
+        "another finger of the hand has faulted, and hand.on_fault is \"hand\"",
+        "what the fault of that finger says",
+        "Mend that, then RecoverHand for every finger";
 }
 
 #[cfg(test)]

@@ -13,6 +13,17 @@ pub enum EndState {
     Hold,
 }
 
+/// What stops when a finger faults.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OnFault {
+    /// That finger; the others go on.
+    #[default]
+    Finger,
+    /// Every finger.
+    Hand,
+}
+
 /// What happens to a command outside the limits.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -71,6 +82,8 @@ pub struct ConfiguredHand {
     pub watchdog_ms: u16,
     /// How long a board may take to answer, and a finger to come under tension, at open, ms.
     pub open_timeout_ms: u32,
+    /// What stops when a finger faults.
+    pub on_fault: OnFault,
     /// What happens to a command outside the limits.
     pub out_of_range: OutOfRange,
     /// One line on standard error at the first refusal of each kind.
@@ -93,6 +106,7 @@ impl Default for ConfiguredHand {
             release_ramp_ms: 200,
             watchdog_ms: 20,
             open_timeout_ms: 5000,
+            on_fault: OnFault::Finger,
             out_of_range: OutOfRange::Refuse,
             print_refusals: true,
             black_box: None,

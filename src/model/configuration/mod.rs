@@ -10,7 +10,7 @@ pub use drive::{
     ConfiguredEncoder, ConfiguredGauge, ConfiguredGeometry, ConfiguredJoints, ConfiguredMotor, ConfiguredTendon,
     GaugeReference,
 };
-pub use hand::{ConfiguredHand, EndState, OutOfRange, PeriodClock, RealTime};
+pub use hand::{ConfiguredHand, EndState, OnFault, OutOfRange, PeriodClock, RealTime};
 
 pub use crate::model::calibrated::{ConfiguredZeroing, ZeroingMethod};
 use crate::model::{ConfiguredFriction, ConfiguredLinks, ConfiguredSimulation, Links, Tendons, TendonsError};
@@ -37,6 +37,8 @@ pub struct ConfiguredFinger {
     pub port: String,
     /// Bits a second on the port.
     pub baud: u32,
+    /// Whether a port that has failed is looked for and opened again. The finger goes on only when it is told to recover.
+    pub reconnect: bool,
     /// Address of the finger on its board, 1 to 15; 0: the finger's number.
     pub address: u8,
     /// Servo thread that runs the finger, 1 to 3; 0: the finger's number. Fingers on one port share a thread.
@@ -134,6 +136,7 @@ impl Default for ConfiguredFinger {
         Self {
             port: "simulated".into(),
             baud: 1_000_000,
+            reconnect: false,
             address: 0,
             thread: 0,
             core: None,

@@ -1,0 +1,54 @@
+//! A finger whose tendons are not as believed, identified as it will be before it is used.
+
+use crate::cases::{Case, Friction};
+use crate::robustness;
+use nalgebra::Vector3;
+use sun2xp::control::calibration::{Calibration, Obstacle, Sample, Task, Verdict};
+use sun2xp::control::{Activity, Command, Controller, Feedback, Report};
+use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
+
+/// What identification finds for the stiffness of each tendon, N/cm, where the true ones are these times as stiff as believed. With the
+/// friction that a finger has, and in counts.
+pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obstacle> {
+    let pose = Vector3::from(ConfiguredFinger::default().simulation.start_degrees.map(f64::to_radians));
+    let mut belief = case.finger(&pose, Friction::Default);
+    let mut truth = belief.clone();
+    robustness::stiffen(&mut truth, ratio);
+    let mut plant = Plant::new(&truth, Vector3::zeros()).expect("the default finger");
+    let mut sensors = Sensors::new(&truth);
+    let mut read = move |plant: &Plant| {
+        let (motor_counts, gauge_counts) = sensors.read(plant);
+        Feedback { motor_counts, gauge_counts }
+    };
+    let controller = Controller::new(&belief, case.rate).expect("the default controller");
+    let mut state = controller.start(&read(&plant));
+    plant.release_brake();
+    let mut command = Command::default();
+    let mut advance = |plant: &mut Plant, feedback: &Feedback, activity: &Activity| {
+        for _ in 0..(1.0 / (case.rate * PLANT_STEP_SECONDS)).round() as usize {
+            plant.step((command.motor_torques * 0.01).into());
+        }
+        let (next, report) = controller.cycle(&mut state, Some(feedback), activity);
+        command = next;
+        report
+    };
+    for _ in 0..(0.3 * case.rate) as usize {
+        let feedback = read(&plant);
+        advance(&mut plant, &feedback, &Activity::TakeUpSlack);
+    }
+    let mut calibration = Calibration::new(Task::Identify, &belief, case.rate).expect("the default finger");
+    let mut report = Report::default();
+    loop {
+        let feedback = read(&plant);
+        let (activity, verdict) = calibration.cycle(&Sample { feedback: &feedback, report: &report, zero_valid: true });
+        match verdict {
+            Verdict::Going(_) => report = advance(&mut plant, &feedback, &activity),
+            Verdict::Found(findings) => {
+                findings.apply(&mut belief);
+                return Ok(belief.tendon.stiffness);
+            }
+            Verdict::Refused(obstacle) => return Err(obstacle),
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Orders of `sun2xp board` that break things.
+
+use sun2xp::board::{Defect, LineFault, SimulatedPort};
+
+/// What an order does to the board or its cable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trouble {
+    /// To a finger, by its number.
+    Finger(u8, Defect),
+    /// No defects any more.
+    Mend(u8),
+    /// To frames on the line: with this probability, for so long, ns.
+    Line(LineFault, f64, u64),
+    /// The line is good again.
+    GoodLine,
+    Unplug,
+    PlugIn,
+}
+
+/// A longer time than any program runs.
+const FOR_EVER: u64 = u64::MAX;
+
+impl Trouble {
+    /// None: not an order of this kind.
+    pub fn read(words: &[&str]) -> Result<Option<Self>, String> {
+        let [name, rest @ ..] = words else { return Ok(None) };
+        let numbers = || -> Result<Vec<f64>, String> { rest.iter().map(|word| number(word)).collect() };
+        let trouble = match *name {
+            "unplug" | "replug" | "good" if rest.is_empty() => match *name {
+                "unplug" => Trouble::Unplug,
+                "replug" => Trouble::PlugIn,
+                _ => Trouble::GoodLine,
+            },
+            "drop" | "corrupt" | "duplicate" | "reorder" => {
+                let fault = match *name {
+                    "drop" => LineFault::Drop,
+                    "corrupt" => LineFault::Corrupt,
+                    "duplicate" => LineFault::Duplicate,
+                    _ => LineFault::Reorder,
+                };
+                match numbers()?[..] {
+                    [chance] => Trouble::Line(fault, probability(chance)?, FOR_EVER),
+                    [chance, time] => Trouble::Line(fault, probability(chance)?, nanoseconds(time)?),
+                    _ => return Err(format!("{name} PROBABILITY [MS]")),
+                }
+            }
+            "delay" => match numbers()?[..] {
+                [chance, delay] => Trouble::Line(LineFault::Delay(nanoseconds(delay)?), probability(chance)?, FOR_EVER),
+                [chance, delay, time] => {
+                    let fault = LineFault::Delay(nanoseconds(delay)?);
+                    Trouble::Line(fault, probability(chance)?, nanoseconds(time)?)
+                }
+                _ => return Err("delay PROBABILITY MS_LATER [MS]".into()),
+            },
+            "stall" => match numbers()?[..] {
+                [time] => Trouble::Line(LineFault::Stall, 1.0, nanoseconds(time)?),
+                _ => return Err("stall MS".into()),
+            },
+            "mend" => match numbers()?[..] {
+                [finger] => Trouble::Mend(whole(finger)?),
+                _ => return Err("mend FINGER".into()),
+            },
+            _ => return Self::read_defect(name, rest),
+        };
+        Ok(Some(trouble))
+    }
+
+    fn read_defect(name: &str, rest: &[&str]) -> Result<Option<Self>, String> {
+        const NAMES: [&str; 12] = [
+            "cut",
+            "slack",
+            "jam",
+            "hot",
+            "dead-gauge",
+            "drift-gauge",
+            "jump",
+            "zero-lost",
+            "emergency",
+            "supply",
+            "sensor",
+            "reset",
+        ];
+        if !NAMES.contains(&name) {
+            return Ok(None);
+        }
+        let numbers: Vec<f64> = rest.iter().map(|word| number(word)).collect::<Result<_, _>>()?;
+        let (finger, numbers) = match numbers[..] {
+            [finger, ref numbers @ ..] => (whole(finger)?, numbers),
+            [] => return Err(format!("{name}: of which finger?")),
+        };
+        let part = |part: f64| match whole(part)? {
+            part @ 1..=4 => Ok(part),
+            part => Err(format!("{part} is not between 1 and 4")),
+        };
+        let defect = match (name, numbers) {
+            ("cut", &[tendon]) => Defect::CutTendon(part(tendon)?),
+            ("slack", &[tendon, grip]) if grip >= 0.0 => Defect::SlackTendon { tendon: part(tendon)?, grip },
+            ("jam", &[motor]) => Defect::JammedMotor(part(motor)?),
+            ("hot", &[motor]) => Defect::HotMotor(part(motor)?),
+            ("dead-gauge", &[gauge]) => Defect::DeadGauge { gauge: part(gauge)?, count: None },
+            ("dead-gauge", &[gauge, count]) if (0.0..=65_535.0).contains(&count) => {
+                Defect::DeadGauge { gauge: part(gauge)?, count: Some(count as u16) }
+            }
+            ("drift-gauge", &[gauge, speed]) => Defect::DriftingGauge { gauge: part(gauge)?, speed },
+            ("jump", &[encoder, counts]) => Defect::EncoderJump { encoder: part(encoder)?, counts: counts as i32 },
+            ("zero-lost", &[]) => Defect::ZeroLost,
+            ("emergency", &[]) => Defect::EmergencyStop,
+            ("supply", &[]) => Defect::Supply,
+            ("sensor", &[]) => Defect::Sensor,
+            ("reset", &[]) => Defect::Reset,
+            _ => return Err(format!("{name} does not take these numbers; see sun2xp board --help")),
+        };
+        Ok(Some(Trouble::Finger(finger, defect)))
+    }
+
+    /// Makes it happen, and answers. `address`: of a finger, by its number.
+    pub fn happen(&self, port: &SimulatedPort, seed: u64, address: impl Fn(u8) -> Option<u8>) -> String {
+        let finger = |number: u8, act: &dyn Fn(&mut sun2xp::board::SimulatedFinger)| {
+            let found = address(number).and_then(|address| port.with_finger(address, |finger| act(finger)));
+            found.map_or_else(|| format!("error this board has no finger {number}"), |()| "ok".into())
+        };
+        match *self {
+            Trouble::Finger(number, defect) => finger(number, &|finger| {
+                // The part was looked at when the order was read.
+                finger.suffer(&defect);
+            }),
+            Trouble::Mend(number) => finger(number, &sun2xp::board::SimulatedFinger::mend),
+            Trouble::Line(fault, probability, time) => {
+                port.inject(fault, probability, time, seed);
+                "ok".into()
+            }
+            Trouble::GoodLine => {
+                port.clear();
+                "ok".into()
+            }
+            Trouble::Unplug => {
+                port.unplug();
+                "ok".into()
+            }
+            Trouble::PlugIn => match port.plug_in() {
+                Ok(()) => format!("ok {}", port.path().display()),
+                Err(error) => format!("error {error}"),
+            },
+        }
+    }
+}
+
+fn number(word: &str) -> Result<f64, String> {
+    let number: Option<f64> = word.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| format!("{word} is no number"))
+}
+
+fn whole(number: f64) -> Result<u8, String> {
+    let fits = number.fract() == 0.0 && (0.0..=255.0).contains(&number);
+    if fits { Ok(number as u8) } else { Err(format!("{number} is no small whole number")) }
+}
+
+fn probability(number: f64) -> Result<f64, String> {
+    if (0.0..=1.0).contains(&number) { Ok(number) } else { Err(format!("{number} is no probability: 0 to 1")) }
+}
+
+fn nanoseconds(milliseconds: f64) -> Result<u64, String> {
+    if milliseconds >= 0.0 { Ok((milliseconds * 1e6) as u64) } else { Err(format!("{milliseconds} ms is no time")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(line: &str) -> Result<Option<Trouble>, String> {
+        Trouble::read(&line.split_whitespace().collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn troubles_are_read() {
+        for (line, trouble) in [
+            ("cut 1 3", Trouble::Finger(1, Defect::CutTendon(3))),
+            ("slack 2 4 1.5", Trouble::Finger(2, Defect::SlackTendon { tendon: 4, grip: 1.5 })),
+            ("dead-gauge 1 2", Trouble::Finger(1, Defect::DeadGauge { gauge: 2, count: None })),
+            ("dead-gauge 1 2 4095", Trouble::Finger(1, Defect::DeadGauge { gauge: 2, count: Some(4095) })),
+            ("jump 1 2 -300", Trouble::Finger(1, Defect::EncoderJump { encoder: 2, counts: -300 })),
+            ("reset 3", Trouble::Finger(3, Defect::Reset)),
+            ("mend 3", Trouble::Mend(3)),
+            ("drop 0.05", Trouble::Line(LineFault::Drop, 0.05, FOR_EVER)),
+            ("corrupt 1 20", Trouble::Line(LineFault::Corrupt, 1.0, 20_000_000)),
+            ("delay 0.5 3 100", Trouble::Line(LineFault::Delay(3_000_000), 0.5, 100_000_000)),
+            ("stall 50", Trouble::Line(LineFault::Stall, 1.0, 50_000_000)),
+            ("unplug", Trouble::Unplug),
+            ("replug", Trouble::PlugIn),
+            ("good", Trouble::GoodLine),
+        ] {
+            assert_eq!(read(line), Ok(Some(trouble)), "{line}");
+        }
+        assert_eq!(read("state 1"), Ok(None));
+    }
+
+    #[test]
+    fn wrong_troubles_are_named() {
+        for (line, part) in [
+            ("cut 1 5", "not between 1 and 4"),
+            ("cut 1", "does not take these numbers"),
+            ("cut", "of which finger"),
+            ("cut one 2", "one is no number"),
+            ("drop 1.5", "no probability"),
+            ("drop", "PROBABILITY [MS]"),
+            ("stall -1", "no time"),
+            ("slack 1 2 -3", "does not take these numbers"),
+        ] {
+            let error = read(line).unwrap_err();
+            assert!(error.contains(part), "{line}: {error}");
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! One direction of a simulated cable: whole frames go in, and what a bad line makes of them comes out. The same seed makes the same.
+
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+use std::collections::VecDeque;
+
+/// What a line does to frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineFault {
+    /// A frame is lost.
+    Drop,
+    /// One bit of a frame is turned over.
+    Corrupt,
+    /// A frame comes so much later, ns; frames that follow may overtake it.
+    Delay(u64),
+    /// A frame comes twice.
+    Duplicate,
+    /// A frame comes after the one that follows it.
+    Reorder,
+    /// Nothing comes; when it ends, all comes at once.
+    Stall,
+}
+
+/// A fault that happens by chance, for a while.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Injected {
+    fault: LineFault,
+    /// Of each frame, 0 to 1.
+    probability: f64,
+    /// ns.
+    until: u64,
+}
+
+/// A frame on its way.
+#[derive(Clone, Debug)]
+struct Waiting {
+    due: u64,
+    bytes: Vec<u8>,
+}
+
+/// One direction of a cable.
+#[derive(Debug)]
+pub(super) struct SimulatedLine {
+    injected: Vec<Injected>,
+    random: Pcg64,
+    waiting: VecDeque<Waiting>,
+    /// Comes after the next frame.
+    held: Option<Vec<u8>>,
+}
+
+impl SimulatedLine {
+    pub fn new() -> Self {
+        Self { injected: Vec::new(), random: Pcg64::seed_from_u64(0), waiting: VecDeque::new(), held: None }
+    }
+
+    /// From now on a fault happens to each frame with this probability, until `until`, ns. A stall always happens. Chance begins
+    /// anew with this seed.
+    pub fn inject(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
+        self.random = Pcg64::seed_from_u64(seed);
+        self.injected.push(Injected { fault, probability, until });
+    }
+
+    /// A good line again; what waits comes next.
+    pub fn clear(&mut self) {
+        self.injected.clear();
+        self.waiting.iter_mut().for_each(|waiting| waiting.due = 0);
+    }
+
+    /// Nothing is on its way any more.
+    pub fn cut(&mut self) {
+        self.waiting.clear();
+        self.held = None;
+    }
+
+    /// Takes a frame at `now`, ns, and gives `deliver` what comes out at once.
+    pub fn carry(&mut self, now: u64, frame: &[u8], deliver: &mut dyn FnMut(&[u8])) {
+        self.injected.retain(|injected| injected.until > now);
+        if self.injected.is_empty() && self.held.is_none() && self.waiting.is_empty() {
+            return deliver(frame);
+        }
+        let mut bytes = frame.to_vec();
+        let (mut copies, mut due, mut hold) = (1, now, false);
+        for index in 0..self.injected.len() {
+            let Injected { fault, probability, until } = self.injected[index];
+            let hit = f64::from(self.random.next_u32()) < probability * 4_294_967_296.0;
+            match fault {
+                LineFault::Stall => due = due.max(until),
+                _ if !hit => {}
+                LineFault::Drop => copies = 0,
+                LineFault::Corrupt => {
+                    let bit = self.random.next_u32() as usize % (8 * bytes.len().max(1));
+                    bytes.iter_mut().skip(bit / 8).take(1).for_each(|byte| *byte ^= 1 << (bit % 8));
+                }
+                LineFault::Delay(time) => due = due.max(now + time),
+                LineFault::Duplicate => copies *= 2,
+                LineFault::Reorder => hold = self.held.is_none(),
+            }
+        }
+        if hold && copies > 0 {
+            self.held = Some(bytes);
+        } else {
+            for _ in 0..copies {
+                self.waiting.push_back(Waiting { due, bytes: bytes.clone() });
+            }
+            if let Some(held) = self.held.take() {
+                self.waiting.push_back(Waiting { due, bytes: held });
+            }
+        }
+        self.arrive(now, deliver);
+    }
+
+    /// Gives `deliver` what has arrived by `now`, ns, in the order of arrival.
+    pub fn arrive(&mut self, now: u64, deliver: &mut dyn FnMut(&[u8])) {
+        while let Some(index) = self.next().filter(|&index| self.waiting[index].due <= now) {
+            if let Some(frame) = self.waiting.remove(index) {
+                deliver(&frame.bytes);
+            }
+        }
+    }
+
+    /// When the next frame arrives, ns.
+    pub fn next_arrival(&self) -> Option<u64> {
+        self.next().map(|index| self.waiting[index].due)
+    }
+
+    /// The frame that arrives next: of those due at the same time, the first.
+    fn next(&self) -> Option<usize> {
+        (0..self.waiting.len()).min_by_key(|&index| self.waiting[index].due)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What comes out of a line into which one byte goes each microsecond, with its time.
+    fn out(line: &mut SimulatedLine, bytes: u8) -> Vec<(u64, u8)> {
+        let mut came = Vec::new();
+        for byte in 0..bytes {
+            let now = 1000 * u64::from(byte);
+            line.arrive(now, &mut |frame| came.push((now, frame[0])));
+            line.carry(now, &[byte], &mut |frame| came.push((now, frame[0])));
+        }
+        came
+    }
+
+    fn bytes(came: &[(u64, u8)]) -> Vec<u8> {
+        came.iter().map(|&(_, byte)| byte).collect()
+    }
+
+    #[test]
+    fn a_good_line_carries_everything_at_once() {
+        let came = out(&mut SimulatedLine::new(), 5);
+        assert_eq!(came, [(0, 0), (1000, 1), (2000, 2), (3000, 3), (4000, 4)]);
+    }
+
+    #[test]
+    fn faults_do_what_they_are_called_and_end() {
+        let with = |fault| {
+            let mut line = SimulatedLine::new();
+            line.inject(fault, 1.0, 2000, 1);
+            out(&mut line, 4)
+        };
+        assert_eq!(bytes(&with(LineFault::Drop)), [2, 3]);
+        assert_eq!(bytes(&with(LineFault::Duplicate)), [0, 0, 1, 1, 2, 3]);
+        assert_eq!(with(LineFault::Delay(1500)), [(2000, 0), (2000, 2), (3000, 1), (3000, 3)]);
+        assert_eq!(with(LineFault::Stall), [(2000, 0), (2000, 1), (2000, 2), (3000, 3)]);
+        assert_eq!(bytes(&with(LineFault::Reorder))[..2], [1, 0]);
+        let corrupt = with(LineFault::Corrupt);
+        assert!((0..2).all(|place| (corrupt[place].1 ^ place as u8).count_ones() == 1), "{corrupt:?}");
+        assert_eq!(bytes(&corrupt)[2..], [2, 3]);
+    }
+
+    #[test]
+    fn chance_is_seeded() {
+        let lossy = |seed| {
+            let mut line = SimulatedLine::new();
+            line.inject(LineFault::Drop, 0.5, u64::MAX, seed);
+            bytes(&out(&mut line, 100))
+        };
+        assert_eq!(lossy(3), lossy(3));
+        assert_ne!(lossy(3), lossy(4));
+        assert!((30..70).contains(&lossy(3).len()));
+    }
+}

@@ -1,0 +1,104 @@
+//! A gauge that shows the same count for ever. A live one flickers in its last bits: how much, each gauge has shown before. Gauges
+//! without noise are all still at rest: one is judged only while others flicker.
+
+use super::{Alarm, Sample, Symptom, first_of};
+
+/// Part of the way that the mean of the flicker goes in a sample.
+const LEARNING: f64 = 1.0 / 64.0;
+
+/// Samples after which the flicker is known.
+const KNOWN: u32 = 256;
+
+/// The chance at which a live gauge that flickers as before would show one count for so long, as a natural logarithm: once
+/// in 10^11 samples, a year of four gauges at 1000 Hz.
+const UNLIKELY: f64 = -25.3;
+
+/// A gauge that repeats itself more often than this is not known to flicker: without noise, or converted slowly.
+const MOST_REPEATS: f64 = 0.7;
+
+/// So many of the samples of a gauge with noise turn back from where the one before them went: about half do. Motion does not turn
+/// back, so that a gauge without noise that comes to rest is not taken for a dead one.
+const LEAST_REVERSALS: f64 = 0.15;
+
+/// Part of the way that the mean of the reversals goes in a sample: slowly, because noise does not show in a fast motion.
+const LEARNING_REVERSALS: f64 = 1.0 / 512.0;
+
+/// So many samples with the same count are a row that a gauge may be judged by.
+const ROW: u32 = 4;
+
+/// Without flicker a gauge is dead only for its tendon's sake; see `tension_lost`.
+#[derive(Clone, Debug)]
+pub(super) struct GaugeStuck;
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Memory {
+    last: [u16; 4],
+    /// Samples with the same count, in a row.
+    same: [u32; 4],
+    /// How often a sample repeats the one before, 0 to 1.
+    repeats: [f64; 4],
+    /// How often a sample turns back, 0 to 1.
+    reversals: [f64; 4],
+    /// Whether each gauge last rose.
+    rose: [bool; 4],
+    samples: u32,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self { last: [0; 4], same: [0; 4], repeats: [1.0; 4], reversals: [0.0; 4], rose: [false; 4], samples: 0 }
+    }
+}
+
+/// What is known of the flicker of four gauges.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flicker {
+    /// Whether the gauge is known to flicker.
+    pub known: [bool; 4],
+    /// Samples with the same count, in a row.
+    pub same: [u32; 4],
+}
+
+impl Memory {
+    /// Whether at least two other gauges have just moved.
+    fn others_flicker(&self, gauge: usize) -> bool {
+        (0..4).filter(|&other| other != gauge && self.same[other] < ROW).count() >= 2
+    }
+
+    pub fn flickers(&self) -> Flicker {
+        let known = std::array::from_fn(|gauge| {
+            let noisy = self.repeats[gauge] < MOST_REPEATS && self.reversals[gauge] > LEAST_REVERSALS;
+            self.samples >= KNOWN && noisy
+        });
+        Flicker { known, same: self.same }
+    }
+}
+
+impl GaugeStuck {
+    pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
+        let counts = sample.feedback.gauge_counts;
+        memory.samples = memory.samples.saturating_add(1);
+        let slow = LEARNING_REVERSALS.max(1.0 / f64::from(memory.samples));
+        let last = std::mem::replace(&mut memory.last, counts);
+        let same = |gauge: usize| counts[gauge] == last[gauge];
+        let rises = |gauge: usize| counts[gauge] > last[gauge];
+        memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge] + 1 } else { 0 });
+        for gauge in 0..4 {
+            // What is judged must not shift the judgement.
+            if memory.same[gauge] < ROW || !memory.others_flicker(gauge) {
+                let learn = |mean: &mut f64, is: bool, gain: f64| *mean += (f64::from(u8::from(is)) - *mean) * gain;
+                let same = memory.same[gauge] > 0;
+                learn(&mut memory.repeats[gauge], same, LEARNING);
+                learn(&mut memory.reversals[gauge], !same && rises(gauge) != memory.rose[gauge], slow);
+            }
+            if memory.same[gauge] == 0 {
+                memory.rose[gauge] = rises(gauge);
+            }
+        }
+        let known = memory.flickers().known;
+        first_of(Symptom::GaugeStuck, |gauge| {
+            let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(0.1).ln() < UNLIKELY;
+            (known[gauge] && unlikely && memory.others_flicker(gauge)).then_some(f64::from(counts[gauge]))
+        })
+    }
+}

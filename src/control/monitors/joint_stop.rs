@@ -1,0 +1,32 @@
+//! Joints at their mechanical stops.
+
+use super::{Alarm, Sample, Symptom};
+use crate::model::configuration::ConfiguredFinger;
+use nalgebra::Vector3;
+
+/// At this part of the way from its limit to its stop a joint counts as at its stop: tendons and stops give way.
+const NEARLY: f64 = 0.8;
+
+#[derive(Clone, Debug)]
+pub(super) struct JointStop {
+    /// rad.
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+}
+
+impl JointStop {
+    pub fn new(finger: &ConfiguredFinger) -> Self {
+        let ((low, high), (lower, upper)) = (finger.joint_limits(), finger.stops());
+        Self { low: low.lerp(&lower, NEARLY), high: high.lerp(&upper, NEARLY) }
+    }
+
+    pub fn watch(&self, sample: &Sample) -> Option<Alarm> {
+        let joints = sample.report.joints;
+        let at_stop = |&joint: &usize| joints[joint] < self.low[joint] || joints[joint] > self.high[joint];
+        (0..3).find(at_stop).map(|joint| Alarm {
+            symptom: Symptom::JointAtStop,
+            part: joint as u8,
+            value: joints[joint].to_degrees(),
+        })
+    }
+}

@@ -1,0 +1,35 @@
+//! How many of the last periods went wrong: replies lost or damaged, periods skipped.
+
+/// A share that forgets: what went wrong counts 1/e after as many periods as the window has.
+#[derive(Clone, Copy, Debug)]
+pub struct LineQuality {
+    gain: f64,
+    share: f64,
+}
+
+impl LineQuality {
+    /// A window of so many periods, at least one.
+    pub fn new(window: f64) -> Self {
+        Self { gain: 1.0 / window.max(1.0), share: 0.0 }
+    }
+
+    /// One period, and how much of it went wrong, 0 to 1. The share of the window that did.
+    pub fn note(&mut self, wrong: f64) -> f64 {
+        self.share += (wrong - self.share) * self.gain;
+        self.share
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_share_follows_what_goes_wrong_and_forgets() {
+        let mut quality = LineQuality::new(100.0);
+        let every_fifth = (0..2000).map(|period| quality.note(f64::from(u8::from(period % 5 == 0)))).last();
+        assert!((every_fifth.unwrap_or_default() - 0.2).abs() < 0.01, "{every_fifth:?}");
+        let forgotten = (0..100).map(|_| quality.note(0.0)).last().unwrap_or_default();
+        assert!((forgotten - 0.2 / std::f64::consts::E).abs() < 0.01, "{forgotten}");
+    }
+}

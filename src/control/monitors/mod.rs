@@ -1,0 +1,216 @@
+//! Monitors: what is wrong with tendons, gauges, encoders, motors and joints, found from what a cycle has measured and
+//! commanded. One file a monitor; each says once what it means by wrong.
+//!
+//! They watch a finger that is a spring: while slack is taken up, calibrated or let go, all of it is as it should be.
+
+mod agreement;
+mod encoder_jump;
+mod gauge_range;
+mod gauge_stuck;
+mod joint_stop;
+mod line_quality;
+mod motor_heat;
+mod stalled_motor;
+mod tension_lost;
+
+pub use line_quality::LineQuality;
+
+use super::sensors::Sensors;
+use super::signals::{Feedback, Measured, Report};
+use crate::model::Tendons;
+use crate::model::configuration::{ConfiguredFinger, Unusable};
+use agreement::Agreement;
+use encoder_jump::EncoderJump;
+use gauge_range::GaugeRange;
+use gauge_stuck::GaugeStuck;
+use joint_stop::JointStop;
+use motor_heat::MotorHeat;
+use nalgebra::Vector4;
+use stalled_motor::StalledMotor;
+use tension_lost::TensionLost;
+
+/// What a monitor finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symptom {
+    /// Tension of a tendon, N, stays far under t_min.
+    SlackTendon,
+    /// Tension of a tendon, N, is gone.
+    BrokenTendon,
+    /// Tension of a tendon, N.
+    OverTension,
+    /// Count of a gauge.
+    GaugeStuck,
+    /// Count of a gauge.
+    GaugeOutOfRange,
+    /// Tension, N, that gauges and encoders differ by.
+    GaugeDisagrees,
+    /// Counts that an encoder moved.
+    EncoderJump,
+    /// Pull without balance, N.
+    StalledMotor,
+    /// Heat, per cent of what a motor can bear for ever.
+    OverheatedMotor,
+    /// Angle of a joint, degrees.
+    JointAtStop,
+    /// Tension of a tendon, N, gone for a moment.
+    SlackInMotion,
+    /// Heat, per cent.
+    WarmMotor,
+    /// Per cent of the wanted torque that the tension limits let through.
+    TorqueNotAdmitted,
+}
+
+/// A symptom, where, and how much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Alarm {
+    /// What.
+    pub symptom: Symptom,
+    /// Tendon, motor, gauge or encoder, 1 to 4, 0 where it is not known which; joint, 0 to 2.
+    pub part: u8,
+    /// In the unit of the symptom.
+    pub value: f64,
+}
+
+/// What a cycle gives rise to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Alarms {
+    /// The finger has to stop.
+    pub fault: Option<Alarm>,
+    /// The finger goes on.
+    pub warning: Option<Alarm>,
+}
+
+/// All monitors of a finger.
+#[derive(Clone, Debug)]
+pub(super) struct Monitors {
+    period: f64,
+    sensors: Sensors,
+    /// Motor radii, cm.
+    radius: Vector4<f64>,
+    tension_lost: TensionLost,
+    gauge_range: GaugeRange,
+    gauge_stuck: GaugeStuck,
+    agreement: Agreement,
+    encoder_jump: EncoderJump,
+    stalled_motor: StalledMotor,
+    motor_heat: MotorHeat,
+    joint_stop: JointStop,
+}
+
+/// What the monitors remember.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Watch {
+    before: Option<Before>,
+    tension_lost: tension_lost::Memory,
+    gauge_range: gauge_range::Memory,
+    gauge_stuck: gauge_stuck::Memory,
+    agreement: agreement::Memory,
+    encoder_jump: encoder_jump::Memory,
+    stalled_motor: stalled_motor::Memory,
+    motor_heat: motor_heat::Memory,
+}
+
+impl Watch {
+    /// The controller has been adjusted: what gauges and encoders differ by is to be found anew.
+    pub fn adjusted(&mut self) {
+        self.agreement = Default::default();
+    }
+}
+
+/// The sample before this one.
+#[derive(Clone, Copy, Debug)]
+struct Before {
+    motor_angles: Vector4<f64>,
+    /// Pulls that act while this sample is taken, N.
+    pulls: Vector4<f64>,
+}
+
+/// What one sample tells.
+struct Sample<'a> {
+    feedback: &'a Feedback,
+    report: &'a Report,
+    /// N.
+    tensions: Vector4<f64>,
+    /// Motor travel, r m, cm.
+    travel: Vector4<f64>,
+    /// How far the motors turned since the last sample, rad.
+    turned: Vector4<f64>,
+    /// N at the tendon, of the command that acted.
+    pulls: Vector4<f64>,
+    /// Since the last sample, s.
+    elapsed: f64,
+    /// The gauges' largest count.
+    full_scale: u16,
+}
+
+impl Monitors {
+    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64) -> Result<Self, Unusable> {
+        Ok(Self {
+            period: 1.0 / rate,
+            sensors: Sensors::new(finger)?,
+            radius: tendons.radius,
+            tension_lost: TensionLost::new(finger),
+            gauge_range: GaugeRange::new(finger),
+            gauge_stuck: GaugeStuck,
+            agreement: Agreement::new(finger, tendons),
+            encoder_jump: EncoderJump::new(finger),
+            stalled_motor: StalledMotor::new(finger, tendons),
+            motor_heat: MotorHeat::new(finger),
+            joint_stop: JointStop::new(finger),
+        })
+    }
+
+    /// One sample of a finger that is a spring. `age`: periods since the last one; `pulls`: what the cycle has just commanded, N.
+    #[allow(clippy::too_many_arguments)]
+    pub fn watch(
+        &self,
+        watch: &mut Watch,
+        feedback: &Feedback,
+        report: &Report,
+        pulls: &Vector4<f64>,
+        heat: &Vector4<f64>,
+        age: u32,
+        full_scale: u16,
+    ) -> Alarms {
+        let Measured { motor_angles, tensions } = self.sensors.measured(feedback);
+        let now = Before { motor_angles, pulls: *pulls };
+        let Some(before) = watch.before.replace(now) else { return Alarms::default() };
+        let sample = Sample {
+            feedback,
+            report,
+            tensions,
+            travel: self.radius.component_mul(&motor_angles),
+            turned: motor_angles - before.motor_angles,
+            pulls: before.pulls,
+            elapsed: self.period * f64::from(age),
+            full_scale,
+        };
+        // A dead sensor explains what it makes the others say, so sensors come first.
+        let stuck = self.gauge_stuck.watch(&mut watch.gauge_stuck, &sample);
+        let jumped = self.encoder_jump.watch(&mut watch.encoder_jump, &sample);
+        let range = self.gauge_range.watch(&mut watch.gauge_range, &sample);
+        let flickers = watch.gauge_stuck.flickers();
+        let disagrees = self.agreement.watch(&mut watch.agreement, &sample);
+        let missing = watch.agreement.missing();
+        let lost = self.tension_lost.watch(&mut watch.tension_lost, &sample, &missing, &flickers);
+        let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
+        // Where the gauge drifts, its motor stands still against a tension that is not there.
+        let doubtful = watch.agreement.doubtful();
+        let stalled =
+            stalled.map(|alarm| if doubtful { Alarm { symptom: Symptom::GaugeDisagrees, ..alarm } } else { alarm });
+        let hot = self.motor_heat.watch(&mut watch.motor_heat, heat, &sample);
+        let fault = jumped.or(stuck).or(range).or(lost.fault).or(stalled).or(disagrees).or(hot.fault);
+        let warning = lost.warning.or(self.joint_stop.watch(&sample)).or(hot.warning).or(not_admitted(report));
+        Alarms { fault, warning }
+    }
+}
+
+fn not_admitted(report: &Report) -> Option<Alarm> {
+    let value = 100.0 * report.torque_scale;
+    (report.torque_scale < 1.0).then_some(Alarm { symptom: Symptom::TorqueNotAdmitted, part: 0, value })
+}
+
+/// The first of four for which this holds, as an alarm.
+fn first_of(symptom: Symptom, found: impl Fn(usize) -> Option<f64>) -> Option<Alarm> {
+    (0..4).find_map(|index| found(index).map(|value| Alarm { symptom, part: index as u8 + 1, value }))
+}

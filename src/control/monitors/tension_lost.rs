@@ -1,0 +1,102 @@
+//! Tendons that lose their tension: torn, slipping, or with a gauge that is dead.
+//!
+//! A fast motion or a blow makes a whole tendon slack for a moment. Then it hangs; one that is torn, slips, or has a dead gauge
+//! has no tension although the other three and the encoders say that it is stretched.
+
+use super::gauge_stuck::Flicker;
+use super::{Alarm, Alarms, Sample, Symptom, first_of};
+use crate::model::configuration::ConfiguredFinger;
+use nalgebra::Vector4;
+
+/// A tendon is low below this part of t_min. No command asks for less than t_min.
+const LOW: f64 = 0.3;
+
+/// Its tension is gone below this part.
+const GONE: f64 = 0.1;
+
+/// From this part of t_min on a low tendon is missed: its stretch says that it should have so much.
+const MISSED: f64 = 0.3;
+
+/// So long, s, a tendon that is missed must be low.
+const LASTS: f64 = 0.012;
+
+/// So long, s, no motion makes a whole tendon slack.
+const TOO_LONG: f64 = 0.1;
+
+/// So long, s, tension must be gone for a warning.
+const NOTICED: f64 = 0.003;
+
+/// A gauge that flickered and then showed one count in so many samples is dead.
+const SILENT: u32 = 6;
+
+#[derive(Clone, Debug)]
+pub(super) struct TensionLost {
+    /// N.
+    low: f64,
+    gone: f64,
+    missed: f64,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Memory {
+    /// For how long each tendon has been low, s, and its tension since, N s.
+    low: Vector4<f64>,
+    impulse: Vector4<f64>,
+    /// For how long it has been low and missed, s.
+    missed: Vector4<f64>,
+    /// For how long its tension has been gone, s.
+    gone: Vector4<f64>,
+}
+
+impl TensionLost {
+    pub fn new(finger: &ConfiguredFinger) -> Self {
+        let minimum = finger.tendon.minimum;
+        Self { low: LOW * minimum, gone: GONE * minimum, missed: MISSED * minimum }
+    }
+
+    /// `missing`: what each tendon would have beyond what its gauge shows if the other three are right, N.
+    pub fn watch(&self, memory: &mut Memory, sample: &Sample, missing: &Vector4<f64>, flicker: &Flicker) -> Alarms {
+        for tendon in 0..4 {
+            let tension = sample.tensions[tendon];
+            let low = tension < self.low;
+            let counted = |so_far: f64, holds: bool| if holds { so_far + sample.elapsed } else { 0.0 };
+            memory.low[tendon] = counted(memory.low[tendon], low);
+            memory.missed[tendon] = counted(memory.missed[tendon], low && missing[tendon] > self.missed);
+            memory.gone[tendon] = counted(memory.gone[tendon], tension < self.gone);
+            let impulse = memory.impulse[tendon] + tension * sample.elapsed;
+            memory.impulse[tendon] = if low { impulse } else { 0.0 };
+        }
+        let warning = first_of(Symptom::SlackInMotion, |tendon| {
+            (memory.gone[tendon] >= NOTICED).then_some(sample.tensions[tendon])
+        });
+        // The others follow a torn tendon, as nothing balances them: the one that went first is it.
+        let (missed, lowest) = (memory.missed.imax(), memory.low.imax());
+        let fault = if memory.missed[missed] >= LASTS {
+            self.fault(memory, sample, flicker, missed)
+        } else {
+            (memory.low[lowest] >= TOO_LONG).then(|| self.lost(memory, lowest))
+        };
+        Alarms { fault, warning }
+    }
+
+    fn fault(&self, memory: &Memory, sample: &Sample, flicker: &Flicker, tendon: usize) -> Option<Alarm> {
+        let others_hold = (0..4).all(|other| other == tendon || memory.low[other] == 0.0);
+        let dead = match flicker.known[tendon] {
+            // A little later it is certain.
+            true if flicker.same[tendon] >= SILENT => return None,
+            true => false,
+            false => others_hold,
+        };
+        if !dead {
+            return Some(self.lost(memory, tendon));
+        }
+        let count = f64::from(sample.feedback.gauge_counts[tendon]);
+        Some(Alarm { symptom: Symptom::GaugeStuck, part: tendon as u8 + 1, value: count })
+    }
+
+    fn lost(&self, memory: &Memory, tendon: usize) -> Alarm {
+        let mean = memory.impulse[tendon] / memory.low[tendon];
+        let symptom = if mean < self.gone { Symptom::BrokenTendon } else { Symptom::SlackTendon };
+        Alarm { symptom, part: tendon as u8 + 1, value: mean }
+    }
+}

@@ -1,0 +1,154 @@
+//! The stages of a finger's life, from open to close, and what leads from one to the next.
+
+use super::{FingerServo, STOPS_AFTER_FAULT};
+use crate::board::protocol::{Configured, Status};
+use crate::control::calibration::{Sample, Verdict};
+use crate::control::{Activity, Command, Feedback, SetPoint};
+use crate::finger::mailbox::{Adjustable, Order};
+use crate::finger::{Fault, FaultKind, Stage};
+use crate::model::configuration::EndState;
+use nalgebra::Vector4;
+
+impl FingerServo {
+    /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
+    pub(super) fn take_commands(&mut self) -> Option<Adjustable> {
+        let order = self.mailbox.new_order();
+        // After the order: what was handed over with it is there.
+        let new = self.mailbox.new_adjustable();
+        let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
+        if let Some(order) = order {
+            self.report.orders += 1;
+            if let Order::Restart { .. } = order {
+                previous = None;
+            }
+            self.carry_out(order);
+        }
+        if let Some(set_point) = self.mailbox.new_set_point()
+            && let Activity::Follow(_) = self.activity
+        {
+            self.report.set_point = set_point;
+            self.activity = Activity::Follow(set_point);
+        }
+        if self.mailbox.closing() && self.report.stage != Stage::Closing {
+            self.enter(Stage::Closing);
+            self.calibration = None;
+            if self.end_state == EndState::Hold {
+                self.enter(Stage::Closed);
+            } else {
+                let ramp = f64::from(self.limits.ramp) * self.limits.period_ms * 1e-3;
+                self.activity = Activity::Release { ramp };
+            }
+        }
+        previous
+    }
+
+    fn carry_out(&mut self, order: Order) {
+        match order {
+            Order::Nothing => {}
+            Order::Calibrate(calibration) => {
+                self.calibration = Some(calibration);
+                self.report.calibration = None;
+                self.enter(Stage::Calibrating);
+            }
+            Order::Restart { limp } => {
+                self.anew = true;
+                if limp {
+                    self.go_limp();
+                } else {
+                    self.take_up_slack();
+                }
+            }
+        }
+    }
+
+    /// One step of the calibration, if there is one: it decides what the finger does.
+    pub(super) fn calibrate(&mut self) {
+        let Some(calibration) = &mut self.calibration else { return };
+        if !self.answered {
+            return;
+        }
+        let zero_valid = self.status.has(Status::ZERO_VALID);
+        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid };
+        let (activity, verdict) = calibration.cycle(&sample);
+        self.activity = activity;
+        self.report.calibration = Some(verdict);
+        if !matches!(verdict, Verdict::Going(_)) {
+            self.calibration = None;
+            self.go_limp();
+        }
+    }
+
+    pub(super) fn go_limp(&mut self) {
+        self.activity = Activity::Turn(Vector4::zeros());
+        self.enter(Stage::Limp);
+    }
+
+    /// Decides what the finger does next by what the cycle has found.
+    pub(super) fn move_on(&mut self) {
+        self.stage_cycles += 1;
+        match self.report.stage {
+            Stage::Opening if self.report.cycle.under_tension => {
+                // Without a reply it says what was, not what is.
+                self.settled_cycles += u32::from(self.answered);
+                if self.settled_cycles >= self.limits.settled {
+                    self.check_pose();
+                    if !self.under_control() {
+                        return;
+                    }
+                    let joints = self.report.cycle.joints;
+                    self.report.set_point = SetPoint { joints, ..self.initial };
+                    self.activity = Activity::Follow(self.report.set_point);
+                    self.watching.begin();
+                    self.enter(Stage::Running);
+                }
+            }
+            Stage::Opening => {
+                self.settled_cycles = 0;
+                if self.stage_cycles >= self.limits.tension {
+                    let slackest = self.report.cycle.slackest;
+                    let value = self.report.cycle.tensions[slackest];
+                    self.fault(Fault { kind: FaultKind::SlackTendon, part: slackest as u8 + 1, value });
+                }
+            }
+            Stage::Running => self.check_pose(),
+            Stage::Closing if self.stage_cycles > self.limits.ramp => self.enter(Stage::Closed),
+            _ => {}
+        }
+    }
+
+    pub(super) fn enter(&mut self, stage: Stage) {
+        self.report.stage = stage;
+        self.stage_cycles = 0;
+    }
+
+    /// Goes on after a fault: the board has been configured anew, and nothing has moved the motors yet.
+    pub(in crate::finger) fn recover(&mut self, configured: &Configured, stop_calls: u32) {
+        self.alarm.forget(stop_calls);
+        self.feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
+        self.status = configured.status;
+        self.sampled_at = None;
+        self.command = Command::default();
+        self.anew = true;
+        self.link.answered();
+        self.calibration = None;
+        self.stops_left = STOPS_AFTER_FAULT;
+        self.report.recoveries += 1;
+        self.take_up_slack();
+    }
+
+    fn take_up_slack(&mut self) {
+        self.activity = Activity::TakeUpSlack;
+        self.settled_cycles = 0;
+        self.enter(Stage::Opening);
+    }
+
+    /// A spring pulls a finger that is believed to be where it cannot be with all it has.
+    fn check_pose(&mut self) {
+        let (low, high) = self.adjustable.pose;
+        let joints = self.report.cycle.joints;
+        if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
+            let value = joints[joint].to_degrees();
+            self.fault(Fault { kind: FaultKind::ImpossiblePose, part: joint as u8, value });
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! Stopped, unplugged, powered down: nothing goes on by itself, everything goes on when it is told to.
+
+use crate::rig::{
+    Board, START, TARGET, close, goes, on_boards, on_one_port, on_ports, open, three_boards, turn, wait_until,
+};
+use std::fs::read_dir;
+use std::path::Path;
+use sun2xp::board::protocol::Status;
+use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
+use sun2xp::finger::{FaultKind, Stage};
+use sun2xp::hand::{Hand, stop_all};
+use sun2xp::model::configuration::{Configuration, OnFault};
+use sun2xp::realtime::Priority;
+
+fn fault(hand: &Hand, finger: i32) -> Option<FaultKind> {
+    match hand.report(finger).expect("a report").stage {
+        Stage::Faulted(fault) => Some(fault.kind),
+        _ => None,
+    }
+}
+
+fn faults(hand: &Hand, finger: i32) -> FaultKind {
+    wait_until("faulted", || fault(hand, finger).is_some());
+    fault(hand, finger).expect("faulted")
+}
+
+fn recovers(hand: &Hand, finger: i32) {
+    hand.recover(finger).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
+}
+
+/// Open descriptors and threads of this process.
+fn held() -> (usize, usize) {
+    let count = |folder: &str| read_dir(folder).expect("a folder").count();
+    (count("/proc/self/fd"), count("/proc/self/task"))
+}
+
+#[test]
+fn an_emergency_stop_stops_every_finger_until_it_recovers() {
+    let _turn = turn();
+    let mut boards = three_boards();
+    let hand = open(on_boards(&boards));
+    goes(&hand, 2, TARGET);
+    for _ in 0..2 {
+        stop_all();
+        for (index, board) in boards.iter_mut().enumerate() {
+            let finger = index as i32 + 1;
+            assert_eq!(faults(&hand, finger), FaultKind::EmergencyStopCall);
+            let state = board.wait_for(index + 1, "ended", |state| state.has(Status::ENDED));
+            assert!(state.limp() && !state.has(Status::WATCHDOG_TRIPPED), "left to the watchdog: {state:?}");
+            let error = hand.send_position(finger, START).expect_err("refused");
+            assert!(error.errno() == libc::EIO && error.to_string().contains("emergency stop"), "{error}");
+        }
+        for finger in 1..=3 {
+            recovers(&hand, finger);
+            // One recovers, the next is as it was.
+            assert_eq!(fault(&hand, 3).is_some(), finger < 3);
+        }
+        goes(&hand, 2, START);
+        goes(&hand, 3, TARGET);
+    }
+    // Nothing is to be done.
+    recovers(&hand, 1);
+    assert_eq!(hand.recover(4).expect_err("no such finger").errno(), libc::EINVAL);
+    // Closed while it is stopped; a hand that is opened afterwards knows nothing of it.
+    stop_all();
+    faults(&hand, 1);
+    close(hand);
+    goes(&open(on_boards(&boards)), 1, START);
+}
+
+#[test]
+fn fingers_that_stop_together_recover_one_by_one() {
+    let _turn = turn();
+    let mut boards = three_boards();
+    let mut configuration = on_boards(&boards);
+    configuration.hand.on_fault = OnFault::Hand;
+    let hand = open(configuration);
+    goes(&hand, 1, TARGET);
+    boards[1].signal(libc::SIGSTOP);
+    assert_eq!(faults(&hand, 2), FaultKind::LostReplies);
+    for finger in [1, 3] {
+        assert_eq!(faults(&hand, finger), FaultKind::Companion);
+        boards[finger as usize - 1].wait_for(finger as usize, "ended", |state| state.has(Status::ENDED));
+    }
+    recovers(&hand, 1);
+    goes(&hand, 1, START);
+    let error = hand.recover(2).expect_err("nobody answers");
+    assert_eq!(error.errno(), libc::ETIMEDOUT, "{error}");
+    boards[1].signal(libc::SIGCONT);
+    // It answers what it was asked while it stood, first.
+    wait_until("recovered", || hand.recover(2).is_ok());
+    recovers(&hand, 3);
+    for finger in 1..=3 {
+        goes(&hand, finger, TARGET);
+    }
+}
+
+#[test]
+fn a_board_that_lost_its_power_recovers_on_the_same_port() {
+    let _turn = turn();
+    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
+    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
+    let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
+    board.with_finger(2, |finger| finger.reset()).expect("finger 2");
+    assert_eq!(faults(&hand, 2), FaultKind::BoardReset);
+    // Its neighbours run on the same link.
+    let error = hand.recover(2).expect_err("refused");
+    assert!(error.errno() == libc::EBUSY && error.to_string().contains("shares its port"), "{error}");
+    goes(&hand, 1, TARGET);
+    stop_all();
+    for finger in 1..=3 {
+        assert_eq!(
+            faults(&hand, finger),
+            if finger == 2 { FaultKind::BoardReset } else { FaultKind::EmergencyStopCall }
+        );
+    }
+    recovers(&hand, 2);
+    for finger in 1..=3 {
+        assert_eq!(fault(&hand, finger), None, "it shares the port");
+        goes(&hand, finger, START);
+    }
+    close(hand);
+}
+
+#[test]
+fn a_port_that_is_not_to_be_reconnected_stays_away() {
+    let _turn = turn();
+    let mut boards = three_boards();
+    let hand = open(on_boards(&boards));
+    boards[2].kill();
+    assert_eq!(faults(&hand, 3), FaultKind::PortVanished);
+    let error = hand.recover(3).expect_err("refused");
+    assert!(error.errno() == libc::ENODEV && error.to_string().contains("finger.reconnect"), "{error}");
+    goes(&hand, 1, TARGET);
+    close(hand);
+}
+
+fn at(folder: &Path) -> String {
+    folder.join("board-2").to_string_lossy().into_owned()
+}
+
+/// `SUN2XP_ROUNDS=100 cargo test --test hand_ports unplugged -- --nocapture` for more rounds.
+#[test]
+fn a_board_that_is_unplugged_again_and_again_recovers_and_nothing_leaks() {
+    let _turn = turn();
+    let rounds: u32 = std::env::var("SUN2XP_ROUNDS").map_or(3, |rounds| rounds.parse().expect("a number"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
+    let mut second = Board::start_at(&at(folder.path()), &["2"]);
+    let mut configuration = on_ports([&first.port, &at(folder.path()), &third.port]);
+    configuration.fingers[1].reconnect = true;
+    let hand = open(configuration);
+    goes(&hand, 2, TARGET);
+    let before = held();
+    for round in 0..rounds {
+        second.kill();
+        assert_eq!(faults(&hand, 2), FaultKind::PortVanished);
+        let error = hand.recover(2).expect_err("nobody is there");
+        assert!([libc::ENOENT, libc::EIO, libc::ENOTTY].contains(&error.errno()), "{error}");
+        // Its port is a new device behind the old name.
+        second = Board::start_at(&at(folder.path()), &["2"]);
+        wait_until("recovered", || hand.recover(2).is_ok());
+        assert_eq!(hand.report(2).expect("a report").recoveries, round + 1);
+        goes(&hand, 2, TARGET);
+        assert_eq!((fault(&hand, 1), fault(&hand, 3)), (None, None), "the others go on");
+    }
+    assert_eq!(held(), before, "descriptors and threads after {rounds} rounds");
+    goes(&hand, 1, TARGET);
+    close(hand);
+}
+
+#[test]
+fn nobody_recovers_a_finger_but_who_asks() {
+    let _turn = turn();
+    let folder = tempfile::tempdir().expect("a folder");
+    let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
+    let mut second = Board::start_at(&at(folder.path()), &["2"]);
+    let mut configuration = on_ports([&first.port, &at(folder.path()), &third.port]);
+    configuration.fingers[1].reconnect = true;
+    let hand = open(configuration);
+    second.kill();
+    faults(&hand, 2);
+    let mut second = Board::start_at(&at(folder.path()), &["2"]);
+    // The library has found the board and configured it, and that is all.
+    let state = second.wait_for(2, "configured", |state| state.has(Status::CONFIGURED));
+    assert!(!state.has(Status::ENABLED) && state.limp(), "{state:?}");
+    assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished));
+    recovers(&hand, 2);
+    assert!(second.state(2).has(Status::ENABLED));
+    close(hand);
+}

@@ -1,0 +1,302 @@
+//! Lost, damaged, late, doubled and foreign bytes on the cable of a finger, on simulated time: what each costs.
+//!
+//! `SUN2XP_SECONDS=60 cargo test --release --test link_losses -- --nocapture` prints the table of docs/measurements.md.
+
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+use sun2xp::board::protocol::Status;
+use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, Terms, Transport};
+use sun2xp::finger::{
+    BlackBox, ControllerSource, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage,
+};
+use sun2xp::model::configuration::{Configuration, EndState};
+use sun2xp::realtime::{Clock, Schedule};
+
+const MS: u64 = 1_000_000;
+const PERIOD: u64 = MS;
+
+/// What can happen to a reply.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mishap {
+    Dropped,
+    Damaged,
+    CutShort,
+    Late,
+    Doubled,
+    AmongRubbish,
+}
+
+impl Mishap {
+    const ALL: [Mishap; 6] =
+        [Mishap::Dropped, Mishap::Damaged, Mishap::CutShort, Mishap::Late, Mishap::Doubled, Mishap::AmongRubbish];
+
+    /// The reply does not come in its period.
+    fn costs(self) -> bool {
+        !matches!(self, Mishap::Doubled | Mishap::AmongRubbish)
+    }
+}
+
+struct World {
+    cable: SimulatedCable,
+    random: Pcg64,
+    /// Part of the replies that something happens to.
+    share: f64,
+    /// The board does not answer any more.
+    silent: bool,
+    arriving: VecDeque<u8>,
+    late: Vec<u8>,
+    /// Mishaps so far, by kind.
+    happened: [u64; 6],
+    cost: u64,
+}
+
+impl World {
+    fn mishap(&mut self) -> Option<Mishap> {
+        let dice = self.random.next_u64();
+        let hit = (dice >> 11) as f64 / (1u64 << 53) as f64 >= 1.0 - self.share;
+        let index = (self.random.next_u64() % 6) as usize;
+        let mishap = hit.then_some(Mishap::ALL[index])?;
+        self.happened[index] += 1;
+        self.cost += u64::from(mishap.costs());
+        Some(mishap)
+    }
+
+    fn spoil(&mut self, mut reply: Vec<u8>) {
+        let place = self.random.next_u64() as usize % reply.len();
+        let other = self.random.next_u64();
+        // What was late comes before what is in time.
+        let mut bytes = std::mem::take(&mut self.late);
+        match self.mishap() {
+            None => bytes.extend(&reply),
+            Some(Mishap::Dropped) => {}
+            Some(Mishap::Damaged) => {
+                reply[place] ^= 1 << (other % 8);
+                bytes.extend(&reply);
+            }
+            Some(Mishap::CutShort) => bytes.extend(&reply[..place]),
+            Some(Mishap::Late) => self.late = reply,
+            Some(Mishap::Doubled) => {
+                bytes.extend(&reply);
+                bytes.extend(&reply);
+            }
+            Some(Mishap::AmongRubbish) => {
+                bytes.extend(other.to_le_bytes());
+                bytes.push(0);
+                bytes.extend(&reply);
+            }
+        }
+        self.arriving.extend(bytes);
+    }
+}
+
+/// A cable's end, and the clock of the world.
+#[derive(Clone)]
+struct End(Rc<RefCell<World>>);
+
+impl Transport for End {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
+        let world = &mut *self.0.borrow_mut();
+        world.cable.write(bytes)?;
+        let mut reply = [0; 512];
+        let now = world.cable.now();
+        let taken = world.cable.read_until(&mut reply, now)?;
+        if taken > 0 && !world.silent {
+            world.spoil(reply[..taken].to_vec());
+        }
+        Ok(bytes.len())
+    }
+
+    fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
+        let world = &mut *self.0.borrow_mut();
+        if world.arriving.is_empty() {
+            world.cable.advance_to(deadline);
+        }
+        let taken = buffer.len().min(world.arriving.len());
+        for (place, byte) in buffer.iter_mut().zip(world.arriving.drain(..taken)) {
+            *place = byte;
+        }
+        Ok(taken)
+    }
+
+    fn discard_input(&mut self) -> Result<(), PortError> {
+        self.0.borrow_mut().arriving.clear();
+        Ok(())
+    }
+
+    fn now(&self) -> u64 {
+        self.0.borrow().cable.now()
+    }
+}
+
+impl Clock for End {
+    fn now(&self) -> u64 {
+        Transport::now(self)
+    }
+
+    fn sleep_until(&self, deadline: u64) {
+        self.0.borrow_mut().cable.advance_to(deadline);
+    }
+}
+
+struct Rig {
+    world: Rc<RefCell<World>>,
+    servo: Servo<End, End>,
+    mailbox: Mailbox,
+    black_box: BlackBox,
+}
+
+impl Rig {
+    /// Finger 1 on a cable, running.
+    fn new(configuration: &mut Configuration) -> Self {
+        // Not "simulated": a built-in board is waited for patiently.
+        configuration.fingers[0].port = "/dev/cable".into();
+        let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
+        let cable = SimulatedCable::new(SimulatedBoard::new(configuration, &[0]).expect("a board"));
+        let world = World {
+            cable,
+            random: Pcg64::seed_from_u64(11),
+            share: 0.0,
+            silent: false,
+            arriving: VecDeque::new(),
+            late: Vec::new(),
+            happened: [0; 6],
+            cost: 0,
+        };
+        let world = Rc::new(RefCell::new(world));
+        let mut link = Link::new(End(world.clone()));
+        let (identity, configured) = link.shake_hands(1, &Terms::new(hand, finger), 500 * MS).expect("a handshake");
+        let source = ControllerSource { number: 0, gravity: configuration.gravity(0), finger: finger.clone() };
+        let (recorder, black_box) = BlackBox::new(1, hand, source);
+        let (timings, _) = rtrb::RingBuffer::new(1);
+        let stiffness = finger.initial_stiffness();
+        let (finger, mailbox) =
+            FingerServo::new(configuration, 0, stiffness, &identity, &configured, timings, recorder).expect("a finger");
+        let first = world.borrow().cable.now() + PERIOD;
+        let port = ServedPort::new(link, vec![finger]);
+        let servo = Servo::new(End(world.clone()), Schedule::new(first, PERIOD), vec![port]);
+        let mut rig = Self { world, servo, mailbox, black_box };
+        while rig.report().stage == Stage::Opening {
+            rig.servo.cycle();
+        }
+        assert_eq!(rig.report().stage, Stage::Running);
+        rig.mailbox.adopt();
+        rig
+    }
+
+    fn report(&self) -> FingerReport {
+        self.mailbox.report()
+    }
+
+    fn cycles(&mut self, count: u64) {
+        for cycle in 0..count {
+            self.servo.cycle();
+            if cycle % 100 == 0 {
+                self.black_box.collect();
+            }
+        }
+        self.black_box.collect();
+    }
+}
+
+fn seconds() -> u64 {
+    std::env::var("SUN2XP_SECONDS").map_or(4, |seconds| seconds.parse().expect("a number"))
+}
+
+#[test]
+fn each_mishap_costs_its_own_period_and_no_more() {
+    for (percent, faultless) in [(1, true), (5, true), (20, false)] {
+        let mut rig = Rig::new(&mut Configuration::default());
+        rig.world.borrow_mut().share = f64::from(percent) / 100.0;
+        let mut farthest = 0.0f64;
+        for second in 0..seconds() {
+            let target = [0.2, 0.6, if second % 2 == 0 { 1.1 } else { 0.9 }];
+            rig.mailbox.send(|set_point| set_point.joints = target.into()).expect("not faulted");
+            rig.cycles(999);
+            farthest = (rig.report().cycle.joints - nalgebra::Vector3::from(target)).amax().max(farthest);
+            rig.cycles(1);
+        }
+        let (report, world) = (rig.report(), rig.world.borrow());
+        println!(
+            "{percent:2} %: {} cycles, mishaps {:?}, {} periods lost, {} replies late, {} twice, {} damaged frames, off by {farthest:.4} rad",
+            report.cycles,
+            Mishap::ALL.iter().zip(world.happened).collect::<Vec<_>>(),
+            report.lost_replies,
+            report.late_replies,
+            report.duplicate_replies,
+            report.damaged_frames
+        );
+        assert_eq!(report.lost_replies, world.cost, "{percent} %");
+        assert!(world.happened.iter().all(|&count| count > 0), "{:?}", world.happened);
+        assert!(!faultless || report.stage == Stage::Running, "{percent} %: {:?}", report.stage);
+        // What comes late or twice is known by its number; the last may still be on its way.
+        let of = |mishap: Mishap| world.happened[mishap as usize];
+        let near = |counted: u64, happened: u64| counted <= happened && counted + 1 >= happened;
+        assert!(near(report.late_replies, of(Mishap::Late)), "{percent} %: {report:?}");
+        assert!(near(report.duplicate_replies, of(Mishap::Doubled)), "{percent} %: {report:?}");
+        assert!(farthest < 0.03, "{percent} %: {farthest} rad");
+        let recording = rig.black_box.recording().expect("a recording");
+        let replayed = recording.replay().expect("replayable");
+        assert!(replayed.different == 0 && replayed.cycles >= 2000, "{replayed:?}");
+    }
+}
+
+/// As after SIGKILL: from one moment to the next nobody commands the board.
+#[test]
+fn a_board_without_its_planner_is_in_its_end_state_within_the_watchdogs_time() {
+    for (end_state, rest) in [(EndState::Release, 0.0), (EndState::Hold, 0.2)] {
+        let mut configuration = Configuration::default();
+        (configuration.hand.end_state, configuration.hand.hold_torque_limit) = (end_state, 0.2);
+        let mut rig = Rig::new(&mut configuration);
+        rig.cycles(200);
+        let last = rig.report().last;
+        drop(rig.servo);
+        let mut world = rig.world.borrow_mut();
+        let mut now = last;
+        while !world.cable.board().finger(1).expect("finger 1").status().has(Status::ENDED) {
+            now += MS / 10;
+            world.cable.advance_to(now);
+            assert!(now - last < 25 * MS, "never ends");
+        }
+        let strongest = world.cable.board().finger(1).expect("finger 1").motor_torques().amax();
+        println!("{end_state:?}: in its end state {:.1} ms after the last command", (now - last) as f64 * 1e-6);
+        // The physics move on in steps of their own.
+        assert!(now - last <= 20 * MS + MS / 2, "{} ns", now - last);
+        assert!((strongest - rest).abs() < 1e-3, "{strongest} N cm");
+    }
+}
+
+#[test]
+fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
+    let mut rig = Rig::new(&mut Configuration::default());
+    rig.cycles(200);
+    // The sample of the last good reply was taken with this cycle's command.
+    rig.servo.cycle();
+    let good = rig.report().last;
+    rig.world.borrow_mut().silent = true;
+    let torques = |rig: &Rig| rig.world.borrow_mut().cable.board().finger(1).expect("finger 1").motor_torques();
+    let (before, mut at_rest) = (torques(&rig), None);
+    while rig.report().stage == Stage::Running {
+        rig.servo.cycle();
+        let after = rig.report().last - good;
+        let strongest = torques(&rig).amax();
+        if after < 4 * MS {
+            assert!((torques(&rig) - before).amax() < 0.1 * before.amax(), "held after {after} ns");
+        }
+        if strongest == 0.0 {
+            at_rest.get_or_insert(after);
+        }
+    }
+    let at_rest = at_rest.expect("at rest before it faults");
+    assert!((10 * MS..=12 * MS).contains(&at_rest), "at rest after {at_rest} ns");
+    let Stage::Faulted(fault) = rig.report().stage else { panic!("{:?}", rig.report().stage) };
+    assert_eq!(fault.kind, FaultKind::LostReplies);
+    rig.servo.cycle();
+    let ended = Transport::now(&End(rig.world.clone())) - good;
+    let status = rig.world.borrow_mut().cable.board().finger(1).expect("finger 1").status();
+    assert!(status.has(Status::ENDED) && !status.has(Status::WATCHDOG_TRIPPED), "{status:?}");
+    assert!(ended <= 21 * MS, "told after {ended} ns");
+    println!("at rest {at_rest} ns after the last good reply, told to stop within {ended} ns");
+}
