@@ -297,6 +297,12 @@ impl Action {
     }
 }
 
+fn rate(text: &str) -> Result<f64, String> {
+    let rate: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
+    let sensible = (1.0..=100_000.0).contains(&rate);
+    sensible.then_some(rate).ok_or_else(|| format!("{rate} is not between 1 and 100 000 Hz"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -328,10 +334,4 @@ mod tests {
             assert!(error.contains(part), "{line}: {error}");
         }
     }
-}
-
-fn rate(text: &str) -> Result<f64, String> {
-    let rate: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
-    let sensible = (1.0..=100_000.0).contains(&rate);
-    sensible.then_some(rate).ok_or_else(|| format!("{rate} is not between 1 and 100 000 Hz"))
 }
