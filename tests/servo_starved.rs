@@ -242,8 +242,8 @@ fn a_command_or_reply_that_was_thrown_away_is_made_good() {
         rig.run(0.3);
         let report = rig.mailbox.report();
         assert_eq!(report.stage, Stage::Running);
-        // The command is repeated after 0.2 s.
-        assert!((150..250).contains(&(report.lost_replies - lost)), "{report:?}");
+        // The command is repeated after 0.1 s.
+        assert!((75..125).contains(&(report.lost_replies - lost)), "{report:?}");
     }
 }
 

@@ -157,10 +157,11 @@ pub enum Cause {
     WakeUp,
     /// A core stood still meanwhile to a thread above all servos, for as long as the cycle was late.
     Pause,
-    /// Poll or read on the terminal returned so long after the deadline that they were given: the kernel's workers, which carry the
-    /// bytes, and for which poll and read wait, had no core.
-    Terminal,
-    /// None of these: the library itself.
+    /// It was late when it had done with sending and receiving, and no watcher has met a pause. Most often a poll returned long after
+    /// its deadline, on a core that a watcher did not look at meanwhile or behind a worker of the kernel that holds the terminal; but
+    /// this does not prove it: the library's own sending, reading and decoding lie in the same time.
+    Exchange,
+    /// None of these: the library itself, in its computation.
     Library,
 }
 
@@ -175,7 +176,7 @@ pub fn cause(cycle: &LateCycle, period: u64, pauses: &Pauses) -> Cause {
     match () {
         _ if done - woken <= period => Cause::WakeUp,
         _ if pauses.explain(cycle, period) => Cause::Pause,
-        _ if waited_for && computed_briefly => Cause::Terminal,
+        _ if waited_for && computed_briefly => Cause::Exchange,
         _ => Cause::Library,
     }
 }

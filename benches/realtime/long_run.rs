@@ -1,4 +1,4 @@
-//! Three fingers for a long time, with cyclictest beside them: whether a cycle is ever late by the library's own doing.
+//! Three fingers for a long time, with cyclictest beside them: whether a cycle is ever late by the library's own computation.
 
 use crate::Failure;
 use crate::cyclictest::Cyclictest;
@@ -8,7 +8,8 @@ use sun2xp::finger::{Servo, Stage};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Priority, now, spawn};
 
-/// Three fingers at 1000 Hz for a long time; every late cycle is explained. Exit status 1: one is the library's own fault.
+/// Three fingers at 1000 Hz for a long time; every late cycle is sorted by its cause. Exit status 1: one was late
+/// by the library's own computation.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// How long.
@@ -54,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let machine = cyclictest.finish()?;
 
     println!(
-        "| finger | cycles | replies lost | late | by their wake-up | by a pause of a core | by the terminal | by the library |"
+        "| finger | cycles | replies lost | late | by their wake-up | by a pause of a core | in the exchange, unexplained | by its computation |"
     );
     println!("|---|---|---|---|---|---|---|---|");
     let mut own = 0;
@@ -74,7 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             late.len(),
             count(Cause::WakeUp),
             count(Cause::Pause),
-            count(Cause::Terminal)
+            count(Cause::Exchange)
         );
         for (_, LateCycle { beginning, woken, computing, done }) in
             causes.iter().filter(|(cause, _)| *cause == Cause::Library).take(10)
@@ -107,7 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         pauses.count()
     );
     if own > 0 {
-        return Err(format!("{own} cycles were late by the library's own doing").into());
+        return Err(format!("{own} cycles were late by the library's own computation").into());
     }
     Ok(())
 }

@@ -3,8 +3,9 @@
 /// The most that one wake-up of the board's thread counts, ns.
 const LONGEST_STEP: u64 = 2_000_000;
 
-/// For so long, ns, a [`Pace::Patient`] board takes silence for a pause of the machine.
-const PATIENCE: u64 = 500_000_000;
+/// For so long, ns, a [`Pace::Patient`] board takes silence for a pause of the machine. Cycles of a host that is not real-time can
+/// be some 10 ms apart on a busy machine, and an answer that was thrown away is missed for a hundred of them.
+const PATIENCE: u64 = 2_000_000_000;
 
 /// How the time of a simulated board passes.
 ///
@@ -13,7 +14,7 @@ const PATIENCE: u64 = 500_000_000;
 pub enum Pace {
     /// As on the wall: a host that falls silent meets the watchdog in time.
     RealTime,
-    /// It also stands still, for up to half a second, while commands stay away. Bytes in a pseudo-terminal are carried by an
+    /// It also stands still, for up to two seconds, while commands stay away. Bytes in a pseudo-terminal are carried by an
     /// ordinary kernel thread, which a busy machine keeps waiting for tens of ms, and so it does a servo: no reason to stop a
     /// simulated hand.
     Patient {

@@ -22,7 +22,7 @@ const LEAST_LOST: u32 = 2;
 const SIMULATION_PATIENCE_MS: f64 = 5000.0;
 
 /// So long, ms, such a board has to answer before its command is sent again: either may have been thrown away.
-const REPEAT_MS: f64 = 200.0;
+const REPEAT_MS: f64 = 100.0;
 
 /// Motor torques on their way from the last command to rest.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]

@@ -89,7 +89,7 @@ pub struct Arguments {
     /// SCHED_FIFO priority of the board, where permitted; 0: not real-time.
     #[arg(long, value_name = "P", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=99))]
     priority: u8,
-    /// Stand still, for up to half a second, while the commands of a host of RATE cycles a second stay away: for a busy machine,
+    /// Stand still, for up to two seconds, while the commands of a host of RATE cycles a second stay away: for a busy machine,
     /// which carries the bytes of a pseudo-terminal late. The watchdog waits so much longer.
     #[arg(long, value_name = "RATE", value_parser = rate)]
     patient: Option<f64>,
