@@ -118,7 +118,8 @@ mod tests {
     fn what_cannot_work_is_refused_by_name() {
         let refused = |configured: ConfiguredController| Gains::new(&configured, 1000.0).unwrap_err().key;
         let base = ConfiguredController::default();
-        let proportional = ConfiguredController { scheme: Some(Scheme::Figure9), tension_gain: Some(1.0), ..base.clone() };
+        let proportional =
+            ConfiguredController { scheme: Some(Scheme::Figure9), tension_gain: Some(1.0), ..base.clone() };
         assert_eq!(refused(proportional), "controller.tension_gain");
         assert_eq!(refused(ConfiguredController { rate_time: Some(f64::NAN), ..base.clone() }), "controller.rate_time");
         assert_eq!(refused(ConfiguredController { stretch_filter: Some(0.0), ..base }), "controller.stretch_filter");
