@@ -43,9 +43,8 @@ pub(super) struct Numbers {
     pub dither_frequency: f64,
 }
 
-/// rad/s, damped however soft the finger. With 4 a nearly straight finger and tips on the axis of joint 0 drifted for seconds; with 30 a
-/// reach ends 0.5 mm off.
-const LEAST_FREQUENCY: f64 = 12.0;
+/// rad/s, damped however soft the finger. With 12 a finger without stiffness swings at its joint limits.
+const LEAST_FREQUENCY: f64 = 4.0;
 
 /// Hz.
 const DITHER_FREQUENCY: f64 = 40.0;
