@@ -18,8 +18,8 @@ const RATE: f64 = 500.0;
 /// A hand whose fingers are on one board in this process, so that things can happen to it.
 fn own_board(scheme: Scheme, folder: Option<&Path>) -> (SimulatedPort, Hand) {
     let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
-    let port =
-        SimulatedPort::start(board, Pace::Patient, Priority { fifo: 20, core: None }).expect("a pseudo-terminal");
+    let port = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None })
+        .expect("a pseudo-terminal");
     let mut configuration = Configuration::default();
     (configuration.hand.rate, configuration.hand.watchdog_ms) = (RATE, 1000);
     configuration.hand.black_box = folder.map(|folder| folder.to_string_lossy().into_owned());

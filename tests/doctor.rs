@@ -64,7 +64,7 @@ fn a_port_that_does_not_serve_fails_with_its_remedy() {
     assert!(missing["advice"].as_str().is_some_and(|advice| advice.contains("/dev/serial/by-id")), "{missing}");
 
     let board = SimulatedBoard::new(&Configuration::default(), &[2]).expect("a board");
-    let board = SimulatedPort::start(board, Pace::Patient, Priority::default()).expect("a pseudo-terminal");
+    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority::default()).expect("a pseudo-terminal");
     let taken = Port::open(&board.path(), 1_000_000).expect("the port");
     let configuration = format!("[finger.3]\nport = '{}'\n", board.path().display());
     let findings = examined(&configuration);

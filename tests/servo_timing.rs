@@ -88,7 +88,9 @@ struct Rig {
 
 impl Rig {
     fn new(drift: f64, follow: bool) -> Self {
-        let configuration = Configuration::default();
+        let mut configuration = Configuration::default();
+        // Not "simulated": a built-in finger stands still where replies stay away.
+        configuration.fingers[0].port = "/dev/cable".into();
         let board = SimulatedBoard::new(&configuration, &[0]).expect("a board");
         let world = Rc::new(World {
             now: Cell::new(0),

@@ -24,7 +24,8 @@ pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> 
     let reach_one = |index: usize| {
         let finger = &configuration.fingers[index];
         let board = SimulatedBoard::new(configuration, &[index])?;
-        let board = SimulatedPort::start(board, Pace::Patient, Priority { fifo: board_priority, core: None })?;
+        let pace = Pace::patient(configuration.hand.rate);
+        let board = SimulatedPort::start(board, pace, Priority { fifo: board_priority, core: None })?;
         let mut link = Link::open(&board.path(), finger.baud)?;
         let terms = Terms::new(&configuration.hand, finger);
         let (identity, configured) = link.shake_hands(configuration.address(index), &terms, now() + 1_000_000_000)?;

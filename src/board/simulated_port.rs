@@ -8,6 +8,7 @@
 use super::simulated_board::SimulatedBoard;
 use super::simulated_finger::SimulatedFinger;
 use super::simulated_line::{LineFault, SimulatedLine};
+use super::simulated_pace::{Pace, PacedTime};
 use crate::realtime::{self, Priority, spawn};
 use parking_lot::Mutex;
 use std::ffi::CStr;
@@ -22,30 +23,9 @@ use std::time::Duration;
 /// How often the physics moves on while no bytes come.
 const TICK_MS: i32 = 1;
 
-/// The most that one wake-up counts, ns.
-const LONGEST_STEP: u64 = 2_000_000;
-
-/// How far a [`Pace::Patient`] board goes on after the last bytes, ns: less than any watchdog waits by default.
-const PATIENT_STEP: u64 = 10_000_000;
-
-/// For so long, ns, a [`Pace::Patient`] board takes silence for a pause of the machine.
-const PATIENCE: u64 = 500_000_000;
-
 /// After such a silence nobody is taken to be at the other end, ns. A host that is there all the same loses its mark of
 /// exclusive use, but not its lock.
 const SILENCE: u64 = 100_000_000;
-
-/// How the time of a simulated board passes.
-///
-/// Either way it does not pass while the machine does not let the board's thread run: a wake-up counts 2 ms at most.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pace {
-    /// As on the wall: a host that falls silent meets the watchdog in time.
-    RealTime,
-    /// It also stands still, for up to half a second, while commands stay away. Bytes in a pseudo-terminal are carried by an
-    /// ordinary kernel thread, which a busy machine keeps waiting for tens of ms: no reason to stop a simulated hand.
-    Patient,
-}
 
 /// A simulated board with a port of its own and a thread that runs it. Dropping it ends both.
 #[derive(Debug)]
@@ -139,11 +119,7 @@ impl Drop for SimulatedPort {
 
 fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
     let mut input = [0; 512];
-    let mut board_time = 0;
-    let mut last_wake = realtime::now();
-    // The last bytes, on the wall and on the board's clock.
-    let mut heard = last_wake;
-    let mut heard_at = board_time;
+    let mut clock = PacedTime::new(pace, realtime::now());
     let mut forgotten = false;
     while !ended.load(Ordering::Relaxed) {
         let terminal = shared.lock().terminal.clone();
@@ -154,17 +130,13 @@ fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
                 0
             }
         };
-        let now = realtime::now();
-        let next_time = board_time + (now - last_wake).min(LONGEST_STEP);
-        last_wake = now;
-        let patient = pace == Pace::Patient && now - heard < PATIENCE;
-        board_time = if patient { next_time.min(board_time.max(heard_at + PATIENT_STEP)) } else { next_time };
+        let board_time = clock.wake(realtime::now(), taken > 0);
 
         let mut shared = shared.lock();
         let Shared { board, line, time, .. } = &mut *shared;
         *time = board_time;
         if taken > 0 {
-            (heard, heard_at, forgotten) = (now, board_time, false);
+            forgotten = false;
         }
         let Some(terminal) = terminal else {
             board.advance(board_time);
@@ -178,7 +150,7 @@ fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
         }
         drop(shared);
 
-        if !forgotten && now - heard > SILENCE {
+        if !forgotten && clock.silence() > SILENCE {
             forgotten = true;
             terminal.forget_last_host();
         }

@@ -19,7 +19,10 @@ const LEAST_BLIND: u32 = 3;
 const LEAST_LOST: u32 = 2;
 
 /// A built-in simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to stop the hand.
-const SIMULATION_PATIENCE_MS: f64 = 1000.0;
+const SIMULATION_PATIENCE_MS: f64 = 5000.0;
+
+/// So long, ms, such a board has to answer before its command is sent again: either may have been thrown away.
+const REPEAT_MS: f64 = 200.0;
 
 /// Motor torques on their way from the last command to rest.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
@@ -42,7 +45,10 @@ impl Fading {
 
 /// Counts them. In attempts, not in time: a machine that pauses everything has lost no reply.
 pub(super) struct LinkWatch {
+    /// The finger has a built-in board.
+    simulated: bool,
     in_a_row: u32,
+    repeat: u32,
     held: u32,
     blind: u32,
     lost: u32,
@@ -56,7 +62,9 @@ impl LinkWatch {
         // The board is told to stop one period after the last lost reply: within the watchdog's time after the last good one.
         let within_watchdog = (f64::from(hand.watchdog_ms) * 1e-3 * hand.rate).floor() as u32;
         Self {
+            simulated,
             in_a_row: 0,
+            repeat: cycles(REPEAT_MS),
             held: cycles(HELD_MS),
             blind: cycles(BLIND_MS).max(LEAST_BLIND),
             lost: match simulated {
@@ -70,9 +78,22 @@ impl LinkWatch {
         }
     }
 
+    /// Whether the finger and its controller go on together, as built-in ones do: the next command leaves when the last one was
+    /// answered, however late, and a cycle without a reply is none for the controller. The board stands still meanwhile. A controller
+    /// that counted time which did not pass at the finger, or physics that went on without their controller, would throw the
+    /// finger about on a busy machine.
+    pub fn in_step(&self) -> bool {
+        self.simulated
+    }
+
+    /// Whether it is time to send an unanswered command again.
+    pub fn repeats(&self) -> bool {
+        self.in_a_row.is_multiple_of(self.repeat)
+    }
+
     /// A reply came: whether the finger was not seen for so long that its controller begins anew, with what the tendons pull now.
     pub fn answered(&mut self) -> bool {
-        std::mem::take(&mut self.in_a_row) >= self.blind
+        std::mem::take(&mut self.in_a_row) >= self.blind && !self.in_step()
     }
 
     /// None came: whether it is a fault, and after how many.
@@ -83,7 +104,7 @@ impl LinkWatch {
 
     /// How the next command fades; none while it is held.
     pub fn fading(&self) -> Option<Fading> {
-        if self.in_a_row <= self.held {
+        if self.in_a_row <= self.held || self.in_step() {
             return None;
         }
         let left = f64::from(self.blind.saturating_sub(self.in_a_row)) / f64::from(self.blind - self.held);

@@ -5,6 +5,7 @@ use crate::finger::{Fault, FaultKind, FingerServo, Lender, Lent, Mended};
 use crate::model::configuration::FINGERS;
 use crate::realtime::{Clock, Follower, Memory, Schedule, Stage};
 use rtrb::PushError;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The part of a period, from the thread's awakening, in which replies are awaited; the rest is for computing.
 pub const REPLY_WINDOW: f64 = 0.85;
@@ -76,12 +77,19 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         memory
     }
 
-    /// Runs until every finger is closed, or faulted and asked to close.
+    /// Runs until every finger is closed, or faulted and asked to close. A panic is a defect, but it must not leave the last torque
+    /// on the motors: it faults every finger, and every board is told to stop.
     pub fn run(&mut self) {
-        while !self.finished() {
-            self.cycle();
+        let cycles = || {
+            while !self.finished() {
+                self.cycle();
+            }
+            self.confirm_stops();
+        };
+        if catch_unwind(AssertUnwindSafe(cycles)).is_err() {
+            // If even this panics, the board's watchdog is left.
+            let _ = catch_unwind(AssertUnwindSafe(|| self.fail()));
         }
-        self.confirm_stops();
     }
 
     /// Whether every finger is closed, or faulted and asked to close.
@@ -133,12 +141,13 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     }
 
     /// The last thing to do when a cycle panicked: every finger faulted, every board told to stop.
-    pub fn fail(&mut self) {
+    fn fail(&mut self) {
+        let now = self.clock.now();
         for port in &mut self.ports {
             let heard = port.heard();
             for finger in &mut port.fingers {
                 finger.fault(Fault::new(FaultKind::ServoPanic));
-                finger.end(0, None, &heard);
+                finger.end(now, None, &heard);
                 finger.tell();
             }
         }

@@ -179,7 +179,7 @@ impl FingerServo {
             board: *identity,
             sequence: 0,
             toggle: false,
-            answered: false,
+            answered: true,
             last_answer: 0,
             watching: Watching::new(hand.rate, link.most(), identity.gauge_bits),
             link,
@@ -246,14 +246,18 @@ impl FingerServo {
         }
     }
 
-    /// Begins a cycle: the command that the last one found, if the finger is under control.
+    /// Begins a cycle: the command that the last one found, if the finger is under control and the command due.
     pub fn begin(&mut self) -> Option<OutgoingCommand> {
         if !self.under_control() {
             return None;
         }
-        self.sequence = self.sequence.wrapping_add(1);
-        self.toggle = !self.toggle;
-        self.answered = false;
+        if self.answered || !self.link.in_step() {
+            self.sequence = self.sequence.wrapping_add(1);
+            self.toggle = !self.toggle;
+            self.answered = false;
+        } else if !self.link.repeats() {
+            return None;
+        }
         let torques = self.command.motor_torques.map(|torque| self.board.torque_count(torque)).into();
         let command = BoardCommand { toggle: self.toggle, enable: true, torques };
         Some(OutgoingCommand { address: self.address, sequence: self.sequence, command })
@@ -327,7 +331,9 @@ impl FingerServo {
             self.report.first = began;
         }
         if self.under_control()
-            && let Some(fault) = self.watching.note_period(self.answered, skipped, heard.damaged)
+            // A machine that is busy is no noise on the line.
+            && let Some(fault) =
+                self.watching.note_period(self.answered || self.link.in_step(), skipped, heard.damaged)
         {
             self.fault(fault);
         }
@@ -335,7 +341,11 @@ impl FingerServo {
             self.count_replies();
         }
         let recorded = self.recording || self.under_control();
-        let control = self.under_control().then(|| self.control(skipped));
+        if self.under_control() {
+            self.black_box.keyframe(self.report.cycles, &self.state, !self.recording);
+        }
+        let controls = self.under_control() && (self.answered || !self.link.in_step());
+        let control = controls.then(|| self.control(skipped));
         if recorded {
             self.record = Some(CycleRecord {
                 cycle: self.report.cycles,
@@ -358,10 +368,9 @@ impl FingerServo {
         let input = ControlInput {
             anew_from: std::mem::take(&mut self.anew).then_some(self.feedback),
             activity: self.activity,
-            skipped: skipped.min(self.link.most().into()),
+            skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.most().into()) },
             fading: self.link.fading(),
         };
-        self.black_box.keyframe(self.report.cycles, &self.state, !self.recording);
         let Adjustable { controller, number, .. } = match &self.calibration {
             Some(run) => &run.adjustable,
             None => &self.adjustable,

@@ -90,7 +90,7 @@ pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<Simulate
             _ => finger.priority.min(SIMULATED_BOARD_PRIORITY),
         };
         let priority = Priority { fifo, core: None };
-        let port = SimulatedPort::start(board, Pace::Patient, priority)
+        let port = SimulatedPort::start(board, Pace::patient(configuration.hand.rate), priority)
             .map_err(|source| HandError::System { doing: "start the simulated board on a pseudo-terminal", source })?;
         ports[index] = Some(port);
     }

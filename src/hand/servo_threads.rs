@@ -9,7 +9,6 @@ use crate::hand::opening::Line;
 use crate::model::configuration::{Configuration, FINGERS, PeriodClock, RealTime};
 use crate::realtime::{MonotonicClock, Priority, Realtime, Schedule, lock_stack, now, spawn, touch_stack};
 use crossbeam_channel::bounded;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread::JoinHandle;
 
 /// The servo of one thread.
@@ -63,10 +62,11 @@ pub(super) fn start(
             }
             // Whoever starts the threads waits for this; has it given up meanwhile, it will not say when to begin either.
             let _ = told.send(had);
-            match begun.recv() {
-                Ok(first) => run(servo.later(first)),
-                Err(_) => servo,
+            if let Ok(first) = begun.recv() {
+                servo = servo.later(first);
+                servo.run();
             }
+            servo
         });
         servos.push(handle.map_err(|source| HandError::System { doing: "start a servo thread", source })?);
     }
@@ -106,13 +106,4 @@ pub(super) fn priority(configuration: &Configuration, thread: u8) -> Priority {
     // Fingers that share a thread have the same priority and core: the configuration was checked.
     let finger = own.map(|index| &configuration.fingers[index]);
     finger.map_or_else(Priority::default, |finger| Priority { fifo: finger.priority, core: finger.core })
-}
-
-/// The body of a servo thread. A panic is a defect, but it must not leave the last torque on the motors.
-fn run(mut servo: PortServo) -> PortServo {
-    if catch_unwind(AssertUnwindSafe(|| servo.run())).is_err() {
-        // If even this panics, the board's watchdog is left.
-        let _ = catch_unwind(AssertUnwindSafe(|| servo.fail()));
-    }
-    servo
 }

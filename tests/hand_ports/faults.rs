@@ -71,8 +71,8 @@ fn a_board_that_falls_silent_faults_its_finger_and_its_watchdog_ends_it() {
 /// A board in this process, so that things can happen to it that the program has no order for.
 fn own_board() -> (SimulatedPort, Hand) {
     let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
-    let port =
-        SimulatedPort::start(board, Pace::Patient, Priority { fifo: 20, core: None }).expect("a pseudo-terminal");
+    let port = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None })
+        .expect("a pseudo-terminal");
     let hand = open(on_one_port(&port.path().to_string_lossy(), 2_000_000));
     (port, hand)
 }

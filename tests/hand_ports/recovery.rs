@@ -99,7 +99,7 @@ fn fingers_that_stop_together_recover_one_by_one() {
 fn a_board_that_lost_its_power_recovers_on_the_same_port() {
     let _turn = turn();
     let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
-    let board = SimulatedPort::start(board, Pace::Patient, Priority { fifo: 20, core: None }).expect("a port");
+    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
     let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
     board.with_finger(2, |finger| finger.reset()).expect("finger 2");
     assert_eq!(faults(&hand, 2), FaultKind::BoardReset);

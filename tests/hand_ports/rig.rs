@@ -57,7 +57,7 @@ impl Board {
     fn start_with(options: &[&str], fingers: &[&str]) -> Self {
         let mut program = Program::new(env!("CARGO_BIN_EXE_sun2xp"));
         program
-            .args(["board", "--patient", "--priority", "20"])
+            .args(["board", "--patient", "500", "--priority", "20"])
             .args(options)
             .args(fingers.iter().flat_map(|finger| ["--finger", finger]));
         let mut process = program.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("a board");

@@ -89,10 +89,10 @@ pub struct Arguments {
     /// SCHED_FIFO priority of the board, where permitted; 0: not real-time.
     #[arg(long, value_name = "P", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=99))]
     priority: u8,
-    /// Stand still, for up to half a second, while commands stay away: for a busy machine, which carries the bytes of a
-    /// pseudo-terminal late. The watchdog waits so much longer.
-    #[arg(long)]
-    patient: bool,
+    /// Stand still, for up to half a second, while the commands of a host of RATE cycles a second stay away: for a busy machine,
+    /// which carries the bytes of a pseudo-terminal late. The watchdog waits so much longer.
+    #[arg(long, value_name = "RATE", value_parser = rate)]
+    patient: Option<f64>,
 }
 
 pub type Failure = Box<dyn Error>;
@@ -113,7 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             action.apply(finger);
         }
     }
-    let pace = if arguments.patient { Pace::Patient } else { Pace::RealTime };
+    let pace = arguments.patient.map_or(Pace::RealTime, Pace::patient);
     let port = SimulatedPort::start(board, pace, Priority { fifo: arguments.priority, core: None })?;
     if let Some(link) = &arguments.link {
         make_link(&port.path(), link)?;
@@ -295,6 +295,12 @@ impl Action {
         }
         "ok".into()
     }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rate: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
+    let sensible = (1.0..=100_000.0).contains(&rate);
+    sensible.then_some(rate).ok_or_else(|| format!("{rate} is not between 1 and 100 000 Hz"))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! without noise are all still at rest: one is judged only while others flicker.
 
 use super::{Alarm, Sample, Symptom, first_of};
+use crate::model::configuration::ConfiguredFinger;
 
 /// Part of the way that the mean of the flicker goes in a sample.
 const LEARNING: f64 = 1.0 / 64.0;
@@ -23,12 +24,18 @@ const LEAST_REVERSALS: f64 = 0.15;
 /// Part of the way that the mean of the reversals goes in a sample: slowly, because noise does not show in a fast motion.
 const LEARNING_REVERSALS: f64 = 1.0 / 512.0;
 
+/// Part of t_min below which a tendon may hang.
+const SLACK: f64 = 0.3;
+
 /// So many samples with the same count are a row that a gauge may be judged by.
 const ROW: u32 = 4;
 
 /// Without flicker a gauge is dead only for its tendon's sake; see `tension_lost`.
 #[derive(Clone, Debug)]
-pub(super) struct GaugeStuck;
+pub(super) struct GaugeStuck {
+    /// Below so much, N, a tendon may hang, and where its gauge ends noise shows on one side only: no witness for another.
+    slack: f64,
+}
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Memory {
@@ -60,11 +67,6 @@ pub(super) struct Flicker {
 }
 
 impl Memory {
-    /// Whether at least two other gauges have just moved.
-    fn others_flicker(&self, gauge: usize) -> bool {
-        (0..4).filter(|&other| other != gauge && self.same[other] < ROW).count() >= 2
-    }
-
     pub fn flickers(&self) -> Flicker {
         let known = std::array::from_fn(|gauge| {
             let noisy = self.repeats[gauge] < MOST_REPEATS && self.reversals[gauge] > LEAST_REVERSALS;
@@ -75,6 +77,10 @@ impl Memory {
 }
 
 impl GaugeStuck {
+    pub fn new(finger: &ConfiguredFinger) -> Self {
+        Self { slack: SLACK * finger.tendon.minimum }
+    }
+
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
         let counts = sample.feedback.gauge_counts;
         memory.samples = memory.samples.saturating_add(1);
@@ -83,9 +89,16 @@ impl GaugeStuck {
         let same = |gauge: usize| counts[gauge] == last[gauge];
         let rises = |gauge: usize| counts[gauge] > last[gauge];
         memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge] + 1 } else { 0 });
+        let same_for = memory.same;
+        // Whether at least two other gauges have just moved.
+        let others_flicker = |gauge: usize| {
+            let flickers =
+                |&other: &usize| other != gauge && same_for[other] < ROW && sample.tensions[other] > self.slack;
+            (0..4).filter(flickers).count() >= 2
+        };
         for gauge in 0..4 {
             // What is judged must not shift the judgement.
-            if memory.same[gauge] < ROW || !memory.others_flicker(gauge) {
+            if memory.same[gauge] < ROW || !others_flicker(gauge) {
                 let learn = |mean: &mut f64, is: bool, gain: f64| *mean += (f64::from(u8::from(is)) - *mean) * gain;
                 let same = memory.same[gauge] > 0;
                 learn(&mut memory.repeats[gauge], same, LEARNING);
@@ -98,7 +111,7 @@ impl GaugeStuck {
         let known = memory.flickers().known;
         first_of(Symptom::GaugeStuck, |gauge| {
             let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(0.1).ln() < UNLIKELY;
-            (known[gauge] && unlikely && memory.others_flicker(gauge)).then_some(f64::from(counts[gauge]))
+            (known[gauge] && unlikely && others_flicker(gauge)).then_some(f64::from(counts[gauge]))
         })
     }
 }

@@ -151,7 +151,7 @@ impl Monitors {
             radius: tendons.radius,
             tension_lost: TensionLost::new(finger),
             gauge_range: GaugeRange::new(finger),
-            gauge_stuck: GaugeStuck,
+            gauge_stuck: GaugeStuck::new(finger),
             agreement: Agreement::new(finger, tendons),
             encoder_jump: EncoderJump::new(finger),
             stalled_motor: StalledMotor::new(finger, tendons),

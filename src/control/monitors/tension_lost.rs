@@ -21,7 +21,7 @@ const MISSED: f64 = 0.3;
 const LASTS: f64 = 0.012;
 
 /// So long, s, no motion makes a whole tendon slack.
-const TOO_LONG: f64 = 0.1;
+const TOO_LONG: f64 = 0.5;
 
 /// So long, s, tension must be gone for a warning.
 const NOTICED: f64 = 0.003;

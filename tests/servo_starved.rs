@@ -1,0 +1,260 @@
+//! A servo and its simulated board on a machine that runs neither in time, nor what carries their bytes, on simulated time.
+
+use nalgebra::Vector3;
+use rand_distr::{Distribution, Exp};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::SeedableRng;
+use rtrb::{Consumer, RingBuffer};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+use sun2xp::board::{Link, Pace, PacedTime, PortError, SimulatedBoard, Terms, Transport};
+use sun2xp::finger::{
+    BlackBox, ControllerSource, Fault, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage,
+};
+use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::{Clock, CycleTiming, Schedule};
+
+/// Nothing happens between two multiples of this, ns.
+const STEP: u64 = 50_000;
+
+/// How often the board's thread looks, ns.
+const TICK: u64 = 1_000_000;
+
+const MILLISECOND: u64 = 1_000_000;
+
+/// How long the machine lets everybody wait: means of exponential distributions, ms.
+#[derive(Clone, Copy, Debug, Default)]
+struct Load {
+    /// What carries the bytes.
+    carrier: f64,
+    board: f64,
+    servo: f64,
+}
+
+/// A host, a cable and a board.
+struct World {
+    now: u64,
+    load: Load,
+    random: Pcg64,
+    board: SimulatedBoard,
+    time: PacedTime,
+    to_board: Vec<u8>,
+    carried: Vec<u8>,
+    from_board: Vec<u8>,
+    to_host: VecDeque<u8>,
+    /// When the carrier and the board's thread run next, ns.
+    carrier_runs: u64,
+    board_runs: u64,
+}
+
+impl World {
+    fn wait(&mut self, mean: f64) -> u64 {
+        if mean == 0.0 {
+            return 0;
+        }
+        let milliseconds = Exp::new(1.0 / mean).expect("a mean").sample(&mut self.random);
+        (milliseconds * MILLISECOND as f64) as u64
+    }
+
+    /// The true joints, rad.
+    fn pose(&mut self) -> Vector3<f64> {
+        self.board.fingers()[0].plant().joints()
+    }
+
+    fn advance_to(&mut self, time: u64) {
+        while self.now < time {
+            self.now = time.min(self.now + STEP);
+            if self.now >= self.carrier_runs && !(self.to_board.is_empty() && self.from_board.is_empty()) {
+                self.carried.append(&mut self.to_board);
+                self.to_host.extend(self.from_board.drain(..));
+                self.carrier_runs = self.now + self.wait(self.load.carrier);
+            }
+            if self.now >= self.board_runs || (!self.carried.is_empty() && self.load.board == 0.0) {
+                let bytes = std::mem::take(&mut self.carried);
+                let board_time = self.time.wake(self.now, !bytes.is_empty());
+                let from_board = &mut self.from_board;
+                self.board.receive(board_time, &bytes, &mut |answer| from_board.extend(answer));
+                self.board_runs = self.now + self.wait(self.load.board).max(TICK);
+            }
+        }
+    }
+}
+
+#[derive(Clone)]
+struct Here(Rc<RefCell<World>>);
+
+impl Clock for Here {
+    fn now(&self) -> u64 {
+        self.0.borrow().now
+    }
+
+    fn sleep_until(&self, deadline: u64) {
+        let mut world = self.0.borrow_mut();
+        let late = world.load.servo;
+        let late = world.wait(late);
+        world.advance_to(deadline + late);
+    }
+}
+
+impl Transport for Here {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
+        self.0.borrow_mut().to_board.extend(bytes);
+        Ok(bytes.len())
+    }
+
+    fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
+        let mut world = self.0.borrow_mut();
+        while world.to_host.is_empty() && world.now < deadline {
+            let next = deadline.min(world.now + STEP);
+            world.advance_to(next);
+        }
+        let taken = buffer.len().min(world.to_host.len());
+        for (place, byte) in buffer.iter_mut().zip(world.to_host.drain(..taken)) {
+            *place = byte;
+        }
+        Ok(taken)
+    }
+
+    fn discard_input(&mut self) -> Result<(), PortError> {
+        self.0.borrow_mut().to_host.clear();
+        Ok(())
+    }
+
+    fn now(&self) -> u64 {
+        self.0.borrow().now
+    }
+}
+
+struct Rig {
+    world: Rc<RefCell<World>>,
+    servo: Servo<Here, Here>,
+    mailbox: Mailbox,
+    _uncollected: (Consumer<CycleTiming>, BlackBox),
+}
+
+impl Rig {
+    fn new(seed: u64) -> Self {
+        let configuration = Configuration::default();
+        let finger = &configuration.fingers[0];
+        let world = Rc::new(RefCell::new(World {
+            now: 0,
+            load: Load::default(),
+            random: Pcg64::seed_from_u64(seed),
+            board: SimulatedBoard::new(&configuration, &[0]).expect("a board"),
+            time: PacedTime::new(Pace::patient(configuration.hand.rate), 0),
+            to_board: Vec::new(),
+            carried: Vec::new(),
+            from_board: Vec::new(),
+            to_host: VecDeque::new(),
+            carrier_runs: 0,
+            board_runs: 0,
+        }));
+        let mut link = Link::new(Here(world.clone()));
+        let terms = Terms::new(&configuration.hand, finger);
+        let (identity, configured) = link.shake_hands(1, &terms, 1000 * MILLISECOND).expect("the board answers");
+        let (producer, timings) = RingBuffer::new(16);
+        let source = ControllerSource { number: 0, gravity: configuration.gravity(0), finger: finger.clone() };
+        let (recorder, black_box) = BlackBox::new(1, &configuration.hand, source);
+        let stiffness = finger.initial_stiffness();
+        let (finger, mailbox) =
+            FingerServo::new(&configuration, 0, stiffness, &identity, &configured, producer, recorder)
+                .expect("a finger");
+        let first = world.borrow().now + MILLISECOND;
+        let period = (1e9 / configuration.hand.rate) as u64;
+        let ports = vec![ServedPort::new(link, vec![finger])];
+        let servo = Servo::new(Here(world.clone()), Schedule::new(first, period), ports);
+        Self { world, servo, mailbox, _uncollected: (timings, black_box) }
+    }
+
+    /// Cycles for so many seconds of the wall.
+    fn run(&mut self, seconds: f64) {
+        let end = self.world.borrow().now + (seconds * 1e9) as u64;
+        while self.world.borrow().now < end {
+            self.servo.cycle();
+        }
+    }
+
+    /// Cycles until the report is as wanted, for so many seconds of the wall at most.
+    fn run_until(&mut self, seconds: f64, wanted: impl Fn(&FingerReport) -> bool) {
+        let end = self.world.borrow().now + (seconds * 1e9) as u64;
+        while !wanted(&self.mailbox.report()) && self.world.borrow().now < end {
+            self.servo.cycle();
+        }
+    }
+}
+
+#[test]
+fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
+    let none = Load::default();
+    for load in [
+        Load { carrier: 0.5, ..none },
+        Load { carrier: 5.0, ..none },
+        Load { board: 3.0, ..none },
+        Load { board: 10.0, ..none },
+        Load { servo: 3.0, ..none },
+        Load { servo: 10.0, ..none },
+        Load { carrier: 2.0, board: 2.0, servo: 2.0 },
+    ] {
+        for seed in 0..3 {
+            let mut rig = Rig::new(seed);
+            let start = rig.world.borrow_mut().pose();
+            rig.world.borrow_mut().load = load;
+            // Its own time passes more slowly.
+            rig.run_until(60.0, |report| report.stage != Stage::Opening);
+            let report = rig.mailbox.report();
+            assert_eq!(report.stage, Stage::Running, "{load:?}, {seed}: {report:?}");
+            let turned = (rig.world.borrow_mut().pose() - start).amax();
+            assert!(turned < 0.02, "{load:?}, {seed}: turned by {turned} rad while slack was taken up");
+
+            let target = Vector3::new(0.2, 0.6, 1.1);
+            rig.mailbox.send(|set_point| set_point.joints = target).expect("under control");
+            let arrived = |report: &FingerReport| {
+                (report.cycle.joints - target).amax() < 0.01 && report.cycle.joint_rates.amax() < 0.5
+            };
+            rig.run_until(60.0, arrived);
+            let off = (rig.world.borrow_mut().pose() - target).amax();
+            assert!(off < 0.02, "{load:?}, {seed}: {off} rad away, {:?}", rig.mailbox.report());
+        }
+    }
+}
+
+#[test]
+fn a_command_or_reply_that_was_thrown_away_is_made_good() {
+    let mut rig = Rig::new(0);
+    rig.run_until(60.0, |report| report.stage != Stage::Opening);
+    for _ in 0..3 {
+        rig.run(0.01);
+        {
+            let mut world = rig.world.borrow_mut();
+            world.load.carrier = 1e9;
+            world.carrier_runs = u64::MAX;
+        }
+        rig.run(0.005);
+        {
+            let mut world = rig.world.borrow_mut();
+            world.to_board.clear();
+            world.from_board.clear();
+            world.load.carrier = 0.0;
+            world.carrier_runs = 0;
+        }
+        let lost = rig.mailbox.report().lost_replies;
+        rig.run(0.3);
+        let report = rig.mailbox.report();
+        assert_eq!(report.stage, Stage::Running);
+        // The command is repeated after 0.2 s.
+        assert!((150..250).contains(&(report.lost_replies - lost)), "{report:?}");
+    }
+}
+
+#[test]
+fn a_simulated_board_that_never_answers_again_faults_its_finger() {
+    let mut rig = Rig::new(0);
+    rig.run_until(60.0, |report| report.stage != Stage::Opening);
+    rig.world.borrow_mut().carrier_runs = u64::MAX;
+    rig.run(4.9);
+    assert_eq!(rig.mailbox.report().stage, Stage::Running);
+    rig.run(0.2);
+    let stage = rig.mailbox.report().stage;
+    assert!(matches!(stage, Stage::Faulted(Fault { kind: FaultKind::LostReplies, .. })), "{stage:?}");
+}
