@@ -119,7 +119,9 @@ fn the_optional_keys_say_what_counts_without_them() {
         let gains = &finger.controller;
         let given = [gains.tension_gain, gains.tension_integral, gains.motor_damping, gains.rate_time];
         let filters = [gains.speed_filter, gains.stretch_filter, gains.set_point_speed];
-        assert!(given.iter().chain(&filters).all(Option::is_some), "{gains:?}");
+        let of_states = [gains.inertia_gain, gains.damping_ratio, gains.set_point_time, gains.dither];
+        assert!(given.iter().chain(&filters).chain(&of_states).all(Option::is_some), "{gains:?}");
+        assert!(gains.scheme.is_some());
         let controller = |finger| format!("{:?}", Controller::new(finger, default.hand.rate).expect("a controller"));
         assert_eq!(controller(&unshown), controller(reference));
         assert!(finger.simulation.surface.is_some());

@@ -24,7 +24,7 @@ use sun2xp::control::{Activity, Controller, Feedback, State};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
 /// As in a configuration.
-const SCHEMES: [&str; 3] = ["figure 9", "figure 10", "state feedback"];
+const SCHEMES: [&str; 4] = ["figure 9", "figure 10", "figure 11", "state feedback"];
 
 /// What a step may need above what is recorded.
 const RISE: f64 = 0.02;
@@ -85,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn steps(scheme: &str) -> Result<(), Box<dyn Error>> {
     let mut finger = ConfiguredFinger::default();
     let name: StrDeserializer<ValueError> = scheme.into_deserializer();
-    finger.controller.scheme = Scheme::deserialize(name)?;
+    finger.controller.scheme = Some(Scheme::deserialize(name)?);
     let recording = Recording::new(finger)?;
     recording.repeat(|controller, state, feedback, activity| {
         counted_step(controller, state, feedback, activity);

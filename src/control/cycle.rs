@@ -122,7 +122,8 @@ impl Controller {
         let motor_torque = MotorTorque::new(finger, &tendons)?;
         // A tendon is pulled no harder than its motor can: clamping there would turn the joint torque.
         let strongest = motor_torque.limit.map(|limit| limit.min(finger.tendon.maximum));
-        let state_feedback = match finger.controller.scheme {
+        let scheme = finger.controller.scheme(rate);
+        let state_feedback = match scheme {
             Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
             Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };
@@ -151,7 +152,7 @@ impl Controller {
                 finger.tendon.minimum + reserve,
                 strongest.add_scalar(-reserve),
             )?,
-            tendons: TendonController::new(finger.controller.scheme, &gains, rate),
+            tendons: TendonController::new(scheme, &gains, rate),
             motor_torque,
             motor_damping: gains.motor_damping,
             state_feedback,

@@ -52,7 +52,8 @@ const ADAPTATION_GAIN: f64 = 20.0;
 impl Gains {
     /// What is configured; the rest from the tabulated rate nearest to `rate` (by ratio).
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
-        let table = match configured.scheme {
+        let scheme = configured.scheme(rate);
+        let table = match scheme {
             Scheme::Figure9 => &FIGURE_9,
             // Slack is taken up with Figure 10.
             Scheme::Figure10 | Scheme::StateFeedback => &FIGURE_10,
@@ -65,10 +66,10 @@ impl Gains {
             let reason = format!("is given, but this scheme has no {term} term: leave it out, or choose \"figure 10\"");
             Err(Unusable { key, reason })
         };
-        if matches!(configured.scheme, Scheme::Figure9 | Scheme::Figure11) && configured.tension_gain.is_some() {
+        if matches!(scheme, Scheme::Figure9 | Scheme::Figure11) && configured.tension_gain.is_some() {
             return absent("controller.tension_gain", "proportional");
         }
-        if configured.scheme == Scheme::Figure11 && configured.tension_integral.is_some() {
+        if scheme == Scheme::Figure11 && configured.tension_integral.is_some() {
             return absent("controller.tension_integral", "integral");
         }
         let gains = Self {
@@ -78,7 +79,7 @@ impl Gains {
             rate_time: configured.rate_time.unwrap_or(rate_time),
             speed_filter: configured.speed_filter.unwrap_or(speed_filter),
             stretch_filter: configured.stretch_filter.unwrap_or(stretch_filter),
-            set_point_speed: configured.set_point_speed.unwrap_or(match configured.scheme {
+            set_point_speed: configured.set_point_speed.unwrap_or(match scheme {
                 Scheme::StateFeedback => STATE_FEEDBACK_SET_POINT_SPEED * (rate / 1000.0).min(1.0),
                 Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => SET_POINT_SPEED,
             }),
@@ -109,7 +110,7 @@ mod tests {
         configured.motor_damping = Some(77.0);
         let gains = Gains::new(&configured, 1000.0).unwrap();
         assert_eq!((gains.motor_damping, gains.tension_integral), (77.0, 250.0));
-        configured.scheme = Scheme::Figure9;
+        configured.scheme = Some(Scheme::Figure9);
         assert_eq!(Gains::new(&configured, 1000.0).unwrap().tension_integral, 75.0);
     }
 
@@ -117,7 +118,8 @@ mod tests {
     fn what_cannot_work_is_refused_by_name() {
         let refused = |configured: ConfiguredController| Gains::new(&configured, 1000.0).unwrap_err().key;
         let base = ConfiguredController::default();
-        let proportional = ConfiguredController { scheme: Scheme::Figure9, tension_gain: Some(1.0), ..base.clone() };
+        let proportional =
+            ConfiguredController { scheme: Some(Scheme::Figure9), tension_gain: Some(1.0), ..base.clone() };
         assert_eq!(refused(proportional), "controller.tension_gain");
         assert_eq!(refused(ConfiguredController { rate_time: Some(f64::NAN), ..base.clone() }), "controller.rate_time");
         assert_eq!(refused(ConfiguredController { stretch_filter: Some(0.0), ..base }), "controller.stretch_filter");

@@ -26,6 +26,10 @@ use serde::{Deserialize, Serialize};
 /// Noise of a gauge that the observers reckon with, N rms.
 const GAUGE_NOISE: f64 = 0.03;
 
+/// How many times that noise the tensions keep off their bounds, beside the dither: what friction of motors at rest keeps from the
+/// tensions is of that size too. With 6 times a finger at a stop exceeded t_max by 0.14 N, with 14 times by 0.04 N at most.
+const NOISE_RESERVE: f64 = 14.0;
+
 /// Of the low-pass on the motion of the joints beside the reference, rad/s: above it dither and noise are, below it pushes.
 const DRIFT_BANDWIDTH: f64 = 60.0;
 
@@ -78,7 +82,7 @@ pub(super) struct StateFeedback {
     /// Radius of each motor, m, and half a count of its encoder, rad: a count is rounded down.
     radius: Vector4<f64>,
     half_count: Vector4<f64>,
-    /// What the tensions of a finger at rest swing by, N: the dither, and six times the noise of a gauge.
+    /// What the tensions of a finger at rest swing by, N: the dither, and what its gauge and its friction leave open.
     pub reserve: f64,
 }
 
@@ -188,7 +192,7 @@ impl StateFeedback {
             reference: Reference::new(numbers.reference_time, rate),
             slew: Slew::new(set_point_speed, rate),
             dither: Dither::new(shaken, numbers.dither_frequency, rate),
-            reserve: (pseudo_inverse.abs() * shaken).max() + 6.0 * GAUGE_NOISE,
+            reserve: (pseudo_inverse.abs() * shaken).max() + NOISE_RESERVE * GAUGE_NOISE,
             friction: FrictionFeedForward {
                 coulomb: Vector4::from(finger.friction.motor_coulomb).component_div(&tendons.radius),
                 conduit: finger.friction.conduit.into(),

@@ -43,7 +43,7 @@ pub(super) struct Numbers {
     pub dither_frequency: f64,
 }
 
-/// rad/s, damped however soft the finger.
+/// rad/s, damped however soft the finger. With 12 a finger without stiffness swings at its joint limits.
 const LEAST_FREQUENCY: f64 = 4.0;
 
 /// Hz.

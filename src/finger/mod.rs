@@ -21,7 +21,7 @@ pub use faults::{Description, Fault, FaultKind, Part, Quantity, Severity, Warnin
 pub use lending::{Borrower, Lender, Lent, Mended, lending};
 pub use link_watch::Fading;
 pub use losses::Losses;
-pub use mailbox::{Adjustable, FingerReport, Mailbox, Order, Stage};
+pub use mailbox::{Adjustable, CalibrationRun, FingerReport, Mailbox, Order, Stage};
 pub use recording::{Origin, Recording, RecordingError};
 pub use replay::{Difference, NotReplayable, Replayed};
 pub use servo::{REPLY_WINDOW, ServedPort, Servo};

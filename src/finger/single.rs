@@ -4,10 +4,10 @@ mod life;
 
 use crate::board::protocol::{Command as BoardCommand, Configured, Identity, Status};
 use crate::board::{LinkCounters, OutgoingCommand, Received};
-use crate::control::calibration::{Calibration, Verdict};
+use crate::control::calibration::Verdict;
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
 use crate::finger::link_watch::LinkWatch;
-use crate::finger::mailbox::{Adjustable, Mailbox, ServoEnd, mailbox};
+use crate::finger::mailbox::{Adjustable, CalibrationRun, Mailbox, ServoEnd, mailbox};
 use crate::finger::watching::Watching;
 use crate::finger::{
     Alarm, ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage, stop_calls,
@@ -37,7 +37,7 @@ pub struct FingerServo {
     adjustable: Adjustable,
     state: State,
     activity: Activity,
-    calibration: Option<Calibration>,
+    calibration: Option<CalibrationRun>,
     /// Of the newest reply.
     status: Status,
     feedback: Feedback,
@@ -371,7 +371,10 @@ impl FingerServo {
             skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.most().into()) },
             fading: self.link.fading(),
         };
-        let Adjustable { controller, number, .. } = &self.adjustable;
+        let Adjustable { controller, number, .. } = match &self.calibration {
+            Some(run) => &run.adjustable,
+            None => &self.adjustable,
+        };
         let feedback = self.answered.then_some(&self.feedback);
         let before = previous.as_ref().map(|previous| &previous.controller);
         let adjusted = before.is_some();

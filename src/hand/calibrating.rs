@@ -1,7 +1,7 @@
 //! Calibrating a finger of an open hand: asks its servo, waits for the verdict, puts what was found in force.
 
 use crate::control::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
-use crate::finger::{Adjustable, Fault, Order, Stage};
+use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
 use crate::hand::calibration_file::store;
 use crate::hand::{Hand, HandError};
 use crate::model::Refusal;
@@ -42,10 +42,16 @@ impl Calibrating {
     /// # Errors
     /// No such finger, finger faulted or busy, a configuration that no routine can work with.
     pub fn begin(hand: &Hand, finger: i32, task: Task) -> Result<Self, HandError> {
-        let configured = hand.calibrated(finger)?;
-        let rate = hand.rate();
-        let calibration = Calibration::new(task, &configured, rate).map_err(|unusable| refusal(finger, unusable))?;
-        let given = hand.dispatcher.member(finger)?.mailbox.order(Order::Calibrate(calibration));
+        let member = hand.dispatcher.member(finger)?;
+        let index = finger as usize - 1; // 1 to 3: the member is there
+        let mut configuration = hand.configuration.read().clone();
+        let rate = configuration.hand.rate;
+        let refused = |unusable| refusal(finger, unusable);
+        let calibration = Calibration::new(task, &configuration.fingers[index], rate).map_err(refused)?;
+        configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index], rate);
+        let number = hand.dispatcher.announce(finger, &configuration)?;
+        let adjustable = Adjustable::new(&configuration, index, number).map_err(refused)?;
+        let given = member.mailbox.order(Order::Calibrate(CalibrationRun { calibration, adjustable }));
         Self::ordered(finger, given, None)
     }
 
@@ -157,10 +163,6 @@ impl Hand {
         let calibrated: Configuration = self.configuration.read().clone();
         store(file, &calibrated)?;
         Ok(true)
-    }
-
-    fn rate(&self) -> f64 {
-        self.configuration.read().hand.rate
     }
 }
 

@@ -7,7 +7,7 @@ use super::obstacle::Obstacle;
 use super::signs::SignSearch;
 use super::zeroing::Zeroing;
 use crate::control::signals::{Activity, Feedback, Report};
-use crate::model::configuration::{ConfiguredFinger, Unusable};
+use crate::model::configuration::{ConfiguredController, ConfiguredFinger, Scheme, Unusable};
 use nalgebra::Vector4;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -111,6 +111,23 @@ impl Calibration {
             seconds: 0.0,
             time_limit: finger.zeroing.time_limit_s,
         })
+    }
+
+    /// The same finger as its controller must be made while a routine runs at `rate`, Hz: by Figure 10, whatever is configured. State
+    /// feedback is built upon the stiffness, friction and zeros that are looked for, and Figure 11 adapts to what the gauges show.
+    /// Gains of Figure 10 that are configured stay.
+    pub fn controlled(finger: &ConfiguredFinger, rate: f64) -> ConfiguredFinger {
+        let configured = &finger.controller;
+        let controller = match configured.scheme(rate) {
+            Scheme::Figure10 | Scheme::StateFeedback => configured.clone(),
+            Scheme::Figure9 | Scheme::Figure11 => {
+                ConfiguredController { gravity_compensation: configured.gravity_compensation, ..Default::default() }
+            }
+        };
+        ConfiguredFinger {
+            controller: ConfiguredController { scheme: Some(Scheme::Figure10), ..controller },
+            ..finger.clone()
+        }
     }
 
     /// One cycle that has a measurement: what the motors shall do, and how it goes. Not to be called again after a verdict.

@@ -16,10 +16,16 @@ impl FingerServo {
         // After the order: what was handed over with it is there.
         let new = self.mailbox.new_adjustable();
         let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
+        if self.calibration.is_some() {
+            // It goes on with its own.
+            previous = None;
+        }
         if let Some(order) = order {
             self.report.orders += 1;
-            if let Order::Restart { .. } = order {
-                previous = None;
+            match order {
+                Order::Nothing => {}
+                Order::Calibrate(_) => previous = previous.or_else(|| Some(self.adjustable.clone())),
+                Order::Restart { .. } => previous = None,
             }
             self.carry_out(order);
         }
@@ -45,8 +51,8 @@ impl FingerServo {
     fn carry_out(&mut self, order: Order) {
         match order {
             Order::Nothing => {}
-            Order::Calibrate(calibration) => {
-                self.calibration = Some(calibration);
+            Order::Calibrate(run) => {
+                self.calibration = Some(run);
                 self.report.calibration = None;
                 self.enter(Stage::Calibrating);
             }
@@ -63,13 +69,13 @@ impl FingerServo {
 
     /// One step of the calibration, if there is one: it decides what the finger does.
     pub(super) fn calibrate(&mut self) {
-        let Some(calibration) = &mut self.calibration else { return };
+        let Some(run) = &mut self.calibration else { return };
         if !self.answered {
             return;
         }
         let zero_valid = self.status.has(Status::ZERO_VALID);
         let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid };
-        let (activity, verdict) = calibration.cycle(&sample);
+        let (activity, verdict) = run.calibration.cycle(&sample);
         self.activity = activity;
         self.report.calibration = Some(verdict);
         if !matches!(verdict, Verdict::Going(_)) {

@@ -3,13 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 /// Which tendon controller runs.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Scheme {
     /// Figure 9: an integral on the tension error.
     #[serde(rename = "figure 9")]
     Figure9,
     /// Figure 10 (Salisbury): proportional and integral on the tension error, and a damper on the motor.
-    #[default]
     #[serde(rename = "figure 10")]
     Figure10,
     /// Figure 11: the motor model that turns tensions into torques adapts.
@@ -35,8 +34,8 @@ pub enum Law {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredController {
-    /// The tendon controller.
-    pub scheme: Scheme,
+    /// The tendon controller; none: what [`ConfiguredController::scheme`] says.
+    pub scheme: Option<Scheme>,
     /// The stiffness law behind SendPos. A fingertip set point always has the exact one.
     pub law: Law,
     /// Whether the torques of gravity on the links are compensated.
@@ -71,7 +70,7 @@ pub struct ConfiguredController {
 impl Default for ConfiguredController {
     fn default() -> Self {
         Self {
-            scheme: Scheme::default(),
+            scheme: None,
             law: Law::default(),
             gravity_compensation: true,
             tension_gain: None,
@@ -87,5 +86,13 @@ impl Default for ConfiguredController {
             set_point_time: None,
             dither: None,
         }
+    }
+}
+
+impl ConfiguredController {
+    /// The tendon controller at `rate`, Hz. Unless one is configured, state feedback from 750 Hz up, and Figure 10 below: at 500 Hz
+    /// state feedback is no better in most respects (`docs/stiffness.md`).
+    pub fn scheme(&self, rate: f64) -> Scheme {
+        self.scheme.unwrap_or(if rate >= 750.0 { Scheme::StateFeedback } else { Scheme::Figure10 })
     }
 }
