@@ -16,7 +16,7 @@ fn without_an_attempt_nothing_is_had() {
     // Its turn, and slow: a thread that is not real-time waits for all others of the machine.
     let _turn = Bench::new();
     let mut configuration = Configuration::default();
-    (configuration.hand.real_time, configuration.hand.rate) = (RealTime::Ignore, 200.0);
+    (configuration.hand.real_time, configuration.hand.rate) = (RealTime::Ignore, 500.0);
     let status = Hand::open(configuration).expect("the simulated hand").status(1).expect("status");
     assert_eq!((status.realtime, status.memory_locked, status.on_core), (false, false, true));
 }
@@ -52,12 +52,12 @@ fn opened_without(
 #[test]
 fn a_planner_without_memlock_has_its_hand_and_is_told() {
     let right = (libc::RLIMIT_MEMLOCK, CAP_IPC_LOCK);
-    let (status, _, printed) = opened_without(right, "[hand]\nrate = 200\n");
+    let (status, _, printed) = opened_without(right, "[hand]\nrate = 500\n");
     assert_eq!(status, Some(0), "{printed}");
     let lines: Vec<_> = printed.lines().filter(|line| line.contains("memory cannot be locked")).collect();
     assert!(lines.len() == 1 && lines[0].contains("memlock"), "{printed}");
 
-    let (status, told, printed) = opened_without(right, "[hand]\nrate = 200\nreal_time = \"ignore\"\n");
+    let (status, told, printed) = opened_without(right, "[hand]\nrate = 500\nreal_time = \"ignore\"\n");
     assert_eq!(status, Some(0), "{told}{printed}");
     assert!(!printed.contains("locked"), "{printed}");
 }

@@ -92,7 +92,7 @@ fn keys(rate: u32) -> String {
 #[test]
 fn a_hand_settles_where_it_does_on_the_simulated_board() {
     let _alone = alone();
-    let (rate, (positions, joints, losses)) = with_hand(&[500, 500, 250, 250, 500], |machine, hand| {
+    let (rate, (positions, joints, losses)) = with_hand(&[500; 5], |machine, hand| {
         let positions = settled(hand)?;
         let joints = [0, 1, 2].map(|finger| machine.finger(finger).plant.joints().into());
         Ok((positions, joints, hand.status(1)?.losses))
@@ -113,7 +113,7 @@ fn a_hand_settles_where_it_does_on_the_simulated_board() {
 #[test]
 fn its_emergency_stop_stops_the_hand() {
     let _alone = alone();
-    with_hand(&[500, 500, 250, 250, 500], |machine, hand| {
+    with_hand(&[500; 5], |machine, hand| {
         assert_ne!(machine.finger(1).asked.currents, [0; 4]);
         machine.finger(1).faults = Status::EMERGENCY_STOP;
         let noticed = wait_until(|| matches!(hand.status(2).expect("a finger").stage, Stage::Faulted(_)));
@@ -218,8 +218,8 @@ fn a_killed_planner_leaves_the_motors_in_their_end_state() {
 
     // The watchdog counts from the arrival of a command, which may wait for a ms or two before the sample that the plant sees.
     let watchdog = 16_000..20_000;
-    let release = "rate = 250.0\nwatchdog_ms = 18\nend_state = \"release\"";
-    let hold = "rate = 250.0\nwatchdog_ms = 18\nend_state = \"hold\"\nhold_torque_limit = 0.1\nhold_time_ms = 1500";
+    let release = "rate = 500.0\nwatchdog_ms = 18\nend_state = \"release\"";
+    let hold = "rate = 500.0\nwatchdog_ms = 18\nend_state = \"hold\"\nhold_torque_limit = 0.1\nhold_time_ms = 1500";
     for (name, keys) in [("release", release), ("hold", hold)] {
         let mut figures = Vec::new();
         for _ in 0..3 {

@@ -44,7 +44,7 @@ fn scheme(name: &str) -> Result<Scheme, String> {
 
 fn rate(text: &str) -> Result<f64, String> {
     let rate = text.parse().map_err(|_| format!("{text} is no number"))?;
-    if (100.0..=5000.0).contains(&rate) { Ok(rate) } else { Err(format!("{rate} is outside 100 to 5000 Hz")) }
+    if (500.0..=5000.0).contains(&rate) { Ok(rate) } else { Err(format!("{rate} is outside 500 to 5000 Hz")) }
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {

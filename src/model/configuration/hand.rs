@@ -64,7 +64,7 @@ pub enum PeriodClock {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredHand {
-    /// Cycles of every finger servo in a second, Hz: 100 to 5000.
+    /// Cycles of every finger servo in a second, Hz: 500 to 5000. No gains are known that keep a finger stable at much less.
     pub rate: f64,
     /// Whose clock the rate is counted by.
     pub clock: PeriodClock,
