@@ -275,7 +275,7 @@ impl Controller {
 
     /// What is wrong with a finger that follows, after a cycle with `feedback`, `age` periods after the one before. `full_scale`: the
     /// gauges' largest count.
-    pub fn watch(&self, watch: &mut Watch, state: &State, feedback: &Feedback, age: u32, full_scale: u16) -> Alarms {
+    pub fn watch(&self, watch: &mut Watch, state: &State, feedback: &Feedback, age: f64, full_scale: u16) -> Alarms {
         let heat = self.heating.part(&state.heat);
         self.monitors.watch(watch, feedback, &state.report, &state.pulls, &heat, age, full_scale)
     }

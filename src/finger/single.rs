@@ -298,16 +298,19 @@ impl FingerServo {
         self.answered = true;
         self.last_answer = received.sequence;
         let reply = &received.reply;
+        let mut age = self.sample_age as f64;
         // This cycle's command took effect as it was sampled; what it was computed from was sampled before.
         if let Some(before) = self.sampled_at
             && self.sample_age as f64 * self.limits.period_ms < CLOCK_UNKNOWN_MS
         {
-            self.timing.note(realtime::Stage::Age, 0, u64::from(reply.sampled_at.wrapping_sub(before)) * 1000);
+            let microseconds = reply.sampled_at.wrapping_sub(before);
+            self.timing.note(realtime::Stage::Age, 0, u64::from(microseconds) * 1000);
+            age = f64::from(microseconds) * 1e-3 / self.limits.period_ms;
         }
         (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
-        self.watching.note_status(reply.status);
+        self.watching.note_reply(reply.status, age);
         let zero_lost = self.status.has(Status::ZERO_VALID) && !reply.status.has(Status::ZERO_VALID);
         self.status = reply.status;
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {

@@ -18,11 +18,14 @@ const UNUSABLE: f64 = 0.6;
 /// Where replies stay away altogether, so many damaged ones among them tell why.
 const DAMAGED: f64 = 0.25;
 
+/// Part of a period.
+const SHORTEST: f64 = 0.01;
+
 /// Memory of the monitors of one finger.
 pub(super) struct Watching {
     watch: Watch,
-    /// Periods since the monitors last had a sample.
-    age: u32,
+    /// Periods from the sample before to the newest one.
+    age: f64,
     /// The gauges' largest count.
     full_scale: u16,
     noise: LineQuality,
@@ -41,7 +44,7 @@ impl Watching {
         let warnings = LineQuality::new(rate * WARNING_WINDOW);
         Self {
             watch: Watch::default(),
-            age: 0,
+            age: 1.0,
             full_scale: (u32::from(u16::MAX) >> (16 - gauge_bits.clamp(1, 16))) as u16,
             noise: warnings,
             damage: LineQuality::new(f64::from(patience)),
@@ -53,8 +56,10 @@ impl Watching {
         }
     }
 
-    /// What a reply's status says beside faults.
-    pub fn note_status(&mut self, status: Status) {
+    /// What a reply's status says beside faults, and how many periods after the reply before it was sampled.
+    pub fn note_reply(&mut self, status: Status, age: f64) {
+        // Two replies of one instant, by the board's clock, have no speed between them.
+        self.age = age.max(SHORTEST);
         self.clipped = status.has(Status::TORQUE_CLIPPED);
     }
 
@@ -88,10 +93,7 @@ impl Watching {
 
     /// One cycle of a finger that is a spring, after `controller` has computed; none where the reply was lost.
     pub fn spring(&mut self, controller: &Controller, state: &State, feedback: Option<&Feedback>) -> Option<Fault> {
-        self.age += 1;
-        let feedback = feedback?;
-        let age = std::mem::take(&mut self.age);
-        let alarms = controller.watch(&mut self.watch, state, feedback, age, self.full_scale);
+        let alarms = controller.watch(&mut self.watch, state, feedback?, self.age, self.full_scale);
         self.warning = alarms.warning.map(Fault::from).or(self.warning);
         alarms.fault.map(Fault::from)
     }
@@ -103,7 +105,7 @@ impl Watching {
 
     /// The finger begins to be a spring, or is watched again.
     pub fn begin(&mut self) {
-        (self.watch, self.age) = (Watch::default(), 0);
+        self.watch = Watch::default();
     }
 
     /// What this period gives warning of.

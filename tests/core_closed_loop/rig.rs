@@ -131,7 +131,7 @@ impl Loop {
         self.unwatched += 1;
         match (feedback, activity) {
             (Some(feedback), Activity::Follow(_)) => {
-                let age = std::mem::take(&mut self.unwatched);
+                let age = f64::from(std::mem::take(&mut self.unwatched));
                 let alarms = self.controller.watch(&mut self.watch, &self.state, feedback, age, u16::MAX);
                 let fault = alarms.fault.filter(|alarm| !self.right_alarms.contains(&alarm.symptom));
                 assert_eq!(fault, None, "a false alarm: {:?}", self.report);

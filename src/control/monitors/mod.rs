@@ -169,7 +169,7 @@ impl Monitors {
         report: &Report,
         pulls: &Vector4<f64>,
         heat: &Vector4<f64>,
-        age: u32,
+        age: f64,
         full_scale: u16,
     ) -> Alarms {
         let Measured { motor_angles, tensions } = self.sensors.measured(feedback);
@@ -182,7 +182,7 @@ impl Monitors {
             travel: self.radius.component_mul(&motor_angles),
             turned: motor_angles - before.motor_angles,
             pulls: before.pulls,
-            elapsed: self.period * f64::from(age),
+            elapsed: self.period * age,
             full_scale,
         };
         // A dead sensor explains what it makes the others say, so sensors come first.
