@@ -26,8 +26,8 @@ use serde::{Deserialize, Serialize};
 /// Noise of a gauge that the observers reckon with, N rms.
 const GAUGE_NOISE: f64 = 0.03;
 
-/// How many times that noise the tensions keep off their bounds, beside the dither: what friction of motors at rest keeps from the
-/// tensions is of that size too. With 6 times a finger at a stop exceeded t_max by 0.14 N, with 14 times by 0.04 N at most.
+/// How many times that noise the tensions keep off their bounds, beside the dither. With 6 times a finger at a stop exceeded
+/// t_max by 0.14 N, with 14 times by 0.04 N at most on three seeds; between and beyond it does not fall evenly.
 const NOISE_RESERVE: f64 = 14.0;
 
 /// Of the low-pass on the motion of the joints beside the reference, rad/s: above it dither and noise are, below it pushes.

@@ -18,9 +18,6 @@ const UNUSABLE: f64 = 0.6;
 /// Where replies stay away altogether, so many damaged ones among them tell why.
 const DAMAGED: f64 = 0.25;
 
-/// Part of a period.
-const SHORTEST: f64 = 0.01;
-
 /// Memory of the monitors of one finger.
 pub(super) struct Watching {
     watch: Watch,
@@ -58,8 +55,8 @@ impl Watching {
 
     /// What a reply's status says beside faults, and how many periods after the reply before it was sampled.
     pub fn note_reply(&mut self, status: Status, age: f64) {
-        // Two replies of one instant, by the board's clock, have no speed between them.
-        self.age = age.max(SHORTEST);
+        // Where a late sample is followed by one in time, the last bit of an encoder would make a speed of its own.
+        self.age = age.max(1.0);
         self.clipped = status.has(Status::TORQUE_CLIPPED);
     }
 
