@@ -133,6 +133,7 @@ impl FingerServo {
         let report = FingerReport {
             stage: Stage::Opening,
             set_point: initial,
+            springs: 0,
             cycle: Default::default(),
             orders: 0,
             calibration: None,

@@ -80,7 +80,6 @@ impl Calibrating {
             if report.stage == Stage::Opening {
                 return Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }));
             }
-            hand.dispatcher.member(finger)?.mailbox.adopt();
             return Ok(Standing::Done(found));
         }
         match report.calibration {

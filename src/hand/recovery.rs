@@ -233,8 +233,7 @@ impl Recovering {
             }
             match report.stage {
                 Stage::Faulted(fault) => return Err(HandError::Faulted { finger, fault }),
-                Stage::Opening => done = false,
-                _ => hand.dispatcher.member(finger)?.mailbox.adopt(),
+                stage => done &= stage != Stage::Opening,
             }
         }
         Ok(done)

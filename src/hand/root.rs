@@ -267,7 +267,6 @@ impl Hand {
                 }
             }
             if !opening {
-                self.dispatcher.members().iter().for_each(|member| member.mailbox.adopt());
                 return Ok(());
             }
             sleep(LOOKING);

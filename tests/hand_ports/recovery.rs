@@ -6,7 +6,7 @@ use crate::rig::{
 use std::fs::read_dir;
 use std::path::Path;
 use sun2xp::board::protocol::Status;
-use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
+use sun2xp::board::{Defect, Pace, SimulatedBoard, SimulatedPort};
 use sun2xp::finger::{FaultKind, Stage};
 use sun2xp::hand::{Hand, stop_all};
 use sun2xp::model::configuration::{Configuration, OnFault};
@@ -119,6 +119,32 @@ fn a_board_that_lost_its_power_recovers_on_the_same_port() {
         assert_eq!(fault(&hand, finger), None, "it shares the port");
         goes(&hand, finger, START);
     }
+    close(hand);
+}
+
+#[test]
+fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found() {
+    let _turn = turn();
+    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
+    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
+    let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
+    goes(&hand, 2, START);
+    // On its way when it is stopped.
+    hand.send_position(2, TARGET).expect("sent");
+    stop_all();
+    (1..=3).for_each(|finger| assert_eq!(faults(&hand, finger), FaultKind::EmergencyStopCall));
+    let again = std::thread::scope(|scope| {
+        let recovering = scope.spawn(|| hand.recover(1));
+        wait_until("opening", || hand.report(1).expect("a report").stage == Stage::Opening);
+        board.with_finger(1, |finger| finger.suffer(&Defect::EmergencyStop)).expect("finger 1");
+        recovering.join().expect("no panic")
+    });
+    assert!(again.expect_err("it faults again").to_string().contains("emergency stop, input"));
+    wait_until("a spring", || hand.report(2).expect("a report").stage == Stage::Running);
+    let found = hand.report(2).expect("a report").set_point.joints;
+    hand.send_damping(2, 2.0).expect("sent");
+    wait_until("taken", || hand.report(2).expect("a report").set_point.damping == 2.0);
+    assert_eq!(hand.report(2).expect("a report").set_point.joints, found, "it moves though nobody has sent it");
     close(hand);
 }
 

@@ -1,0 +1,4 @@
+//! One finger from planner to board in memory, on simulated time: what it holds, what it is stopped by and warned of.
+
+mod rig;
+mod set_points;
