@@ -71,6 +71,9 @@ pub struct FingerReport {
     pub springs: u32,
     /// What the last cycle found and decided.
     pub cycle: Report,
+    /// Number of the controller that planners have handed over last and the servo has taken: it is computed with, or will be after a
+    /// calibration.
+    pub controller: u32,
     /// How many orders have been taken.
     pub orders: u32,
     /// What became of the last calibration, if there was one.

@@ -134,6 +134,7 @@ impl FingerServo {
             stage: Stage::Opening,
             set_point: initial,
             springs: 0,
+            controller: 0,
             cycle: Default::default(),
             orders: 0,
             calibration: None,
@@ -321,7 +322,7 @@ impl FingerServo {
         }
     }
 
-    /// Ends a cycle: computes the next command and reports. `overrun`: the next cycle should have begun already, and so many periods are
+    /// Ends a cycle: computes the next command. `overrun`: the next cycle should have begun already, and so many periods are
     /// skipped.
     pub fn end(&mut self, began: u64, overrun: Option<u64>, heard: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
@@ -362,7 +363,7 @@ impl FingerServo {
             });
         }
         self.recording = self.under_control();
-        self.mailbox.publish(self.report);
+        self.report.controller = self.adjustable.number;
     }
 
     /// Computes the next command.
@@ -396,7 +397,8 @@ impl FingerServo {
         self.timing.note(stage, from, to);
     }
 
-    /// Leaves the timing and the record of this cycle to whoever collects them.
+    /// Leaves the timing and the record of this cycle to whoever collects them, and then reports: who knows the report of a cycle
+    /// finds its record.
     pub fn tell(&mut self) {
         let timing = std::mem::take(&mut self.timing);
         // A full ring means that nobody collects: the cycle is worth more than its figure.
@@ -404,6 +406,7 @@ impl FingerServo {
         if let Some(record) = self.record.take() {
             self.black_box.record(CycleRecord { timing, ..record });
         }
+        self.mailbox.publish(self.report);
     }
 
     /// Stops the finger for a reason.

@@ -50,9 +50,10 @@ impl Hand {
         changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys)?;
         check(&changed)?;
         let unusable = |unusable: Unusable| HandError::Unusable { section: format!("finger.{finger}"), unusable };
-        let number = self.dispatcher.announce(finger, &changed)?;
-        let adjustable = Adjustable::new(&changed, index, number).map_err(unusable)?;
-        adjust_member(member, admission(&changed, index), adjustable)?;
+        let adjustable = Adjustable::new(&changed, index, 0).map_err(unusable)?;
+        self.dispatcher.hand_over(finger, &changed, |number| {
+            adjust_member(member, admission(&changed, index), Adjustable { number, ..adjustable })
+        })?;
         *configuration = changed;
         Ok(())
     }

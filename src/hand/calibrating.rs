@@ -49,10 +49,11 @@ impl Calibrating {
         let refused = |unusable| refusal(finger, unusable);
         let calibration = Calibration::new(task, &configuration.fingers[index], rate).map_err(refused)?;
         configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index], rate);
-        let number = hand.dispatcher.announce(finger, &configuration)?;
-        let adjustable = Adjustable::new(&configuration, index, number).map_err(refused)?;
-        let given = member.mailbox.order(Order::Calibrate(CalibrationRun { calibration, adjustable }));
-        Self::ordered(finger, given, None)
+        let adjustable = Adjustable::new(&configuration, index, 0).map_err(refused)?;
+        hand.dispatcher.hand_over(finger, &configuration, |number| {
+            let run = CalibrationRun { calibration, adjustable: Adjustable { number, ..adjustable } };
+            Self::ordered(finger, member.mailbox.order(Order::Calibrate(run)), None)
+        })
     }
 
     fn ordered(finger: i32, given: Result<Option<u32>, Fault>, found: Option<Findings>) -> Result<Self, HandError> {
@@ -92,12 +93,13 @@ impl Calibrating {
                 let mut configuration = hand.configuration.write();
                 let mut changed = configuration.clone();
                 found.apply(&mut changed.fingers[index]);
-                let number = hand.dispatcher.announce(finger, &changed)?;
-                let adjustable =
-                    Adjustable::new(&changed, index, number).map_err(|unusable| refusal(finger, unusable))?;
+                let adjustable = Adjustable::new(&changed, index, 0).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = matches!(found, Findings::Signs(_));
-                let given = hand.dispatcher.member(finger)?.mailbox.restart(adjustable, limp);
-                *self = Self::ordered(finger, given, Some(found))?;
+                let member = hand.dispatcher.member(finger)?;
+                *self = hand.dispatcher.hand_over(finger, &changed, |number| {
+                    let given = member.mailbox.restart(Adjustable { number, ..adjustable }, limp);
+                    Self::ordered(finger, given, Some(found))
+                })?;
                 *configuration = changed;
                 Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))
             }

@@ -157,11 +157,23 @@ impl Dispatcher {
         Ok(collected.black_box.recording())
     }
 
-    /// Tells the black box of what a controller is about to be made; the controller's number.
-    pub fn announce(&self, finger: i32, configuration: &Configuration) -> Result<u32, HandError> {
+    /// Lets `give` hand a finger a controller that was made from this configuration, under the number that it gets. The black box
+    /// keeps the configuration if that is done, and nothing of it where it is refused.
+    pub fn hand_over<T>(
+        &self,
+        finger: i32,
+        configuration: &Configuration,
+        give: impl FnOnce(u32) -> Result<T, HandError>,
+    ) -> Result<T, HandError> {
         let index = self.index(finger)?;
+        // Locked throughout: no record that names the controller is collected before the black box knows it.
         let mut collected = self.collected(finger)?;
-        Ok(collected.black_box.announce(configuration.fingers[index].clone(), configuration.gravity(index)))
+        let taken = self.members[index].mailbox.report().controller;
+        collected.collect();
+        let given = give(collected.black_box.next_number())?;
+        let (finger, gravity) = (configuration.fingers[index].clone(), configuration.gravity(index));
+        collected.black_box.announce(finger, gravity, taken);
+        Ok(given)
     }
 
     fn collected(&self, finger: i32) -> Result<MutexGuard<'_, Collected>, HandError> {
