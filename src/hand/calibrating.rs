@@ -6,6 +6,7 @@ use crate::hand::calibration_file::store;
 use crate::hand::{Hand, HandError};
 use crate::model::Refusal;
 use crate::model::configuration::{Configuration, ConfiguredFinger};
+use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -160,10 +161,14 @@ impl Hand {
     /// # Errors
     /// A file that cannot be read or written, or can no longer be used.
     pub fn store_calibration(&self) -> Result<bool, HandError> {
-        let Some(file) = &self.file else { return Ok(false) };
-        let calibrated: Configuration = self.configuration.read().clone();
-        store(file, &calibrated)?;
+        let Some((file, calibrated)) = self.to_store() else { return Ok(false) };
+        store(&file, &calibrated)?;
         Ok(true)
+    }
+
+    /// The configuration file that the hand was opened with, if there is one, and what is to be [`store`]d there.
+    pub fn to_store(&self) -> Option<(PathBuf, Configuration)> {
+        Some((self.file.clone()?, self.configuration.read().clone()))
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::board::LinkError;
 use crate::control::OutOfReach;
 use crate::control::calibration::Obstacle;
-use crate::finger::Fault;
+use crate::finger::{Fault, FaultKind};
 use crate::hand::missing::Missing;
 use crate::model::configuration::Unusable;
 use crate::model::{ContactError, Refusal};
@@ -225,6 +225,12 @@ pub enum HandError {
         "finger {0} shares its port with a finger that runs: they recover together, so stop that one first (StopHand, CloseHand)"
     )]
     PortInUse(i32),
+    /// A faulted finger whose servo thread has ended.
+    #[error(
+        "the servo thread of finger {0} has failed (fault {number}), and nothing is left that could run it: CloseHand, then OpenHand",
+        number = FaultKind::ServoPanic.number()
+    )]
+    ServoEnded(i32),
     /// A port that has failed, and is not to be opened again.
     #[error(
         "the port of finger {0} has failed: set `finger.reconnect = true` to have it opened again, or CloseHand, OpenHand"
@@ -268,7 +274,7 @@ impl HandError {
             Self::Contact { .. } => libc::EDOM,
             Self::Permanent { .. } => libc::EBUSY,
             Self::NotSymmetric { .. } | Self::Negative { .. } => libc::EDOM,
-            Self::Faulted { .. } => libc::EIO,
+            Self::Faulted { .. } | Self::ServoEnded(_) => libc::EIO,
             // Without an errno of the system's the file was read, but is no text.
             Self::ConfigurationFile { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
             Self::System { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),

@@ -288,5 +288,6 @@ impl Drop for Hand {
             // A servo thread catches its own panics. Its ports are closed here, not in the servo: it may take long.
             let _ = servo.join();
         }
+        self.recovery.end();
     }
 }

@@ -54,7 +54,7 @@ impl Board {
         Self::start_with(&["--link", link], fingers)
     }
 
-    fn start_with(options: &[&str], fingers: &[&str]) -> Self {
+    pub fn start_with(options: &[&str], fingers: &[&str]) -> Self {
         let mut program = Program::new(env!("CARGO_BIN_EXE_sun2xp"));
         program
             .args(["board", "--patient", "500", "--priority", "20"])
