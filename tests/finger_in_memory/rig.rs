@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use rtrb::RingBuffer;
 use std::cell::RefCell;
 use std::rc::Rc;
+use sun2xp::board::protocol::{Frame, Message, WireFrame};
 use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, SimulatedFinger, Terms, Transport};
 use sun2xp::finger::{
     BlackBox, Borrower, ControllerSource, Fault, FaultKind, FingerReport, FingerServo, Mailbox, Mended, ServedPort,
@@ -21,6 +22,8 @@ pub const TARGET: Vector3<f64> = Vector3::new(0.2, 0.6, 1.1);
 #[derive(Clone)]
 pub struct World {
     cable: Rc<RefCell<SimulatedCable>>,
+    /// What the next read finds instead of what the board has sent.
+    instead: Rc<RefCell<Option<Result<Vec<u8>, PortError>>>>,
 }
 
 impl Transport for World {
@@ -29,7 +32,14 @@ impl Transport for World {
     }
 
     fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
-        self.cable.borrow_mut().read_until(buffer, deadline)
+        match self.instead.borrow_mut().take() {
+            Some(Err(failure)) => Err(failure),
+            Some(Ok(bytes)) => {
+                buffer[..bytes.len()].copy_from_slice(&bytes);
+                Ok(bytes.len())
+            }
+            None => self.cable.borrow_mut().read_until(buffer, deadline),
+        }
     }
 
     fn discard_input(&mut self) -> Result<(), PortError> {
@@ -57,6 +67,7 @@ pub struct Bench {
     pub servo: Servo<World, World>,
     pub mailbox: Mailbox,
     borrower: Borrower<World>,
+    /// As the board has it.
     configuration: Configuration,
 }
 
@@ -68,14 +79,23 @@ impl Bench {
 
     /// The same with another configuration.
     pub fn with(change: impl FnOnce(&mut Configuration)) -> Self {
+        let mut bench = Self::believing(change, |_| {});
+        bench.opens();
+        bench
+    }
+
+    /// A finger that begins to open, and of which the servo believes something else than is so.
+    pub fn believing(is: impl FnOnce(&mut Configuration), believed: impl FnOnce(&mut Configuration)) -> Self {
         let mut configuration = Configuration::default();
         // Not "simulated": a built-in board is waited for patiently.
         configuration.fingers[0].port = "in memory".into();
-        change(&mut configuration);
+        is(&mut configuration);
+        let mut belief = configuration.clone();
+        believed(&mut belief);
         let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
         let board = SimulatedBoard::new(&configuration, &[0]).expect("a board");
         let cable = Rc::new(RefCell::new(SimulatedCable::new(board)));
-        let world = World { cable };
+        let world = World { cable, instead: Rc::default() };
         let mut link = Link::new(world.clone());
         let (identity, configured) =
             link.shake_hands(1, &Terms::new(hand, finger), 1000 * MILLISECOND).expect("a board answers");
@@ -84,16 +104,14 @@ impl Bench {
         // Nobody reads it.
         let (recorder, _) = BlackBox::new(1, hand, source);
         let (finger, mailbox) =
-            FingerServo::new(&configuration, 0, finger.initial_stiffness(), &identity, &configured, timings, recorder)
+            FingerServo::new(&belief, 0, finger.initial_stiffness(), &identity, &configured, timings, recorder)
                 .expect("a finger");
         let period = (1e9 / hand.rate) as u64;
         let schedule = Schedule::new(Transport::now(&world) + period, period);
         let (lender, borrower) = lending();
         let port = ServedPort::new(link, vec![finger]).lent_through(lender);
         let servo = Servo::new(world.clone(), schedule, vec![port]);
-        let mut bench = Self { world, servo, mailbox, borrower, configuration };
-        bench.opens();
-        bench
+        Self { world, servo, mailbox, borrower, configuration }
     }
 
     pub fn report(&self) -> FingerReport {
@@ -123,6 +141,23 @@ impl Bench {
 
     pub fn with_finger<R>(&self, act: impl FnOnce(&mut SimulatedFinger) -> R) -> R {
         self.with_cable(|cable| act(cable.board().finger(1).expect("the board has finger 1")))
+    }
+
+    /// The next read of the port meets this.
+    pub fn fail_port(&self, failure: PortError) {
+        *self.world.instead.borrow_mut() = Some(Err(failure));
+    }
+
+    /// The board's next answer is this.
+    pub fn answer_with(&self, frame: Frame) {
+        let wire = WireFrame::new(&Message { address: 1, sequence: 200, frame });
+        *self.world.instead.borrow_mut() = Some(Ok(wire.as_bytes().to_vec()));
+    }
+
+    /// Another program at the same port sends this to the finger's board, and leaves the answer to whoever reads first.
+    pub fn another_program_sends(&mut self, frame: Frame) {
+        let message = Message { address: 1, sequence: 200, frame };
+        self.world.write(WireFrame::new(&message).as_bytes()).expect("written");
     }
 
     /// Periods.
@@ -163,6 +198,15 @@ impl Bench {
         let fault = self.fault().expect("faulted");
         assert_eq!(fault.kind, kind, "{fault}");
         fault
+    }
+
+    /// Until the finger is warned of this, and goes on.
+    pub fn warns(&mut self, kind: FaultKind) -> Fault {
+        self.until(&format!("warned of {kind:?}"), |bench| {
+            assert_eq!(bench.fault(), None);
+            bench.warning().is_some_and(|warning| warning.kind == kind)
+        });
+        self.warning().expect("warned")
     }
 
     /// The link in other hands, which shake hands with the board and give it back: the finger takes up slack.
