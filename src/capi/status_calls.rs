@@ -253,12 +253,7 @@ fn stage(number: c_int) -> Option<realtime::Stage> {
 fn told(status: &hand::FingerStatus) -> FingerStatus {
     FingerStatus {
         Size: 0, // until the caller's room is known
-        State: match status.stage {
-            Stage::Faulted(_) => FINGER_FAULTED,
-            Stage::Limp => FINGER_LIMP,
-            Stage::Calibrating | Stage::Opening => FINGER_CALIBRATING,
-            Stage::Running | Stage::Closing | Stage::Closed => FINGER_RUNNING,
-        },
+        State: state(&status.stage),
         Realtime: status.realtime.into(),
         Rate: status.rate,
         MeasuredRate: status.measured_rate,
@@ -273,6 +268,16 @@ fn told(status: &hand::FingerStatus) -> FingerStatus {
         Calibration: status.calibration,
         MemoryLocked: status.memory_locked.into(),
         OnCore: status.on_core.into(),
+    }
+}
+
+/// FINGER_...
+pub(super) fn state(stage: &Stage) -> c_int {
+    match stage {
+        Stage::Faulted(_) => FINGER_FAULTED,
+        Stage::Limp => FINGER_LIMP,
+        Stage::Calibrating | Stage::Opening => FINGER_CALIBRATING,
+        Stage::Running | Stage::Closing | Stage::Closed => FINGER_RUNNING,
     }
 }
 
@@ -299,6 +304,6 @@ fn timing(stage: c_int, times: &Distribution, losses: &Losses) -> FingerTiming {
 }
 
 /// Where `unsigned long` has 32 bits a count stops at its largest value.
-fn count(count: u64) -> c_ulong {
+pub(super) fn count(count: u64) -> c_ulong {
     c_ulong::try_from(count).unwrap_or(c_ulong::MAX)
 }

@@ -178,6 +178,15 @@ impl BlackBox {
         std::mem::take(&mut self.faulted)
     }
 
+    /// The record of a cycle, or the newest, with the first and the last cycle of which there are records; none where there is no such
+    /// record.
+    pub fn record(&self, cycle: Option<u64>) -> Option<(CycleRecord, (u64, u64))> {
+        let (first, last) = (self.records.front()?.cycle, self.records.back()?.cycle);
+        // They are without a gap.
+        let index = cycle.unwrap_or(last).checked_sub(first)?;
+        Some((*self.records.get(usize::try_from(index).ok()?)?, (first, last)))
+    }
+
     /// A copy of what is kept; none before the first cycle.
     pub fn recording(&self) -> Option<Recording> {
         let state = self.keyframes.front()?.state;

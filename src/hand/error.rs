@@ -244,6 +244,16 @@ pub enum HandError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A cycle that is not in the black box.
+    #[error(
+        "cycle {cycle} of finger {finger} is not kept: only the last two seconds are, FingerRecord.Oldest to Newest; 0 asks for the newest"
+    )]
+    NoRecord {
+        /// 1 to 3.
+        finger: i32,
+        /// What was asked for; 0: the newest.
+        cycle: u64,
+    },
     /// A push beyond what any finger bears.
     #[error(
         "a force of {force:.3e} N on finger {finger} is beyond the {strongest} N that a simulated finger is pushed with at most"
@@ -285,6 +295,7 @@ impl HandError {
             Self::NotReconnected(_) => libc::ENODEV,
             Self::Busy(_) | Self::PortInUse(_) => libc::EBUSY,
             Self::Store { source, .. } | Self::BlackBox { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
+            Self::NoRecord { .. } => libc::ENOENT,
             Self::NotSimulated(_) => libc::ENOTSUP,
         }
     }
