@@ -71,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         println!(
             "| {} | {cycles} | {} | {} | {} | {} | {} | {library} |",
             index + 1,
-            report.lost_replies,
+            report.losses.lost_replies,
             late.len(),
             count(Cause::WakeUp),
             count(Cause::Pause),

@@ -126,12 +126,13 @@ impl FingerServo {
     pub fn end(&mut self, began: u64, overrun: Option<u64>, heard: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
         self.sample_age += 1 + skipped;
-        self.report.cycles += 1;
-        self.report.overruns += u64::from(overrun.is_some());
-        self.report.skipped_periods += skipped;
-        (self.report.damaged_frames, self.report.foreign_frames) = (heard.damaged, heard.foreign);
+        let losses = &mut self.report.losses;
+        losses.cycles += 1;
+        losses.overruns += u64::from(overrun.is_some());
+        losses.skipped_periods += skipped;
+        (losses.damaged_frames, losses.foreign_frames) = (heard.damaged, heard.foreign);
         self.report.last = began;
-        if self.report.cycles == 1 {
+        if losses.cycles == 1 {
             self.report.first = began;
         }
         if self.under_control()
@@ -146,13 +147,13 @@ impl FingerServo {
         }
         let recorded = self.recording || self.under_control();
         if self.under_control() {
-            self.black_box.keyframe(self.report.cycles, &self.state, !self.recording);
+            self.black_box.keyframe(self.report.losses.cycles, &self.state, !self.recording);
         }
         let controls = self.under_control() && (self.answered || !self.link.in_step());
         let control = controls.then(|| self.control(skipped));
         if recorded {
             self.record = Some(CycleRecord {
-                cycle: self.report.cycles,
+                cycle: self.report.losses.cycles,
                 began,
                 stage: self.report.stage,
                 timing: CycleTiming::default(),
@@ -246,7 +247,7 @@ impl FingerServo {
             }
             return;
         }
-        self.report.lost_replies += 1;
+        self.report.losses.lost_replies += 1;
         if let Some(lost) = self.link.missed() {
             let milliseconds = f64::from(lost) * self.limits.period_ms;
             self.fault(self.watching.silence(milliseconds));

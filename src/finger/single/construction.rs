@@ -6,7 +6,7 @@ use crate::control::{Activity, Command, Controller, Feedback, SetPoint};
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Adjustable, Mailbox, mailbox};
 use crate::finger::watching::Watching;
-use crate::finger::{Alarm, FingerReport, Recorder, Stage, stop_calls};
+use crate::finger::{Alarm, FingerReport, Losses, Recorder, Stage, stop_calls};
 use crate::model::configuration::{Configuration, Unusable};
 use crate::realtime::CycleTiming;
 use nalgebra::{Matrix3, Vector3};
@@ -67,14 +67,7 @@ impl FingerServo {
             cycle: Default::default(),
             orders: 0,
             calibration: None,
-            cycles: 0,
-            overruns: 0,
-            skipped_periods: 0,
-            lost_replies: 0,
-            late_replies: 0,
-            duplicate_replies: 0,
-            damaged_frames: 0,
-            foreign_frames: 0,
+            losses: Losses::default(),
             recoveries: 0,
             warnings: Default::default(),
             first: 0,

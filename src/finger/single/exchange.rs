@@ -47,8 +47,8 @@ impl FingerServo {
     /// Counts a reply that this cycle does not await: it came once more, or when its cycle was over.
     pub fn pass_over(&mut self, received: &Received) {
         match received.sequence == self.last_answer {
-            true => self.report.duplicate_replies += 1,
-            false => self.report.late_replies += 1,
+            true => self.report.losses.duplicate_replies += 1,
+            false => self.report.losses.late_replies += 1,
         }
     }
 
