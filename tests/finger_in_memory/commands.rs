@@ -17,10 +17,10 @@ impl Bench {
         // After three the command is on its way to rest, which it reaches after ten.
         let left = f64::from(10 - lost.max(3)) / 7.0;
         let (told, before) = (self.report().cycle.motor_torques * left, self.executed());
-        let losses = self.report().lost_replies;
+        let losses = self.report().losses.lost_replies;
         self.cycles(1);
         assert_eq!(self.stage(), Stage::Running);
-        let (executed, answered) = (self.executed(), self.report().lost_replies == losses);
+        let (executed, answered) = (self.executed(), self.report().losses.lost_replies == losses);
         let expected = if answered { told } else { before };
         // A count of torque is 1.6e-4 N cm.
         assert!((executed - expected).amax() < 2e-4, "answered: {answered}, executed {executed}, expected {expected}");
