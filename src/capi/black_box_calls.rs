@@ -8,7 +8,7 @@ use crate::capi::memory::{fill, size_up_to};
 use crate::capi::refusal::{Refusal, guarded};
 use crate::capi::status_calls::{count, state};
 use crate::control::Activity;
-use crate::finger::CycleRecord;
+use crate::finger::KeptRecord;
 use crate::hand;
 use std::ffi::{CStr, OsStr, c_char, c_int, c_uint, c_ulong};
 use std::os::unix::ffi::OsStrExt;
@@ -84,10 +84,10 @@ pub struct FingerRecord {
 pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut FingerRecord) -> c_int {
     guarded("GetRecord", || {
         let least = size_up_to!(self::FingerRecord, Torque: [f64; 4]);
-        // As wide as `unsigned long` is here.
+        #[allow(clippy::useless_conversion, reason = "`unsigned long` has 32 bits on some machines")]
         let cycle = (Cycle != 0).then_some(u64::from(Cycle));
         // SAFETY: the manual's contract: null, or as much room as its first member says.
-        unsafe { fill(Record, "Record", least, |hand| hand.record(i, cycle).map(|(record, kept)| told(&record, kept))) }
+        unsafe { fill(Record, "Record", least, |hand| hand.record(i, cycle).map(|kept| told(&kept))) }
     })
 }
 
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn WriteBlackBox(i: c_int, Path: *const c_char) -> c_int {
     })
 }
 
-fn told(record: &CycleRecord, (oldest, newest): (u64, u64)) -> FingerRecord {
+fn told(KeptRecord { record, oldest, newest }: &KeptRecord) -> FingerRecord {
     let found = record.control.map(|control| control.report).unwrap_or_default();
     let sent = match record.control.map(|control| control.input.activity) {
         Some(Activity::Follow(set_point)) => Some(set_point.joints),
@@ -139,8 +139,8 @@ fn told(record: &CycleRecord, (oldest, newest): (u64, u64)) -> FingerRecord {
         Size: 0, // until the caller's room is known
         State: state(&record.stage),
         Cycle: count(record.cycle),
-        Oldest: count(oldest),
-        Newest: count(newest),
+        Oldest: count(*oldest),
+        Newest: count(*newest),
         Time: record.began as f64 * 1e-9,
         Answered: record.feedback.is_some().into(),
         StatusBits: record.status.into(),

@@ -58,6 +58,17 @@ pub struct ControlRecord {
     pub report: Report,
 }
 
+/// One of the records that are kept.
+#[derive(Clone, Copy, Debug)]
+pub struct KeptRecord {
+    /// It.
+    pub record: CycleRecord,
+    /// The first cycle that is kept.
+    pub oldest: u64,
+    /// The last one.
+    pub newest: u64,
+}
+
 /// The state before a cycle.
 struct Keyframe {
     cycle: u64,
@@ -178,13 +189,13 @@ impl BlackBox {
         std::mem::take(&mut self.faulted)
     }
 
-    /// The record of a cycle, or the newest, with the first and the last cycle of which there are records; none where there is no such
-    /// record.
-    pub fn record(&self, cycle: Option<u64>) -> Option<(CycleRecord, (u64, u64))> {
-        let (first, last) = (self.records.front()?.cycle, self.records.back()?.cycle);
+    /// The record of a cycle, or the newest; none where it is not kept.
+    pub fn record(&self, cycle: Option<u64>) -> Option<KeptRecord> {
+        let (oldest, newest) = (self.records.front()?.cycle, self.records.back()?.cycle);
         // They are without a gap.
-        let index = cycle.unwrap_or(last).checked_sub(first)?;
-        Some((*self.records.get(usize::try_from(index).ok()?)?, (first, last)))
+        let index = cycle.unwrap_or(newest).checked_sub(oldest)?;
+        let record = *self.records.get(usize::try_from(index).ok()?)?;
+        Some(KeptRecord { record, oldest, newest })
     }
 
     /// A copy of what is kept; none before the first cycle.

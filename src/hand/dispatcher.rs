@@ -1,7 +1,7 @@
 //! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
 
 use crate::control::{SetPoint, spatial};
-use crate::finger::{self, BlackBox, CycleRecord, FingerReport, Losses, Mailbox, Recording};
+use crate::finger::{self, BlackBox, FingerReport, KeptRecord, Losses, Mailbox, Recording};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::black_box::keep;
@@ -157,8 +157,8 @@ impl Dispatcher {
         Ok(collected.black_box.recording())
     }
 
-    /// One of the last two seconds' records, with the first and the last cycle of which there are any.
-    pub fn record(&self, finger: i32, cycle: Option<u64>) -> Result<Option<(CycleRecord, (u64, u64))>, HandError> {
+    /// One of the last two seconds' records.
+    pub fn record(&self, finger: i32, cycle: Option<u64>) -> Result<Option<KeptRecord>, HandError> {
         let mut collected = self.collected(finger)?;
         collected.collect();
         Ok(collected.black_box.record(cycle))

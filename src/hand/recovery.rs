@@ -177,7 +177,7 @@ impl Recovery {
         std::mem::forget(self.reconnecting.take());
     }
 
-    /// Ends that thread and closes the ports that the servos have lent; one that somebody is at work on as soon as it is put down.
+    /// Ends that thread, and closes the ports that the servos have lent: waits for whoever is at work on one.
     pub fn end(&mut self) {
         if let Some((stop, thread)) = self.reconnecting.take() {
             drop(stop);
@@ -231,19 +231,20 @@ impl Recovering {
         let begun = Instant::now();
         // An emergency stop from here on counts.
         let stop_calls = stop_calls();
+        let place = hand.recovery.places.iter().find(|place| place.fingers.contains(&finger));
+        let place = place.ok_or(HandError::NoSuchFinger(finger))?.clone();
+        // Before the finger is looked at: who mends the port from here on has done it for this call too.
+        let mended = place.mended.load(Ordering::Acquire);
         if !matches!(hand.report(finger)?.stage, Stage::Faulted(_)) {
             return Ok(Self { task: None, begun });
         }
-        let place = hand.recovery.places.iter().find(|place| place.fingers.contains(&finger));
-        let place = place.ok_or(HandError::NoSuchFinger(finger))?.clone();
-        let mended = place.mended.load(Ordering::Acquire);
         let before = |&finger: &i32| Ok((finger, hand.report(finger)?.recoveries));
         let fingers = place.fingers.iter().map(before).collect::<Result<_, HandError>>()?;
         Ok(Self { task: Some(Task { finger, place, mended, fingers, stop_calls }), begun })
     }
 
     /// Mends what the finger is connected by and lets it take up slack, with every other finger of the port. Ports are opened and
-    /// hands shaken here: it may take a second, and nobody's calls but those that mend the same port wait for it, and closing.
+    /// hands shaken here: it may take a second. Only those wait for it who mend the same port or close the hand.
     ///
     /// # Errors
     /// A finger that runs on the same port; a port or board that does not serve, or is another than at open; a servo that has

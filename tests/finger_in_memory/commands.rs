@@ -46,7 +46,7 @@ fn a_damaged_command_is_not_executed_and_costs_its_own_period() {
         }
         assert!((0..8).all(|_| bench.exchanges(0)), "seed {seed}");
     }
-    // 8 of the 144 bits of a Command.
+    // 8 of the 136 bits of a Command.
     assert!((20..100).contains(&next_too), "{next_too}");
 }
 

@@ -104,7 +104,8 @@ fn a_servo_that_comes_late_says_so() {
     }
     let warning = bench.warns(FaultKind::Overrun);
     assert!((2.0..10.0).contains(&warning.value), "{warning}");
-    assert!(bench.report().losses.skipped_periods >= 100, "{}", bench.report().losses.skipped_periods);
+    // The last is counted with the next cycle.
+    assert!(bench.report().losses.skipped_periods >= 99, "{}", bench.report().losses.skipped_periods);
 }
 
 #[test]

@@ -18,12 +18,14 @@ pub const MILLISECOND: u64 = 1_000_000;
 /// A pose.
 pub const TARGET: Vector3<f64> = Vector3::new(0.2, 0.6, 1.1);
 
+type Read = Result<Vec<u8>, PortError>;
+
 /// The cable, and the clock at both its ends.
 #[derive(Clone)]
 pub struct World {
     cable: Rc<RefCell<SimulatedCable>>,
     /// What the next read finds instead of what the board has sent.
-    instead: Rc<RefCell<Option<Result<Vec<u8>, PortError>>>>,
+    instead: Rc<RefCell<Option<Read>>>,
 }
 
 impl Transport for World {
