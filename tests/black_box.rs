@@ -47,7 +47,7 @@ fn wait_until(what: &str, mut wanted: impl FnMut() -> bool) {
 
 /// Lets a number of cycles pass.
 fn cycles(hand: &Hand, count: u64) {
-    let now = || hand.report(2).expect("a report").cycles;
+    let now = || hand.report(2).expect("a report").losses.cycles;
     let end = now() + count;
     wait_until("so many cycles", || now() >= end);
 }

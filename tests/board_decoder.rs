@@ -1,6 +1,10 @@
 //! The decoder against anything that a cable can deliver.
 
+#[path = "board_vectors/stuffing.rs"]
+mod stuffing;
+
 use proptest::prelude::*;
+use stuffing::stuffed;
 use sun2xp::board::protocol::*;
 
 /// A frame as the page describes it, by other means than the library's: bitwise check, stuffing by splitting at zeros.
@@ -12,14 +16,7 @@ fn sealed(content: &[u8]) -> Vec<u8> {
             register = register >> 1 ^ if register & 1 == 1 { 0xEDB8_8320 } else { 0 };
         }
     }
-    let frame = [content, &(!register).to_le_bytes()].concat();
-    let mut wire = Vec::new();
-    for run in frame.split(|&byte| byte == 0) {
-        wire.push(run.len() as u8 + 1);
-        wire.extend(run);
-    }
-    wire.push(0);
-    wire
+    stuffed(&[content, &(!register).to_le_bytes()].concat())
 }
 
 /// Header, sequence number and body of every frame found, feeding `chunk` bytes at a time.

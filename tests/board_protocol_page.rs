@@ -1,5 +1,9 @@
 //! docs/board-protocol.md is what strangers build boards from: its numbers and its hex must be those of the codec.
 
+#[path = "board_vectors/example_board.rs"]
+mod example_board;
+
+use example_board::IDENTITY;
 use std::collections::BTreeMap;
 use sun2xp::board::capacity;
 use sun2xp::board::protocol::*;
@@ -23,22 +27,7 @@ fn described() -> Vec<Message> {
     let gauges = [410, 205, 205, 410];
     vec![
         message(1, Frame::Hello(Hello { lowest_version: 1, highest_version: 1 })),
-        message(
-            1,
-            Frame::Identity(Identity {
-                version: 1,
-                addresses: 0b1110,
-                board_kind: 0x8000,
-                unique_number: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12],
-                firmware: FirmwareVersion([1, 2, 3]),
-                counts_per_revolution: 2000,
-                gauge_bits: 12,
-                torque_unit: 2000,
-                torque_limit: 23750,
-                shortest_watchdog_ms: 2,
-                capabilities: Capabilities(0b1111),
-            }),
-        ),
+        message(1, Frame::Identity(IDENTITY)),
         message(2, Frame::Configure(terms)),
         message(
             2,

@@ -109,8 +109,8 @@ fn refusals_change_nothing() {
     use libc::{EDOM, EINVAL, ERANGE};
     assert_eq!(errnos, [EINVAL, EINVAL, EINVAL, ERANGE, ERANGE, EDOM]);
     // A cycle that would have taken a set point is long over.
-    let cycles = hand.report(3).expect("report").cycles;
-    while hand.report(3).expect("report").cycles < cycles + 5 {
+    let cycles = hand.report(3).expect("report").losses.cycles;
+    while hand.report(3).expect("report").losses.cycles < cycles + 5 {
         std::thread::yield_now();
     }
     assert_eq!(hand.report(3).expect("report").set_point, before);

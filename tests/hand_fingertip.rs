@@ -25,8 +25,8 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 
 /// A cycle that takes in what was sent is over.
 fn taken_in(hand: &Hand, finger: i32) {
-    let cycles = hand.report(finger).expect("report").cycles;
-    until("cycles", || hand.report(finger).expect("report").cycles > cycles + 3);
+    let cycles = hand.report(finger).expect("report").losses.cycles;
+    until("cycles", || hand.report(finger).expect("report").losses.cycles > cycles + 3);
 }
 
 #[test]

@@ -23,6 +23,7 @@ fn the_committed_header_is_the_one_of_the_exports() {
         .with_config(config)
         .with_src(root.join("src/capi/calls.rs"))
         .with_src(root.join("src/capi/status_calls.rs"))
+        .with_src(root.join("src/capi/timing_calls.rs"))
         .with_src(root.join("src/capi/fingertip_calls.rs"))
         .with_src(root.join("src/capi/black_box_calls.rs"))
         .with_src(root.join("src/capi/calibration_calls.rs"))

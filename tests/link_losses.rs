@@ -221,21 +221,21 @@ fn each_mishap_costs_its_own_period_and_no_more() {
         let (report, world) = (rig.report(), rig.world.borrow());
         println!(
             "{percent:2} %: {} cycles, mishaps {:?}, {} periods lost, {} replies late, {} twice, {} damaged frames, off by {farthest:.4} rad",
-            report.cycles,
+            report.losses.cycles,
             Mishap::ALL.iter().zip(world.happened).collect::<Vec<_>>(),
-            report.lost_replies,
-            report.late_replies,
-            report.duplicate_replies,
-            report.damaged_frames
+            report.losses.lost_replies,
+            report.losses.late_replies,
+            report.losses.duplicate_replies,
+            report.losses.damaged_frames
         );
-        assert_eq!(report.lost_replies, world.cost, "{percent} %");
+        assert_eq!(report.losses.lost_replies, world.cost, "{percent} %");
         assert!(world.happened.iter().all(|&count| count > 0), "{:?}", world.happened);
         assert!(!faultless || report.stage == Stage::Running, "{percent} %: {:?}", report.stage);
         // What comes late or twice is known by its number; the last may still be on its way.
         let of = |mishap: Mishap| world.happened[mishap as usize];
         let near = |counted: u64, happened: u64| counted <= happened && counted + 1 >= happened;
-        assert!(near(report.late_replies, of(Mishap::Late)), "{percent} %: {report:?}");
-        assert!(near(report.duplicate_replies, of(Mishap::Doubled)), "{percent} %: {report:?}");
+        assert!(near(report.losses.late_replies, of(Mishap::Late)), "{percent} %: {report:?}");
+        assert!(near(report.losses.duplicate_replies, of(Mishap::Doubled)), "{percent} %: {report:?}");
         assert!(farthest < 0.03, "{percent} %: {farthest} rad");
         let recording = rig.black_box.recording().expect("a recording");
         let replayed = recording.replay().expect("replayable");

@@ -44,7 +44,7 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     let hand = Hand::open(Configuration::default()).expect("the simulated hand");
     assert!(BY_SERVOS.load(Relaxed) > 0, "starting a thread allocates: the counter must see it");
     let before = BY_SERVOS.load(Relaxed);
-    let cycles = |finger| hand.report(finger).expect("a report").cycles;
+    let cycles = |finger| hand.report(finger).expect("a report").losses.cycles;
     let end = cycles(1) + 1000;
     let mut others = BY_OTHERS.load(Relaxed);
     for step in 0u32.. {

@@ -29,7 +29,7 @@ fn a_servo_thread_meets_no_page_fault() {
         let mut configuration = Configuration::default();
         (configuration.hand.real_time, configuration.hand.rate) = (real_time, rate);
         let hand = Hand::open(configuration).expect("the simulated hand");
-        let cycles = |finger| hand.report(finger).expect("a report").cycles;
+        let cycles = |finger| hand.report(finger).expect("a report").losses.cycles;
         let before = page_faults();
         assert_eq!(before.len(), 3, "{before:?}");
         if real_time == RealTime::Try {

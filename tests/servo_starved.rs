@@ -238,12 +238,12 @@ fn a_command_or_reply_that_was_thrown_away_is_made_good() {
             world.load.carrier = 0.0;
             world.carrier_runs = 0;
         }
-        let lost = rig.mailbox.report().lost_replies;
+        let lost = rig.mailbox.report().losses.lost_replies;
         rig.run(0.3);
         let report = rig.mailbox.report();
         assert_eq!(report.stage, Stage::Running);
         // The command is repeated after 0.1 s.
-        assert!((75..125).contains(&(report.lost_replies - lost)), "{report:?}");
+        assert!((75..125).contains(&(report.losses.lost_replies - lost)), "{report:?}");
     }
 }
 

@@ -145,14 +145,14 @@ impl Rig {
 fn a_late_cycle_is_run_late_and_nothing_is_made_up() {
     let mut rig = Rig::new(0.0, false);
     rig.cycles(10);
-    let report = rig.mailbox.report();
-    assert_eq!((report.cycles, report.overruns, report.skipped_periods, report.lost_replies), (10, 0, 0, 0));
+    let losses = rig.mailbox.report().losses;
+    assert_eq!((losses.cycles, losses.overruns, losses.skipped_periods, losses.lost_replies), (10, 0, 0, 0));
 
     // 3.4 periods late: that cycle runs, three periods are gone, and the one after them begins at once.
     rig.world.oversleep.set(3 * PERIOD + 400_000);
     rig.cycles(6);
-    let report = rig.mailbox.report();
-    assert_eq!((report.cycles, report.overruns, report.skipped_periods), (16, 1, 2));
+    let losses = rig.mailbox.report().losses;
+    assert_eq!((losses.cycles, losses.overruns, losses.skipped_periods), (16, 1, 2));
     let beginnings: Vec<u64> = rig.world.beginnings.borrow()[10..].iter().map(|at| (at - FIRST) / 1000).collect();
     assert_eq!(beginnings, [13_400, 13_400, 14_000, 15_000, 16_000, 17_000], "us");
 }
@@ -171,8 +171,8 @@ fn feedback_is_one_period_old_and_older_where_replies_stay_away() {
     rig.cycles(1);
     let age = rig.age();
     assert!(age.count == 1 && (age.maximum - 4000.0).abs() < 40.0, "{age:?}");
-    let report = rig.mailbox.report();
-    assert_eq!((report.lost_replies, report.late_replies, report.skipped_periods), (3, 3, 0));
+    let losses = rig.mailbox.report().losses;
+    assert_eq!((losses.lost_replies, losses.late_replies, losses.skipped_periods), (3, 3, 0));
 
     // Longer than the board's clock can tell: not counted, rather than counted wrong.
     rig.world.oversleep.set(70 * PERIOD);

@@ -17,20 +17,21 @@ pub struct LateCycle {
     pub beginning: u64,
     /// Its first instruction.
     pub woken: u64,
-    /// When replies, or the time for them, had come, and it began to compute.
-    pub computing: u64,
     /// When it was done.
     pub done: u64,
+    /// For how long its thread ran meanwhile, by the kernel's account: with its system calls, without waiting.
+    pub ran: u64,
 }
 
-/// What a servo is asked of its clock in one cycle: to sleep until the beginning; the time when it has woken; and last the times when it
-/// begins to compute and when it has. So the clock knows of every late cycle, and the library that is measured is the one that is used.
+/// What a servo asks of its clock in one cycle: to sleep until the beginning; the time when it has woken; and last the time when it has
+/// computed. So the clock knows of every late cycle, and the library that is measured is the one that is used.
 pub struct NotingClock {
     period: u64,
     beginning: Cell<u64>,
-    woken: Cell<Option<u64>>,
-    /// The last two times that were asked for.
-    last: Cell<(u64, u64)>,
+    /// When it had, and for how long its thread had run until then.
+    woken: Cell<Option<(u64, u64)>>,
+    /// The last time that was asked for.
+    last: Cell<u64>,
     late: Cell<Vec<LateCycle>>,
     cycles: Cell<u64>,
 }
@@ -41,7 +42,7 @@ impl NotingClock {
             period,
             beginning: Cell::new(0),
             woken: Cell::new(None),
-            last: Cell::new((0, 0)),
+            last: Cell::new(0),
             late: Cell::new(Vec::with_capacity(KEPT)),
             cycles: Cell::new(0),
         }
@@ -56,11 +57,11 @@ impl NotingClock {
     fn end_cycle(&self) {
         let Some(woken) = self.woken.take() else { return };
         self.cycles.set(self.cycles.get() + 1);
-        let (beginning, (computing, done)) = (self.beginning.get(), self.last.get());
+        let (beginning, (woken, ran_before), done) = (self.beginning.get(), woken, self.last.get());
         if done > beginning + self.period {
             let mut late = self.late.take();
             if late.len() < KEPT {
-                late.push(LateCycle { beginning, woken, computing, done });
+                late.push(LateCycle { beginning, woken, done, ran: thread_time() - ran_before });
             }
             self.late.set(late);
         }
@@ -71,9 +72,9 @@ impl Clock for &NotingClock {
     fn now(&self) -> u64 {
         let time = now();
         if self.woken.get().is_none() {
-            self.woken.set(Some(time));
+            self.woken.set(Some((time, thread_time())));
         }
-        self.last.set((self.last.get().1, time));
+        self.last.set(time);
         time
     }
 
@@ -82,6 +83,14 @@ impl Clock for &NotingClock {
         self.beginning.set(deadline);
         MonotonicClock.sleep_until(deadline);
     }
+}
+
+/// For how long the calling thread has run, ns.
+fn thread_time() -> u64 {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: `time` is writable; the clock exists on every Linux.
+    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
+    time.tv_sec as u64 * 1_000_000_000 + time.tv_nsec as u64
 }
 
 /// A time in which a core did not run a thread that was due, above all servos: from, to, ns.
@@ -146,7 +155,12 @@ impl Pauses {
         let overlap = |&(from, to): &Pause| to.min(cycle.done).saturating_sub(from.max(cycle.beginning));
         // A watcher looks from time to time: a pause that begins between two looks is seen shorter than it is.
         let seen = |overlap: u64| if overlap > 0 { overlap + LOOKING } else { 0 };
-        self.0.iter().any(|core| core.iter().map(overlap).map(seen).sum::<u64>() >= excess)
+        self.0.iter().any(|core| {
+            // They are in the order of time.
+            let near = &core[core.partition_point(|pause| pause.1 <= cycle.beginning)..];
+            let near = near.iter().take_while(|pause| pause.0 < cycle.done);
+            near.map(overlap).map(seen).sum::<u64>() >= excess
+        })
     }
 }
 
@@ -157,26 +171,20 @@ pub enum Cause {
     WakeUp,
     /// A core stood still meanwhile to a thread above all servos, for as long as the cycle was late.
     Pause,
-    /// It was late when it had done with sending and receiving, and no watcher has met a pause. Most often a poll returned long after
-    /// its deadline, on a core that a watcher did not look at meanwhile or behind a worker of the kernel that holds the terminal; but
-    /// this does not prove it: the library's own sending, reading and decoding lie in the same time.
-    Exchange,
-    /// None of these: the library itself, in its computation.
+    /// It was kept from its core: by a poll that returned after its deadline, or by other threads. It ran for so short a time that it would
+    /// have been done with what is left of a period after the latest reply, had it run when it was due.
+    Kept,
+    /// None of these: the library itself, which ran for longer than that.
     Library,
 }
 
-/// A computation that took no longer than this part of a period has not made the cycle late.
-const COMPUTING: f64 = 0.1;
-
 /// `pauses`: of threads above all servos.
 pub fn cause(cycle: &LateCycle, period: u64, pauses: &Pauses) -> Cause {
-    let &LateCycle { woken, computing, done, .. } = cycle;
-    let waited_for = (computing - woken) as f64 > REPLY_WINDOW * period as f64;
-    let computed_briefly = (done - computing) as f64 <= COMPUTING * period as f64;
+    let &LateCycle { woken, done, ran, .. } = cycle;
     match () {
         _ if done - woken <= period => Cause::WakeUp,
         _ if pauses.explain(cycle, period) => Cause::Pause,
-        _ if waited_for && computed_briefly => Cause::Exchange,
+        _ if ran as f64 <= (1.0 - REPLY_WINDOW) * period as f64 => Cause::Kept,
         _ => Cause::Library,
     }
 }

@@ -15,10 +15,12 @@ mod long_run;
 mod percentiles;
 mod planner;
 mod throughput;
+mod turns;
 mod wake_up;
 
 use clap::{Parser, Subcommand};
 use std::error::Error;
+use turns::Turns;
 
 type Failure = Box<dyn Error>;
 
@@ -34,22 +36,24 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Figure {
-    WakeUp(wake_up::Arguments),
+    /// Wake-up latency of three servo-like threads, and of cyclictest, idle and under load.
+    WakeUp(Turns),
     Throughput(throughput::Arguments),
-    Planner(planner::Arguments),
+    /// Wake-up of the servos with two threads calling SendPos and GetPos as fast as they can, and without.
+    Planner(Turns),
     LongRun(long_run::Arguments),
 }
 
 fn main() -> Result<(), Failure> {
     match Arguments::parse().figure {
-        Some(Figure::WakeUp(arguments)) => wake_up::run(&arguments),
+        Some(Figure::WakeUp(turns)) => wake_up::run(&turns),
         Some(Figure::Throughput(arguments)) => throughput::run(&arguments),
-        Some(Figure::Planner(arguments)) => planner::run(&arguments),
+        Some(Figure::Planner(turns)) => planner::run(&turns),
         Some(Figure::LongRun(arguments)) => long_run::run(&arguments),
         None => {
-            wake_up::run(&wake_up::Arguments::default())?;
+            wake_up::run(&Turns::default())?;
             throughput::run(&throughput::Arguments::default())?;
-            planner::run(&planner::Arguments::default())
+            planner::run(&Turns::default())
         }
     }
 }

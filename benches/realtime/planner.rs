@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::percentiles::median;
+use crate::turns::Turns;
 use std::hint::{black_box, spin_loop};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::thread::sleep;
@@ -9,23 +10,6 @@ use std::time::Duration;
 use sun2xp::hand::{Hand, HandError};
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::Stage;
-
-/// Wake-up of the servos with two threads calling SendPos and GetPos as fast as they can, and without.
-#[derive(clap::Args)]
-pub struct Arguments {
-    /// How often each is measured, in turn.
-    #[arg(long, default_value_t = 5)]
-    repeats: usize,
-    /// How long each time, s.
-    #[arg(long, default_value_t = 5)]
-    seconds: u64,
-}
-
-impl Default for Arguments {
-    fn default() -> Self {
-        Self { repeats: 5, seconds: 5 }
-    }
-}
 
 /// What the two threads do meanwhile.
 #[derive(Clone, Copy, PartialEq)]
@@ -42,11 +26,11 @@ const KINDS: [(Planners, &str); 3] = [
     (Planners::Calling, "two that call"),
 ];
 
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub fn run(turns: &Turns) -> Result<(), Failure> {
     let hand = Hand::open(Configuration::default())?;
     let mut wake_ups = [const { Vec::new() }; 3];
     let calls = AtomicU64::new(0);
-    for _ in 0..arguments.repeats {
+    for _ in 0..turns.repeats {
         for ((kind, _), wake_ups) in KINDS.into_iter().zip(&mut wake_ups) {
             let ended = AtomicBool::new(false);
             std::thread::scope(|scope| -> Result<(), Failure> {
@@ -54,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                     let (hand, ended, calls) = (&hand, &ended, &calls);
                     scope.spawn(move || plan(hand, finger, kind, ended, calls))
                 });
-                let measured = measure(&hand, arguments.seconds);
+                let measured = measure(&hand, turns.seconds);
                 ended.store(true, Relaxed);
                 for planner in planners {
                     planner.join().map_err(|_| "a planner panicked")??;
@@ -71,11 +55,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let (middle, p99) = (of(kind, |wake| wake.0), of(kind, |wake| wake.1));
         println!("| {name} | {middle:.1} us | {p99:.1} us | {:.2} | {:.2} |", middle / spinning, p99 / spinning_p99);
     }
-    let seconds = arguments.repeats as u64 * arguments.seconds;
+    let seconds = turns.repeats as u64 * turns.seconds;
     println!(
         "\nMedians over three fingers and {} repeats of {} s; {:.1} million calls a second.\n",
-        arguments.repeats,
-        arguments.seconds,
+        turns.repeats,
+        turns.seconds,
         calls.load(Relaxed) as f64 / seconds as f64 * 1e-6
     );
     Ok(())

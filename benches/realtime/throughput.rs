@@ -82,7 +82,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     while now() < measured {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
-    let lost_before: Vec<u64> = mailboxes.iter().map(|mailbox: &Mailbox| mailbox.report().lost_replies).collect();
+    let lost_before: Vec<u64> =
+        mailboxes.iter().map(|mailbox: &Mailbox| mailbox.report().losses.lost_replies).collect();
     let mut all = 0.0;
     println!("| finger | cycles a second | replies lost |\n|---|---|---|");
     for (index, thread) in threads.into_iter().enumerate() {
@@ -93,7 +94,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 format!("finger {} is {:?}, not under control: nothing measured", index + 1, report.stage).into()
             );
         }
-        let lost = report.lost_replies - lost_before[index];
+        let lost = report.losses.lost_replies - lost_before[index];
         let rate = cycles.saturating_sub(lost) as f64 / arguments.seconds as f64;
         println!("| {} | {rate:.0} | {lost} |", index + 1);
         all += rate;

@@ -3,27 +3,11 @@
 use crate::Failure;
 use crate::cyclictest::Cyclictest;
 use crate::percentiles::{Percentiles, median};
+use crate::turns::Turns;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::process::{Child, Command, Stdio};
 use sun2xp::realtime::{Clock, MonotonicClock, Priority, Schedule, now, spawn};
-
-/// Wake-up latency of three servo-like threads, and of cyclictest.
-#[derive(clap::Args)]
-pub struct Arguments {
-    /// How often both are measured, idle and under load.
-    #[arg(long, default_value_t = 5)]
-    repeats: usize,
-    /// How long each time, s.
-    #[arg(long, default_value_t = 5)]
-    seconds: u64,
-}
-
-impl Default for Arguments {
-    fn default() -> Self {
-        Self { repeats: 5, seconds: 5 }
-    }
-}
 
 const PRIORITY: u8 = 80;
 const PERIOD_US: u64 = 1000;
@@ -31,15 +15,15 @@ const PERIOD_US: u64 = 1000;
 /// The threads may be so much later than cyclictest's.
 const GOAL: f64 = 1.1;
 
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub fn run(turns: &Turns) -> Result<(), Failure> {
     let _awake = keep_awake();
     println!("| load | of | this library | cyclictest | ratio | goal |\n|---|---|---|---|---|---|");
     for (load, busy) in [("idle", false), ("stress-ng", true)] {
         let _stress = if busy { Some(Stress::start()?) } else { None };
         let (mut ours, mut theirs) = (Vec::new(), Vec::new());
-        for _ in 0..arguments.repeats {
-            ours.extend(servo_threads(arguments.seconds)?);
-            let measured = Cyclictest::start(PRIORITY, PERIOD_US, arguments.seconds)?.finish()?;
+        for _ in 0..turns.repeats {
+            ours.extend(servo_threads(turns.seconds)?);
+            let measured = Cyclictest::start(PRIORITY, PERIOD_US, turns.seconds)?.finish()?;
             theirs.extend(measured.into_iter().map(|thread| thread.latency));
         }
         let row = |name: &str, part: fn(&Percentiles) -> f64, goal: &str| {
@@ -50,7 +34,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         row("99 %", |latency| latency.p99, &format!("<= {GOAL}"));
         row("worst", |latency| latency.maximum, "");
     }
-    println!("\nMedians over three threads and {} repeats of {} s.\n", arguments.repeats, arguments.seconds);
+    println!("\nMedians over three threads and {} repeats of {} s.\n", turns.repeats, turns.seconds);
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 /* The part of the hardware layer that is the processor's. */
 
 #include "../hal.h"
+#include "plant.h"
 #include "processor.h"
 
 uint32_t hal_microseconds(void)
@@ -13,8 +14,10 @@ size_t hal_receive(unsigned line, uint8_t *bytes, size_t room, uint32_t *arrived
     (void)line;
     size_t taken = 0;
     while (taken < room && uart_take(&bytes[taken], arrived_at)) {
-        if (bytes[taken++] == 0)
+        if (bytes[taken++] == 0) {
+            plant_note_frame(*arrived_at);
             break;
+        }
     }
     return taken;
 }

@@ -5,7 +5,7 @@
 struct request {
     uint8_t finger, sample;
     uint16_t unused;
-    uint32_t now, set_at;
+    uint32_t now, arrived_at, set_at;
     int32_t currents[MOTORS];
 };
 
@@ -29,6 +29,8 @@ enum { OPEN = 1, WRITE = 5, READ = 6 };
 enum { OPEN_READ_AND_WRITE = 3 };
 
 static int to_plant, from_plant;
+
+static uint32_t frame_arrived_at;
 
 static int semihost(int operation, const void *parameters)
 {
@@ -65,6 +67,7 @@ static void transfer(int operation, int file, void *bytes, size_t length)
 static void ask(unsigned finger, bool sample, struct answer *answer)
 {
     struct request request = {.finger = (uint8_t)finger, .sample = sample, .now = timer_microseconds()};
+    request.arrived_at = frame_arrived_at;
     request.set_at = fingers[finger].set_at;
     memcpy(request.currents, fingers[finger].currents, sizeof request.currents);
     fingers[finger].asked_at = request.now;
@@ -77,6 +80,11 @@ void plant_start(void)
 {
     to_plant = open_file("plant_to");
     from_plant = open_file("plant_from");
+}
+
+void plant_note_frame(uint32_t arrived_at)
+{
+    frame_arrived_at = arrived_at;
 }
 
 void plant_poll(void)
@@ -100,8 +108,6 @@ void hal_sample(unsigned finger, struct sensors *sensors)
 
 void hal_set_currents(unsigned finger, const int32_t microamperes[MOTORS])
 {
-    if (memcmp(fingers[finger].currents, microamperes, sizeof fingers[finger].currents) == 0)
-        return;
     memcpy(fingers[finger].currents, microamperes, sizeof fingers[finger].currents);
     fingers[finger].set_at = timer_microseconds();
 }

@@ -20,3 +20,4 @@ mod process;
 mod recovery_calls;
 mod refusal;
 mod status_calls;
+mod timing_calls;

@@ -1,7 +1,5 @@
 //! What a servo could not do in time, counted.
 
-use crate::finger::FingerReport;
-
 /// How many cycles a finger had, and what went wrong in them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Losses {
@@ -24,20 +22,6 @@ pub struct Losses {
 }
 
 impl Losses {
-    /// Since open.
-    pub fn of(report: &FingerReport) -> Self {
-        Self {
-            cycles: report.cycles,
-            overruns: report.overruns,
-            skipped_periods: report.skipped_periods,
-            lost_replies: report.lost_replies,
-            late_replies: report.late_replies,
-            duplicate_replies: report.duplicate_replies,
-            damaged_frames: report.damaged_frames,
-            foreign_frames: report.foreign_frames,
-        }
-    }
-
     /// Since `earlier`.
     pub fn since(&self, earlier: &Self) -> Self {
         Self {

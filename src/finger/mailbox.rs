@@ -6,7 +6,7 @@
 
 use crate::control::calibration::{Calibration, Verdict};
 use crate::control::{Controller, Report, SetPoint};
-use crate::finger::{Fault, Warnings};
+use crate::finger::{Fault, Losses, Warnings};
 use crate::realtime::Memory;
 use nalgebra::Vector3;
 use parking_lot::Mutex;
@@ -72,22 +72,8 @@ pub struct FingerReport {
     pub orders: u32,
     /// What became of the last calibration, if there was one.
     pub calibration: Option<Verdict>,
-    /// Cycles since open.
-    pub cycles: u64,
-    /// Cycles that were not over when the next one should have begun.
-    pub overruns: u64,
-    /// Periods skipped because of that.
-    pub skipped_periods: u64,
-    /// Cycles without a valid reply in time.
-    pub lost_replies: u64,
-    /// Replies that came when their cycle was over.
-    pub late_replies: u64,
-    /// Replies that came once more.
-    pub duplicate_replies: u64,
-    /// Pieces of bytes on the finger's port that were no frame.
-    pub damaged_frames: u64,
-    /// Whole frames on the finger's port that nobody waited for.
-    pub foreign_frames: u64,
+    /// Since open.
+    pub losses: Losses,
     /// How often it has gone on after a fault.
     pub recoveries: u32,
     /// What the finger is warned of.

@@ -1,36 +1,23 @@
 //! One finger in its servo thread: from reply to command, and from open to close.
 
+mod construction;
+mod exchange;
 mod life;
 
-use crate::board::protocol::{Command as BoardCommand, Configured, Identity, Status};
-use crate::board::{LinkCounters, OutgoingCommand, Received};
+use crate::board::LinkCounters;
+use crate::board::protocol::{Identity, Status};
 use crate::control::calibration::Verdict;
-use crate::control::{Activity, Command, Controller, Feedback, SetPoint, State};
+use crate::control::{Activity, Command, Feedback, SetPoint, State};
 use crate::finger::link_watch::LinkWatch;
-use crate::finger::mailbox::{Adjustable, CalibrationRun, Mailbox, ServoEnd, mailbox};
+use crate::finger::mailbox::{Adjustable, CalibrationRun, ServoEnd};
 use crate::finger::watching::Watching;
-use crate::finger::{
-    Alarm, ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage, stop_calls,
-};
-use crate::model::configuration::{Configuration, EndState, Unusable};
+use crate::finger::{Alarm, ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage};
+use crate::model::configuration::EndState;
 use crate::realtime::{self, CycleTiming, Memory};
-use nalgebra::{Matrix3, Vector3};
 use rtrb::Producer;
-
-/// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
-const TENSION_SETTLED: f64 = 0.02;
-
-/// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
-const BEYOND_LIMITS: f64 = 0.5;
-
-/// The board's clock wraps after 65.5 ms: after a longer silence, ms, it does not say how old a measurement is.
-const CLOCK_UNKNOWN_MS: f64 = 60.0;
 
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
-
-/// So long, ms, a warning stays after it was last given.
-const WARNING_MS: f64 = 1000.0;
 
 /// One finger: its controller, its place in the protocol, its mailbox.
 pub struct FingerServo {
@@ -90,119 +77,7 @@ struct Limits {
     warning: u32,
 }
 
-impl Adjustable {
-    /// What the configuration says. `number`: of the controller, in the finger's black box.
-    ///
-    /// # Errors
-    /// A configuration that no controller can be made from.
-    pub fn new(configuration: &Configuration, index: usize, number: u32) -> Result<Self, Unusable> {
-        let finger = &configuration.fingers[index];
-        let (low, high) = finger.joint_limits();
-        let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
-        let controller = Controller::in_gravity(finger, &configuration.gravity(index), configuration.hand.rate)?;
-        Ok(Self { number, controller, pose })
-    }
-}
-
 impl FingerServo {
-    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`, records
-    /// of its cycles to `black_box`; those that nobody collects are dropped.
-    ///
-    /// `stiffness` is the Kx that it will hold its pose with, already admitted.
-    ///
-    /// # Errors
-    /// A configuration that no controller can be made from.
-    pub fn new(
-        configuration: &Configuration,
-        index: usize,
-        stiffness: Matrix3<f64>,
-        identity: &Identity,
-        configured: &Configured,
-        mut timings: Producer<CycleTiming>,
-        mut black_box: Recorder,
-    ) -> Result<(Self, Mailbox), Unusable> {
-        let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
-        let address = configuration.address(index);
-        let adjustable = Adjustable::new(configuration, index, 0)?;
-        let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
-        let state = adjustable.controller.start(&feedback);
-        let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
-        let link = LinkWatch::new(hand, finger.simulated());
-        let law = finger.controller.law;
-        let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
-        let report = FingerReport {
-            stage: Stage::Opening,
-            set_point: initial,
-            cycle: Default::default(),
-            orders: 0,
-            calibration: None,
-            cycles: 0,
-            overruns: 0,
-            skipped_periods: 0,
-            lost_replies: 0,
-            late_replies: 0,
-            duplicate_replies: 0,
-            damaged_frames: 0,
-            foreign_frames: 0,
-            recoveries: 0,
-            warnings: Default::default(),
-            first: 0,
-            last: 0,
-        };
-        let (planners, servo, mut memory) = mailbox(report, &adjustable);
-        memory.append(&black_box.memory());
-        memory.add(timings.buffer());
-        let every = timings.slots();
-        if let Ok(mut room) = timings.write_chunk(every) {
-            // Nothing is sent: the room is written to, so that it is there.
-            let (first, second) = room.as_mut_slices();
-            memory.add(first);
-            memory.add(second);
-        }
-        let this = Self {
-            adjustable,
-            state,
-            activity: Activity::TakeUpSlack,
-            calibration: None,
-            status: configured.status,
-            feedback,
-            anew: false,
-            command: Command::default(),
-            mailbox: servo,
-            timing: CycleTiming::default(),
-            timings,
-            black_box,
-            record: None,
-            recording: false,
-            report,
-            address,
-            board: *identity,
-            sequence: 0,
-            toggle: false,
-            answered: true,
-            last_answer: 0,
-            watching: Watching::new(hand.rate, link.most(), identity.gauge_bits),
-            link,
-            alarm: Alarm::new(false, stop_calls()),
-            sampled_at: None,
-            sample_age: 0,
-            limits: Limits {
-                period_ms: 1000.0 / hand.rate,
-                tension: cycles(hand.open_timeout_ms.into()),
-                settled: cycles(TENSION_SETTLED * 1e3),
-                ramp: cycles(hand.release_ramp_ms.into()),
-                warning: cycles(WARNING_MS),
-            },
-            settled_cycles: 0,
-            stage_cycles: 0,
-            stops_left: STOPS_AFTER_FAULT,
-            initial,
-            end_state: hand.end_state,
-            memory,
-        };
-        Ok((this, planners))
-    }
-
     /// The same finger with its motors off until it is told to take up slack.
     pub fn limp(mut self) -> Self {
         self.go_limp();
@@ -246,91 +121,18 @@ impl FingerServo {
         }
     }
 
-    /// Begins a cycle: the command that the last one found, if the finger is under control and the command due.
-    pub fn begin(&mut self) -> Option<OutgoingCommand> {
-        if !self.under_control() {
-            return None;
-        }
-        if self.answered || !self.link.in_step() {
-            self.sequence = self.sequence.wrapping_add(1);
-            self.toggle = !self.toggle;
-            self.answered = false;
-        } else if !self.link.repeats() {
-            return None;
-        }
-        let torques = self.command.motor_torques.map(|torque| self.board.torque_count(torque)).into();
-        let command = BoardCommand { toggle: self.toggle, enable: true, torques };
-        Some(OutgoingCommand { address: self.address, sequence: self.sequence, command })
-    }
-
-    /// Whether the board shall be told to stop, after a fault or at the end.
-    pub fn stopping(&mut self) -> bool {
-        let stopping = !self.under_control() && self.stops_left > 0;
-        self.stops_left -= u8::from(stopping);
-        stopping
-    }
-
-    /// Whether this cycle's reply is still awaited.
-    pub fn waiting(&self) -> bool {
-        !self.answered && self.under_control()
-    }
-
-    /// Whether a reply answers this cycle's command: a late one would be an old measurement.
-    pub fn awaits(&self, received: &Received) -> bool {
-        received.sequence == self.sequence && self.waiting()
-    }
-
-    /// Counts a reply that this cycle does not await: it came once more, or when its cycle was over.
-    pub fn pass_over(&mut self, received: &Received) {
-        match received.sequence == self.last_answer {
-            true => self.report.duplicate_replies += 1,
-            false => self.report.late_replies += 1,
-        }
-    }
-
-    /// The board's clock as this cycle's command arrived, us modulo 65 536; none without a reply.
-    pub fn sampled_at(&self) -> Option<u16> {
-        self.sampled_at.filter(|_| self.answered)
-    }
-
-    /// Takes in the reply that answers this cycle's command.
-    pub fn take(&mut self, received: &Received) {
-        self.answered = true;
-        self.last_answer = received.sequence;
-        let reply = &received.reply;
-        let mut age = self.sample_age as f64;
-        // This cycle's command took effect as it was sampled; what it was computed from was sampled before.
-        if let Some(before) = self.sampled_at
-            && self.sample_age as f64 * self.limits.period_ms < CLOCK_UNKNOWN_MS
-        {
-            let microseconds = reply.sampled_at.wrapping_sub(before);
-            self.timing.note(realtime::Stage::Age, 0, u64::from(microseconds) * 1000);
-            age = f64::from(microseconds) * 1e-3 / self.limits.period_ms;
-        }
-        (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
-        self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
-        self.feedback.gauge_counts = reply.gauges;
-        self.watching.note_reply(reply.status, age);
-        let zero_lost = self.status.has(Status::ZERO_VALID) && !reply.status.has(Status::ZERO_VALID);
-        self.status = reply.status;
-        if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
-            self.fault(Fault::stopped(reply.status));
-        } else if zero_lost {
-            self.fault(Fault::of(FaultKind::ZeroLost, f64::from(reply.status.0)));
-        }
-    }
-
     /// Ends a cycle: computes the next command and reports. `overrun`: the next cycle should have begun already, and so many periods are
     /// skipped.
     pub fn end(&mut self, began: u64, overrun: Option<u64>, heard: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
         self.sample_age += 1 + skipped;
-        self.report.cycles += 1;
-        self.report.overruns += u64::from(overrun.is_some());
-        self.report.skipped_periods += skipped;
-        (self.report.damaged_frames, self.report.foreign_frames) = (heard.damaged, heard.foreign);
+        let losses = &mut self.report.losses;
+        losses.cycles += 1;
+        losses.overruns += u64::from(overrun.is_some());
+        losses.skipped_periods += skipped;
+        (losses.damaged_frames, losses.foreign_frames) = (heard.damaged, heard.foreign);
         self.report.last = began;
-        if self.report.cycles == 1 {
+        if losses.cycles == 1 {
             self.report.first = began;
         }
         if self.under_control()
@@ -345,13 +147,13 @@ impl FingerServo {
         }
         let recorded = self.recording || self.under_control();
         if self.under_control() {
-            self.black_box.keyframe(self.report.cycles, &self.state, !self.recording);
+            self.black_box.keyframe(self.report.losses.cycles, &self.state, !self.recording);
         }
         let controls = self.under_control() && (self.answered || !self.link.in_step());
         let control = controls.then(|| self.control(skipped));
         if recorded {
             self.record = Some(CycleRecord {
-                cycle: self.report.cycles,
+                cycle: self.report.losses.cycles,
                 began,
                 stage: self.report.stage,
                 timing: CycleTiming::default(),
@@ -445,7 +247,7 @@ impl FingerServo {
             }
             return;
         }
-        self.report.lost_replies += 1;
+        self.report.losses.lost_replies += 1;
         if let Some(lost) = self.link.missed() {
             let milliseconds = f64::from(lost) * self.limits.period_ms;
             self.fault(self.watching.silence(milliseconds));

@@ -137,7 +137,7 @@ impl Dispatcher {
         let index = self.index(finger)?;
         // The report is read under the lock: a reset of another thread's is then before both or after both.
         let collected = self.collected(finger)?;
-        Ok(Losses::of(&self.members[index].mailbox.report()).since(&collected.losses_before))
+        Ok(self.members[index].mailbox.report().losses.since(&collected.losses_before))
     }
 
     /// Begins to count timings and losses anew.
@@ -146,7 +146,7 @@ impl Dispatcher {
         let mut collected = self.collected(finger)?;
         collected.collect();
         collected.histograms.reset();
-        collected.losses_before = Losses::of(&self.members[index].mailbox.report());
+        collected.losses_before = self.members[index].mailbox.report().losses;
         Ok(())
     }
 

@@ -178,7 +178,7 @@ impl Hand {
     pub fn status(&self, finger: i32) -> Result<FingerStatus, HandError> {
         let report = self.dispatcher.last_report(finger)?;
         let seconds = report.last.saturating_sub(report.first) as f64 * 1e-9;
-        let intervals = report.cycles.saturating_sub(1) as f64;
+        let intervals = report.losses.cycles.saturating_sub(1) as f64;
         Ok(FingerStatus {
             stage: report.stage,
             realtime: self.given.scheduling,
@@ -187,7 +187,7 @@ impl Hand {
             rate: self.configuration.read().hand.rate,
             measured_rate: if seconds > 0.0 { intervals / seconds } else { 0.0 },
             wake_up: self.timing(finger, realtime::Stage::WakeUp)?,
-            losses: Losses::of(&report),
+            losses: report.losses,
             torque_scale: report.cycle.torque_scale,
             calibration: match report.calibration {
                 Some(Verdict::Going(progress)) => progress.part,

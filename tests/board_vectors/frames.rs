@@ -1,6 +1,8 @@
 //! Single frames: good ones of every type with edge values, damaged ones, and good ones that are not for this board.
 
+use super::example_board::IDENTITY;
 use super::json::{hex, list, object, text};
+use super::stuffing::stuffed;
 use sun2xp::board::protocol::*;
 use sun2xp::model::configuration::EndState;
 
@@ -11,17 +13,6 @@ pub fn sealed(content: &[u8]) -> Vec<u8> {
 
 fn with_check(content: &[u8]) -> Vec<u8> {
     [content, &check(content).to_le_bytes()].concat()
-}
-
-fn stuffed(frame: &[u8]) -> Vec<u8> {
-    // One run for each zero of the frame, and one for its end: no run is long enough here to need more.
-    let mut wire = Vec::new();
-    for run in frame.split(|&byte| byte == 0) {
-        wire.push(run.len() as u8 + 1);
-        wire.extend(run);
-    }
-    wire.push(0);
-    wire
 }
 
 fn terms(end_state: EndState) -> Configure {
@@ -45,19 +36,6 @@ fn messages() -> Vec<(&'static str, u8, u8, Frame)> {
         hold_torque_limit: u16::MAX,
         torque_limits: [u16::MAX; 4],
         torque_constants: [u32::MAX; 4],
-    };
-    let identity = Identity {
-        version: 1,
-        addresses: 0b1110,
-        board_kind: 0x8000,
-        unique_number: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12],
-        firmware: FirmwareVersion([1, 2, 3]),
-        counts_per_revolution: 2000,
-        gauge_bits: 12,
-        torque_unit: 2000,
-        torque_limit: 23750,
-        shortest_watchdog_ms: 2,
-        capabilities: Capabilities(0b1111),
     };
     let most = Identity {
         version: 255,
@@ -93,7 +71,7 @@ fn messages() -> Vec<(&'static str, u8, u8, Frame)> {
         ("all bytes zero but the check", 1, 0, Frame::Stop(Stop)),
         ("nothing received yet", 1, 4, Frame::TactileRequest(TactileRequest { received: 0 })),
         ("event 255 received", 1, 5, Frame::TactileRequest(TactileRequest { received: 255 })),
-        ("a board with three fingers", 1, 1, Frame::Identity(identity)),
+        ("a board with three fingers", 1, 1, Frame::Identity(IDENTITY)),
         ("the largest numbers", 15, 255, Frame::Identity(most)),
         (
             "configured and zero valid",

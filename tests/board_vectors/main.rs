@@ -2,8 +2,10 @@
 //! it ever after; the simulated board must hold every conversation in it, and so must the reference firmware (tests/firmware.rs).
 
 mod conversations;
+mod example_board;
 mod frames;
 mod json;
+mod stuffing;
 
 use std::path::Path;
 use std::{env, fs};

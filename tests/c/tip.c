@@ -3,14 +3,7 @@
 #include <string.h>
 #include "Sun2Xp.h"
 #include "check.h"
-
-#define REFUSED(Call, Errno, Word) \
-    do { \
-        errno = 0; \
-        CHECK((Call) == -1); \
-        CHECK(errno == (Errno)); \
-        CHECK(strstr(HandError(), (Word)) != NULL); \
-    } while (0)
+#include "refused.h"
 
 static double distance(const double *One, const double *Other)
 {

@@ -212,7 +212,7 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
             let report = bench.mailbox.report();
             assert_eq!(bench.fault(), None, "{scheme:?}, {fault:?}: {report:?}");
             if fault != LineFault::Duplicate {
-                let share = report.lost_replies as f64 / report.cycles as f64;
+                let share = report.losses.lost_replies as f64 / report.losses.cycles as f64;
                 assert!((0.03..0.07).contains(&share), "{scheme:?}, {fault:?}: {share}");
                 assert!(report.warnings.given() > 0, "nothing is told of a line like that");
             }

@@ -129,9 +129,12 @@ fn go_first() {
 pub struct Asked {
     /// Requests that a host's Command or Configure led to.
     pub samples: u32,
-    pub sampled_at: u32,
-    /// When the currents were last changed.
+    /// When the last of them had arrived. A processor that was paused may get to it much later.
+    pub arrived_at: u32,
+    /// When the currents were last set, by a command or by the firmware itself.
     pub set_at: u32,
+    /// When it asked.
+    pub now: u32,
     /// uA.
     pub currents: [i32; 4],
 }
@@ -177,14 +180,15 @@ impl Finger {
     fn answer(&mut self, request: &[u8; REQUEST_LENGTH]) -> Vec<u8> {
         let word = |offset: usize| u32::from_le_bytes(std::array::from_fn(|byte| request[offset + byte]));
         let (sample, now) = (request[1] == 1, word(4));
-        let currents = std::array::from_fn(|motor| word(12 + 4 * motor) as i32);
-        self.asked.set_at = word(8);
+        let currents = std::array::from_fn(|motor| word(16 + 4 * motor) as i32);
+        self.asked.now = now;
+        self.asked.set_at = word(12);
         self.asked.currents = currents;
         self.advance(now.wrapping_sub(self.time.unwrap_or(now)), currents);
         self.time = Some(now);
         if sample {
             self.asked.samples += 1;
-            self.asked.sampled_at = now;
+            self.asked.arrived_at = word(8);
             self.motion_left = LONGEST_MOTION;
         }
         let (encoders, gauges) = self.sensors.read(&self.plant);
@@ -213,7 +217,7 @@ impl Finger {
 }
 
 /// As in firmware/lm3s6965/plant.h.
-const REQUEST_LENGTH: usize = 28;
+const REQUEST_LENGTH: usize = 32;
 
 /// In place of a finger: the machine is being taken down.
 const END: u8 = 0xFF;

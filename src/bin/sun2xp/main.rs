@@ -4,6 +4,7 @@
 
 mod board;
 mod board_faults;
+mod board_orders;
 mod bound;
 mod calibrate;
 mod doctor;

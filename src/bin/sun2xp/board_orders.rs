@@ -1,0 +1,138 @@
+//! What `sun2xp board` can be told.
+
+use crate::board_faults::Trouble;
+use nalgebra::Vector3;
+use sun2xp::board::SimulatedFinger;
+use sun2xp::model::Surface;
+
+/// A line of standard input.
+#[derive(Debug, PartialEq)]
+pub enum Order {
+    For(u8, Action),
+    Trouble(Trouble),
+    Quit,
+}
+
+/// What is done to one finger, or asked of it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    Force([f64; 3]),
+    Touch(Surface),
+    Free,
+    State,
+}
+
+impl Order {
+    /// None: an empty line.
+    pub fn read(line: &str) -> Result<Option<Self>, String> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        if let Some(trouble) = Trouble::read(&words)? {
+            return Ok(Some(Order::Trouble(trouble)));
+        }
+        let (name, finger, numbers) = match words[..] {
+            [] => return Ok(None),
+            ["quit"] => return Ok(Some(Order::Quit)),
+            [name] => return Err(format!("{name}: of which finger?")),
+            [name, finger, ref numbers @ ..] => (name, finger, numbers),
+        };
+        let finger = finger.parse().map_err(|_| format!("{finger} is no finger's number"))?;
+        Ok(Some(Order::For(finger, Action::new(name, &numbers_in(numbers)?)?)))
+    }
+}
+
+fn numbers_in(words: &[&str]) -> Result<Vec<f64>, String> {
+    words.iter().map(|word| word.trim().parse().map_err(|_| format!("{word} is no number"))).collect()
+}
+
+impl Action {
+    /// From an option's value: numbers with commas between them.
+    pub fn from_list(name: &str, list: &str) -> Result<Self, String> {
+        let words: Vec<&str> = list.split(',').collect();
+        Self::new(name, &numbers_in(&words)?)
+    }
+
+    fn new(name: &str, numbers: &[f64]) -> Result<Self, String> {
+        if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
+            return Err(format!("{number} is not finite"));
+        }
+        match (name, numbers) {
+            ("force", &[x, y, z]) => Ok(Action::Force([x, y, z])),
+            ("wall" | "ball", &[_, _, .., stiffness]) if stiffness < 0.0 => Err("the stiffness is negative".into()),
+            ("wall", &[px, py, pz, nx, ny, nz, stiffness]) => {
+                if [nx, ny, nz] == [0.0; 3] {
+                    return Err("the normal has no direction".into());
+                }
+                Ok(Action::Touch(Surface::Wall { point: [px, py, pz], normal: [nx, ny, nz], stiffness }))
+            }
+            ("ball", &[x, y, z, radius, stiffness]) => {
+                Ok(Action::Touch(Surface::Ball { centre: [x, y, z], radius, stiffness }))
+            }
+            ("free", []) => Ok(Action::Free),
+            ("state", []) => Ok(Action::State),
+            ("force" | "wall" | "ball" | "free" | "state", _) => {
+                Err(format!("{name} does not take {} numbers; see sun2xp board --help", numbers.len()))
+            }
+            _ => Err(format!("no order {name}: force, wall, ball, free, state or quit")),
+        }
+    }
+
+    /// The answer.
+    pub fn apply(&self, finger: &mut SimulatedFinger) -> String {
+        let (torques, status) = (finger.motor_torques(), finger.status());
+        let plant = finger.plant();
+        match *self {
+            Action::Force(force) => plant.set_external_force(force.into()),
+            Action::Touch(surface) => plant.set_surface(Some(surface)),
+            Action::Free => {
+                plant.set_external_force(Vector3::zeros());
+                plant.set_surface(None);
+            }
+            Action::State => {
+                let listed =
+                    |numbers: &[f64]| numbers.iter().map(|number| format!("{number:.5}")).collect::<Vec<_>>().join(" ");
+                return format!(
+                    "state joints {} tip {} tensions {} torques {} status {:#06x}",
+                    listed(plant.joints().as_slice()),
+                    listed(plant.tip().as_slice()),
+                    listed(plant.tensions().as_slice()),
+                    listed(torques.as_slice()),
+                    status.0
+                );
+            }
+        }
+        "ok".into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orders_are_read() {
+        let force = Order::For(2, Action::Force([1.0, -0.5, 0.0]));
+        assert_eq!(Order::read("force 2 1 -0.5 0"), Ok(Some(force)));
+        let ball = Surface::Ball { centre: [1.0, 2.0, 3.0], radius: 4.0, stiffness: 5.0 };
+        assert_eq!(Order::read(" ball 1  1 2 3 4 5 "), Ok(Some(Order::For(1, Action::Touch(ball)))));
+        assert_eq!(Order::read(""), Ok(None));
+        assert_eq!(Order::read("quit"), Ok(Some(Order::Quit)));
+    }
+
+    #[test]
+    fn wrong_orders_are_named() {
+        for (line, part) in [
+            ("force 1 1 2", "does not take 2 numbers"),
+            ("force one 1 2 3", "no finger's number"),
+            ("force 1 1 2 x", "x is no number"),
+            ("force 1 1 2 NaN", "not finite"),
+            ("wall 1 0 0 0 0 0 0 10", "no direction"),
+            ("wall 1 0 0 0 1 0 0 -10", "negative"),
+            ("ball 1 0 0 0 1 -10", "negative"),
+            ("shove 1", "no order shove"),
+            ("state", "of which finger"),
+        ] {
+            let error = Order::read(line).unwrap_err();
+            assert!(error.contains(part), "{line}: {error}");
+        }
+    }
+}

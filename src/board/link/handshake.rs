@@ -1,0 +1,136 @@
+//! What is asked until it is answered: who the board is, its terms, and that it stops.
+
+use super::Link;
+use crate::board::link_error::LinkError;
+use crate::board::protocol::{
+    ANY_ADDRESS, Configure, Configured, Frame, Hello, Identity, Kind, MAX_WIRE, Message, Reason, Refused, Stop,
+    VERSION, WireFrame,
+};
+use crate::board::terms::Terms;
+use crate::board::transport::Transport;
+
+/// How long an answer to a handshake frame may take before the frame is sent again, ns. A USB bridge in its slowest setting
+/// answers after some 35 ms.
+const PATIENCE: u64 = 50_000_000;
+
+impl<T: Transport> Link<T> {
+    /// Finds the finger `address`, 1 to 15, and agrees on `terms` with it. Tries until `deadline` (ns on the transport's
+    /// clock), because a board may still be starting; gives up at once where waiting cannot help. The motors stay off.
+    ///
+    /// Not for the servo's cycle: it throws away Replies of other fingers on the port.
+    pub fn shake_hands(
+        &mut self,
+        address: u8,
+        terms: &Terms,
+        deadline: u64,
+    ) -> Result<(Identity, Configured), LinkError> {
+        self.transport.discard_input()?;
+        self.unread = 0..0;
+        let identity = self.identify(address, deadline)?;
+        let configure = terms.configure(&identity)?;
+        let configured = self.configure(address, configure, deadline)?;
+        Ok((identity, configured))
+    }
+
+    fn identify(&mut self, address: u8, deadline: u64) -> Result<Identity, LinkError> {
+        let began = self.transport.now();
+        let before = self.counters();
+        let hello = Frame::Hello(Hello { lowest_version: VERSION, highest_version: VERSION });
+        let mut attempts = 0u32;
+        while self.transport.now() < deadline {
+            // After two attempts in vain every other one asks whoever is there, to tell a wrong address from a dead board.
+            let asked = if attempts >= 2 && attempts.is_multiple_of(2) { ANY_ADDRESS } else { address };
+            attempts = attempts.saturating_add(1);
+            let Some(answer) = self.ask(asked, hello, deadline)? else { continue };
+            match answer.frame {
+                Frame::Identity(Identity { version, .. }) if version != VERSION => {
+                    return Err(LinkError::WrongVersion { lowest: version, highest: version });
+                }
+                Frame::Identity(identity) if answer.address == address => return Ok(identity),
+                Frame::Identity(identity) if identity.addresses & 1 << address == 0 => {
+                    return Err(LinkError::WrongAddress { address, addresses: identity.addresses });
+                }
+                Frame::Refused(Refused { reason: Reason::Version, detail, .. }) => {
+                    let [lowest, highest] = detail.to_le_bytes();
+                    return Err(LinkError::WrongVersion { lowest, highest });
+                }
+                Frame::Refused(refused) => return Err(LinkError::Refused { address: answer.address, refused }),
+                _ => {}
+            }
+        }
+        let after = self.counters();
+        Err(if after.bytes == before.bytes {
+            LinkError::Silent { milliseconds: self.transport.now().saturating_sub(began) / 1_000_000 }
+        } else if after.frames == before.frames {
+            LinkError::Unintelligible { bytes: after.bytes - before.bytes, damaged: after.damaged - before.damaged }
+        } else {
+            LinkError::Unanswered { address, request: Kind::Hello }
+        })
+    }
+
+    fn configure(&mut self, address: u8, configure: Configure, deadline: u64) -> Result<Configured, LinkError> {
+        let mut running = None;
+        while self.transport.now() < deadline {
+            let Some(answer) = self.ask(address, Frame::Configure(configure), deadline)? else { continue };
+            match answer.frame {
+                Frame::Configured(configured) if configured.terms == configure => return Ok(configured),
+                Frame::Configured(_) => return Err(LinkError::OtherTerms { address }),
+                // A program that died a moment ago leaves the motors following until the watchdog ends that.
+                Frame::Refused(refused) if refused.reason == Reason::Running => {
+                    running = Some(refused);
+                    self.let_pass((self.transport.now() + PATIENCE).min(deadline))?;
+                }
+                Frame::Refused(refused) => return Err(LinkError::Refused { address, refused }),
+                _ => {}
+            }
+        }
+        Err(match running {
+            Some(refused) => LinkError::Refused { address, refused },
+            None => LinkError::Unanswered { address, request: Kind::Configure },
+        })
+    }
+
+    /// Tells the finger to go to its end state now, as well as that can be done: whether it confirmed by `deadline` (ns on
+    /// the transport's clock). Without an answer its watchdog does the same a little later.
+    /// Replies that come meanwhile are thrown away.
+    pub fn stop(&mut self, address: u8, deadline: u64) -> Result<bool, LinkError> {
+        let answer = self.ask(address, Frame::Stop(Stop), deadline)?;
+        Ok(matches!(answer, Some(Message { frame: Frame::Stopped(_), .. })))
+    }
+
+    /// Sends a request and waits for its answer or refusal, for a while.
+    fn ask(&mut self, address: u8, request: Frame, deadline: u64) -> Result<Option<Message>, LinkError> {
+        self.handshake_sequence = self.handshake_sequence.wrapping_add(1);
+        let sequence = self.handshake_sequence;
+        let wire = WireFrame::new(&Message { address, sequence, frame: request });
+        let mut bytes = [0; 1 + MAX_WIRE];
+        let length = 1 + wire.as_bytes().len();
+        bytes[1..length].copy_from_slice(wire.as_bytes());
+        // A delimiter before every handshake frame: whatever the board has half received is not its beginning.
+        self.delimit_first = true;
+        self.write(&mut bytes[..length])?;
+
+        let deadline = deadline.min(self.transport.now() + PATIENCE);
+        while let Some(message) = self.next_message(deadline)? {
+            let answers = match message.frame {
+                Frame::Refused(refused) => refused.request == request.kind() as u8,
+                // An answer's type is its request's with the top bit set.
+                frame => frame.kind() as u8 == request.kind() as u8 | 0x8,
+            };
+            let meant = message.sequence == sequence && (message.address == address || address == ANY_ADDRESS);
+            if answers && meant {
+                return Ok(Some(message));
+            }
+            self.foreign += 1;
+        }
+        Ok(None)
+    }
+
+    /// Lets time pass without missing a hang-up.
+    fn let_pass(&mut self, until: u64) -> Result<(), LinkError> {
+        while self.next_message(until)?.is_some() {
+            self.foreign += 1;
+        }
+        Ok(())
+    }
+}

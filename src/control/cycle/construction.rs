@@ -1,0 +1,81 @@
+//! What a finger's controller is made from: the numbers of its configuration.
+
+use super::Controller;
+use crate::control::admissible_stiffness::AdmissibleStiffness;
+use crate::control::gains::Gains;
+use crate::control::gravity_compensation::GravityCompensation;
+use crate::control::joint_positions::JointPositions;
+use crate::control::joint_stiffness::JointStiffness;
+use crate::control::low_pass::LowPass;
+use crate::control::monitors::Monitors;
+use crate::control::motor_heating::MotorHeating;
+use crate::control::motor_torque::MotorTorque;
+use crate::control::sensors::Sensors;
+use crate::control::slack::SlackTakeUp;
+use crate::control::slew::Slew;
+use crate::control::soft_limits::SoftLimits;
+use crate::control::spring_transition::SpringTransition;
+use crate::control::state_feedback::StateFeedback;
+use crate::control::tendon_controller::TendonController;
+use crate::control::tension_distribution::TensionDistribution;
+use crate::control::usable::positive;
+use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
+use nalgebra::Vector3;
+
+/// A tendon counts as tight from this part of t_min on.
+const TIGHT: f64 = 0.8;
+
+impl Controller {
+    /// The controller of `finger` at `rate` cycles a second. Gains that are not configured come from the nearest of 500,
+    /// 1000 and 2000 Hz. Refused with the key that cannot be used, where the numbers make no controller.
+    pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
+        Self::in_gravity(finger, &Vector3::zeros(), rate)
+    }
+
+    /// The same with gravity, m/s^2 in the finger's frame, to be compensated.
+    pub fn in_gravity(finger: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Result<Self, Unusable> {
+        positive("rate", &[rate])?;
+        let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
+        let gains = Gains::new(&finger.controller, rate)?;
+        let motor_torque = MotorTorque::new(finger, &tendons)?;
+        // A tendon is pulled no harder than its motor can: clamping there would turn the joint torque.
+        let strongest = motor_torque.limit.map(|limit| limit.min(finger.tendon.maximum));
+        let scheme = finger.controller.scheme(rate);
+        let state_feedback = match scheme {
+            Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
+            Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
+        };
+        // What shakes the tensions shall stay within their bounds.
+        let reserve = state_feedback.as_ref().map_or(0.0, |law| law.reserve);
+        positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
+        positive("motor.thermal_time", &[finger.motor.thermal_time])?;
+        let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
+        Ok(Self {
+            admissible: AdmissibleStiffness::new(finger, &tendons, rate).ok_or_else(soft)?,
+            spring_transition: SpringTransition::new(rate),
+            soft_limits: SoftLimits::new(finger),
+            gravity: GravityCompensation::new(finger, gravity),
+            heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
+            monitors: Monitors::new(finger, &tendons, rate)?,
+            period: 1.0 / rate,
+            sensors: Sensors::new(finger)?,
+            speed_filter: LowPass::new(gains.speed_filter, rate),
+            stretch_filter: LowPass::new(gains.stretch_filter, rate),
+            joint_positions: JointPositions::new(finger, &tendons)?,
+            slack: SlackTakeUp::new(finger.links(), &tendons, finger.tendon.minimum, rate),
+            slew: Slew::new(gains.set_point_speed, rate),
+            joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
+            distribution: TensionDistribution::new(
+                &tendons,
+                finger.tendon.minimum + reserve,
+                strongest.add_scalar(-reserve),
+            )?,
+            tendons: TendonController::new(scheme, &gains, rate),
+            motor_torque,
+            motor_damping: gains.motor_damping,
+            state_feedback,
+            radius: tendons.radius * 0.01,
+            tight: TIGHT * finger.tendon.minimum,
+        })
+    }
+}

@@ -1,0 +1,46 @@
+//! Every tendon under tension, with the joints held where they are: slack taken up.
+
+use super::{Controller, Doing, State};
+use crate::control::slack::{Slackness, TakeUp};
+use crate::control::tension_distribution::Distribution;
+use crate::control::tension_integral::TendonState;
+use nalgebra::{Vector3, Vector4};
+
+impl Controller {
+    /// Pretension, with the joints held where they are when the last tendon comes taut. `offset`: what the gauges show too much, N;
+    /// `gravity`: what holds the links there, N cm.
+    pub(super) fn take_up_slack(&self, state: &mut State, offset: &Vector4<f64>, gravity: Vector3<f64>) {
+        let now = Slackness {
+            travel: state.motor_angles.component_mul(&self.radius),
+            speeds: state.motor_speeds.component_mul(&self.radius),
+            tensions: state.report.tensions - offset,
+            // Not what state feedback observes: this is Figures 9 and 10, which need the stretch low-passed.
+            joints: self.joint_positions.joints(&state.motor_angles, &state.tensions),
+            joint_rates: self.joint_positions.joint_rates(&state.motor_speeds),
+        };
+        let (mut slack, starts) = match state.doing {
+            Doing::TakingUpSlack(slack) => (slack, false),
+            _ => (self.slack.start(&now), true),
+        };
+        state.report.slackest = self.slack.slackest(&slack, &now);
+        match self.slack.step(&mut slack, &now) {
+            TakeUp::Pull(pulls) => {
+                self.give(state, &pulls, starts);
+                // Whatever follows begins anew.
+                state.tendons = TendonState::default();
+                state.report.joint_torques = Vector3::zeros();
+                state.report.desired_tensions = pulls;
+                state.report.torque_scale = 1.0;
+            }
+            TakeUp::Hold { torques, below, begins } => {
+                let torques = torques + gravity;
+                let Distribution { tensions, scale } = self.distribution.distribute(&torques);
+                self.bring(state, tensions - below + offset, begins);
+                state.report.joint_torques = torques;
+                state.report.torque_scale = scale;
+                state.report.under_tension &= below == Vector4::zeros();
+            }
+        }
+        state.doing = Doing::TakingUpSlack(slack);
+    }
+}

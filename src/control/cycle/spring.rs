@@ -1,0 +1,61 @@
+//! The fingertip as a spring, by Figure 9 and by state feedback.
+
+use super::{Controller, Doing, State};
+use crate::control::signals::{Report, SetPoint};
+use crate::control::spring_transition::Spring;
+use crate::control::state_feedback::Decision;
+use crate::control::tension_distribution::Distribution;
+use nalgebra::Matrix3;
+
+/// Damping over stiffness of the soft limits with the figures of the report, s.
+const LIMIT_DAMPING: f64 = 0.015;
+
+impl Controller {
+    /// The spring, from its anchor to the joints. It begins without deflection.
+    pub(super) fn follow(&self, state: &mut State, set_point: &SetPoint) {
+        let spring = self.spring_transition.advance(&mut state.spring, set_point);
+        let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
+        spring.soften(self.carried(&mut state.report, &spring.k_theta));
+        let (mut anchor, begins) = match state.doing {
+            Doing::Following(anchor) => (anchor, false),
+            _ => (state.report.joints, true),
+        };
+        self.slew.advance(&mut anchor, &set_point.joints);
+        state.doing = Doing::Following(anchor);
+        let Report { joints, joint_rates, .. } = &state.report;
+        let torques = spring.torques(&anchor) - spring.damper(joint_rates);
+        let push = self.soft_limits.push(joints);
+        let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
+        let torques = torques + push.torque - damped + self.gravity.torques(joints);
+        let Distribution { tensions: desired, scale } = self.distribution.distribute(&torques);
+        self.bring(state, desired, begins);
+        state.report.joint_torques = torques;
+        state.report.torque_scale = scale;
+    }
+
+    /// The spring by state feedback. It begins without deflection.
+    pub(super) fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
+        let spring = self.spring_transition.advance(&mut state.spring, set_point);
+        let k_theta = self.joint_stiffness.joint_stiffness(spring, &state.report.joints);
+        let scale = self.carried(&mut state.report, &k_theta);
+        let spring = &Spring { stiffness: spring.stiffness * scale, ..*spring };
+        let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
+            return;
+        };
+        let begins = !matches!(state.doing, Doing::Following(_));
+        state.doing = Doing::Following(elastic.joints);
+        let Decision { pulls, against_friction, joint_torques, distribution } =
+            law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &self.distribution);
+        state.against_friction = against_friction;
+        self.give(state, &pulls, false);
+        state.report.joint_torques = joint_torques;
+        state.report.desired_tensions = distribution.tensions;
+        state.report.torque_scale = distribution.scale;
+    }
+
+    /// The part of a spring's K_theta, N cm/rad, that the pose can carry.
+    fn carried(&self, report: &mut Report, k_theta: &Matrix3<f64>) -> f64 {
+        report.stiffness_scale = self.admissible.scale(k_theta);
+        report.stiffness_scale
+    }
+}

@@ -1,0 +1,86 @@
+//! A finger's part of the exchange with its board, once a period: what it sends, and which reply it takes in.
+
+use super::FingerServo;
+use crate::board::protocol::{Command, Status};
+use crate::board::{OutgoingCommand, Received};
+use crate::finger::{Fault, FaultKind};
+use crate::realtime::Stage;
+
+/// The board's clock wraps after 65.5 ms: after a longer silence, ms, it does not say how old a measurement is.
+const CLOCK_UNKNOWN_MS: f64 = 60.0;
+
+impl FingerServo {
+    /// Begins a cycle: the command that the last one found, if the finger is under control and the command due.
+    pub fn begin(&mut self) -> Option<OutgoingCommand> {
+        if !self.under_control() {
+            return None;
+        }
+        if self.answered || !self.link.in_step() {
+            self.sequence = self.sequence.wrapping_add(1);
+            self.toggle = !self.toggle;
+            self.answered = false;
+        } else if !self.link.repeats() {
+            return None;
+        }
+        let torques = self.command.motor_torques.map(|torque| self.board.torque_count(torque)).into();
+        let command = Command { toggle: self.toggle, enable: true, torques };
+        Some(OutgoingCommand { address: self.address, sequence: self.sequence, command })
+    }
+
+    /// Whether the board shall be told to stop, after a fault or at the end.
+    pub fn stopping(&mut self) -> bool {
+        let stopping = !self.under_control() && self.stops_left > 0;
+        self.stops_left -= u8::from(stopping);
+        stopping
+    }
+
+    /// Whether this cycle's reply is still awaited.
+    pub fn waiting(&self) -> bool {
+        !self.answered && self.under_control()
+    }
+
+    /// Whether a reply answers this cycle's command: a late one would be an old measurement.
+    pub fn awaits(&self, received: &Received) -> bool {
+        received.sequence == self.sequence && self.waiting()
+    }
+
+    /// Counts a reply that this cycle does not await: it came once more, or when its cycle was over.
+    pub fn pass_over(&mut self, received: &Received) {
+        match received.sequence == self.last_answer {
+            true => self.report.losses.duplicate_replies += 1,
+            false => self.report.losses.late_replies += 1,
+        }
+    }
+
+    /// The board's clock as this cycle's command arrived, us modulo 65 536; none without a reply.
+    pub fn sampled_at(&self) -> Option<u16> {
+        self.sampled_at.filter(|_| self.answered)
+    }
+
+    /// Takes in the reply that answers this cycle's command.
+    pub fn take(&mut self, received: &Received) {
+        self.answered = true;
+        self.last_answer = received.sequence;
+        let reply = &received.reply;
+        let mut age = self.sample_age as f64;
+        // This cycle's command took effect as it was sampled; what it was computed from was sampled before.
+        if let Some(before) = self.sampled_at
+            && self.sample_age as f64 * self.limits.period_ms < CLOCK_UNKNOWN_MS
+        {
+            let microseconds = reply.sampled_at.wrapping_sub(before);
+            self.timing.note(Stage::Age, 0, u64::from(microseconds) * 1000);
+            age = f64::from(microseconds) * 1e-3 / self.limits.period_ms;
+        }
+        (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
+        self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
+        self.feedback.gauge_counts = reply.gauges;
+        self.watching.note_reply(reply.status, age);
+        let zero_lost = self.status.has(Status::ZERO_VALID) && !reply.status.has(Status::ZERO_VALID);
+        self.status = reply.status;
+        if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {
+            self.fault(Fault::stopped(reply.status));
+        } else if zero_lost {
+            self.fault(Fault::of(FaultKind::ZeroLost, f64::from(reply.status.0)));
+        }
+    }
+}
