@@ -48,7 +48,9 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
             })?;
         }
     }
-    println!("| | wake-up, median | 99 % | against spinning, median | 99 % |\n|---|---|---|---|---|");
+    println!(
+        "| | wake-up, median | 99 % | against spinning, median (goal for those that call: at most 1.1) | 99 % |\n|---|---|---|---|---|"
+    );
     let of = |kind: usize, part: fn(&(f64, f64)) -> f64| median(wake_ups[kind].iter().map(part));
     let (spinning, spinning_p99) = (of(1, |wake| wake.0), of(1, |wake| wake.1));
     for (kind, (_, name)) in KINDS.iter().enumerate() {

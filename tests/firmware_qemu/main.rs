@@ -244,11 +244,10 @@ fn a_killed_planner_leaves_the_motors_in_their_end_state() {
     let none = |currents: [i32; 4]| currents == [0; 4];
     // 0.1 N cm over 2.34 N cm/A are 42 735 uA; a tendon's least tension asks for more.
     let held = |currents: [i32; 4]| !none(currents) && currents.iter().all(|current| current.abs() <= 42_736);
-    let cases: [(&str, &dyn Fn([i32; 4]) -> bool); 2] = [
-        ("end_state = \"release\"", &none),
-        ("end_state = \"hold\"\nhold_torque_limit = 0.1\nhold_time_ms = 1500", &held),
-    ];
-    for (end_state, in_end_state) in cases {
+    let release = "end_state = \"release\"";
+    let hold = "end_state = \"hold\"\nhold_torque_limit = 0.1\nhold_time_ms = 1500";
+    for end_state in [release, hold] {
+        let in_end_state = |currents| if end_state == hold { held(currents) } else { none(currents) };
         // What a busy machine does not hold with the first it holds with the last; the bound is as strict.
         let found = [18, 18, 18, 300, 300, 300].into_iter().find_map(|watchdog_ms| {
             let keys = format!("rate = 500.0\nwatchdog_ms = {watchdog_ms}\n{end_state}");
