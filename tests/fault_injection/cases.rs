@@ -92,7 +92,9 @@ pub fn of_the_finger() -> Vec<Case> {
             let gauge = bench.part();
             suffer(bench, Defect::DeadGauge { gauge, count: None });
             at(gauge)
-        }),
+        })
+        // With this noise one count in five is the one before: so often in a row once in 10^11 samples.
+        .from(0.0, |truth, _, _| truth.time > 0.0165),
         case("dead gauge, at nothing", GaugeStuck, |bench| {
             let gauge = bench.part();
             suffer(bench, Defect::DeadGauge { gauge, count: Some(0) });
@@ -119,7 +121,7 @@ pub fn of_the_finger() -> Vec<Case> {
         })
         .from(12.0, stands),
         case("hot motor, by its driver", DriverFault, |bench| suffer(bench, Defect::HotMotor(1))),
-        case("hot motor, by I^2 t", OverheatedMotor, |bench| push(bench, [0.0, 0.0, -2.0]))
+        case("hot motor, by I^2 t", OverheatedMotor, |bench| push(bench, [0.0, 0.0, -1.6]))
             .with(with_small_motors)
             .from(0.0, |truth, _, finger| truth.hot_for.max() > finger.motor.thermal_time),
         case("a blow (40 N)", OverTension, |bench| push(bench, [0.0, 40.0, 0.0]))
@@ -168,7 +170,7 @@ pub fn of_the_line() -> Vec<Case> {
 pub fn warnings() -> Vec<Case> {
     use FaultKind::*;
     vec![
-        case("warm motor, by I^2 t", WarmMotor, |bench| push(bench, [0.0, 0.0, -2.0]))
+        case("warm motor, by I^2 t", WarmMotor, |bench| push(bench, [0.0, 0.0, -1.6]))
             .with(with_small_motors)
             .from(0.0, |truth, _, _| truth.heat.max() > 0.8),
         case("joint at its stop", JointAtStop, |bench| push(bench, [-6.0, 0.0, 0.0])).from(0.0, |truth, _, finger| {
@@ -209,7 +211,8 @@ fn disagrees(truth: &Truth, injected: &Injected, finger: &ConfiguredFinger) -> b
     let shares = per_stiffness / per_stiffness.sum();
     let off = injected.drift * truth.time;
     let changed = (truth.tensions + off - truth.tensions_at_first).abs();
-    shares.dot(&off).abs() > 0.5 + finger.tendon.stiffness_tolerance * shares.dot(&changed)
+    // 0.5 N, and what the last bits of the encoders and the noise of the gauges hide.
+    shares.dot(&off).abs() > 0.6 + finger.tendon.stiffness_tolerance * shares.dot(&changed)
 }
 
 /// A motor is asked to turn by more than its friction may hold.

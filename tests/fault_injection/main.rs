@@ -7,6 +7,7 @@ mod rig;
 use cases::{Case, Injected, line, of_the_finger, of_the_line, warnings};
 use rig::Bench;
 use sun2xp::board::LineFault;
+use sun2xp::finger::Losses;
 use sun2xp::model::configuration::{Configuration, Scheme};
 
 /// The motors are in their end state so long, ms, after a fault can be known.
@@ -148,43 +149,41 @@ fn every_fault_is_named_ends_in_time_and_recovers() {
     inject_everything(3);
 }
 
-/// What the controller takes in is never another sample than this cycle's.
-fn survive(fault: LineFault, probability: f64, seed: u64) -> (u64, u64, u64) {
+/// What the controller takes in is never another sample than this cycle's. What a thousand cycles have lost.
+fn survive(fault: LineFault, probability: f64, seed: u64) -> Losses {
     let mut bench = Bench::new(Configuration::default(), seed);
     let before = 300 + bench.random(0.0, 1500.0) as u64;
     bench.run(before);
-    let before = bench.mailbox.report();
+    let before = bench.mailbox.report().losses;
     // The last of a thousand cycles begins when these are over.
     line(&mut bench, fault, probability, 1001);
     let mut lost = before.lost_replies;
     for _ in 0..1000 {
         bench.cycle();
         let report = bench.mailbox.report();
-        let answered = report.lost_replies == lost;
-        lost = report.lost_replies;
+        let answered = report.losses.lost_replies == lost;
+        lost = report.losses.lost_replies;
         // Six times the noise of a gauge.
         let off = (report.cycle.tensions - bench.truth.tensions).amax();
         assert!(!answered || off < 0.2, "{fault:?}, {seed}: {off} N from the truth");
     }
     bench.mend();
     bench.run(5);
-    let after = bench.mailbox.report();
     assert_eq!(bench.fault(), None, "{fault:?}, {seed}");
-    let since = |of: fn(&sun2xp::finger::FingerReport) -> u64| of(&after) - of(&before);
-    (since(|report| report.lost_replies), since(|report| report.late_replies), since(|report| report.duplicate_replies))
+    bench.mailbox.report().losses.since(&before)
 }
 
 fn survive_all(times: u64) {
     for (fault, probability) in [(LineFault::Duplicate, 1.0), (LineFault::Reorder, 0.5)] {
         let (mut lost, mut late, mut doubled) = (0, 0, 0);
         for seed in 0..times {
-            let counts = survive(fault, probability, seed);
+            let Losses { lost_replies, late_replies, duplicate_replies, .. } = survive(fault, probability, seed);
             match fault {
-                LineFault::Duplicate => assert_eq!(counts, (0, 0, 1000), "{seed}"),
+                LineFault::Duplicate => assert_eq!((lost_replies, late_replies, duplicate_replies), (0, 0, 1000)),
                 // What comes after the next one is known by its number: lost for its own cycle, late for the next.
-                _ => assert!(counts.0 == counts.1 && counts.0 > 200 && counts.2 == 0, "{seed}: {counts:?}"),
+                _ => assert!(lost_replies == late_replies && lost_replies > 200 && duplicate_replies == 0),
             }
-            (lost, late, doubled) = (lost + counts.0, late + counts.1, doubled + counts.2);
+            (lost, late, doubled) = (lost + lost_replies, late + late_replies, doubled + duplicate_replies);
         }
         println!(
             "{fault:?}, {times} times 1000 replies: {doubled} doubled, {late} late, {lost} lost; no fault, no wrong value"

@@ -275,9 +275,9 @@ impl Bench {
         truth.hot_for = truth.hot_for.zip_map(&heat, |time, heat| if heat > 0.95 { time + period } else { 0.0 });
         // One that forgets, 1/e in a second.
         let note = |share: &mut f64, wrong: bool| *share += (f64::from(u8::from(wrong)) - *share) / hand.rate;
-        note(&mut truth.lost, report.lost_replies > self.lost);
-        note(&mut truth.skipping, report.skipped_periods > self.skipped);
-        (self.lost, self.skipped) = (report.lost_replies, report.skipped_periods);
+        note(&mut truth.lost, report.losses.lost_replies > self.lost);
+        note(&mut truth.skipping, report.losses.skipped_periods > self.skipped);
+        (self.lost, self.skipped) = (report.losses.lost_replies, report.losses.skipped_periods);
         // As many as the library's own zero has.
         self.cycles += 1;
         if self.cycles <= 32 {

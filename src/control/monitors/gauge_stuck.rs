@@ -10,6 +10,9 @@ const LEARNING: f64 = 1.0 / 256.0;
 /// Samples after which the flicker is known.
 const KNOWN: u32 = 256;
 
+/// A gauge that shows one count in so many samples while all others are known to flicker was dead in the beginning.
+const NEVER: u32 = 512;
+
 /// The chance at which a live gauge that flickers as before would show one count for so long, as a natural logarithm: once
 /// in 10^11 samples, a year of four gauges at 1000 Hz.
 const UNLIKELY: f64 = -25.3;
@@ -123,11 +126,14 @@ impl GaugeStuck {
             }
         }
         let known = memory.flickers().known;
+        let alone = |gauge: usize| (0..4).all(|other| other == gauge || known[other]);
         first_of(Symptom::GaugeStuck, |gauge| {
             // Where a tendon hangs its gauge may be at its end, and show half of the noise only.
             let least = if sample.tensions[gauge] < self.slack { MOST_REPEATS } else { LEAST_REPEATS };
             let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(least).ln() < UNLIKELY;
-            (known[gauge] && unlikely && others_flicker(gauge)).then_some(f64::from(counts[gauge]))
+            let died = known[gauge] && unlikely && others_flicker(gauge);
+            let was_dead = memory.same[gauge] >= NEVER && alone(gauge) && sample.tensions[gauge] > self.slack;
+            (died || was_dead).then_some(f64::from(counts[gauge]))
         })
     }
 }

@@ -31,9 +31,8 @@ const TOO_LONG: f64 = 0.5;
 /// So long, s, tension must be gone for a warning.
 const NOTICED: f64 = 0.003;
 
-/// A gauge that flickered and then showed one count in so many samples, while the other tendons hold, is dead. Where a gauge ends at
-/// no tension noise shows on one side only, and that of a torn tendon shows one count now and then.
-const CERTAIN: u32 = 12;
+/// A gauge that flickered, and has shown one count in this many samples since its tendon is low, is dead. Where a gauge ends at no tension noise shows on one side only, and that of a torn tendon shows one count now and then.
+const CERTAIN: u32 = 15;
 
 #[derive(Clone, Debug)]
 pub(super) struct TensionLost {
@@ -45,8 +44,9 @@ pub(super) struct TensionLost {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
-    /// For how long each tendon has been low, s, and its tension since, N s.
+    /// For how long each tendon has been low, s, in how many samples, and its tension since, N s.
     low: Vector4<f64>,
+    samples: [u32; 4],
     impulse: Vector4<f64>,
     /// Mean of what its stretch said beyond its gauge before it went low, N.
     before: Vector4<f64>,
@@ -76,6 +76,7 @@ impl TensionLost {
             let low = tension < self.low;
             let counted = |so_far: f64, holds: bool| if holds { so_far + sample.elapsed } else { 0.0 };
             memory.low[tendon] = counted(memory.low[tendon], low);
+            memory.samples[tendon] = if low { memory.samples[tendon].saturating_add(1) } else { 0 };
             if !low {
                 memory.before[tendon] += (missing[tendon] - memory.before[tendon]) * (sample.elapsed / BEFORE).min(1.0);
             }
@@ -100,16 +101,15 @@ impl TensionLost {
 
     fn fault(&self, memory: &Memory, sample: &Sample, flicker: &Flicker, tendon: usize) -> Option<Alarm> {
         let others_hold = (0..4).all(|other| other == tendon || memory.low[other] == 0.0);
-        let certain = !flicker.known[tendon] || flicker.same[tendon] >= CERTAIN;
-        let dead = others_hold && certain;
-        if !dead && flicker.silent(tendon) {
+        let same = flicker.same[tendon];
+        let silent = flicker.known[tendon] && same + 1 >= memory.samples[tendon];
+        let dead = match flicker.known[tendon] {
             // A little later it is certain.
-            return None;
-        }
-        if !dead {
-            return Some(self.lost(memory, tendon));
-        }
-        Some(gauge_stuck::alarm(sample, tendon))
+            true if silent && same < CERTAIN => return None,
+            true => silent,
+            false => others_hold,
+        };
+        Some(if dead { gauge_stuck::alarm(sample, tendon) } else { self.lost(memory, tendon) })
     }
 
     fn lost(&self, memory: &Memory, tendon: usize) -> Alarm {
