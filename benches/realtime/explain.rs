@@ -189,7 +189,7 @@ pub enum Cause {
     /// It was kept from its core: by a poll that returned after its deadline, or by other threads. It ran for so short a time that it would
     /// have been done with what is left of a period after the latest reply, had it run when it was due.
     Kept,
-    /// It ran for longer than that, but not in its computation: in the system calls that write, wait and read.
+    /// It ran for longer than that, but would have been late without its computation too: write, wait and read took long.
     Exchange,
     /// None of these: the library itself, in its computation.
     Library,
@@ -200,13 +200,14 @@ const COMPUTING: f64 = 0.05;
 
 /// `pauses`: of threads above all servos.
 pub fn cause(cycle: &LateCycle, period: u64, pauses: &Pauses) -> Cause {
-    let &LateCycle { woken, done, ran, computed, .. } = cycle;
+    let &LateCycle { beginning, woken, done, ran, computed } = cycle;
+    let late_without_computation = done - computed > beginning + period;
     let within = |time: u64, part: f64| time as f64 <= part * period as f64;
     match () {
         _ if done - woken <= period => Cause::WakeUp,
         _ if pauses.explain(cycle, period) => Cause::Pause,
         _ if within(ran, 1.0 - REPLY_WINDOW) => Cause::Kept,
-        _ if within(computed, COMPUTING) => Cause::Exchange,
+        _ if late_without_computation || within(computed, COMPUTING) => Cause::Exchange,
         _ => Cause::Library,
     }
 }
