@@ -201,12 +201,13 @@ impl FingerServo {
     /// finds its record.
     pub fn tell(&mut self) {
         let timing = std::mem::take(&mut self.timing);
-        // A full ring means that nobody collects: the cycle is worth more than its figure.
-        let _ = self.timings.push(timing);
         if let Some(record) = self.record.take() {
             self.black_box.record(CycleRecord { timing, ..record });
         }
         self.mailbox.publish(self.report);
+        // After the report: no more timings than cycles are ever counted. A full ring means that nobody collects: the cycle is worth
+        // more than its figure.
+        let _ = self.timings.push(timing);
     }
 
     /// Stops the finger for a reason.
