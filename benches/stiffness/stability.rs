@@ -1,7 +1,7 @@
 //! Rows about the exact one-cycle map: frictionless, exactly measured, with all that the controller remembers.
 
 use crate::cases::{self, Case, Friction, USUAL};
-use crate::closed_loop::{ClosedLoop, Senses};
+use crate::closed_loop::{ClosedLoop, Held, Senses};
 use crate::contact::{INTO, WALLS, wall_off};
 use crate::fits;
 use crate::parallel::{each, worst};
@@ -76,7 +76,6 @@ pub fn against_walls(case: &Case) -> Stability {
 
 fn measure(case: &Case, samples: &[Sample]) -> Stability {
     let found = each(samples, |_, sample| growth(case, &case.finger(&sample.pose, Friction::None), sample));
-    // A tip on the axis of joint 0 has an eigenvalue of 1: nothing holds that joint.
     const ROUNDING: f64 = 1e-5;
     let inside = |growth: &f64| *growth < 1.0 + ROUNDING;
     Stability {
@@ -96,7 +95,9 @@ pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> O
     const WATCHED: f64 = 1.5;
     /// Between two samples, s: apart enough that the eigenvalues left are, too.
     const STRIDE: f64 = 0.005;
-    let mut finger = ClosedLoop::new(case, description, description, &sample.pose, &sample.kx, Senses::Exact);
+    let Sample { pose, kx, .. } = sample;
+    let held = Held { case, finger: description, belief: description, pose, kx, senses: Senses::Exact };
+    let mut finger = ClosedLoop::new(&held);
     finger.push(sample.load);
     if let Some((surface, anchor)) = &sample.wall {
         finger.plant.set_surface(Some(*surface));
