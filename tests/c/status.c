@@ -28,6 +28,7 @@ int main(void)
         CHECK(Status->Cycles >= 900);
         CHECK(Status->WakeUpMedian <= Status->WakeUp99 && Status->WakeUp99 <= Status->WakeUpMaximum);
         CHECK(Status->TorqueScale > 0.0 && Status->TorqueScale <= 1.0);
+        CHECK(Status->StiffnessScale == 1.0);
         CHECK(Status->DamagedFrames == 0);
     }
     CHECK(CloseHand() == 0);
