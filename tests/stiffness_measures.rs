@@ -134,7 +134,7 @@ fn a_controller_blind_to_tendon_stretch_is_found_out() {
             blind.tendon.stiffness = [1e9; 4];
             let error = |belief: &ConfiguredFinger| {
                 let held = Held { case: &case, finger: &finger, belief, pose: &pose, kx: &kx, senses: Senses::Exact };
-                statics::pushed_about(&held).error
+                statics::fidelity(&held).error
             };
             assert!(error(&finger) < 2e-3, "{}", error(&finger));
             assert!((least..most).contains(&error(&blind)), "{}", error(&blind));
@@ -150,7 +150,7 @@ fn a_pose_that_carries_less_shows_its_scale_and_no_error() {
     let finger = case.finger(&pose, Friction::None);
     let kx = Matrix3::identity() * 7.5;
     let held = Held { case: &case, finger: &finger, belief: &finger, pose: &pose, kx: &kx, senses: Senses::Exact };
-    let found = statics::pushed_about(&held);
+    let found = statics::fidelity(&held);
     assert!(found.scale < 0.97 && found.error < 0.01, "{} of {}", found.error, found.scale);
 }
 

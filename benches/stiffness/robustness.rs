@@ -27,7 +27,7 @@ fn believing(
         let mut finger = belief.clone();
         differ(&mut finger, &mut belief);
         let (finger, belief) = (&finger, &belief);
-        statics::pushed_about(&Held { case, finger, belief, pose, kx: &kx, senses: Senses::Exact })
+        statics::fidelity(&Held { case, finger, belief, pose, kx: &kx, senses: Senses::Exact })
     }))
 }
 

@@ -25,14 +25,30 @@ impl Fidelity {
 pub fn apparent_stiffness(case: &Case, senses: Senses) -> Fidelity {
     Fidelity::worst(&each(&case.poses_and_springs(), |_, (pose, kx)| {
         let finger = &case.finger(pose, Friction::None);
-        pushed_about(&Held { case, finger, belief: finger, pose, kx, senses })
+        fidelity(&Held { case, finger, belief: finger, pose, kx, senses })
     }))
 }
 
-/// Pushes that deflect Kx by 1 mm along every axis both ways, and how far the true tip goes from the middle of each pair.
+/// The stiffness that one tip shows, about 1 mm.
+pub fn fidelity(held: &Held) -> Fidelity {
+    let Pushed { forces, deflections, scale } = pushed_about(held);
+    Fidelity { error: fits::spring_error(&forces, &deflections, &(held.kx * scale)), scale }
+}
+
+/// What pushes came to.
+pub struct Pushed {
+    /// N.
+    pub forces: Vec<Vector3<f64>>,
+    /// How far the true tip went from the middle of each pair of pushes, cm.
+    pub deflections: Vec<Vector3<f64>>,
+    /// The part of Kx that was given, as reported.
+    pub scale: f64,
+}
+
+/// Pushes that deflect Kx by 1 mm along every axis both ways.
 ///
 /// Both pushes of a pair meet the same noise, so that most of it leaves their difference; the rest is averaged.
-pub fn pushed_about(held: &Held) -> Fidelity {
+pub fn pushed_about(held: &Held) -> Pushed {
     const DEFLECTION: f64 = 0.1;
     let (settled, averaged) = if held.senses == Senses::Exact { (2.5, 0.5) } else { (1.0, 3.0) };
     let mut scales = 0.0;
@@ -44,15 +60,14 @@ pub fn pushed_about(held: &Held) -> Fidelity {
         scales += run.report.stiffness_scale;
         mean
     };
-    let (forces, deflections): (Vec<_>, Vec<_>) = [Vector3::x(), Vector3::y(), Vector3::z()]
+    let (forces, deflections) = [Vector3::x(), Vector3::y(), Vector3::z()]
         .into_iter()
         .map(|axis| {
             let force = held.kx * axis * DEFLECTION;
             (force, (tip(force) - tip(-force)) / 2.0)
         })
         .unzip();
-    let scale = scales / 6.0;
-    Fidelity { error: fits::spring_error(&forces, &deflections, &(held.kx * scale)), scale }
+    Pushed { forces, deflections, scale: scales / 6.0 }
 }
 
 /// Error of the slope of a triangular force loop of +-2 mm in 3 s, friction on.
