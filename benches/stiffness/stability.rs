@@ -76,6 +76,7 @@ pub fn against_walls(case: &Case) -> Stability {
 
 fn measure(case: &Case, samples: &[Sample]) -> Stability {
     let found = each(samples, |_, sample| growth(case, &case.finger(&sample.pose, Friction::None), sample));
+    // A tip on the axis of joint 0 has an eigenvalue of 1: nothing holds that joint.
     const ROUNDING: f64 = 1e-5;
     let inside = |growth: &f64| *growth < 1.0 + ROUNDING;
     Stability {
