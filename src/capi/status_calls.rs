@@ -106,12 +106,7 @@ pub unsafe extern "C" fn GetStatus(i: c_int, Status: *mut FingerStatus) -> c_int
 fn told(status: &hand::FingerStatus) -> FingerStatus {
     FingerStatus {
         Size: 0, // until the caller's room is known
-        State: match status.stage {
-            Stage::Faulted(_) => FINGER_FAULTED,
-            Stage::Limp => FINGER_LIMP,
-            Stage::Calibrating | Stage::Opening => FINGER_CALIBRATING,
-            Stage::Running | Stage::Closing | Stage::Closed => FINGER_RUNNING,
-        },
+        State: state(&status.stage),
         Realtime: status.realtime.into(),
         Rate: status.rate,
         MeasuredRate: status.measured_rate,
@@ -127,6 +122,16 @@ fn told(status: &hand::FingerStatus) -> FingerStatus {
         MemoryLocked: status.memory_locked.into(),
         OnCore: status.on_core.into(),
         StiffnessScale: status.stiffness_scale,
+    }
+}
+
+/// FINGER_...
+pub(super) fn state(stage: &Stage) -> c_int {
+    match stage {
+        Stage::Faulted(_) => FINGER_FAULTED,
+        Stage::Limp => FINGER_LIMP,
+        Stage::Calibrating | Stage::Opening => FINGER_CALIBRATING,
+        Stage::Running | Stage::Closing | Stage::Closed => FINGER_RUNNING,
     }
 }
 

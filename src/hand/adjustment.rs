@@ -1,5 +1,6 @@
 //! Changing a finger's configuration while it runs: a new controller is made here, beside the servo, and handed to it whole.
 
+use crate::control::SetPoint;
 use crate::finger::Adjustable;
 use crate::hand::admission::Admission;
 use crate::hand::configuration_file::{deserialize, line_of, overlay};
@@ -49,9 +50,10 @@ impl Hand {
         changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys)?;
         check(&changed)?;
         let unusable = |unusable: Unusable| HandError::Unusable { section: format!("finger.{finger}"), unusable };
-        let number = self.dispatcher.announce(finger, &changed)?;
-        let adjustable = Adjustable::new(&changed, index, number).map_err(unusable)?;
-        adjust_member(member, admission(&changed, index), adjustable)?;
+        let adjustable = Adjustable::new(&changed, index, 0).map_err(unusable)?;
+        self.dispatcher.hand_over(finger, &changed, |number| {
+            adjust_member(member, admission(&changed, index), Adjustable { number, ..adjustable })
+        })?;
         *configuration = changed;
         Ok(())
     }
@@ -68,8 +70,11 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     let faulted = |fault| HandError::Faulted { finger, fault };
     member.mailbox.adjust(adjustable).map_err(faulted)?;
     if joints != sent.joints || stiffness != sent.stiffness {
-        let clamp = |set_point: &mut crate::control::SetPoint| {
-            (set_point.joints, set_point.stiffness) = (joints, stiffness);
+        let clamp = |set_point: &mut SetPoint| {
+            // Else the finger has begun anew meanwhile, and holds the pose it was found in.
+            if *set_point == sent {
+                (set_point.joints, set_point.stiffness) = (joints, stiffness);
+            }
         };
         member.mailbox.send(clamp).map_err(faulted)?;
     }

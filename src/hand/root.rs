@@ -270,7 +270,6 @@ impl Hand {
                 }
             }
             if !opening {
-                self.dispatcher.members().iter().for_each(|member| member.mailbox.adopt());
                 return Ok(());
             }
             sleep(LOOKING);
@@ -292,5 +291,6 @@ impl Drop for Hand {
             // A servo thread catches its own panics. Its ports are closed here, not in the servo: it may take long.
             let _ = servo.join();
         }
+        self.recovery.end();
     }
 }

@@ -64,7 +64,7 @@ impl Board {
         Self::start_with(&[], fingers)
     }
 
-    fn start_with(options: &[&str], fingers: &[&str]) -> Self {
+    pub fn start_with(options: &[&str], fingers: &[&str]) -> Self {
         let mut program = Program::new(env!("CARGO_BIN_EXE_sun2xp"));
         program
             .args(["board", "--priority", "20"])

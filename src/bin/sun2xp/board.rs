@@ -25,8 +25,8 @@ use sun2xp::realtime::Priority;
 ///                                            Configure; status bits as in a Reply
 ///     quit
 ///
-/// What is broken stays so until `mend` or `good`. Parts are counted from 1 to 4; a probability is of each frame from the board, and
-/// without MS it is for ever:
+/// What is broken stays so until `mend` or `good`. Parts are counted from 1 to 4; a probability is of each frame from the board, or
+/// with `commands` before it to the board, and without MS it is for ever:
 ///
 ///     cut FINGER TENDON                      a torn tendon
 ///     slack FINGER TENDON GRIP               a tendon that slips and bears no more than GRIP, N
@@ -45,7 +45,9 @@ use sun2xp::realtime::Priority;
 ///     delay PROBABILITY LATER [MS]           frames come LATER ms later
 ///     duplicate PROBABILITY [MS], reorder PROBABILITY [MS]
 ///     stall MS                               nothing comes, then everything
-///     good                                   a good line again
+///     commands drop 0.01, commands stall MS, and so on
+///                                            the same to frames to the board
+///     good                                   a good line again, both ways
 ///     unplug, replug                         the port vanishes; another one comes, whose path is answered
 ///
 /// Positions and forces are in the finger's frame, lengths in cm. The end of standard input does not end the program, so that it
