@@ -398,6 +398,11 @@ struct FingerStatus {
      1: the servo thread runs on the configured core, or none is configured. 0: it does not.
      */
     int OnCore;
+    /*
+     The part of Kx that the fingertip had in the last cycle, 0 to 1: less than 1 where the
+     pose cannot carry what was sent.
+     */
+    double StiffnessScale;
 };
 
 /*
