@@ -88,6 +88,8 @@ impl Workshop {
         let mut all = [None; FINGERS];
         for (board, place) in self.boards.iter().zip(&mut all) {
             let KnownBoard { finger, address, ref terms, .. } = *board;
+            // One whose port had failed was not told to stop; cable and power may be back before its watchdog's time is over.
+            let _ = link.stop(address, 0);
             match link.shake_hands(address, terms, now() + ANSWER) {
                 Ok((identity, configured)) => {
                     board.check(&identity, configured.status)?;

@@ -12,7 +12,7 @@ use sun2xp::hand::{Hand, stop_all};
 use sun2xp::model::configuration::{Configuration, OnFault};
 use sun2xp::realtime::Priority;
 
-fn fault(hand: &Hand, finger: i32) -> Option<FaultKind> {
+pub fn fault(hand: &Hand, finger: i32) -> Option<FaultKind> {
     match hand.report(finger).expect("a report").stage {
         Stage::Faulted(fault) => Some(fault.kind),
         _ => None,
@@ -29,7 +29,7 @@ fn recovers(hand: &Hand, finger: i32) {
 }
 
 /// Open descriptors and threads of this process.
-fn held() -> (usize, usize) {
+pub fn held() -> (usize, usize) {
     let count = |folder: &str| read_dir(folder).expect("a folder").count();
     (count("/proc/self/fd"), count("/proc/self/task"))
 }

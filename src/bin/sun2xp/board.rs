@@ -20,7 +20,9 @@ use sun2xp::realtime::Priority;
 ///     ball FINGER X Y Z RADIUS K             a ball
 ///     free FINGER                            no force, no wall, no ball
 ///     state FINGER                           true joints (rad), tip (cm) and tensions (N), torques of the motors (N cm),
-///                                            status bits as in a Reply
+///                                            times by the board's clock (ms): now, of the last Command that was
+///                                            obeyed, of the end state that followed; NaN: not since the last
+///                                            Configure; status bits as in a Reply
 ///     quit
 ///
 /// What is broken stays so until `mend` or `good`. Parts are counted from 1 to 4; a probability is of each frame from the board, and
