@@ -398,6 +398,11 @@ struct FingerStatus {
      1: the servo thread runs on the configured core, or none is configured. 0: it does not.
      */
     int OnCore;
+    /*
+     The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where
+     its tendons carry no more in this pose, so near straight.
+     */
+    double StiffnessScale;
 };
 
 /*
@@ -990,6 +995,10 @@ int SendDamping(int i,
  finger is opened with cannot change: port, baud, address, thread, core, priority,
  base, turn_degrees, encoder, motor.sign, motor.torque_limit, motor.torque_constant,
  stiffness.initial and simulation. controller.law counts from the next SendPos on.
+
+ A configured stiffness.bound was found for one controller. Under another
+ controller.scheme it counts only if it is less than the default bound, or if Keys
+ names it too.
 
  Returns 0, or -1 with
    EFAULT   Keys is null

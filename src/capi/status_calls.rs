@@ -68,6 +68,9 @@ pub struct FingerStatus {
     pub MemoryLocked: c_int,
     /// 1: the servo thread runs on the configured core, or none is configured. 0: it does not.
     pub OnCore: c_int,
+    /// The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where
+    /// its tendons carry no more in this pose, so near straight.
+    pub StiffnessScale: f64,
 }
 
 /// GetStatus - rate, jitter and losses of a finger's servo
@@ -118,6 +121,7 @@ fn told(status: &hand::FingerStatus) -> FingerStatus {
         Calibration: status.calibration,
         MemoryLocked: status.memory_locked.into(),
         OnCore: status.on_core.into(),
+        StiffnessScale: status.stiffness_scale,
     }
 }
 

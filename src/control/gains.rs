@@ -23,7 +23,8 @@ const SET_POINT_SPEED: f64 = 2.0;
 /// rad/s. State feedback follows its reference, which therefore may move as fast as the tensions can carry it: from 1000 Hz up.
 const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 5.0;
 
-/// Rate, Hz, then the fields of [`Gains`] in their order but the last two. Found by experiment with the finger of the default configuration.
+/// Rate, Hz, then the fields of [`Gains`] in their order but the last two, at that rate. Found by experiment with the finger of the
+/// default configuration. The rates rise.
 type Row = (f64, [f64; 6]);
 
 const FIGURE_9: [Row; 3] = [
@@ -49,8 +50,21 @@ const FIGURE_11: [Row; 3] = [
 /// 1/s.
 const ADAPTATION_GAIN: f64 = 20.0;
 
+/// The row of a table for `rate`, Hz: between two rates each gain is a power of the rate, beyond the last ones it stays.
+///
+/// Not the nearest row: gains of a higher rate act on a delay for which they are too large, and were unstable in every pose tried.
+fn at(table: &[Row], rate: f64) -> [f64; 6] {
+    let above = table.iter().position(|row| row.0 >= rate).unwrap_or(table.len() - 1);
+    let ((low, lower), (high, upper)) = (table[above.saturating_sub(1)], table[above]);
+    if rate <= low || rate >= high {
+        return if rate <= low { lower } else { upper };
+    }
+    let part = (rate / low).ln() / (high / low).ln();
+    std::array::from_fn(|gain| lower[gain].powf(1.0 - part) * upper[gain].powf(part))
+}
+
 impl Gains {
-    /// What is configured; the rest from the tabulated rate nearest to `rate` (by ratio).
+    /// What is configured; the rest from the table of the scheme.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
         let scheme = configured.scheme(rate);
         let table = match scheme {
@@ -59,9 +73,7 @@ impl Gains {
             Scheme::Figure10 | Scheme::StateFeedback => &FIGURE_10,
             Scheme::Figure11 => &FIGURE_11,
         };
-        let apart = |row: &Row| (row.0 / rate).ln().abs();
-        let nearest = table.iter().fold(&table[0], |best, row| if apart(row) < apart(best) { row } else { best });
-        let [tension_gain, tension_integral, motor_damping, rate_time, speed_filter, stretch_filter] = nearest.1;
+        let [tension_gain, tension_integral, motor_damping, rate_time, speed_filter, stretch_filter] = at(table, rate);
         let absent = |key, term: &str| {
             let reason = format!("is given, but this scheme has no {term} term: leave it out, or choose \"figure 10\"");
             Err(Unusable { key, reason })
@@ -102,10 +114,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_rate_lends_what_is_not_configured() {
+    fn what_is_not_configured_follows_from_the_rate() {
         let mut configured = ConfiguredController::default();
-        for (rate, expected) in [(100.0, 0.1), (700.0, 0.1), (720.0, 2.0), (1000.0, 2.0), (1500.0, 5.0), (9e3, 5.0)] {
-            assert_eq!(Gains::new(&configured, rate).unwrap().tension_gain, expected, "{rate} Hz");
+        let between = (0.1f64 * 2.0).sqrt();
+        for (rate, expected) in
+            [(100.0, 0.1), (500.0, 0.1), (5e5f64.sqrt(), between), (1000.0, 2.0), (2000.0, 5.0), (9e3, 5.0)]
+        {
+            let found = Gains::new(&configured, rate).unwrap().tension_gain;
+            assert!((found - expected).abs() < 1e-12, "{rate} Hz: {found}");
         }
         configured.motor_damping = Some(77.0);
         let gains = Gains::new(&configured, 1000.0).unwrap();
