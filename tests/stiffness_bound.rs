@@ -9,7 +9,7 @@ const SEARCH: Search = Search { samples: 80, seed: 5 };
 
 fn finger(scheme: Scheme) -> ConfiguredFinger {
     let mut finger = ConfiguredFinger::default();
-    finger.controller.scheme = Some(scheme);
+    finger.controller.scheme = scheme;
     finger
 }
 

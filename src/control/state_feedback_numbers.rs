@@ -52,21 +52,19 @@ const DITHER_FREQUENCY: f64 = 40.0;
 /// See [`Numbers::rubbing`].
 const RUBBING: f64 = 0.4;
 
-/// alpha, zeta, relative zeta, disturbance and link bandwidth (rad/s), ahead, lag, common gain, common damping, felt, reference
-/// time (s).
+/// Rate, Hz, then alpha, zeta, relative zeta, disturbance and link bandwidth (radians a cycle), ahead, lag, common gain, common
+/// damping, felt, reference time (s).
 type Row = (f64, [f64; 11]);
 
 const TABLE: [Row; 3] = [
-    (500.0, [0.45, 0.4, 0.12, 40.0, 800.0, 0.0, 1.0, 0.3, 1.0, 1.0, 0.012]),
-    (1000.0, [2.3, 0.178, 0.31, 13000.0, 1634.0, -0.12, 0.015, 0.043, 0.266, 10.2, 0.008]),
-    (2000.0, [3.58, 0.274, 0.557, 30900.0, 1140.0, -0.359, 0.042, 0.095, 0.184, 9.03, 0.008]),
+    (500.0, [0.9, 0.5, 0.17, 48.0, 2.6, -0.5, 0.035, 0.2, 0.6, 1.3, 0.012]),
+    (1000.0, [2.3, 0.178, 0.31, 13.0, 1.634, -0.12, 0.015, 0.043, 0.266, 10.2, 0.008]),
+    (2000.0, [3.58, 0.274, 0.557, 15.45, 0.57, -0.359, 0.042, 0.095, 0.184, 9.03, 0.008]),
 ];
 
 impl Numbers {
-    /// What is configured; the rest from the tabulated rate nearest to `rate` (by ratio).
+    /// What is configured; the rest from the table, between its rates by ratio.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
-        let apart = |row: &Row| (row.0 / rate).ln().abs();
-        let nearest = TABLE.iter().fold(&TABLE[0], |best, row| if apart(row) < apart(best) { row } else { best });
         let [
             inertia_gain,
             damping_ratio,
@@ -79,15 +77,13 @@ impl Numbers {
             common_damping,
             felt,
             reference_time,
-        ] = nearest.1;
-        // A bandwidth is a number of radians in a cycle.
-        let scale = rate / nearest.0;
+        ] = row_at(rate);
         let numbers = Self {
             inertia_gain: configured.inertia_gain.unwrap_or(inertia_gain),
             damping_ratio: configured.damping_ratio.unwrap_or(damping_ratio),
             relative_damping,
-            disturbance_bandwidth: disturbance * scale,
-            link_bandwidth: link * scale,
+            disturbance_bandwidth: disturbance * rate,
+            link_bandwidth: link * rate,
             ahead,
             lag,
             felt,
@@ -95,7 +91,7 @@ impl Numbers {
             common_damping,
             rubbing: RUBBING,
             least_frequency: LEAST_FREQUENCY,
-            reference_time: configured.set_point_time.unwrap_or(reference_time / scale.min(1.0)),
+            reference_time: configured.set_point_time.unwrap_or(reference_time / (rate / TABLE[0].0).min(1.0)),
             dither: configured.dither.unwrap_or(2.0),
             dither_frequency: DITHER_FREQUENCY.min(rate / 12.0),
         };
@@ -105,4 +101,13 @@ impl Numbers {
         not_negative("controller.dither", numbers.dither)?;
         Ok(numbers)
     }
+}
+
+/// The row of `rate`: from row to row every number changes by a power of the rate. In proportion to its logarithm, some poses were
+/// unstable at 667 Hz. Beyond its ends the table goes on with its first or last row, so with the same motion in a cycle.
+fn row_at(rate: f64) -> [f64; 11] {
+    let next = TABLE.iter().position(|row| rate < row.0).unwrap_or(TABLE.len() - 1).max(1);
+    let (lower, upper) = (&TABLE[next - 1], &TABLE[next]);
+    let part = ((rate / lower.0).ln() / (upper.0 / lower.0).ln()).clamp(0.0, 1.0);
+    std::array::from_fn(|number| lower.1[number] * (upper.1[number] / lower.1[number]).powf(part))
 }

@@ -48,7 +48,7 @@ impl Calibrating {
         let rate = configuration.hand.rate;
         let refused = |unusable| refusal(finger, unusable);
         let calibration = Calibration::new(task, &configuration.fingers[index], rate).map_err(refused)?;
-        configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index], rate);
+        configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index]);
         let number = hand.dispatcher.announce(finger, &configuration)?;
         let adjustable = Adjustable::new(&configuration, index, number).map_err(refused)?;
         let given = member.mailbox.order(Order::Calibrate(CalibrationRun { calibration, adjustable }));

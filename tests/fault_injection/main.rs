@@ -217,7 +217,7 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
     for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback] {
         for fault in [LineFault::Drop, LineFault::Corrupt, LineFault::Duplicate, LineFault::Delay(2 * MILLISECOND)] {
             let mut configuration = Configuration::default();
-            configuration.fingers[0].controller.scheme = Some(scheme);
+            configuration.fingers[0].controller.scheme = scheme;
             configuration.fingers[0].simulation.joint_coulomb_friction = [2e-3; 3];
             let mut bench = Bench::new(configuration, 7);
             bench.with_cable(|cable| cable.inject(fault, 0.05, u64::MAX, 7));
