@@ -27,8 +27,7 @@ use serde::{Deserialize, Serialize};
 const GAUGE_NOISE: f64 = 0.03;
 
 /// How many times that noise the tensions keep off their bounds, beside the dither. With 6 times a finger at a stop exceeded
-/// t_max by 0.14 N, with 14 times by 0.04 N at most on three seeds; between and beyond it does not fall evenly. That is at 1000 Hz and
-/// above: with longer periods tensions swing by more between two samples, and the reserve grows in proportion.
+/// t_max by 0.14 N, with 14 times by 0.04 N at most on three seeds; between and beyond it does not fall evenly.
 const NOISE_RESERVE: f64 = 14.0;
 
 /// Of the low-pass on the motion of the joints beside the reference, rad/s: above it dither and noise are, below it pushes.
@@ -193,7 +192,7 @@ impl StateFeedback {
             reference: Reference::new(numbers.reference_time, rate),
             slew: Slew::new(set_point_speed, rate),
             dither: Dither::new(shaken, numbers.dither_frequency, rate),
-            reserve: (pseudo_inverse.abs() * shaken).max() + NOISE_RESERVE * (1000.0 / rate).max(1.0) * GAUGE_NOISE,
+            reserve: (pseudo_inverse.abs() * shaken).max() + NOISE_RESERVE * GAUGE_NOISE,
             friction: FrictionFeedForward {
                 coulomb: Vector4::from(finger.friction.motor_coulomb).component_div(&tendons.radius),
                 conduit: finger.friction.conduit.into(),

@@ -111,3 +111,22 @@ fn row_at(rate: f64) -> [f64; 11] {
     let part = ((rate / lower.0).ln() / (upper.0 / lower.0).ln()).clamp(0.0, 1.0);
     std::array::from_fn(|number| lower.1[number] * (upper.1[number] / lower.1[number]).powf(part))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_rate_has_numbers_of_its_own() {
+        for (rate, row) in TABLE {
+            for (found, tabulated) in row_at(rate).into_iter().zip(row) {
+                assert!((found / tabulated - 1.0).abs() < 1e-12, "{rate} Hz: {found} for {tabulated}");
+            }
+        }
+        assert_eq!(row_at(100.0), TABLE[0].1);
+        assert_eq!(row_at(9e3), row_at(2000.0));
+        // Half way by ratio: the geometric mean.
+        let (lower, upper) = (TABLE[0].1[0], TABLE[1].1[0]);
+        assert!((row_at(500.0 * 2f64.sqrt())[0] / (lower * upper).sqrt() - 1.0).abs() < 1e-12);
+    }
+}

@@ -185,7 +185,7 @@ fn friction_does_not_hold_the_finger_and_does_without_dither() {
         harsh(finger);
         finger.controller.dither = Some(0.0);
     });
-    assert!(stuck > 0.3, "{stuck}");
+    assert!(stuck > 0.5, "{stuck}");
 }
 
 #[test]
@@ -273,9 +273,13 @@ fn walls_are_stable() {
         println!("{rate} Hz, {stiffness} N/cm: tip moves {worst:.4} cm rms against a wall");
         println!("{restless:.4?}");
         // At the bound of Kx some contacts swing a little: there is no margin left, but nothing grows.
-        // At 500 Hz a few contacts swing as well.
-        let most = if rate < 1000.0 || stiffness > 3.0 { 0.03 } else { 0.005 };
+        // At 500 Hz more of them do, by a tenth of a millimetre.
+        let (most, few) = match (rate, stiffness) {
+            (500.0, _) => (0.015, 10),
+            (_, 3.0) => (0.005, 0),
+            _ => (0.03, 4),
+        };
         assert!(worst < most);
-        assert!(restless.len() <= 4, "{restless:.4?}");
+        assert!(restless.len() <= few, "{restless:.4?}");
     }
 }
