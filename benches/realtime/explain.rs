@@ -7,8 +7,8 @@ use std::thread::JoinHandle;
 use sun2xp::finger::REPLY_WINDOW;
 use sun2xp::realtime::{Clock, MonotonicClock, Priority, Schedule, now, spawn};
 
-/// How many late cycles, and how many pauses of a core, are kept.
-const KEPT: usize = 100_000;
+/// How many late cycles, and how many pauses of a core, are kept: of a busy machine for half an hour.
+const KEPT: usize = 4_000_000;
 
 /// A cycle that was not done when the next one should have begun. ns.
 #[derive(Clone, Copy)]
@@ -21,17 +21,18 @@ pub struct LateCycle {
     pub done: u64,
     /// For how long its thread ran meanwhile, by the kernel's account: with its system calls, without waiting.
     pub ran: u64,
+    /// For how much of that it computed, which is without system calls.
+    pub computed: u64,
 }
 
-/// What a servo asks of its clock in one cycle: to sleep until the beginning; the time when it has woken; and last the time when it has
-/// computed. So the clock knows of every late cycle, and the library that is measured is the one that is used.
+/// What a servo asks of its clock in one cycle: to sleep until the beginning; the time when it has woken; and last the times when it
+/// begins to compute and when it has. So the clock knows of every late cycle, and the library that is measured is the one that is used.
 pub struct NotingClock {
     period: u64,
     beginning: Cell<u64>,
-    /// When it had, and for how long its thread had run until then.
-    woken: Cell<Option<(u64, u64)>>,
-    /// The last time that was asked for.
-    last: Cell<u64>,
+    woken: Cell<Option<Instant>>,
+    /// The last two that were asked for.
+    last: Cell<[Instant; 2]>,
     late: Cell<Vec<LateCycle>>,
     cycles: Cell<u64>,
 }
@@ -42,7 +43,7 @@ impl NotingClock {
             period,
             beginning: Cell::new(0),
             woken: Cell::new(None),
-            last: Cell::new(0),
+            last: Cell::default(),
             late: Cell::new(Vec::with_capacity(KEPT)),
             cycles: Cell::new(0),
         }
@@ -57,11 +58,17 @@ impl NotingClock {
     fn end_cycle(&self) {
         let Some(woken) = self.woken.take() else { return };
         self.cycles.set(self.cycles.get() + 1);
-        let (beginning, (woken, ran_before), done) = (self.beginning.get(), woken, self.last.get());
-        if done > beginning + self.period {
+        let (beginning, [computing, done]) = (self.beginning.get(), self.last.get());
+        if done.time > beginning + self.period {
             let mut late = self.late.take();
             if late.len() < KEPT {
-                late.push(LateCycle { beginning, woken, done, ran: thread_time() - ran_before });
+                late.push(LateCycle {
+                    beginning,
+                    woken: woken.time,
+                    done: done.time,
+                    ran: done.ran - woken.ran,
+                    computed: done.ran - computing.ran,
+                });
             }
             self.late.set(late);
         }
@@ -70,12 +77,12 @@ impl NotingClock {
 
 impl Clock for &NotingClock {
     fn now(&self) -> u64 {
-        let time = now();
+        let instant = Instant { time: now(), ran: thread_time() };
         if self.woken.get().is_none() {
-            self.woken.set(Some((time, thread_time())));
+            self.woken.set(Some(instant));
         }
-        self.last.set(time);
-        time
+        self.last.set([self.last.get()[1], instant]);
+        instant.time
     }
 
     fn sleep_until(&self, deadline: u64) {
@@ -83,6 +90,14 @@ impl Clock for &NotingClock {
         self.beginning.set(deadline);
         MonotonicClock.sleep_until(deadline);
     }
+}
+
+/// Of the servo's thread, ns.
+#[derive(Clone, Copy, Default)]
+struct Instant {
+    time: u64,
+    /// For how long it has run.
+    ran: u64,
 }
 
 /// For how long the calling thread has run, ns.
@@ -102,8 +117,8 @@ pub struct Watchers {
     threads: Vec<JoinHandle<Vec<Pause>>>,
 }
 
-/// A watcher looks so often, ns.
-const LOOKING: u64 = 250_000;
+/// A watcher looks so often, ns: within what a cycle may run for, so that no pause that makes one late goes unseen.
+const LOOKING: u64 = 100_000;
 
 /// Later than this, ns, counts as a pause.
 const PAUSE: u64 = 50_000;
@@ -174,17 +189,25 @@ pub enum Cause {
     /// It was kept from its core: by a poll that returned after its deadline, or by other threads. It ran for so short a time that it would
     /// have been done with what is left of a period after the latest reply, had it run when it was due.
     Kept,
-    /// None of these: the library itself, which ran for longer than that.
+    /// It ran for longer than that, but would have been late without its computation too: write, wait and read took long.
+    Exchange,
+    /// None of these: the library itself, in its computation.
     Library,
 }
 
+/// A computation that ran for no longer than this part of a period has not made the cycle late.
+const COMPUTING: f64 = 0.05;
+
 /// `pauses`: of threads above all servos.
 pub fn cause(cycle: &LateCycle, period: u64, pauses: &Pauses) -> Cause {
-    let &LateCycle { woken, done, ran, .. } = cycle;
+    let &LateCycle { beginning, woken, done, ran, computed } = cycle;
+    let late_without_computation = done - computed > beginning + period;
+    let within = |time: u64, part: f64| time as f64 <= part * period as f64;
     match () {
         _ if done - woken <= period => Cause::WakeUp,
         _ if pauses.explain(cycle, period) => Cause::Pause,
-        _ if ran as f64 <= (1.0 - REPLY_WINDOW) * period as f64 => Cause::Kept,
+        _ if within(ran, 1.0 - REPLY_WINDOW) => Cause::Kept,
+        _ if late_without_computation || within(computed, COMPUTING) => Cause::Exchange,
         _ => Cause::Library,
     }
 }

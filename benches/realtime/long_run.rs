@@ -1,4 +1,4 @@
-//! Three fingers for a long time, with cyclictest beside them: whether a cycle is ever late by the library's own running time.
+//! Three fingers for a long time, with cyclictest beside them: whether a cycle is ever late by the library's own computation.
 
 use crate::Failure;
 use crate::cyclictest::Cyclictest;
@@ -9,7 +9,7 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Priority, now, spawn};
 
 /// Three fingers at 1000 Hz for a long time; every late cycle is sorted by its cause. Exit status 1: one was late
-/// by the library's own running time.
+/// by the library's own computation.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// How long.
@@ -57,9 +57,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let machine = cyclictest.finish()?;
 
     println!(
-        "| finger | cycles | replies lost | late | by their wake-up | by a pause of a core | kept from its core | by its own running time |"
+        "| finger | cycles | replies lost | late | by their wake-up | by a pause of a core | kept from its core | by system calls of the exchange | by its computation |"
     );
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
     let mut own = 0;
     for (index, ((cycles, late), (mailbox, _))) in found.iter().zip(&planners).enumerate() {
         let report = mailbox.report();
@@ -71,19 +71,24 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let count = |cause| causes.iter().filter(|(found, _)| *found == cause).count();
         let library = count(Cause::Library);
         println!(
-            "| {} | {cycles} | {} | {} | {} | {} | {} | {library} |",
+            "| {} | {cycles} | {} | {} | {} | {} | {} | {} | {library} |",
             index + 1,
             report.losses.lost_replies,
             late.len(),
             count(Cause::WakeUp),
             count(Cause::Pause),
-            count(Cause::Kept)
+            count(Cause::Kept),
+            count(Cause::Exchange)
         );
-        for (_, LateCycle { beginning, woken, done, ran }) in
+        for (_, LateCycle { beginning, woken, done, ran, computed }) in
             causes.iter().filter(|(cause, _)| *cause == Cause::Library).take(10)
         {
-            let [woken, done, ran] = [woken - beginning, done - beginning, *ran].map(|time| time as f64 * 1e-3);
-            eprintln!("finger {}: woken after {woken:.0}, done after {done:.0} us; ran for {ran:.0} us", index + 1);
+            let [woken, done, ran, computed] =
+                [woken - beginning, done - beginning, *ran, *computed].map(|time| time as f64 * 1e-3);
+            eprintln!(
+                "finger {}: woken after {woken:.0}, done after {done:.0} us; ran for {ran:.0} us, computed for {computed:.0} us",
+                index + 1
+            );
         }
         own += library;
     }
@@ -107,7 +112,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         pauses.count()
     );
     if own > 0 {
-        return Err(format!("{own} cycles were late by the library's own running time").into());
+        return Err(format!("{own} cycles were late by the library's own computation").into());
     }
     Ok(())
 }
