@@ -398,6 +398,11 @@ struct FingerStatus {
      1: the servo thread runs on the configured core, or none is configured. 0: it does not.
      */
     int OnCore;
+    /*
+     The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where
+     its tendons carry no more in this pose, so near straight.
+     */
+    double StiffnessScale;
 };
 
 /*
@@ -503,6 +508,74 @@ struct FingerTip {
      Measured tendon tensions, N.
      */
     double Tensions[4];
+};
+
+/*
+ One cycle of a finger, as the black box keeps it. Set Size = sizeof (struct
+ FingerRecord) before the call: later versions add members at the end.
+ */
+struct FingerRecord {
+    /*
+     In: bytes of room, sizeof *Record. Out: bytes that were filled, never more.
+     */
+    unsigned int Size;
+    /*
+     As FingerStatus.State, at the end of the cycle.
+     */
+    int State;
+    /*
+     The cycle, counted from OpenHand; the first is 1.
+     */
+    unsigned long Cycle;
+    /*
+     The first and the last cycle that are kept now: without a gap between them.
+     */
+    unsigned long Oldest;
+    /*
+     See Oldest.
+     */
+    unsigned long Newest;
+    /*
+     When the cycle began, s on the clock CLOCK_MONOTONIC.
+     */
+    double Time;
+    /*
+     1: the board's reply came. 0: it was lost.
+     */
+    int Answered;
+    /*
+     Status bits of the newest reply (docs/board-protocol.md).
+     */
+    int StatusBits;
+    /*
+     1: the controller ran, and found what follows. 0: the finger was faulted before, or
+     the simulated one waited; what follows is 0.
+     */
+    int Computed;
+    /*
+     1: a set point is in force, and stands in PosSent. 0: none is, and there are zeros.
+     */
+    int Follows;
+    /*
+     Measured joint angles, rad.
+     */
+    double Pos[3];
+    /*
+     The joint angles that the finger is pulled to, rad.
+     */
+    double PosSent[3];
+    /*
+     Measured tendon tensions, N.
+     */
+    double Tension[4];
+    /*
+     Commanded tendon tensions, N.
+     */
+    double TensionSent[4];
+    /*
+     Commanded motor torques, N cm. They leave for the board in the next cycle.
+     */
+    double Torque[4];
 };
 
 /*
@@ -923,6 +996,10 @@ int SendDamping(int i,
  base, turn_degrees, encoder, motor.sign, motor.torque_limit, motor.torque_constant,
  stiffness.initial and simulation. controller.law counts from the next SendPos on.
 
+ A configured stiffness.bound was found for one controller. Under another
+ controller.scheme it counts only if it is less than the default bound, or if Keys
+ names it too.
+
  Returns 0, or -1 with
    EFAULT   Keys is null
    ENODEV   no hand is open
@@ -962,6 +1039,40 @@ int AdjustFinger(int i,
  Threads: any.
  */
 int PushFinger(int i, const double *Force);
+
+/*
+ GetRecord - one cycle of the last two seconds of a finger
+
+     int GetRecord(int i, unsigned long Cycle, struct FingerRecord *Record);
+
+   i        finger, 1 to 3
+   Cycle    which one, Record->Oldest to Record->Newest of a call before; 0: the newest
+   Record   Record->Size is set by the caller, all else is filled in. Written only if the
+            call returns 0
+
+ Tells in numbers what WriteBlackBox writes into a file, and less: the file can be
+ computed again. What is kept moves on with every cycle; of a faulted finger it stays as
+ it was at the fault.
+
+ Returns 0, or -1 with
+   EFAULT   Record is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
+   ENOENT   the cycle is not kept any more, or has not been yet
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo.
+
+     struct FingerRecord Record;
+     unsigned long Cycle;
+     Record.Size = sizeof Record;
+     if (GetRecord(1, 0, &Record) == 0)
+         for (Cycle = Record.Oldest; GetRecord(1, Cycle, &Record) == 0; Cycle++)
+             printf("%f %f\n", Record.Time, Record.Tension[0]);
+ */
+int GetRecord(int i,
+              unsigned long Cycle,
+              struct FingerRecord *Record);
 
 /*
  WriteBlackBox - write the last seconds of a finger into a file
@@ -1123,11 +1234,13 @@ int StopHand(void);
  Fingers that share the port recover with it. A finger that is not faulted goes on as it
  is. What made the finger fault must be mended before: GetFault, FaultText.
 
- Waits until the finger holds its pose or faults again: up to some seconds.
+ Waits until the finger holds its pose or faults again: up to some seconds. Other calls
+ go on meanwhile. CloseHand too, and this call is refused then.
 
  Returns 0, or -1 with
    EIO      the finger faults again, or its board is another one than at OpenHand or has
-            lost its zero; HandError says which
+            lost its zero, or its servo thread has failed (FAULT_SERVO_PANIC), which only
+            CloseHand and OpenHand mend; HandError says which
    EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
    ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and
             finger.reconnect is false

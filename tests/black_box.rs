@@ -7,9 +7,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
 use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
-use sun2xp::control::calibration::Progress;
+use sun2xp::control::calibration::{Progress, Task};
 use sun2xp::finger::{CycleRecord, Recording, RecordingError};
-use sun2xp::hand::Hand;
+use sun2xp::hand::{Calibrating, Hand, Standing};
 use sun2xp::model::configuration::{Configuration, Scheme};
 use sun2xp::realtime::Priority;
 
@@ -138,6 +138,39 @@ fn two_seconds_are_kept_and_those_before_a_fault_stay() {
     let other = hand.recording(3).expect("a recording");
     assert!(other.cycles.last().expect("cycles").cycle > after.cycles.last().expect("cycles").cycle + 1000);
     assert_eq!(other.replay().expect("replayable").different, 0);
+}
+
+#[test]
+fn of_adjustments_that_are_refused_or_overtaken_nothing_is_kept() {
+    let _turn = turn();
+    let (board, hand) = own_board(Scheme::Figure10, None);
+    let kept = |finger| hand.recording(finger).expect("a recording").origin.controllers.len();
+    // Outside of what was sent; and on a finger that has faulted.
+    for _ in 0..10 {
+        let error = hand.adjust(1, "joints.minimum_degrees = [30, 60, 90]").expect_err("refused");
+        assert_eq!(error.errno(), libc::ERANGE, "{error}");
+    }
+    assert_eq!(kept(1), 1);
+    board.with_finger(1, |finger| finger.set_faults(Status::EMERGENCY_STOP)).expect("finger 1");
+    wait_until("faulted", || hand.position(1).is_err());
+    for _ in 0..10 {
+        assert_eq!(hand.adjust(1, "tendon.minimum = 6").expect_err("refused").errno(), libc::EIO);
+        assert_eq!(Calibrating::begin(&hand, 1, Task::Zero).expect_err("refused").errno(), libc::EIO);
+    }
+    assert_eq!(kept(1), 1);
+    // One that is being calibrated computes with none of them; and a second calibration is refused.
+    let mut calibrating = Calibrating::begin(&hand, 2, Task::Zero).expect("begun");
+    for step in 0..20 {
+        hand.adjust(2, &format!("tendon.minimum = {}", 5 + step % 2)).expect("adjusted");
+        assert_eq!(Calibrating::begin(&hand, 2, Task::Zero).expect_err("refused").errno(), libc::EBUSY);
+        cycles(&hand, 5);
+    }
+    // Before it, its own, the newest and the one it overtook.
+    assert!(kept(2) <= 4, "{}", kept(2));
+    wait_until("calibrated", || matches!(calibrating.poll(&hand), Ok(Standing::Done(_))));
+    hand.send_position(2, [0.1, 0.5, 1.0]).expect("sent");
+    cycles(&hand, 50);
+    assert_eq!(hand.recording(2).expect("a recording").replay().expect("replayable").different, 0);
 }
 
 #[test]

@@ -65,7 +65,7 @@ fn handshake_agrees_on_terms_and_tells_whole_counts() {
     assert_eq!((identity.version, identity.addresses, identity.gauge_bits), (1, 1 << 3, 12));
     assert_eq!(identity.counts_per_revolution, 2000);
     assert!(configured.encoders[0].abs_diff(1_000_000) < 20_000 && configured.encoders[3].abs_diff(70_000) < 20_000);
-    assert_eq!(configured.terms.watchdog_ms, 20);
+    assert_eq!(configured.terms.watchdog_ms, 18);
     // The limits of the configuration, in the board's unit, to half a unit.
     for limit in configured.terms.torque_limits {
         assert!((identity.torque(limit as i16) - 4.75).abs() <= 0.5 * identity.torque(1));
@@ -112,8 +112,8 @@ fn silence_trips_the_watchdog_after_its_time_and_only_a_configure_leads_back() {
     for sequence in 0..100 {
         cycle(&mut link, sequence, pull(3000));
     }
-    // 19 more ms, 20 since the last command.
-    let almost = in_time(&mut link, 19);
+    // 17 more ms, 18 since the last command.
+    let almost = in_time(&mut link, 17);
     link.transport().advance_to(almost);
     assert!(link.transport().board().finger(1).unwrap().enabled());
     link.transport().advance_to(almost + MS);
@@ -405,7 +405,7 @@ fn handshake_names_what_is_wrong() {
             identity.shortest_watchdog_ms = 50;
         }
     }));
-    assert!(matches!(error, LinkError::Terms(TermsError::Watchdog { shortest: 50, wanted: 20 })), "{error}");
+    assert!(matches!(error, LinkError::Terms(TermsError::Watchdog { shortest: 50, wanted: 18 })), "{error}");
 
     let (error, _) = failure(good_but(|message| {
         if let Frame::Identity(identity) = &mut message.frame {

@@ -17,21 +17,26 @@ fn without_an_attempt_nothing_is_had() {
     let _turn = Bench::new();
     let mut configuration = Configuration::default();
     (configuration.hand.real_time, configuration.hand.rate) = (RealTime::Ignore, 500.0);
-    let status = Hand::open(configuration).expect("the simulated hand").status(1).expect("status");
+    let hand = Hand::open(configuration).expect("the simulated hand");
+    assert_eq!(hand.fault(1).expect("told").warning, None, "nothing was refused");
+    let status = hand.status(1).expect("status");
     assert_eq!((status.realtime, status.memory_locked, status.on_core), (false, false, true));
 }
 
 const CAP_IPC_LOCK: libc::c_ulong = 14;
 const CAP_SYS_NICE: libc::c_ulong = 23;
 
+type Right = (libc::__rlimit_resource_t, libc::c_ulong);
+
 /// Runs `opens.c`, which opens and closes the hand, without a right: exit status, standard output, standard error.
-fn opened_without(
-    right: (libc::__rlimit_resource_t, libc::c_ulong),
-    configuration: &str,
-) -> (Option<i32>, String, String) {
+fn opened_without(right: Right, configuration: &str) -> (Option<i32>, String, String) {
+    run_without(right, configuration, "opens.c")
+}
+
+fn run_without(right: Right, configuration: &str, program: &str) -> (Option<i32>, String, String) {
     let bench = Bench::new();
     fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
-    let mut command = Command::new(bench.build(c_compilers()[0], STRICT, &["opens.c"]));
+    let mut command = Command::new(bench.build(c_compilers()[0], STRICT, &[program]));
     let give_up = move || {
         let (limit, capability) = right;
         let nothing = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
@@ -60,6 +65,13 @@ fn a_planner_without_memlock_has_its_hand_and_is_told() {
     let (status, told, printed) = opened_without(right, "[hand]\nrate = 500\nreal_time = \"ignore\"\n");
     assert_eq!(status, Some(0), "{told}{printed}");
     assert!(!printed.contains("locked"), "{printed}");
+}
+
+#[test]
+fn a_planner_without_rtprio_is_warned_by_get_fault() {
+    let (status, told, printed) =
+        run_without((libc::RLIMIT_RTPRIO, CAP_SYS_NICE), "[hand]\nrate = 500\n", "realtime_refused.c");
+    assert_eq!(status, Some(0), "{told}{printed}");
 }
 
 #[test]

@@ -37,6 +37,20 @@ fn a_hand_that_meets_its_deadlines() {
 }
 
 #[test]
+fn without_a_file_it_is_the_one_that_open_hand_would_take() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("sun2xp.toml"), "[hand]\nrate = 640\n").expect("written");
+    std::fs::write(folder.path().join("costs.toml"), COSTS).expect("written");
+    let output = Command::new(env!("CARGO_BIN_EXE_sun2xp"))
+        .args(["schedule", "--costs", "costs.toml"])
+        .current_dir(folder.path())
+        .env_remove("SUN2XP_CONFIG")
+        .output()
+        .expect("the tool runs");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("640 Hz:"), "{output:?}");
+}
+
+#[test]
 fn a_hand_that_may_miss_one_and_costs_that_are_none() {
     let output = schedule("[finger]\ncore = 0\n", &COSTS.replace("15", "150"));
     assert_eq!(output.status.code(), Some(1));

@@ -5,7 +5,9 @@ use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use sun2xp::board::protocol::Status;
 use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, Terms, Transport};
-use sun2xp::finger::{BlackBox, ControllerSource, Fault, FaultKind, FingerServo, Mailbox, ServedPort, Servo, Stage};
+use sun2xp::finger::{
+    BlackBox, Borrower, ControllerSource, Fault, FaultKind, FingerServo, Mailbox, ServedPort, Servo, Stage, lending,
+};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleTiming, Schedule};
 
@@ -57,7 +59,9 @@ impl Transport for Defective {
     }
 }
 
-fn servo(panics: u32) -> (Defective, Servo<Defective, Defective>, Mailbox, (Consumer<CycleTiming>, BlackBox)) {
+type Uncollected = (Consumer<CycleTiming>, BlackBox, Borrower<Defective>);
+
+fn servo(panics: u32) -> (Defective, Servo<Defective, Defective>, Mailbox, Uncollected) {
     let configuration = Configuration::default();
     let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
     let board = SimulatedBoard::new(&configuration, &[0]).expect("a board");
@@ -71,16 +75,17 @@ fn servo(panics: u32) -> (Defective, Servo<Defective, Defective>, Mailbox, (Cons
     let stiffness = finger.initial_stiffness();
     let (finger, mailbox) =
         FingerServo::new(&configuration, 0, stiffness, &identity, &configured, producer, recorder).expect("a finger");
-    let ports = vec![ServedPort::new(link, vec![finger])];
+    let (lender, borrower) = lending();
+    let ports = vec![ServedPort::new(link, vec![finger]).lent_through(lender)];
     let servo = Servo::new(here.clone(), Schedule::new(FIRST, PERIOD), ports);
-    (here, servo, mailbox, (timings, black_box))
+    (here, servo, mailbox, (timings, black_box, borrower))
 }
 
 #[test]
 fn a_panic_in_a_cycle_stops_the_board_and_faults_the_finger() {
     // Once; and again whatever is read, also while the board is told to stop.
     for panics in [1, u32::MAX] {
-        let (here, mut servo, mailbox, _uncollected) = servo(panics);
+        let (here, mut servo, mailbox, (_timings, _black_box, mut borrower)) = servo(panics);
         while Clock::now(&here) + 2 * PERIOD < DEFECTIVE {
             servo.cycle();
         }
@@ -93,6 +98,7 @@ fn a_panic_in_a_cycle_stops_the_board_and_faults_the_finger() {
         let stage = mailbox.report().stage;
         assert!(matches!(stage, Stage::Faulted(Fault { kind: FaultKind::ServoPanic, .. })), "{stage:?}");
         assert!(mailbox.send(|_| {}).is_err(), "calls are refused");
+        assert!(borrower.lent.is_abandoned() && borrower.lent.pop().is_err(), "whoever mends ports knows of it");
         let mut cable = here.cable.borrow_mut();
         let finger = &mut cable.board().fingers()[0];
         let status = finger.status();

@@ -1,11 +1,17 @@
-//! The bound of Kx: what the search finds, that it can fail, and that the tool stores it.
+//! The bound of Kx: what the search finds, that it can fail, that the default is right for every controller and rate, and that the
+//! tool stores it.
 
+use nalgebra::{Matrix3, Vector3};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::process::Command;
 use sun2xp::hand;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
-use sun2xp::stability::{Limit, Search};
+use sun2xp::stability::{Limit, OneCycleMap, Rest, Search};
 
 const SEARCH: Search = Search { samples: 80, seed: 5 };
+
+const SCHEMES: [Scheme; 4] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback];
 
 fn finger(scheme: Scheme) -> ConfiguredFinger {
     let mut finger = ConfiguredFinger::default();
@@ -15,13 +21,80 @@ fn finger(scheme: Scheme) -> ConfiguredFinger {
 
 #[test]
 fn the_default_finger_carries_what_it_is_said_to() {
-    for scheme in [Scheme::Figure10, Scheme::StateFeedback] {
+    for scheme in SCHEMES {
         for (rate, least) in [(500.0, 5.0), (1000.0, 6.0)] {
             let found = SEARCH.bound(&finger(scheme), rate).unwrap();
             assert!(found.stiffness >= least, "{scheme:?} at {rate} Hz: {found:?}");
             assert!(found.least_scale >= 0.5 && found.samples > 40);
         }
     }
+}
+
+/// Rates from 500 to 5000 Hz, most of them no divisor of 10 kHz and far from those that gains were found for.
+const RATES: usize = 40;
+
+/// At each rate, beside the pose that carries least: tips 3 cm and more from the axis of joint 0, which holds nothing.
+const POSES: usize = 4;
+
+/// At the Kx that a finger begins with and at its default bound.
+fn stable_at_every_rate(scheme: Scheme) {
+    let finger = finger(scheme);
+    let links = finger.links();
+    let (low, high) = finger.joint_limits();
+    let mut random = Pcg64::seed_from_u64(1990);
+    let mut part = || f64::from(random.next_u32()) / 4294967296.0;
+    for step in 0..RATES {
+        let rate = 500.0 * 10f64.powf((step as f64 + part()) / RATES as f64);
+        let map = OneCycleMap::new(&finger, rate).unwrap();
+        let stretched = Vector3::new(-47.0, -4.0, 6.0).map(f64::to_radians);
+        let anywhere = std::iter::repeat_with(|| low.zip_map(&high, |low, high| low + (high - low) * part()));
+        let poses: Vec<_> = anywhere.filter(|joints| links.reach(joints).abs() >= 3.0).take(POSES).collect();
+        for joints in poses.into_iter().chain([stretched]) {
+            for stiffness in [3.0, finger.stiffness_bound(rate)] {
+                let deflection = Vector3::from_fn(|_, _| 0.01 * (part() + 0.5));
+                let rest = Rest { joints, deflection, stiffness: Matrix3::identity() * stiffness };
+                let largest = map.largest_eigenvalue(&rest);
+                assert!(
+                    largest.is_some_and(|modulus| modulus < 1.0),
+                    "{scheme:?} at {rate:.1} Hz, {stiffness} N/cm, {:.1?} degrees: {largest:?}",
+                    joints.map(f64::to_degrees).as_slice()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn figure_9_is_stable_at_every_rate() {
+    stable_at_every_rate(Scheme::Figure9);
+}
+
+#[test]
+fn figure_10_is_stable_at_every_rate() {
+    stable_at_every_rate(Scheme::Figure10);
+}
+
+#[test]
+fn figure_11_is_stable_at_every_rate() {
+    stable_at_every_rate(Scheme::Figure11);
+}
+
+#[test]
+fn state_feedback_is_stable_at_every_rate() {
+    stable_at_every_rate(Scheme::StateFeedback);
+}
+
+#[test]
+fn the_map_is_that_of_the_rate_that_was_asked_for() {
+    // Not of the next lower one that the usual plant step divides.
+    let rest = Rest {
+        joints: Vector3::new(0.1, 0.5, 1.0),
+        deflection: Vector3::new(0.01, 0.01, 0.01),
+        stiffness: Matrix3::identity() * 3.0,
+    };
+    let largest = |rate| OneCycleMap::new(&finger(Scheme::Figure10), rate).unwrap().largest_eigenvalue(&rest).unwrap();
+    let [lower, asked, higher] = [10_000.0 / 14.0, 740.0, 10_000.0 / 13.0].map(largest);
+    assert!((asked - lower).abs() > 1e-6 && (asked - higher).abs() > 1e-6, "{lower} {asked} {higher}");
 }
 
 #[test]

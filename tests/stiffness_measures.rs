@@ -19,9 +19,10 @@ mod stability;
 mod statics;
 
 use cases::{Case, Friction};
-use closed_loop::{ClosedLoop, Senses};
+use closed_loop::{ClosedLoop, Held, Senses};
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 use stability::Sample;
+use sun2xp::control::Controller;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
 fn case(scheme: Scheme) -> Case {
@@ -97,6 +98,22 @@ fn a_known_decay_shows_its_slowest_mode() {
     assert!(fits::growth(&vec![DVector::zeros(3); 100]).is_nan());
 }
 
+/// Two motions of which one meets something that the other does not have no recurrence, and last digits have any.
+#[test]
+fn a_decay_that_is_no_linear_one_does_not_grow() {
+    let mut bent = decay(&[(0.97, 0.2), (0.9, 0.7)], 200);
+    for (number, sample) in bent.iter_mut().enumerate() {
+        let kinked = 1.0 + 0.3 * f64::from(u8::from(number % 7 < 3));
+        *sample *= kinked;
+        sample[number % 10] *= 1.5;
+    }
+    let found = fits::growth(&bent);
+    assert!(found > 0.9 && found < 1.0, "{found}");
+    // The same, growing.
+    bent.reverse();
+    assert!(fits::growth(&bent) > 1.0);
+}
+
 #[test]
 fn what_is_not_a_number_is_the_worst() {
     assert_eq!(parallel::worst([1.0, f64::NAN, 2.0]), f64::INFINITY);
@@ -116,12 +133,61 @@ fn a_controller_blind_to_tendon_stretch_is_found_out() {
             let mut blind = finger.clone();
             blind.tendon.stiffness = [1e9; 4];
             let error = |belief: &ConfiguredFinger| {
-                let (forces, deflections) = statics::pushed_about(&case, &finger, belief, &pose, &kx, Senses::Exact);
-                fits::spring_error(&forces, &deflections, &kx)
+                let held = Held { case: &case, finger: &finger, belief, pose: &pose, kx: &kx, senses: Senses::Exact };
+                statics::fidelity(&held).error
             };
             assert!(error(&finger) < 2e-3, "{}", error(&finger));
             assert!((least..most).contains(&error(&blind)), "{}", error(&blind));
         }
+    }
+}
+
+/// What the servo gives less than it was told to is reported, and told apart from being another spring than that.
+#[test]
+fn a_pose_that_carries_less_shows_its_scale_and_no_error() {
+    let case = case(Scheme::StateFeedback);
+    let pose = Vector3::new(0.02, -0.03, 0.76);
+    let finger = case.finger(&pose, Friction::None);
+    let kx = Matrix3::identity() * 7.5;
+    let held = Held { case: &case, finger: &finger, belief: &finger, pose: &pose, kx: &kx, senses: Senses::Exact };
+    let found = statics::fidelity(&held);
+    assert!(found.scale < 0.97 && found.error < 0.01, "{} of {}", found.error, found.scale);
+}
+
+/// A motor model that is believed 20 % wrong is no matter between tension and torque. In (RM)^-T, where M is geometry, it is: the joints
+/// are measured wrong by as much, and with them where the tip is held.
+#[test]
+fn a_motor_model_in_the_kinematics_is_found_out() {
+    let case = case(Scheme::Figure11);
+    for pose in case.poses() {
+        let kx = Matrix3::identity() * 3.0;
+        let finger = case.finger(&pose, Friction::None);
+        let mut off = finger.clone();
+        off.simulation.motor_constant_ratio = [0.8; 4];
+        let mut in_kinematics = off.clone();
+        in_kinematics.geometry.motor_radius = finger.geometry.motor_radius.map(|radius| radius / 0.8);
+        let displaced = |finger: &ConfiguredFinger, belief: &ConfiguredFinger| {
+            let held = Held { case: &case, finger, belief, pose: &pose, kx: &kx, senses: Senses::Exact };
+            let mut run = ClosedLoop::new(&held);
+            run.run(2.0);
+            (run.plant.tip() - run.anchor()).norm()
+        };
+        let (right, wrong) = (displaced(&off, &finger), displaced(&off, &in_kinematics));
+        assert!(right < 0.01 && (wrong.is_nan() || wrong > 0.3), "{right} cm, in the kinematics {wrong} cm");
+    }
+}
+
+/// R as it is printed has a sign wrong and no inverse.
+#[test]
+fn the_printed_r_is_found_out() {
+    let case = case(Scheme::StateFeedback);
+    let mut printed = case.finger(&Vector3::new(0.0, 0.5, 1.0), Friction::None);
+    assert_eq!(printed.geometry.r[1][3], -1.09);
+    printed.geometry.r[1][3] = 1.09;
+    for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback] {
+        printed.controller.scheme = scheme;
+        let refused = Controller::new(&printed, case.rate).expect_err("a singular R");
+        assert_eq!(refused.key, "geometry.r", "{scheme:?}: {}", refused.reason);
     }
 }
 
@@ -150,7 +216,9 @@ fn the_largest_eigenvalue_foretells_how_a_finger_comes_to_rest() {
         let load = Vector3::new(0.05, -0.1, 0.1);
         let growth =
             stability::growth(&case, &finger, &Sample { pose, kx, load, wall: None }).expect("a stable finger");
-        let mut run = ClosedLoop::new(&case, &finger, &finger, &pose, &kx, Senses::Exact);
+        let belief = &finger;
+        let held = Held { case: &case, finger: &finger, belief, pose: &pose, kx: &kx, senses: Senses::Exact };
+        let mut run = ClosedLoop::new(&held);
         run.push(load * 1.01);
         run.run(3.0);
         let rest = run.plant.tip();

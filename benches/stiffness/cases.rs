@@ -160,3 +160,10 @@ pub fn direction(random: &mut Pcg64) -> Vector3<f64> {
 pub fn uniform(random: &mut Pcg64, low: f64, high: f64) -> f64 {
     low + (high - low) * f64::from(random.next_u32()) / 4294967296.0
 }
+
+/// Makes the true tendons so many times as stiff.
+pub fn stiffen(finger: &mut ConfiguredFinger, ratio: &[f64; 4]) {
+    for (stiffness, ratio) in finger.simulation.tendon_stiffness.iter_mut().zip(ratio) {
+        *stiffness *= ratio;
+    }
+}

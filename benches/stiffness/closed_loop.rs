@@ -31,6 +31,16 @@ pub struct ClosedLoop {
     random: Pcg64,
 }
 
+/// A finger at rest, held where it is by a spring, and a controller that may believe of it what is not so.
+pub struct Held<'a> {
+    pub case: &'a Case,
+    pub finger: &'a ConfiguredFinger,
+    pub belief: &'a ConfiguredFinger,
+    pub pose: &'a Vector3<f64>,
+    pub kx: &'a Matrix3<f64>,
+    pub senses: Senses,
+}
+
 /// How the controller sees the finger.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Senses {
@@ -41,21 +51,15 @@ pub enum Senses {
 }
 
 impl ClosedLoop {
-    /// A finger at rest at `pose`, held there by a spring Kx for 0.3 s.
+    /// A finger in counts whose controller knows it.
     pub fn at(case: &Case, pose: &Vector3<f64>, friction: Friction, kx: &Matrix3<f64>) -> Self {
-        let finger = case.finger(pose, friction);
-        Self::new(case, &finger, &finger, pose, kx, Senses::Counts)
+        let finger = &case.finger(pose, friction);
+        Self::new(&Held { case, finger, belief: finger, pose, kx, senses: Senses::Counts })
     }
 
-    /// A finger whose controller believes something of it that may not be so.
-    pub fn new(
-        case: &Case,
-        finger: &ConfiguredFinger,
-        belief: &ConfiguredFinger,
-        pose: &Vector3<f64>,
-        kx: &Matrix3<f64>,
-        senses: Senses,
-    ) -> Self {
+    /// The finger after it was held for 0.3 s.
+    pub fn new(held: &Held) -> Self {
+        let &Held { case, finger, belief, pose, kx, senses } = held;
         let mut plant = Plant::new(finger, Vector3::zeros()).expect("the default finger");
         let mut sensors = Sensors::new(finger);
         let controller = Controller::new(belief, case.rate).expect("the default controller");

@@ -1,7 +1,6 @@
 //! A finger whose tendons are not as believed, identified as it will be before it is used.
 
-use crate::cases::{Case, Friction};
-use crate::robustness;
+use crate::cases::{Case, Friction, stiffen};
 use nalgebra::Vector3;
 use sun2xp::control::calibration::{Calibration, Obstacle, Sample, Task, Verdict};
 use sun2xp::control::{Activity, Command, Controller, Feedback, Report};
@@ -14,7 +13,7 @@ pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obsta
     let pose = Vector3::from(ConfiguredFinger::default().simulation.start_degrees.map(f64::to_radians));
     let mut belief = case.finger(&pose, Friction::Default);
     let mut truth = belief.clone();
-    robustness::stiffen(&mut truth, ratio);
+    stiffen(&mut truth, ratio);
     let mut plant = Plant::new(&truth, Vector3::zeros()).expect("the default finger");
     let mut sensors = Sensors::new(&truth);
     let mut read = move |plant: &Plant| {

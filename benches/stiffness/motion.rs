@@ -1,7 +1,7 @@
 //! Rows that move the spring's anchor and look at how the tip follows.
 
 use crate::cases::{Case, Friction};
-use crate::closed_loop::{ClosedLoop, Senses};
+use crate::closed_loop::{ClosedLoop, Held, Senses};
 use crate::contact::residual;
 use crate::parallel::{each, least, worst};
 use nalgebra::{Matrix3, Vector3, Vector4};
@@ -45,7 +45,8 @@ pub fn steps_of(case: &Case, stiffness: f64, loss: f64, differ: impl Fn(&mut Con
         let belief = case.finger(pose, Friction::Default);
         let mut finger = belief.clone();
         differ(&mut finger);
-        let mut run = ClosedLoop::new(case, &finger, &belief, pose, &kx, Senses::Counts);
+        let (finger, belief) = (&finger, &belief);
+        let mut run = ClosedLoop::new(&Held { case, finger, belief, pose, kx: &kx, senses: Senses::Counts });
         run.lose(loss);
         step(&mut run, direction)
     });

@@ -1,7 +1,8 @@
 //! Step responses, and commanded against apparent stiffness, as SVG.
 
 use crate::cases::{Case, Friction};
-use crate::closed_loop::Senses;
+use crate::closed_loop::{Held, Senses};
+use crate::statics::Pushed;
 use crate::{fits, motion, statics};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use plotters::prelude::*;
@@ -54,8 +55,9 @@ fn ellipses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
     let panels = area.split_evenly((cases.len(), POSES));
     let subjects = cases.iter().flat_map(|case| case.poses().into_iter().map(move |pose| (case, pose)));
     for (panel, (case, pose)) in panels.iter().zip(subjects) {
-        let finger = case.finger(&pose, Friction::Default);
-        let (forces, deflections) = statics::pushed_about(case, &finger, &finger, &pose, &kx, Senses::Counts);
+        let finger = &case.finger(&pose, Friction::Default);
+        let held = Held { case, finger, belief: finger, pose: &pose, kx: &kx, senses: Senses::Counts };
+        let Pushed { forces, deflections, .. } = statics::pushed_about(&held);
         let found = fits::apparent_stiffness(&forces, &deflections);
         let degrees = pose.map(f64::to_degrees);
         let caption = format!("{} ({:.0}, {:.0}, {:.0})", case.controller(), degrees[0], degrees[1], degrees[2]);

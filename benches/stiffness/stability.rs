@@ -1,7 +1,7 @@
 //! Rows about the exact one-cycle map: frictionless, exactly measured, with all that the controller remembers.
 
 use crate::cases::{self, Case, Friction, USUAL};
-use crate::closed_loop::{ClosedLoop, Senses};
+use crate::closed_loop::{ClosedLoop, Held, Senses};
 use crate::contact::{INTO, WALLS, wall_off};
 use crate::fits;
 use crate::parallel::{each, worst};
@@ -96,7 +96,9 @@ pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> O
     const WATCHED: f64 = 1.5;
     /// Between two samples, s: apart enough that the eigenvalues left are, too.
     const STRIDE: f64 = 0.005;
-    let mut finger = ClosedLoop::new(case, description, description, &sample.pose, &sample.kx, Senses::Exact);
+    let Sample { pose, kx, .. } = sample;
+    let held = Held { case, finger: description, belief: description, pose, kx, senses: Senses::Exact };
+    let mut finger = ClosedLoop::new(&held);
     finger.push(sample.load);
     if let Some((surface, anchor)) = &sample.wall {
         finger.plant.set_surface(Some(*surface));

@@ -1,47 +1,73 @@
 //! Rows that push slowly and look at how far the tip gives way.
 
 use crate::cases::{Case, Friction, axes};
-use crate::closed_loop::{ClosedLoop, Senses};
+use crate::closed_loop::{ClosedLoop, Held, Senses};
 use crate::fits;
-use crate::parallel::{each, worst};
+use crate::parallel::{each, least, worst};
 use nalgebra::{Matrix3, Vector3};
-use sun2xp::model::configuration::ConfiguredFinger;
 
-/// The stiffness that the tip shows, about 1 mm, against Kx in the worst direction; worst over poses and springs. No friction.
-pub fn apparent_stiffness(case: &Case, senses: Senses) -> f64 {
-    worst(each(&case.poses_and_springs(), |_, (pose, kx)| {
-        let finger = case.finger(pose, Friction::None);
-        let (forces, deflections) = pushed_about(case, &finger, &finger, pose, kx, senses);
-        fits::spring_error(&forces, &deflections, kx)
+/// How well a tip is its spring.
+#[derive(Clone, Copy)]
+pub struct Fidelity {
+    /// Of the apparent stiffness, in the worst direction, against what the controller reports that it gives: a part of Kx.
+    pub error: f64,
+    /// That part: less than 1 where the tendons of the pose carry no more.
+    pub scale: f64,
+}
+
+impl Fidelity {
+    pub fn worst(of: &[Self]) -> Self {
+        Self { error: worst(of.iter().map(|one| one.error)), scale: least(of.iter().map(|one| one.scale)) }
+    }
+}
+
+/// The stiffness that the tip shows, about 1 mm; worst over poses and springs. No friction.
+pub fn apparent_stiffness(case: &Case, senses: Senses) -> Fidelity {
+    Fidelity::worst(&each(&case.poses_and_springs(), |_, (pose, kx)| {
+        let finger = &case.finger(pose, Friction::None);
+        fidelity(&Held { case, finger, belief: finger, pose, kx, senses })
     }))
 }
 
-/// Pushes that deflect Kx by 1 mm along every axis both ways, N, and how far the true tip goes from the middle of each pair, cm.
+/// The stiffness that one tip shows, about 1 mm.
+pub fn fidelity(held: &Held) -> Fidelity {
+    let Pushed { forces, deflections, scale } = pushed_about(held);
+    Fidelity { error: fits::spring_error(&forces, &deflections, &(held.kx * scale)), scale }
+}
+
+/// What pushes came to.
+pub struct Pushed {
+    /// N.
+    pub forces: Vec<Vector3<f64>>,
+    /// How far the true tip went from the middle of each pair of pushes, cm.
+    pub deflections: Vec<Vector3<f64>>,
+    /// The part of Kx that was given, as reported.
+    pub scale: f64,
+}
+
+/// Pushes that deflect Kx by 1 mm along every axis both ways.
 ///
 /// Both pushes of a pair meet the same noise, so that most of it leaves their difference; the rest is averaged.
-pub fn pushed_about(
-    case: &Case,
-    finger: &ConfiguredFinger,
-    belief: &ConfiguredFinger,
-    pose: &Vector3<f64>,
-    kx: &Matrix3<f64>,
-    senses: Senses,
-) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
+pub fn pushed_about(held: &Held) -> Pushed {
     const DEFLECTION: f64 = 0.1;
-    let (settled, averaged) = if senses == Senses::Exact { (2.5, 0.5) } else { (1.0, 3.0) };
-    let tip = |force: Vector3<f64>| {
-        let mut run = ClosedLoop::new(case, finger, belief, pose, kx, senses);
+    let (settled, averaged) = if held.senses == Senses::Exact { (2.5, 0.5) } else { (1.0, 3.0) };
+    let mut scales = 0.0;
+    let mut tip = |force: Vector3<f64>| {
+        let mut run = ClosedLoop::new(held);
         run.push(force);
         run.run(settled);
-        run.mean_tip(averaged)
+        let mean = run.mean_tip(averaged);
+        scales += run.report.stiffness_scale;
+        mean
     };
-    [Vector3::x(), Vector3::y(), Vector3::z()]
+    let (forces, deflections) = [Vector3::x(), Vector3::y(), Vector3::z()]
         .into_iter()
         .map(|axis| {
-            let force = kx * axis * DEFLECTION;
+            let force = held.kx * axis * DEFLECTION;
             (force, (tip(force) - tip(-force)) / 2.0)
         })
-        .unzip()
+        .unzip();
+    Pushed { forces, deflections, scale: scales / 6.0 }
 }
 
 /// Error of the slope of a triangular force loop of +-2 mm in 3 s, friction on.

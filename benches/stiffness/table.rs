@@ -3,6 +3,7 @@
 use crate::cases::{Case, Friction};
 use crate::closed_loop::Senses;
 use crate::motion::Steps;
+use crate::statics::Fidelity;
 use crate::{contact, motion, robustness, stability, statics};
 use std::fmt::Write;
 use std::path::Path;
@@ -27,12 +28,12 @@ static ROWS: [Row; 22] = [
     Row {
         what: "apparent stiffness about 1 mm, worst direction, no friction, quantised and noisy sensors",
         goal: "<= 0.3 %",
-        measure: |case| percent(statics::apparent_stiffness(case, Senses::Counts)),
+        measure: |case| fidelity(statics::apparent_stiffness(case, Senses::Counts)),
     },
     Row {
         what: "the same with exact sensors",
         goal: "",
-        measure: |case| percent(statics::apparent_stiffness(case, Senses::Exact)),
+        measure: |case| fidelity(statics::apparent_stiffness(case, Senses::Exact)),
     },
     Row {
         what: "slope of a 2 mm, 3 s triangular force loop, friction: Kx 3 / bound",
@@ -94,7 +95,9 @@ static ROWS: [Row; 22] = [
         what: "motor constants off by 20 %: error of the stiffness, Kx 3 / bound",
         goal: "no effect",
         measure: |case| {
-            at_both(case, |case, stiffness| robustness::motor_constants(case, stiffness, &robustness::MOTOR_CONSTANTS))
+            fidelity_at_both(case, |case, stiffness| {
+                robustness::motor_constants(case, stiffness, &robustness::MOTOR_CONSTANTS)
+            })
         },
     },
     Row {
@@ -111,14 +114,16 @@ static ROWS: [Row; 22] = [
         what: "tendon stiffness off by 10 %: error of the stiffness, Kx 3 / bound",
         goal: "",
         measure: |case| {
-            at_both(case, |case, stiffness| robustness::tendon_stiffness(case, stiffness, &robustness::TENDONS))
+            fidelity_at_both(case, |case, stiffness| {
+                robustness::tendon_stiffness(case, stiffness, &robustness::TENDONS)
+            })
         },
     },
     Row {
         what: "tendon stiffness off by 10 %, identified: error of what is found; of the stiffness then, Kx 3 / bound",
         goal: "<= 2 %; <= 1 %",
         measure: |case| match robustness::identified_tendons(case, [3.0, case.bound()], &robustness::TENDONS) {
-            Ok((found, [soft, stiff])) => format!("{}; {} / {}", percent(found), percent(soft), percent(stiff)),
+            Ok((found, [soft, stiff])) => format!("{}; {} / {}", percent(found), fidelity(soft), fidelity(stiff)),
             Err(obstacle) => format!("not found: {obstacle}"),
         },
     },
@@ -173,6 +178,16 @@ static ROWS: [Row; 22] = [
 
 fn percent(part: f64) -> String {
     format!("{:.2} %", 100.0 * part)
+}
+
+/// The error of what is reported, and what is, where that is not Kx.
+fn fidelity(found: Fidelity) -> String {
+    let error = percent(found.error);
+    if found.scale < 1.0 { format!("{error} of what is reported, {:.3} Kx at least", found.scale) } else { error }
+}
+
+fn fidelity_at_both(case: &Case, measure: fn(&Case, f64) -> Fidelity) -> String {
+    format!("{} / {}", fidelity(measure(case, 3.0)), fidelity(measure(case, case.bound())))
 }
 
 /// At Kx 3 and at the bound.

@@ -13,6 +13,8 @@ pub struct SimulatedCable {
     now: u64,
     /// From the board to the host.
     line: SimulatedLine,
+    /// From the host to the board.
+    line_to_board: SimulatedLine,
     to_host: VecDeque<u8>,
     plugged: bool,
 }
@@ -20,7 +22,8 @@ pub struct SimulatedCable {
 impl SimulatedCable {
     /// With the clock at 0.
     pub fn new(board: SimulatedBoard) -> Self {
-        Self { board, now: 0, line: SimulatedLine::new(), to_host: VecDeque::new(), plugged: true }
+        let [line, line_to_board] = [(); 2].map(|()| SimulatedLine::new());
+        Self { board, now: 0, line, line_to_board, to_host: VecDeque::new(), plugged: true }
     }
 
     /// What is at the other end.
@@ -34,9 +37,15 @@ impl SimulatedCable {
         self.line.inject(fault, probability, until, seed);
     }
 
-    /// The line is good again.
+    /// The same with frames to the board.
+    pub fn inject_to_board(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
+        self.line_to_board.inject(fault, probability, until, seed);
+    }
+
+    /// The line is good again, both ways.
     pub fn clear(&mut self) {
         self.line.clear();
+        self.line_to_board.clear();
     }
 
     /// Pulls the cable out, or puts it in again: reads and writes meet a port that has vanished, and what was on its way is lost.
@@ -44,12 +53,20 @@ impl SimulatedCable {
         self.plugged = plugged;
         if !plugged {
             self.line.cut();
+            self.line_to_board.cut();
             self.to_host.clear();
         }
     }
 
     /// Lets time pass until `time`, ns.
     pub fn advance_to(&mut self, time: u64) {
+        while let Some(arrival) = self.line_to_board.next_arrival().filter(|&arrival| arrival <= time) {
+            self.now = self.now.max(arrival);
+            let Self { board, now, line, line_to_board, to_host, .. } = self;
+            line_to_board.arrive(*now, &mut |bytes| {
+                board.receive(*now, bytes, &mut |answer| line.carry(*now, answer, &mut |frame| to_host.extend(frame)));
+            });
+        }
         self.now = self.now.max(time);
         self.board.advance(self.now);
         let to_host = &mut self.to_host;
@@ -62,8 +79,10 @@ impl Transport for SimulatedCable {
         if !self.plugged {
             return Err(PortError::Vanished);
         }
-        let Self { board, now, line, to_host, .. } = self;
-        board.receive(*now, bytes, &mut |answer| line.carry(*now, answer, &mut |frame| to_host.extend(frame)));
+        let Self { board, now, line, line_to_board, to_host, .. } = self;
+        line_to_board.carry_bytes(*now, bytes, &mut |bytes| {
+            board.receive(*now, bytes, &mut |answer| line.carry(*now, answer, &mut |frame| to_host.extend(frame)));
+        });
         Ok(bytes.len())
     }
 
@@ -72,9 +91,13 @@ impl Transport for SimulatedCable {
         if !self.plugged {
             return Err(PortError::Vanished);
         }
-        if self.to_host.is_empty() {
-            let arrival = self.line.next_arrival().unwrap_or(deadline);
-            self.advance_to(arrival.min(deadline));
+        while self.to_host.is_empty() {
+            let arrivals = [self.line.next_arrival(), self.line_to_board.next_arrival()];
+            let next = arrivals.into_iter().flatten().fold(deadline, u64::min);
+            self.advance_to(next);
+            if self.now >= deadline {
+                break;
+            }
         }
         let taken = buffer.len().min(self.to_host.len());
         for (place, byte) in buffer.iter_mut().zip(self.to_host.drain(..taken)) {

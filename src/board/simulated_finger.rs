@@ -27,10 +27,7 @@ enum State {
     /// Terms are agreed, motors off.
     Ready,
     /// The motors follow.
-    Enabled {
-        /// When the last Command came, ns.
-        commanded_at: u64,
-    },
+    Enabled,
     /// Until the next Configure.
     Ended {
         /// When *hold* lets go, ns; none: the motors are off.
@@ -45,6 +42,11 @@ pub struct SimulatedFinger {
     plant: Plant,
     sensors: Sensors,
     state: State,
+    /// Where its physics has got to, ns.
+    clock: u64,
+    /// When the last Command that was obeyed came, and when silence or a Stop last ended that, ns; none: not since the last Configure.
+    commanded_at: Option<u64>,
+    ended_at: Option<u64>,
     terms: Configure,
     /// What the motors give, torque units.
     torques: [i16; 4],
@@ -72,6 +74,9 @@ impl SimulatedFinger {
             plant: Plant::new(finger, gravity)?,
             sensors: Sensors::new(finger),
             state: State::Idle,
+            clock: 0,
+            commanded_at: None,
+            ended_at: None,
             terms: Configure::default(),
             torques: [0; 4],
             present: Status::default(),
@@ -96,7 +101,22 @@ impl SimulatedFinger {
 
     /// Whether the motors follow Commands.
     pub fn enabled(&self) -> bool {
-        matches!(self.state, State::Enabled { .. })
+        self.state == State::Enabled
+    }
+
+    /// The board's clock, ns.
+    pub fn clock(&self) -> u64 {
+        self.clock
+    }
+
+    /// When the last Command that was obeyed came, by the board's clock, ns; none: not since the last Configure.
+    pub fn commanded_at(&self) -> Option<u64> {
+        self.commanded_at
+    }
+
+    /// When silence or a Stop led to the end state, by the board's clock, ns; none: not since the last Configure.
+    pub fn ended_at(&self) -> Option<u64> {
+        self.ended_at
     }
 
     /// What the motors are told right now, N cm.
@@ -109,7 +129,7 @@ impl SimulatedFinger {
         let state = match self.state {
             State::Idle => Status::default(),
             State::Ready => Status::CONFIGURED,
-            State::Enabled { .. } => Status::CONFIGURED | Status::ENABLED,
+            State::Enabled => Status::CONFIGURED | Status::ENABLED,
             State::Ended { holds_until: None } => Status::CONFIGURED | Status::ENDED,
             State::Ended { holds_until: Some(_) } => Status::CONFIGURED | Status::ENDED | Status::HOLDING,
         };
@@ -151,9 +171,11 @@ impl SimulatedFinger {
 
     /// One step of the physics, which ends at `now`, ns.
     pub(super) fn step(&mut self, now: u64) {
+        self.clock = now;
         match self.state {
-            State::Enabled { commanded_at } => {
-                if now - commanded_at > u64::from(self.terms.watchdog_ms) * MILLISECOND {
+            State::Enabled => {
+                let silence = now - self.commanded_at.unwrap_or(now);
+                if silence > u64::from(self.terms.watchdog_ms) * MILLISECOND {
                     self.latched |= Status::WATCHDOG_TRIPPED;
                     self.end(now);
                 }
@@ -215,6 +237,7 @@ impl SimulatedFinger {
         self.terms = *terms;
         self.torques = [0; 4];
         self.latched = Status::default();
+        (self.commanded_at, self.ended_at) = (None, None);
         self.state = State::Ready;
         let (encoders, gauges) = self.sensors.read(&self.plant);
         Frame::Configured(Configured { terms: *terms, encoders, gauges, status: self.status() })
@@ -240,13 +263,13 @@ impl SimulatedFinger {
                 return Frame::Refused(Refused { request: 0x3, reason: Reason::NotConfigured, detail: 0 });
             }
             (State::Ended { .. }, _) => {}
-            (State::Ready | State::Enabled { .. }, true) => {
+            (State::Ready | State::Enabled, true) => {
                 self.plant.release_brake();
-                self.state = State::Enabled { commanded_at: now };
+                (self.state, self.commanded_at) = (State::Enabled, Some(now));
                 self.torques = within(command.torques, self.terms.torque_limits);
                 clipped = self.torques != command.torques;
             }
-            (State::Ready | State::Enabled { .. }, false) => {
+            (State::Ready | State::Enabled, false) => {
                 self.state = State::Ready;
                 self.torques = [0; 4];
             }
@@ -270,7 +293,7 @@ impl SimulatedFinger {
 
     pub(super) fn stop(&mut self, now: u64) -> Frame {
         match self.state {
-            State::Enabled { .. } => self.end(now),
+            State::Enabled => self.end(now),
             State::Ready => self.state = State::Ended { holds_until: None },
             // Holding goes on for its time: a Stop sent twice does not prolong it.
             State::Idle | State::Ended { .. } => {}
@@ -289,7 +312,7 @@ impl SimulatedFinger {
                 None
             }
         };
-        self.state = State::Ended { holds_until };
+        (self.state, self.ended_at) = (State::Ended { holds_until }, Some(now));
     }
 }
 

@@ -21,6 +21,9 @@ pub enum LineFault {
     Stall,
 }
 
+/// Ends every frame.
+const DELIMITER: u8 = 0;
+
 /// A fault that happens by chance, for a while.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Injected {
@@ -46,11 +49,19 @@ pub(super) struct SimulatedLine {
     waiting: VecDeque<Waiting>,
     /// Comes after the next frame.
     held: Option<Vec<u8>>,
+    /// Bytes of a frame that has only begun.
+    begun: Vec<u8>,
 }
 
 impl SimulatedLine {
     pub fn new() -> Self {
-        Self { injected: Vec::new(), random: Pcg64::seed_from_u64(0), waiting: VecDeque::new(), held: None }
+        Self {
+            injected: Vec::new(),
+            random: Pcg64::seed_from_u64(0),
+            waiting: VecDeque::new(),
+            held: None,
+            begun: Vec::new(),
+        }
     }
 
     /// From now on a fault happens to each frame with this probability, until `until`, ns. A stall always happens. Chance begins
@@ -69,13 +80,32 @@ impl SimulatedLine {
     /// Nothing is on its way any more.
     pub fn cut(&mut self) {
         self.waiting.clear();
+        self.begun.clear();
         self.held = None;
+    }
+
+    /// Takes bytes at `now`, ns, that are frames back to back, cut anywhere: otherwise as [`SimulatedLine::carry`].
+    pub fn carry_bytes(&mut self, now: u64, bytes: &[u8], deliver: &mut dyn FnMut(&[u8])) {
+        if self.begun.is_empty() && self.is_good(now) {
+            return deliver(bytes);
+        }
+        for &byte in bytes {
+            self.begun.push(byte);
+            if byte == DELIMITER {
+                let frame = std::mem::take(&mut self.begun);
+                self.carry(now, &frame, deliver);
+            }
+        }
+    }
+
+    fn is_good(&mut self, now: u64) -> bool {
+        self.injected.retain(|injected| injected.until > now);
+        self.injected.is_empty() && self.held.is_none() && self.waiting.is_empty()
     }
 
     /// Takes a frame at `now`, ns, and gives `deliver` what comes out at once.
     pub fn carry(&mut self, now: u64, frame: &[u8], deliver: &mut dyn FnMut(&[u8])) {
-        self.injected.retain(|injected| injected.until > now);
-        if self.injected.is_empty() && self.held.is_none() && self.waiting.is_empty() {
+        if self.is_good(now) {
             return deliver(frame);
         }
         let mut bytes = frame.to_vec();
@@ -169,6 +199,23 @@ mod tests {
         let corrupt = with(LineFault::Corrupt);
         assert!((0..2).all(|place| (corrupt[place].1 ^ place as u8).count_ones() == 1), "{corrupt:?}");
         assert_eq!(bytes(&corrupt)[2..], [2, 3]);
+    }
+
+    #[test]
+    fn bytes_are_frames_wherever_they_are_cut() {
+        let mut line = SimulatedLine::new();
+        let mut came = Vec::new();
+        let mut put = |line: &mut SimulatedLine, now: u64, bytes: &[u8]| {
+            line.carry_bytes(now, bytes, &mut |piece| came.push(piece.to_vec()));
+        };
+        // A good line keeps nothing back.
+        put(&mut line, 0, &[1, 0, 2]);
+        line.inject(LineFault::Duplicate, 1.0, 3000, 1);
+        for (now, bytes) in [(1000, &[0, 3, 4, 0, 5][..]), (2000, &[6]), (4000, &[0, 7, 0])] {
+            put(&mut line, now, bytes);
+        }
+        let expected: [&[u8]; 7] = [&[1, 0, 2], &[0], &[0], &[3, 4, 0], &[3, 4, 0], &[5, 6, 0], &[7, 0]];
+        assert_eq!(came, expected);
     }
 
     #[test]

@@ -43,6 +43,8 @@ struct Shared {
     board: SimulatedBoard,
     /// From the board to the host.
     line: SimulatedLine,
+    /// From the host to the board.
+    line_to_board: SimulatedLine,
     /// None while the cable is out.
     terminal: Option<Arc<PseudoTerminal>>,
     /// The board's clock, ns.
@@ -53,7 +55,8 @@ impl SimulatedPort {
     /// Starts the board. Its thread asks for this priority, and goes on without where that is not permitted.
     pub fn start(board: SimulatedBoard, pace: Pace, priority: Priority) -> io::Result<Self> {
         let terminal = Some(Arc::new(PseudoTerminal::open()?));
-        let shared = Arc::new(Mutex::new(Shared { board, line: SimulatedLine::new(), terminal, time: 0 }));
+        let [line, line_to_board] = [(); 2].map(|()| SimulatedLine::new());
+        let shared = Arc::new(Mutex::new(Shared { board, line, line_to_board, terminal, time: 0 }));
         let ended = Arc::new(AtomicBool::new(false));
         let thread = {
             let (shared, ended) = (shared.clone(), ended.clone());
@@ -73,6 +76,7 @@ impl SimulatedPort {
         let mut shared = self.shared.lock();
         shared.terminal = None;
         shared.line.cut();
+        shared.line_to_board.cut();
     }
 
     /// Puts the cable in again: a new port, for which see [`SimulatedPort::path`].
@@ -90,9 +94,18 @@ impl SimulatedPort {
         shared.line.inject(fault, probability, until, seed);
     }
 
-    /// The line is good again.
+    /// The same with frames to the board.
+    pub fn inject_to_board(&self, fault: LineFault, probability: f64, time: u64, seed: u64) {
+        let mut shared = self.shared.lock();
+        let until = shared.time.saturating_add(time);
+        shared.line_to_board.inject(fault, probability, until, seed);
+    }
+
+    /// The line is good again, both ways.
     pub fn clear(&self) {
-        self.shared.lock().line.clear();
+        let mut shared = self.shared.lock();
+        shared.line.clear();
+        shared.line_to_board.clear();
     }
 
     /// Looks at the board or changes it. The board stands still meanwhile, so be brief.
@@ -133,7 +146,7 @@ fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
         let board_time = clock.wake(realtime::now(), taken > 0);
 
         let mut shared = shared.lock();
-        let Shared { board, line, time, .. } = &mut *shared;
+        let Shared { board, line, line_to_board, time, .. } = &mut *shared;
         *time = board_time;
         if taken > 0 {
             forgotten = false;
@@ -144,9 +157,13 @@ fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
         };
         let mut send = |frame: &[u8]| terminal.write(frame);
         line.arrive(board_time, &mut send);
-        match taken {
-            0 => board.advance(board_time),
-            _ => board.receive(board_time, &input[..taken], &mut |answer| line.carry(board_time, answer, &mut send)),
+        board.advance(board_time);
+        let mut receive = |bytes: &[u8]| {
+            board.receive(board_time, bytes, &mut |answer| line.carry(board_time, answer, &mut send));
+        };
+        line_to_board.arrive(board_time, &mut receive);
+        if taken > 0 {
+            line_to_board.carry_bytes(board_time, &input[..taken], &mut receive);
         }
         drop(shared);
 

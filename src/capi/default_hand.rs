@@ -59,9 +59,13 @@ pub(super) fn with<T, E: Into<Refusal>>(call: impl FnOnce(&Hand) -> Result<T, E>
     call(hand).map_err(E::into)
 }
 
-/// Makes a faulted finger of the open hand a spring again. The hand is looked at from time to time and not kept from being closed.
+/// Makes a faulted finger of the open hand a spring again. The hand is looked at from time to time and not kept from being closed, nor
+/// other calls from being made.
 pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
     let recovering = with(|hand| Recovering::begin(hand, finger))?;
+    // Without the hand: ports are slow. Was it closed meanwhile, that is what there is to tell.
+    let mended = recovering.mend();
+    with(|_| mended)?;
     while !with(|hand| recovering.poll(hand))? {
         sleep(LOOKING);
     }
@@ -75,6 +79,11 @@ pub(super) fn calibrate(finger: i32, task: Task) -> Result<(), Refusal> {
     while let Standing::Going(_) = with(|hand| calibrating.poll(hand))? {
         sleep(LOOKING);
     }
-    with(|hand| hand.store_calibration())?;
+    // Without the hand: a slow disk must not keep it from being closed. One after the other: the later has what the earlier found.
+    static STORING: Mutex<()> = Mutex::new(());
+    let _storing = STORING.lock();
+    if let Some((file, calibrated)) = with(|hand| Ok::<_, hand::HandError>(hand.to_store()))? {
+        hand::store(&file, &calibrated)?;
+    }
     Ok(())
 }

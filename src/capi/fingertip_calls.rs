@@ -192,6 +192,10 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 /// base, turn_degrees, encoder, motor.sign, motor.torque_limit, motor.torque_constant,
 /// stiffness.initial and simulation. controller.law counts from the next SendPos on.
 ///
+/// A configured stiffness.bound was found for one controller. Under another
+/// controller.scheme it counts only if it is less than the default bound, or if Keys
+/// names it too.
+///
 /// Returns 0, or -1 with
 ///   EFAULT   Keys is null
 ///   ENODEV   no hand is open

@@ -42,11 +42,13 @@ pub extern "C" fn StopHand() -> c_int {
 /// Fingers that share the port recover with it. A finger that is not faulted goes on as it
 /// is. What made the finger fault must be mended before: GetFault, FaultText.
 ///
-/// Waits until the finger holds its pose or faults again: up to some seconds.
+/// Waits until the finger holds its pose or faults again: up to some seconds. Other calls
+/// go on meanwhile. CloseHand too, and this call is refused then.
 ///
 /// Returns 0, or -1 with
 ///   EIO      the finger faults again, or its board is another one than at OpenHand or has
-///            lost its zero; HandError says which
+///            lost its zero, or its servo thread has failed (FAULT_SERVO_PANIC), which only
+///            CloseHand and OpenHand mend; HandError says which
 ///   EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
 ///   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and
 ///            finger.reconnect is false

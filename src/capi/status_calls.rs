@@ -68,6 +68,9 @@ pub struct FingerStatus {
     pub MemoryLocked: c_int,
     /// 1: the servo thread runs on the configured core, or none is configured. 0: it does not.
     pub OnCore: c_int,
+    /// The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where
+    /// its tendons carry no more in this pose, so near straight.
+    pub StiffnessScale: f64,
 }
 
 /// GetStatus - rate, jitter and losses of a finger's servo
@@ -103,12 +106,7 @@ pub unsafe extern "C" fn GetStatus(i: c_int, Status: *mut FingerStatus) -> c_int
 fn told(status: &hand::FingerStatus) -> FingerStatus {
     FingerStatus {
         Size: 0, // until the caller's room is known
-        State: match status.stage {
-            Stage::Faulted(_) => FINGER_FAULTED,
-            Stage::Limp => FINGER_LIMP,
-            Stage::Calibrating | Stage::Opening => FINGER_CALIBRATING,
-            Stage::Running | Stage::Closing | Stage::Closed => FINGER_RUNNING,
-        },
+        State: state(&status.stage),
         Realtime: status.realtime.into(),
         Rate: status.rate,
         MeasuredRate: status.measured_rate,
@@ -123,6 +121,17 @@ fn told(status: &hand::FingerStatus) -> FingerStatus {
         Calibration: status.calibration,
         MemoryLocked: status.memory_locked.into(),
         OnCore: status.on_core.into(),
+        StiffnessScale: status.stiffness_scale,
+    }
+}
+
+/// FINGER_...
+pub(super) fn state(stage: &Stage) -> c_int {
+    match stage {
+        Stage::Faulted(_) => FINGER_FAULTED,
+        Stage::Limp => FINGER_LIMP,
+        Stage::Calibrating | Stage::Opening => FINGER_CALIBRATING,
+        Stage::Running | Stage::Closing | Stage::Closed => FINGER_RUNNING,
     }
 }
 

@@ -23,16 +23,17 @@ const SET_POINT_SPEED: f64 = 2.0;
 /// rad/s. State feedback follows its reference, which therefore may move as fast as the tensions can carry it: from 1000 Hz up.
 const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 5.0;
 
-/// Rate, Hz, then the fields of [`Gains`] in their order but the last two. Found by experiment with the finger of the default configuration.
-type Row = (f64, [f64; 6]);
+/// Rate, Hz, and numbers at that rate, none negative. The rates of a table rise.
+pub(super) type Row<const NUMBERS: usize> = (f64, [f64; NUMBERS]);
 
-const FIGURE_9: [Row; 3] = [
+/// The fields of [`Gains`] in their order but the last two. Found by experiment with the finger of the default configuration.
+const FIGURE_9: [Row<6>; 3] = [
     (500.0, [0.0, 50.0, 250.0, 0.020, 160.0, 3.0]),
     (1000.0, [0.0, 75.0, 310.0, 0.050, 180.0, 2.0]),
     (2000.0, [0.0, 100.0, 440.0, 0.060, 160.0, 5.0]),
 ];
 
-const FIGURE_10: [Row; 3] = [
+const FIGURE_10: [Row<6>; 3] = [
     (500.0, [0.1, 55.0, 265.0, 0.020, 190.0, 3.0]),
     (1000.0, [2.0, 250.0, 450.0, 0.015, 400.0, 6.0]),
     (2000.0, [5.0, 550.0, 460.0, 0.020, 400.0, 6.0]),
@@ -40,7 +41,7 @@ const FIGURE_10: [Row; 3] = [
 
 /// At 500 and 2000 Hz by a random search of 50 rows for the smallest largest eigenvalue of the one-cycle map, over 40 poses at 1, 3
 /// and 6 N/cm.
-const FIGURE_11: [Row; 3] = [
+const FIGURE_11: [Row<6>; 3] = [
     (500.0, [0.0, 0.0, 60.0, 0.020, 200.0, 3.0]),
     (1000.0, [0.0, 0.0, 86.0, 0.0055, 400.0, 20.0]),
     (2000.0, [0.0, 0.0, 54.0, 0.0041, 385.0, 6.0]),
@@ -49,8 +50,21 @@ const FIGURE_11: [Row; 3] = [
 /// 1/s.
 const ADAPTATION_GAIN: f64 = 20.0;
 
+/// The row of a table for `rate`, Hz: between two rates each number is a power of the rate, beyond the last ones it stays.
+///
+/// Not the nearest row: gains of a higher rate act on a delay for which they are too large, and were unstable in every pose tried.
+pub(super) fn at<const NUMBERS: usize>(table: &[Row<NUMBERS>], rate: f64) -> [f64; NUMBERS] {
+    let above = table.iter().position(|row| row.0 >= rate).unwrap_or(table.len() - 1);
+    let ((low, lower), (high, upper)) = (table[above.saturating_sub(1)], table[above]);
+    if rate <= low || rate >= high {
+        return if rate <= low { lower } else { upper };
+    }
+    let part = (rate / low).ln() / (high / low).ln();
+    std::array::from_fn(|gain| lower[gain].powf(1.0 - part) * upper[gain].powf(part))
+}
+
 impl Gains {
-    /// What is configured; the rest from the tabulated rate nearest to `rate` (by ratio).
+    /// What is configured; the rest from the table of the scheme.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
         let scheme = configured.scheme;
         let table = match scheme {
@@ -59,9 +73,7 @@ impl Gains {
             Scheme::Figure10 | Scheme::StateFeedback => &FIGURE_10,
             Scheme::Figure11 => &FIGURE_11,
         };
-        let apart = |row: &Row| (row.0 / rate).ln().abs();
-        let nearest = table.iter().fold(&table[0], |best, row| if apart(row) < apart(best) { row } else { best });
-        let [tension_gain, tension_integral, motor_damping, rate_time, speed_filter, stretch_filter] = nearest.1;
+        let [tension_gain, tension_integral, motor_damping, rate_time, speed_filter, stretch_filter] = at(table, rate);
         let absent = |key, term: &str| {
             let reason = format!("is given, but this scheme has no {term} term: leave it out, or choose \"figure 10\"");
             Err(Unusable { key, reason })
@@ -102,10 +114,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_rate_lends_what_is_not_configured() {
+    fn what_is_not_configured_follows_from_the_rate() {
         let mut configured = ConfiguredController::default();
-        for (rate, expected) in [(100.0, 0.1), (700.0, 0.1), (720.0, 2.0), (1000.0, 2.0), (1500.0, 5.0), (9e3, 5.0)] {
-            assert_eq!(Gains::new(&configured, rate).unwrap().tension_gain, expected, "{rate} Hz");
+        let between = (0.1f64 * 2.0).sqrt();
+        for (rate, expected) in
+            [(100.0, 0.1), (500.0, 0.1), (5e5f64.sqrt(), between), (1000.0, 2.0), (2000.0, 5.0), (9e3, 5.0)]
+        {
+            let found = Gains::new(&configured, rate).unwrap().tension_gain;
+            assert!((found - expected).abs() < 1e-12, "{rate} Hz: {found}");
         }
         configured.motor_damping = Some(77.0);
         let gains = Gains::new(&configured, 1000.0).unwrap();

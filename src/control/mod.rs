@@ -46,4 +46,4 @@ pub use inverse_kinematics::{InverseKinematics, OutOfReach};
 pub use joint_stiffness::JointStiffness;
 pub use signals::{Activity, Command, Feedback, Law, Measured, Report, SetPoint, spatial};
 pub use spring_transition::Spring;
-pub use tension_distribution::{Distribution, TensionDistribution};
+pub use tension_distribution::{BoundedDistribution, Distribution, TensionDistribution};

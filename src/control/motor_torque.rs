@@ -12,6 +12,9 @@ pub(super) struct MotorTorque {
     signed_radius: Vector4<f64>,
     /// Largest pull of each motor, N.
     pub limit: Vector4<f64>,
+    /// Friction of each motor, N, and what its conduit leaves of the rest.
+    coulomb: Vector4<f64>,
+    past_conduit: Vector4<f64>,
 }
 
 impl MotorTorque {
@@ -22,12 +25,19 @@ impl MotorTorque {
         Ok(Self {
             signed_radius: tendons.radius.component_mul(&Vector4::from(finger.motor.sign.map(f64::from))),
             limit: Vector4::from(finger.motor.torque_limit).component_div(&tendons.radius),
+            coulomb: Vector4::from(finger.friction.motor_coulomb).component_div(&tendons.radius),
+            past_conduit: Vector4::from(finger.friction.conduit).map(|conduit| (1.0 + conduit).recip()),
         })
     }
 
     /// N cm, as the board takes them.
     pub fn torques(&self, pulls: &Vector4<f64>) -> Vector4<f64> {
         pulls.component_mul(&self.signed_radius)
+    }
+
+    /// The tension, N, that a motor with so much pull, N, brings about whichever way it turns: its friction may hold against it.
+    pub fn tensions(&self, pulls: &Vector4<f64>) -> Vector4<f64> {
+        (pulls - self.coulomb).component_mul(&self.past_conduit)
     }
 
     /// The other way round: N at the tendon.

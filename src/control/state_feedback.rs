@@ -15,7 +15,7 @@ use super::soft_limits::SoftLimits;
 use super::spring_transition::Spring;
 use super::state_feedback_numbers::Numbers;
 use super::tendon_observer::{ElasticTendon, ObserverDesign, TendonEstimate, TendonMotion, TendonObserver};
-use super::tension_distribution::{Distribution, TensionDistribution};
+use super::tension_distribution::{BoundedDistribution, Distribution};
 use super::transition::Transition;
 use super::usable::positive;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
@@ -296,7 +296,7 @@ impl StateFeedback {
         begins: bool,
         limits: &SoftLimits,
         gravity: &GravityCompensation,
-        distribution: &TensionDistribution,
+        distribution: &BoundedDistribution,
     ) -> Decision {
         if begins {
             // Without deflection.

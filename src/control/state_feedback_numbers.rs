@@ -4,6 +4,7 @@
 //! and a bandwidth. What remains has no unit, or is one in cycles, and was searched on the eigenvalues of the exact one-cycle
 //! map of the default finger, never for a pose.
 
+use super::gains::{Row, at};
 use super::usable::{not_negative, positive};
 use crate::model::configuration::{ConfiguredController, Unusable};
 
@@ -52,18 +53,16 @@ const DITHER_FREQUENCY: f64 = 40.0;
 /// See [`Numbers::rubbing`].
 const RUBBING: f64 = 0.4;
 
-/// Rate, Hz, then alpha, zeta, relative zeta, disturbance and link bandwidth (radians a cycle), ahead, lag, common gain, common
-/// damping, felt, reference time (s).
-type Row = (f64, [f64; 11]);
-
-const TABLE: [Row; 3] = [
-    (500.0, [0.95, 0.42, 0.19, 48.0, 2.6, -0.6, 0.04, 0.2, 0.6, 1.4, 0.012]),
-    (1000.0, [2.3, 0.178, 0.31, 13.0, 1.634, -0.12, 0.015, 0.043, 0.266, 10.2, 0.008]),
-    (2000.0, [3.58, 0.274, 0.557, 15.45, 0.57, -0.359, 0.042, 0.095, 0.184, 9.03, 0.008]),
+/// alpha, zeta, relative zeta, disturbance and link bandwidth (radians a cycle), cycles that it looks back, lag, common gain, common damping,
+/// felt, reference time (s).
+const TABLE: [Row<11>; 3] = [
+    (500.0, [0.95, 0.42, 0.19, 48.0, 2.6, 0.6, 0.04, 0.2, 0.6, 1.4, 0.012]),
+    (1000.0, [2.3, 0.178, 0.31, 13.0, 1.634, 0.12, 0.015, 0.043, 0.266, 10.2, 0.008]),
+    (2000.0, [3.58, 0.274, 0.557, 15.45, 0.57, 0.359, 0.042, 0.095, 0.184, 9.03, 0.008]),
 ];
 
 impl Numbers {
-    /// What is configured; the rest from the table, between its rates by ratio.
+    /// What is configured; the rest from the table.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
         let [
             inertia_gain,
@@ -71,20 +70,20 @@ impl Numbers {
             relative_damping,
             disturbance,
             link,
-            ahead,
+            behind,
             lag,
             common_gain,
             common_damping,
             felt,
             reference_time,
-        ] = row_at(rate);
+        ] = at(&TABLE, rate);
         let numbers = Self {
             inertia_gain: configured.inertia_gain.unwrap_or(inertia_gain),
             damping_ratio: configured.damping_ratio.unwrap_or(damping_ratio),
             relative_damping,
             disturbance_bandwidth: disturbance * rate,
             link_bandwidth: link * rate,
-            ahead,
+            ahead: -behind,
             lag,
             felt,
             common_gain,
@@ -100,33 +99,5 @@ impl Numbers {
         positive("controller.set_point_time", &[numbers.reference_time])?;
         not_negative("controller.dither", numbers.dither)?;
         Ok(numbers)
-    }
-}
-
-/// The row of `rate`: from row to row every number changes by a power of the rate. In proportion to its logarithm, some poses were
-/// unstable at 667 Hz. Beyond its ends the table goes on with its first or last row, so with the same motion in a cycle.
-fn row_at(rate: f64) -> [f64; 11] {
-    let next = TABLE.iter().position(|row| rate < row.0).unwrap_or(TABLE.len() - 1).max(1);
-    let (lower, upper) = (&TABLE[next - 1], &TABLE[next]);
-    let part = ((rate / lower.0).ln() / (upper.0 / lower.0).ln()).clamp(0.0, 1.0);
-    std::array::from_fn(|number| lower.1[number] * (upper.1[number] / lower.1[number]).powf(part))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_rate_has_numbers_of_its_own() {
-        for (rate, row) in TABLE {
-            for (found, tabulated) in row_at(rate).into_iter().zip(row) {
-                assert!((found / tabulated - 1.0).abs() < 1e-12, "{rate} Hz: {found} for {tabulated}");
-            }
-        }
-        assert_eq!(row_at(100.0), TABLE[0].1);
-        assert_eq!(row_at(9e3), row_at(2000.0));
-        // Half way by ratio: the geometric mean.
-        let (lower, upper) = (TABLE[0].1[0], TABLE[1].1[0]);
-        assert!((row_at(500.0 * 2f64.sqrt())[0] / (lower * upper).sqrt() - 1.0).abs() < 1e-12);
     }
 }

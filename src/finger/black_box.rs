@@ -13,7 +13,7 @@ use crate::realtime::{CycleTiming, Memory};
 use nalgebra::Vector3;
 use rtrb::{Consumer, Producer, RingBuffer};
 use serde::{Deserialize, Serialize};
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 /// How much is kept, s.
 const KEPT: f64 = 2.0;
@@ -56,6 +56,17 @@ pub struct ControlRecord {
     pub command: Command,
     /// What it found and decided.
     pub report: Report,
+}
+
+/// One of the records that are kept.
+#[derive(Clone, Copy, Debug)]
+pub struct KeptRecord {
+    /// It.
+    pub record: CycleRecord,
+    /// The first cycle that is kept.
+    pub oldest: u64,
+    /// The last one.
+    pub newest: u64,
 }
 
 /// The state before a cycle.
@@ -121,11 +132,20 @@ impl BlackBox {
         (recorder, black_box)
     }
 
-    /// Keeps what another controller is made from, to be called before the servo gets it. Returns its number.
-    pub fn announce(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>) -> u32 {
-        let number = self.controllers.last().map_or(0, |last| last.number + 1);
+    /// The number of the next controller.
+    pub fn next_number(&self) -> u32 {
+        self.controllers.last().map_or(0, |last| last.number + 1)
+    }
+
+    /// Keeps what the next controller is made from, to be called before a record of the servo's that names it is collected. `taken`:
+    /// the number of the one that the servo had taken ([`FingerReport::controller`](crate::finger::FingerReport::controller)) before
+    /// the records were collected. What is older, and named by no record, is forgotten: it was overtaken before it was used.
+    pub fn announce(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
+        let controls = self.records.iter().filter_map(|record| record.control.as_ref());
+        let named: BTreeSet<u32> = controls.flat_map(|control| [control.controller, control.previous]).collect();
+        let number = self.next_number();
+        self.controllers.retain(|kept| kept.number >= taken || named.contains(&kept.number));
         self.controllers.push(ControllerSource { number, gravity, finger });
-        number
     }
 
     /// Takes in what the servo has left, and forgets what is too old.
@@ -167,6 +187,15 @@ impl BlackBox {
     /// Whether a fault has come in since the last such call.
     pub fn faulted(&mut self) -> bool {
         std::mem::take(&mut self.faulted)
+    }
+
+    /// The record of a cycle, or the newest; none where it is not kept.
+    pub fn record(&self, cycle: Option<u64>) -> Option<KeptRecord> {
+        let (oldest, newest) = (self.records.front()?.cycle, self.records.back()?.cycle);
+        // They are without a gap.
+        let index = cycle.unwrap_or(newest).checked_sub(oldest)?;
+        let record = *self.records.get(usize::try_from(index).ok()?)?;
+        Some(KeptRecord { record, oldest, newest })
     }
 
     /// A copy of what is kept; none before the first cycle.

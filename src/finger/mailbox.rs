@@ -66,8 +66,14 @@ pub struct FingerReport {
     pub stage: Stage,
     /// The set point in force.
     pub set_point: SetPoint,
+    /// How often it has become a spring that holds the pose it was found in: at open, after a fault, after a calibration. What was
+    /// sent before is gone.
+    pub springs: u32,
     /// What the last cycle found and decided.
     pub cycle: Report,
+    /// Number of the controller that planners have handed over last and the servo has taken: it is computed with, or will be after a
+    /// calibration.
+    pub controller: u32,
     /// How many orders have been taken.
     pub orders: u32,
     /// What became of the last calibration, if there was one.
@@ -119,17 +125,26 @@ pub struct Mailbox {
 }
 
 struct PlannersEnd {
-    sent: SetPoint,
-    set_points: Input<SetPoint>,
+    sent: SentSetPoint,
+    set_points: Input<SentSetPoint>,
     adjustments: Input<Adjustable>,
     orders: Input<Order>,
     ordered: u32,
     reports: Output<FingerReport>,
 }
 
+/// A set point for one stretch of a finger's life as a spring. Servo and planners tell stretches by their number, because planners
+/// change parts of a set point: what they start from must be what the servo holds, and when that changes is the servo's to say.
+#[derive(Clone, Copy)]
+struct SentSetPoint {
+    /// [`FingerReport::springs`].
+    spring: u32,
+    set_point: SetPoint,
+}
+
 /// The servo's end. Nothing here waits or allocates.
 pub(super) struct ServoEnd {
-    set_points: Output<SetPoint>,
+    set_points: Output<SentSetPoint>,
     adjustments: Output<Adjustable>,
     orders: Output<Order>,
     reports: Input<FingerReport>,
@@ -139,14 +154,15 @@ pub(super) struct ServoEnd {
 /// A mailbox whose both ends hold `report`, with its set point, and `adjustable`; and the memory that they share.
 pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd, Memory) {
     let mut memory = Memory::default();
-    let (set_points_in, set_points_out) = shared(&report.set_point, &mut memory);
+    let sent = SentSetPoint { spring: report.springs, set_point: report.set_point };
+    let (set_points_in, set_points_out) = shared(&sent, &mut memory);
     let (adjustments_in, adjustments_out) = shared(adjustable, &mut memory);
     let (reports_in, reports_out) = shared(&report, &mut memory);
     let (orders_in, orders_out) = shared(&Order::Nothing, &mut memory);
     let closing = Arc::new(AtomicBool::new(false));
     memory.add(&*closing);
     let planners = PlannersEnd {
-        sent: report.set_point,
+        sent,
         set_points: set_points_in,
         adjustments: adjustments_in,
         orders: orders_in,
@@ -188,7 +204,8 @@ impl Mailbox {
         Some(matches!(planners.reports.read().stage, Stage::Closed | Stage::Faulted(_)))
     }
 
-    /// Changes the set point that was sent last and sends it whole, unless the finger is faulted.
+    /// Changes the set point that was sent last and sends it whole, unless the finger is faulted. Where none was sent since it became
+    /// a spring, that is the one it holds. It counts for this spring only: a finger that faults meanwhile forgets it.
     ///
     /// # Errors
     /// The fault; nothing is sent then.
@@ -197,15 +214,16 @@ impl Mailbox {
         if let Stage::Faulted(fault) = planners.reports.read().stage {
             return Err(fault);
         }
-        change(&mut planners.sent);
-        let whole = planners.sent;
-        planners.set_points.write(whole);
+        let mut sent = planners.sent();
+        change(&mut sent.set_point);
+        planners.sent = sent;
+        planners.set_points.write(sent);
         Ok(())
     }
 
-    /// The set point that was sent last.
+    /// The set point that was sent last; where none was since the finger became a spring, the one it holds.
     pub fn sent(&self) -> SetPoint {
-        self.planners.lock().sent
+        self.planners.lock().sent().set_point
     }
 
     /// Gives the servo something else to compute with, unless the finger is faulted.
@@ -238,12 +256,6 @@ impl Mailbox {
         self.planners.lock().order(Order::Restart { limp }, Some(adjustable))
     }
 
-    /// Takes over the set point that the servo has found for itself at open, as what the next change starts from.
-    pub fn adopt(&self) {
-        let mut planners = self.planners.lock();
-        planners.sent = planners.reports.read().set_point;
-    }
-
     /// Asks the servo to bring the finger to its end state.
     pub fn close(&self) {
         self.closing.store(true, Ordering::Release);
@@ -251,6 +263,15 @@ impl Mailbox {
 }
 
 impl PlannersEnd {
+    /// What the next change starts from.
+    fn sent(&mut self) -> SentSetPoint {
+        let report = self.reports.read();
+        if report.springs != self.sent.spring {
+            self.sent = SentSetPoint { spring: report.springs, set_point: report.set_point };
+        }
+        self.sent
+    }
+
     /// What is handed over goes first: a servo that has the order has that too.
     fn order(&mut self, order: Order, adjustable: Option<Adjustable>) -> Result<Option<u32>, Fault> {
         let report = *self.reports.read();
@@ -269,9 +290,10 @@ impl PlannersEnd {
 }
 
 impl ServoEnd {
-    /// The set point, if a planner has sent one since the last call.
-    pub fn new_set_point(&mut self) -> Option<SetPoint> {
-        self.set_points.update().then(|| *self.set_points.output_buffer())
+    /// The set point, if a planner has sent one since the last call, and for this spring.
+    pub fn new_set_point(&mut self, spring: u32) -> Option<SetPoint> {
+        let sent = self.set_points.update().then(|| *self.set_points.output_buffer());
+        sent.filter(|sent| sent.spring == spring).map(|sent| sent.set_point)
     }
 
     /// What the servo shall compute with, if a planner has changed it since the last call.

@@ -15,7 +15,7 @@ mod single;
 mod watching;
 
 pub use alarm::{Alarm, stop_all, stop_calls};
-pub use black_box::{BlackBox, ControlRecord, ControllerSource, CycleRecord, Recorder};
+pub use black_box::{BlackBox, ControlRecord, ControllerSource, CycleRecord, KeptRecord, Recorder};
 pub use control_input::ControlInput;
 pub use faults::{Description, Fault, FaultKind, Part, Quantity, Severity, Warnings};
 pub use lending::{Borrower, Lender, Lent, Mended, lending};

@@ -142,6 +142,8 @@ impl<T: Transport, C: Clock> Servo<T, C> {
 
     /// The last thing to do when a cycle panicked: every finger faulted, every board told to stop.
     fn fail(&mut self) {
+        // Whoever would mend a port learns that nobody is left to run it.
+        self.ports.iter_mut().for_each(|port| port.lender = None);
         let now = self.clock.now();
         for port in &mut self.ports {
             let heard = port.heard();

@@ -121,7 +121,7 @@ impl FingerServo {
         }
     }
 
-    /// Ends a cycle: computes the next command and reports. `overrun`: the next cycle should have begun already, and so many periods are
+    /// Ends a cycle: computes the next command. `overrun`: the next cycle should have begun already, and so many periods are
     /// skipped.
     pub fn end(&mut self, began: u64, overrun: Option<u64>, heard: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
@@ -163,7 +163,7 @@ impl FingerServo {
             });
         }
         self.recording = self.under_control();
-        self.mailbox.publish(self.report);
+        self.report.controller = self.adjustable.number;
     }
 
     /// Computes the next command.
@@ -197,14 +197,17 @@ impl FingerServo {
         self.timing.note(stage, from, to);
     }
 
-    /// Leaves the timing and the record of this cycle to whoever collects them.
+    /// Leaves the timing and the record of this cycle to whoever collects them, and then reports: who knows the report of a cycle
+    /// finds its record.
     pub fn tell(&mut self) {
         let timing = std::mem::take(&mut self.timing);
-        // A full ring means that nobody collects: the cycle is worth more than its figure.
-        let _ = self.timings.push(timing);
         if let Some(record) = self.record.take() {
             self.black_box.record(CycleRecord { timing, ..record });
         }
+        self.mailbox.publish(self.report);
+        // After the report: no more timings than cycles are ever counted. A full ring means that nobody collects: the cycle is worth
+        // more than its figure.
+        let _ = self.timings.push(timing);
     }
 
     /// Stops the finger for a reason.

@@ -55,8 +55,7 @@ impl Watching {
 
     /// What a reply's status says beside faults, and how many periods after the reply before it was sampled.
     pub fn note_reply(&mut self, status: Status, age: f64) {
-        // Where a late sample is followed by one in time, the last bit of an encoder would make a speed of its own.
-        self.age = age.max(1.0);
+        self.age = age;
         self.clipped = status.has(Status::TORQUE_CLIPPED);
     }
 
@@ -91,7 +90,8 @@ impl Watching {
     /// One cycle of a finger that is a spring, after `controller` has computed; none where the reply was lost.
     pub fn spring(&mut self, controller: &Controller, state: &State, feedback: Option<&Feedback>) -> Option<Fault> {
         let alarms = controller.watch(&mut self.watch, state, feedback?, self.age, self.full_scale);
-        self.warning = alarms.warning.map(Fault::from).or(self.warning);
+        // Line and machine explain what the finger does.
+        self.warning = self.warning.or(alarms.warning.map(Fault::from));
         alarms.fault.map(Fault::from)
     }
 

@@ -1,5 +1,6 @@
 //! Changing a finger's configuration while it runs: a new controller is made here, beside the servo, and handed to it whole.
 
+use crate::control::SetPoint;
 use crate::finger::Adjustable;
 use crate::hand::admission::Admission;
 use crate::hand::configuration_file::{deserialize, line_of, overlay};
@@ -7,7 +8,7 @@ use crate::hand::dispatcher::Member;
 use crate::hand::opening::{admission, check};
 use crate::hand::{Hand, HandError};
 use crate::model::Contact;
-use crate::model::configuration::{ConfiguredFinger, Unusable};
+use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, Unusable};
 use nalgebra::Matrix6;
 use toml_edit::{Document, Item, Table};
 
@@ -36,6 +37,9 @@ impl Hand {
     /// `[finger.N]`, such as `tendon.minimum = 6`. All of them take effect together, within a cycle and without a jump in
     /// torque. What is not named stays. `controller.law` counts from the next set point on.
     ///
+    /// A configured `stiffness.bound` was found for one controller. Under another `controller.scheme` it counts only if it is less than
+    /// the default one, or if `keys` name it too.
+    ///
     /// # Errors
     /// No such finger, keys that cannot be read, that cannot change while the hand is open, or that make a configuration that cannot
     /// be used; limits that the set point sent last is outside of, unless commands are clamped; finger faulted. Nothing is
@@ -46,12 +50,13 @@ impl Hand {
         // Held throughout: of two adjustments the second starts from what the first has made.
         let mut configuration = self.configuration.write();
         let mut changed = configuration.clone();
-        changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys)?;
+        changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys, configuration.hand.rate)?;
         check(&changed)?;
         let unusable = |unusable: Unusable| HandError::Unusable { section: format!("finger.{finger}"), unusable };
-        let number = self.dispatcher.announce(finger, &changed)?;
-        let adjustable = Adjustable::new(&changed, index, number).map_err(unusable)?;
-        adjust_member(member, admission(&changed, index), adjustable)?;
+        let adjustable = Adjustable::new(&changed, index, 0).map_err(unusable)?;
+        self.dispatcher.hand_over(finger, &changed, |number| {
+            adjust_member(member, admission(&changed, index), Adjustable { number, ..adjustable })
+        })?;
         *configuration = changed;
         Ok(())
     }
@@ -68,8 +73,11 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     let faulted = |fault| HandError::Faulted { finger, fault };
     member.mailbox.adjust(adjustable).map_err(faulted)?;
     if joints != sent.joints || stiffness != sent.stiffness {
-        let clamp = |set_point: &mut crate::control::SetPoint| {
-            (set_point.joints, set_point.stiffness) = (joints, stiffness);
+        let clamp = |set_point: &mut SetPoint| {
+            // Else the finger has begun anew meanwhile, and holds the pose it was found in.
+            if *set_point == sent {
+                (set_point.joints, set_point.stiffness) = (joints, stiffness);
+            }
         };
         member.mailbox.send(clamp).map_err(faulted)?;
     }
@@ -77,8 +85,8 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     Ok(())
 }
 
-/// The configuration of a finger with `keys` laid over it.
-fn adjusted(number: i32, finger: &ConfiguredFinger, keys: &str) -> Result<ConfiguredFinger, HandError> {
+/// The configuration of a finger at `rate`, Hz, with `keys` laid over it.
+fn adjusted(number: i32, finger: &ConfiguredFinger, keys: &str, rate: f64) -> Result<ConfiguredFinger, HandError> {
     let wrong =
         |line: Option<usize>, reason: String| HandError::Adjustment { finger: number, line: line.unwrap_or(1), reason };
     let over = Document::parse(keys).map_err(|error| wrong(line_of(keys, error.span()), error.message().into()))?;
@@ -88,7 +96,14 @@ fn adjusted(number: i32, finger: &ConfiguredFinger, keys: &str) -> Result<Config
     let present = toml_edit::ser::to_document(finger).map_err(|error| wrong(None, error.to_string()))?;
     let mut merged = present.as_table().clone();
     overlay(&mut merged, over.as_table());
-    deserialize(merged).map_err(|error| wrong(line_of(keys, error.span()), error.message().into()))
+    let mut changed: ConfiguredFinger =
+        deserialize(merged).map_err(|error| wrong(line_of(keys, error.span()), error.message().into()))?;
+    let named = over.get("stiffness").is_some_and(|stiffness| stiffness.get("bound").is_some());
+    if changed.controller.scheme != finger.controller.scheme && !named {
+        let default = ConfiguredStiffness::default_bound(rate);
+        changed.stiffness.bound = changed.stiffness.bound.map(|bound| bound.min(default));
+    }
+    Ok(changed)
 }
 
 /// The first key that counts only at open.
@@ -111,7 +126,7 @@ mod tests {
     use super::*;
 
     fn changed(keys: &str) -> ConfiguredFinger {
-        adjusted(1, &ConfiguredFinger::default(), keys).unwrap_or_else(|error| panic!("{error}"))
+        adjusted(1, &ConfiguredFinger::default(), keys, 1000.0).unwrap_or_else(|error| panic!("{error}"))
     }
 
     #[test]
@@ -126,10 +141,28 @@ mod tests {
         expected.geometry.ghost_row = Some([1.0; 4]);
         expected.simulation.surface =
             Some(crate::model::Surface::Ball { centre: [0.0, 1.0, 9.0], radius: 2.0, stiffness: 30.0 });
-        let mut again = adjusted(1, &expected, "tendon.maximum = 50").expect("usable");
+        let mut again = adjusted(1, &expected, "tendon.maximum = 50", 1000.0).expect("usable");
         assert_eq!(again.tendon.maximum, 50.0);
         again.tendon.maximum = 60.0;
         assert_eq!(again, expected);
+    }
+
+    #[test]
+    fn another_controller_does_not_inherit_a_bound_that_is_too_large_for_it() {
+        let mut finger = ConfiguredFinger::default();
+        for (configured, rate, keys, expected) in [
+            (Some(11.2), 1000.0, "controller.scheme = 'figure 11'", Some(6.0)),
+            (Some(8.2), 500.0, "controller.scheme = 'figure 9'", Some(5.0)),
+            (Some(4.0), 1000.0, "controller.scheme = 'figure 11'", Some(4.0)),
+            (None, 1000.0, "controller.scheme = 'figure 11'", None),
+            (Some(11.2), 1000.0, "controller.scheme = 'figure 9'\nstiffness.bound = 11", Some(11.0)),
+            (Some(11.2), 1000.0, "controller.scheme = 'state feedback'", Some(11.2)),
+            (Some(11.2), 1000.0, "tendon.maximum = 50", Some(11.2)),
+        ] {
+            finger.stiffness.bound = configured;
+            let changed = adjusted(1, &finger, keys, rate).expect("usable");
+            assert_eq!(changed.stiffness.bound, expected, "{keys}");
+        }
     }
 
     #[test]
@@ -142,11 +175,11 @@ mod tests {
             "tendon.minimum = 6\nsimulation.seed = 3",
             "[stiffness]\nbound = 5\ninitial = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
         ] {
-            let refusal = adjusted(1, &ConfiguredFinger::default(), keys).expect_err("refused");
+            let refusal = adjusted(1, &ConfiguredFinger::default(), keys, 1000.0).expect_err("refused");
             assert!(matches!(refusal, HandError::Permanent { .. }), "{refusal}");
             assert_eq!(refusal.errno(), libc::EBUSY);
         }
-        let refusal = adjusted(1, &ConfiguredFinger::default(), "simulation.seed = 3").expect_err("refused");
+        let refusal = adjusted(1, &ConfiguredFinger::default(), "simulation.seed = 3", 1000.0).expect_err("refused");
         assert!(refusal.to_string().starts_with("`simulation` cannot change"), "{refusal}");
     }
 
@@ -157,7 +190,7 @@ mod tests {
             ("\n\ntendon.minimum = ", 3, ""),
             ("controller.tension_gain = 'much'", 1, "invalid type"),
         ] {
-            match adjusted(2, &ConfiguredFinger::default(), keys).expect_err("refused") {
+            match adjusted(2, &ConfiguredFinger::default(), keys, 1000.0).expect_err("refused") {
                 HandError::Adjustment { finger: 2, line, reason } => {
                     assert_eq!(line, place, "{keys}: {reason}");
                     assert!(reason.contains(word), "{reason}");

@@ -246,5 +246,45 @@ mod tests {
                 prop_assert!(eigenvalues.iter().all(within), "{kx}{eigenvalues}");
             }
         }
+
+        #[test]
+        fn whatever_contact_is_asked_what_is_admitted_is_within_the_bound(
+            mantissas in prop::array::uniform32(-1.0f64..1.0), exponents in prop::array::uniform6(-160i32..155),
+            diagonal in prop::bool::ANY, lever in -1.0f64..2.0,
+        ) {
+            // A A^T of rank 5: a spring, but for rounding, of any size in each of its directions.
+            let root = nalgebra::SMatrix::<f64, 6, 5>::from_fn(|row, column| match diagonal && row != column {
+                true => 0.0,
+                false => mantissas[5 * row + column] * 10f64.powi(exponents[row]),
+            });
+            let lever = 10f64.powf(lever);
+            for out_of_range in [OutOfRange::Clamp, OutOfRange::Refuse] {
+                let mut admission = admission(out_of_range);
+                admission.links.0[2] = lever;
+                let Ok(contact) = Contact::general(&(root * root.transpose()), &Matrix6::identity()) else { continue };
+                let Ok(admitted) = admission.contact(&contact) else { continue };
+                let admitted = Contact::general(&admitted, &Matrix6::identity());
+                prop_assert!(admitted.is_ok(), "{admitted:?}");
+                let largest = admitted.unwrap().largest_eigenvalue(lever);
+                prop_assert!(largest <= 6.0 * (1.0 + 1e-6), "{largest} with a lever of {lever} cm");
+            }
+        }
+    }
+
+    #[test]
+    fn a_torsion_at_a_short_link_is_too_stiff_however_large() {
+        for torsion in [1e3, 1e306, f64::MAX] {
+            let k = nalgebra::Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, torsion));
+            let contact = Contact::soft_finger(k, Vector3::new(0.3, -0.5, 0.8)).expect("a spring");
+            let (mut refuse, mut clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
+            (refuse.links.0[2], clamp.links.0[2]) = (0.1, 0.1);
+            match refuse.contact(&contact) {
+                Err(HandError::TooStiff { largest, bound: 6.0, .. }) => assert!(largest > 9e4 && largest.is_finite()),
+                other => panic!("{torsion:e}: {other:?}"),
+            }
+            let clamped = clamp.contact(&contact).expect("clamped");
+            let admitted = Contact::general(&clamped, &Matrix6::identity()).expect("a spring").largest_eigenvalue(0.1);
+            assert!((admitted - 6.0).abs() < 1e-9, "{torsion:e}: {admitted} N/cm in {clamped}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The black boxes of an open hand: kept at all times, written to a file at a fault where that is configured, and when asked.
 
-use crate::finger::Recording;
+use crate::finger::{KeptRecord, Recording};
 use crate::hand::announcement::say;
 use crate::hand::{Hand, HandError};
 use std::fs::OpenOptions;
@@ -18,6 +18,14 @@ impl Hand {
     /// No such finger.
     pub fn recording(&self, finger: i32) -> Result<Recording, HandError> {
         self.dispatcher.recording(finger)?.ok_or(HandError::NoAnswer(finger))
+    }
+
+    /// One cycle of the last two seconds of finger 1, 2 or 3, or the newest.
+    ///
+    /// # Errors
+    /// No such finger, a cycle that is not kept.
+    pub fn record(&self, finger: i32, cycle: Option<u64>) -> Result<KeptRecord, HandError> {
+        self.dispatcher.record(finger, cycle)?.ok_or(HandError::NoRecord { finger, cycle: cycle.unwrap_or_default() })
     }
 
     /// Writes them into a file, new or over an old one: `sun2xp replay` and docs/black-box.md tell what to do with it.

@@ -6,6 +6,7 @@ use crate::hand::calibration_file::store;
 use crate::hand::{Hand, HandError};
 use crate::model::Refusal;
 use crate::model::configuration::{Configuration, ConfiguredFinger};
+use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -49,10 +50,11 @@ impl Calibrating {
         let refused = |unusable| refusal(finger, unusable);
         let calibration = Calibration::new(task, &configuration.fingers[index], rate).map_err(refused)?;
         configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index]);
-        let number = hand.dispatcher.announce(finger, &configuration)?;
-        let adjustable = Adjustable::new(&configuration, index, number).map_err(refused)?;
-        let given = member.mailbox.order(Order::Calibrate(CalibrationRun { calibration, adjustable }));
-        Self::ordered(finger, given, None)
+        let adjustable = Adjustable::new(&configuration, index, 0).map_err(refused)?;
+        hand.dispatcher.hand_over(finger, &configuration, |number| {
+            let run = CalibrationRun { calibration, adjustable: Adjustable { number, ..adjustable } };
+            Self::ordered(finger, member.mailbox.order(Order::Calibrate(run)), None)
+        })
     }
 
     fn ordered(finger: i32, given: Result<Option<u32>, Fault>, found: Option<Findings>) -> Result<Self, HandError> {
@@ -80,7 +82,6 @@ impl Calibrating {
             if report.stage == Stage::Opening {
                 return Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }));
             }
-            hand.dispatcher.member(finger)?.mailbox.adopt();
             return Ok(Standing::Done(found));
         }
         match report.calibration {
@@ -93,12 +94,13 @@ impl Calibrating {
                 let mut configuration = hand.configuration.write();
                 let mut changed = configuration.clone();
                 found.apply(&mut changed.fingers[index]);
-                let number = hand.dispatcher.announce(finger, &changed)?;
-                let adjustable =
-                    Adjustable::new(&changed, index, number).map_err(|unusable| refusal(finger, unusable))?;
+                let adjustable = Adjustable::new(&changed, index, 0).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = matches!(found, Findings::Signs(_));
-                let given = hand.dispatcher.member(finger)?.mailbox.restart(adjustable, limp);
-                *self = Self::ordered(finger, given, Some(found))?;
+                let member = hand.dispatcher.member(finger)?;
+                *self = hand.dispatcher.hand_over(finger, &changed, |number| {
+                    let given = member.mailbox.restart(Adjustable { number, ..adjustable }, limp);
+                    Self::ordered(finger, given, Some(found))
+                })?;
                 *configuration = changed;
                 Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))
             }
@@ -159,10 +161,14 @@ impl Hand {
     /// # Errors
     /// A file that cannot be read or written, or can no longer be used.
     pub fn store_calibration(&self) -> Result<bool, HandError> {
-        let Some(file) = &self.file else { return Ok(false) };
-        let calibrated: Configuration = self.configuration.read().clone();
-        store(file, &calibrated)?;
+        let Some((file, calibrated)) = self.to_store() else { return Ok(false) };
+        store(&file, &calibrated)?;
         Ok(true)
+    }
+
+    /// The configuration file that the hand was opened with, if there is one, and what is to be [`store`]d there.
+    pub fn to_store(&self) -> Option<(PathBuf, Configuration)> {
+        Some((self.file.clone()?, self.configuration.read().clone()))
     }
 }
 

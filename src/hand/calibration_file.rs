@@ -96,6 +96,7 @@ fn keys(finger: &ConfiguredFinger) -> Vec<Found> {
         found("gauge", "newton_per_count", numbers(&finger.gauge.newton_per_count)),
         found("gauge", "zero", numbers(&finger.gauge.zero)),
         found("tendon", "stiffness", numbers(&finger.tendon.stiffness)),
+        Found { array: false, ..found("tendon", "stiffness_tolerance", numbers(&[finger.tendon.stiffness_tolerance])) },
         found("friction", "motor_coulomb", numbers(&finger.friction.motor_coulomb)),
         found("friction", "conduit", numbers(&finger.friction.conduit)),
         found("friction", "joint_coulomb", numbers(&finger.friction.joint_coulomb)),

@@ -1,7 +1,7 @@
 //! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
 
 use crate::control::{SetPoint, spatial};
-use crate::finger::{self, BlackBox, FingerReport, Losses, Mailbox, Recording};
+use crate::finger::{self, BlackBox, FingerReport, KeptRecord, Losses, Mailbox, Recording};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::black_box::keep;
@@ -157,11 +157,30 @@ impl Dispatcher {
         Ok(collected.black_box.recording())
     }
 
-    /// Tells the black box of what a controller is about to be made; the controller's number.
-    pub fn announce(&self, finger: i32, configuration: &Configuration) -> Result<u32, HandError> {
-        let index = self.index(finger)?;
+    /// One of the last two seconds' records.
+    pub fn record(&self, finger: i32, cycle: Option<u64>) -> Result<Option<KeptRecord>, HandError> {
         let mut collected = self.collected(finger)?;
-        Ok(collected.black_box.announce(configuration.fingers[index].clone(), configuration.gravity(index)))
+        collected.collect();
+        Ok(collected.black_box.record(cycle))
+    }
+
+    /// Lets `give` hand a finger a controller that was made from this configuration, under the number that it gets. The black box
+    /// keeps the configuration if that is done, and nothing of it where it is refused.
+    pub fn hand_over<T>(
+        &self,
+        finger: i32,
+        configuration: &Configuration,
+        give: impl FnOnce(u32) -> Result<T, HandError>,
+    ) -> Result<T, HandError> {
+        let index = self.index(finger)?;
+        // Locked throughout: no record that names the controller is collected before the black box knows it.
+        let mut collected = self.collected(finger)?;
+        let taken = self.members[index].mailbox.report().controller;
+        collected.collect();
+        let given = give(collected.black_box.next_number())?;
+        let (finger, gravity) = (configuration.fingers[index].clone(), configuration.gravity(index));
+        collected.black_box.announce(finger, gravity, taken);
+        Ok(given)
     }
 
     fn collected(&self, finger: i32) -> Result<MutexGuard<'_, Collected>, HandError> {

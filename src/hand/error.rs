@@ -3,7 +3,7 @@
 use crate::board::LinkError;
 use crate::control::OutOfReach;
 use crate::control::calibration::Obstacle;
-use crate::finger::Fault;
+use crate::finger::{Fault, FaultKind};
 use crate::hand::missing::Missing;
 use crate::model::configuration::Unusable;
 use crate::model::{ContactError, Refusal};
@@ -225,6 +225,12 @@ pub enum HandError {
         "finger {0} shares its port with a finger that runs: they recover together, so stop that one first (StopHand, CloseHand)"
     )]
     PortInUse(i32),
+    /// A faulted finger whose servo thread has ended.
+    #[error(
+        "the servo thread of finger {0} has failed (fault {number}), and nothing is left that could run it: CloseHand, then OpenHand",
+        number = FaultKind::ServoPanic.number()
+    )]
+    ServoEnded(i32),
     /// A port that has failed, and is not to be opened again.
     #[error(
         "the port of finger {0} has failed: set `finger.reconnect = true` to have it opened again, or CloseHand, OpenHand"
@@ -237,6 +243,16 @@ pub enum HandError {
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
+    },
+    /// A cycle that is not in the black box.
+    #[error(
+        "cycle {cycle} of finger {finger} is not kept: only the last two seconds are, FingerRecord.Oldest to Newest; 0 asks for the newest"
+    )]
+    NoRecord {
+        /// 1 to 3.
+        finger: i32,
+        /// What was asked for; 0: the newest.
+        cycle: u64,
     },
     /// A push beyond what any finger bears.
     #[error(
@@ -268,7 +284,7 @@ impl HandError {
             Self::Contact { .. } => libc::EDOM,
             Self::Permanent { .. } => libc::EBUSY,
             Self::NotSymmetric { .. } | Self::Negative { .. } => libc::EDOM,
-            Self::Faulted { .. } => libc::EIO,
+            Self::Faulted { .. } | Self::ServoEnded(_) => libc::EIO,
             // Without an errno of the system's the file was read, but is no text.
             Self::ConfigurationFile { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
             Self::System { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
@@ -279,6 +295,7 @@ impl HandError {
             Self::NotReconnected(_) => libc::ENODEV,
             Self::Busy(_) | Self::PortInUse(_) => libc::EBUSY,
             Self::Store { source, .. } | Self::BlackBox { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
+            Self::NoRecord { .. } => libc::ENOENT,
             Self::NotSimulated(_) => libc::ENOTSUP,
         }
     }

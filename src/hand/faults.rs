@@ -2,12 +2,11 @@
 
 use crate::finger::{Fault, FaultKind, Stage};
 use crate::hand::{Hand, HandError};
-use crate::model::configuration::RealTime;
 
 /// The answer to [`Hand::fault`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FingerFault {
-    /// What made the finger stop; stays until the hand is opened anew.
+    /// What made the finger stop; stays until it recovers, or the hand is opened anew.
     pub stopped: Option<Fault>,
     /// What the finger is warned of, up to a second ago.
     pub warning: Option<Fault>,
@@ -26,10 +25,7 @@ impl Hand {
             Stage::Faulted(fault) => Some(fault),
             _ => None,
         };
-        let configuration = self.configuration.read();
-        let asked = configuration.hand.real_time != RealTime::Ignore
-            && configuration.fingers.iter().any(|finger| finger.priority > 0);
-        let refused = (asked && !self.given.scheduling).then_some(Fault::new(FaultKind::RealtimeRefused));
+        let refused = self.given.refused.then_some(Fault::new(FaultKind::RealtimeRefused));
         let warning = report.warnings.newest().or(refused);
         Ok(FingerFault { stopped, warning, warnings: report.warnings.given() })
     }

@@ -14,6 +14,7 @@ use parking_lot::Mutex;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 
@@ -32,7 +33,17 @@ const LOOKING: Duration = Duration::from_millis(2);
 /// A servo takes a link back within a cycle; one that has not after so long never will.
 const TAKING_BACK: Duration = Duration::from_secs(5);
 
-/// A port that may have to be mended.
+/// A port that may have to be mended. It outlives its hand where somebody is at work on it.
+struct Place {
+    /// 1 to 3.
+    fingers: Vec<i32>,
+    /// How often it was mended and given back.
+    mended: AtomicU32,
+    /// Locked while ports are opened and hands shaken, which takes long. None once the hand is closed.
+    workshop: Mutex<Option<Workshop>>,
+}
+
+/// What a port is mended with.
 pub(super) struct Workshop {
     path: PathBuf,
     baud: u32,
@@ -75,6 +86,11 @@ impl Workshop {
         self.lent
     }
 
+    /// Whether the servo has failed: it takes nothing back.
+    fn servo_ended(&self) -> bool {
+        self.borrower.lent.is_abandoned()
+    }
+
     /// Opens the port where it is gone, and shakes hands with its boards: the same ones, with their zeros.
     fn mend(&mut self) -> Result<[Option<Configured>; FINGERS], HandError> {
         self.checked = false;
@@ -88,6 +104,8 @@ impl Workshop {
         let mut all = [None; FINGERS];
         for (board, place) in self.boards.iter().zip(&mut all) {
             let KnownBoard { finger, address, ref terms, .. } = *board;
+            // One whose port had failed was not told to stop; cable and power may be back before its watchdog's time is over.
+            let _ = link.stop(address, 0);
             match link.shake_hands(address, terms, now() + ANSWER) {
                 Ok((identity, configured)) => {
                     board.check(&identity, configured.status)?;
@@ -130,23 +148,28 @@ impl KnownBoard {
 
 /// Every port of a hand, and the thread that looks for those that are gone.
 pub(super) struct Recovery {
-    workshops: Arc<Vec<Mutex<Workshop>>>,
+    places: Vec<Arc<Place>>,
     reconnecting: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Recovery {
     pub fn new(workshops: Vec<Workshop>) -> Self {
-        Self { workshops: Arc::new(workshops.into_iter().map(Mutex::new).collect()), reconnecting: None }
+        let place = |workshop: Workshop| {
+            let fingers = workshop.boards.iter().map(|board| board.finger).collect();
+            Arc::new(Place { fingers, mended: AtomicU32::new(0), workshop: Mutex::new(Some(workshop)) })
+        };
+        Self { places: workshops.into_iter().map(place).collect(), reconnecting: None }
     }
 
     /// Starts that thread, where a port asks for it.
     pub fn start(&mut self) -> io::Result<()> {
-        if !self.workshops.iter().any(|workshop| workshop.lock().reconnect) {
+        let asks = |place: &Arc<Place>| place.workshop.lock().as_ref().is_some_and(|workshop| workshop.reconnect);
+        if !self.places.iter().any(asks) {
             return Ok(());
         }
         let (stop, stopped) = bounded(0);
-        let workshops = self.workshops.clone();
-        let thread = spawn("sun2xp ports", Priority::default(), move |_| reconnect(&workshops, &stopped))?;
+        let places = self.places.clone();
+        let thread = spawn("sun2xp ports", Priority::default(), move |_| reconnect(&places, &stopped))?;
         self.reconnecting = Some((stop, thread));
         Ok(())
     }
@@ -155,23 +178,27 @@ impl Recovery {
     pub fn forget(&mut self) {
         std::mem::forget(self.reconnecting.take());
     }
-}
 
-impl Drop for Recovery {
-    fn drop(&mut self) {
+    /// Ends that thread, and closes the ports that the servos have lent: waits for whoever is at work on one.
+    pub fn end(&mut self) {
         if let Some((stop, thread)) = self.reconnecting.take() {
             drop(stop);
             // A panic has ended it before.
             let _ = thread.join();
         }
+        self.places.iter().for_each(|place| *place.workshop.lock() = None);
     }
 }
 
-fn reconnect(workshops: &[Mutex<Workshop>], stopped: &Receiver<()>) {
+fn reconnect(places: &[Arc<Place>], stopped: &Receiver<()>) {
     while stopped.recv_timeout(LOOKING_FOR_PORTS) == Err(RecvTimeoutError::Timeout) {
-        for workshop in workshops {
-            let mut workshop = workshop.lock();
-            if workshop.reconnect && workshop.fetch() && !workshop.checked {
+        for place in places {
+            if let Some(workshop) = &mut *place.workshop.lock()
+                && workshop.reconnect
+                && !workshop.servo_ended()
+                && workshop.fetch()
+                && !workshop.checked
+            {
                 // Whoever recovers the finger is told what is wrong.
                 let _ = workshop.mend();
             }
@@ -179,41 +206,76 @@ fn reconnect(workshops: &[Mutex<Workshop>], stopped: &Receiver<()>) {
     }
 }
 
-/// A recovery under way.
+/// A recovery under way, in three steps, of which only the second takes long, and needs no hand.
 pub struct Recovering {
-    /// Every finger of the port, with how often it had recovered before.
-    fingers: Vec<(i32, u32)>,
+    /// Nothing is to be done without one.
+    task: Option<Task>,
     begun: Instant,
 }
 
+struct Task {
+    finger: i32,
+    place: Arc<Place>,
+    /// As it was.
+    mended: u32,
+    /// Every finger of the port, with how often it had recovered before.
+    fingers: Vec<(i32, u32)>,
+    stop_calls: u32,
+}
+
 impl Recovering {
-    /// Mends what finger 1, 2 or 3 is connected by and lets it take up slack, with every other finger of the port. Nothing is to be
-    /// done for a finger that is not faulted.
+    /// Notes how finger 1, 2 or 3 stands, with every other finger of its port. Nothing is to be done for a finger that is not
+    /// faulted.
     ///
     /// # Errors
-    /// No such finger; a finger that runs on the same port; a port or board that does not serve, or is another than at open.
+    /// No such finger.
     pub fn begin(hand: &Hand, finger: i32) -> Result<Self, HandError> {
         let begun = Instant::now();
         // An emergency stop from here on counts.
         let stop_calls = stop_calls();
+        let place = hand.recovery.places.iter().find(|place| place.fingers.contains(&finger));
+        let place = place.ok_or(HandError::NoSuchFinger(finger))?.clone();
+        // Before the finger is looked at: who mends the port from here on has done it for this call too.
+        let mended = place.mended.load(Ordering::Acquire);
         if !matches!(hand.report(finger)?.stage, Stage::Faulted(_)) {
-            return Ok(Self { fingers: Vec::new(), begun });
+            return Ok(Self { task: None, begun });
         }
-        let on_port = |workshop: &&Mutex<Workshop>| workshop.lock().boards.iter().any(|board| board.finger == finger);
-        let workshop = hand.recovery.workshops.iter().find(on_port).ok_or(HandError::NoSuchFinger(finger))?;
-        let mut workshop = workshop.lock();
-        while !workshop.fetch() {
-            if begun.elapsed() > LENDING {
+        let before = |&finger: &i32| Ok((finger, hand.report(finger)?.recoveries));
+        let fingers = place.fingers.iter().map(before).collect::<Result<_, HandError>>()?;
+        Ok(Self { task: Some(Task { finger, place, mended, fingers, stop_calls }), begun })
+    }
+
+    /// Mends what the finger is connected by and lets it take up slack, with every other finger of the port. Ports are opened and
+    /// hands shaken here: it may take a second. Only those wait for it who mend the same port or close the hand.
+    ///
+    /// # Errors
+    /// A finger that runs on the same port; a port or board that does not serve, or is another than at open; a servo that has
+    /// failed; a hand that was closed.
+    pub fn mend(&self) -> Result<(), HandError> {
+        let Some(Task { finger, ref place, mended, stop_calls, .. }) = self.task else { return Ok(()) };
+        loop {
+            if let Some(workshop) = &mut *place.workshop.lock() {
+                if place.mended.load(Ordering::Acquire) != mended {
+                    // Somebody who recovers a finger of the same port was faster.
+                    return Ok(());
+                }
+                if workshop.servo_ended() {
+                    return Err(HandError::ServoEnded(finger));
+                }
+                if workshop.fetch() {
+                    let configured = workshop.mend()?;
+                    workshop.give_back(configured, stop_calls);
+                    place.mended.fetch_add(1, Ordering::Release);
+                    return Ok(());
+                }
+            } else {
+                return Err(HandError::NoAnswer(finger));
+            }
+            if self.begun.elapsed() > LENDING {
                 return Err(HandError::PortInUse(finger));
             }
             sleep(LOOKING);
         }
-        let configured = workshop.mend()?;
-        let fingers: Result<Vec<_>, HandError> =
-            workshop.boards.iter().map(|board| Ok((board.finger, hand.report(board.finger)?.recoveries))).collect();
-        let fingers = fingers?;
-        workshop.give_back(configured, stop_calls);
-        Ok(Self { fingers, begun })
     }
 
     /// Whether every finger of the port holds the pose that it was found in.
@@ -222,19 +284,17 @@ impl Recovering {
     /// A finger that faults again.
     pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
         let mut done = true;
-        for &(finger, before) in &self.fingers {
+        for &(finger, before) in self.task.iter().flat_map(|task| &task.fingers) {
             let report = hand.report(finger)?;
-            if report.recoveries == before {
-                if self.begun.elapsed() > TAKING_BACK {
-                    return Err(HandError::NoAnswer(finger));
-                }
-                done = false;
-                continue;
-            }
             match report.stage {
+                Stage::Faulted(_) if report.recoveries == before => {
+                    if self.begun.elapsed() > TAKING_BACK {
+                        return Err(HandError::NoAnswer(finger));
+                    }
+                    done = false;
+                }
                 Stage::Faulted(fault) => return Err(HandError::Faulted { finger, fault }),
-                Stage::Opening => done = false,
-                _ => hand.dispatcher.member(finger)?.mailbox.adopt(),
+                stage => done &= stage != Stage::Opening,
             }
         }
         Ok(done)
@@ -246,9 +306,10 @@ impl Hand {
     /// other faulted fingers on its port. What made it fault must be mended. Does nothing for a finger that is not faulted.
     ///
     /// # Errors
-    /// As [`Recovering::begin`] and [`Recovering::poll`].
+    /// As [`Recovering::begin`], [`Recovering::mend`] and [`Recovering::poll`].
     pub fn recover(&self, finger: i32) -> Result<(), HandError> {
         let recovering = Recovering::begin(self, finger)?;
+        recovering.mend()?;
         while !recovering.poll(self)? {
             sleep(LOOKING);
         }

@@ -70,6 +70,8 @@ pub struct FingerStatus {
     pub losses: Losses,
     /// The part of the wanted joint torque that the tension limits let through in the last cycle, 0 to 1.
     pub torque_scale: f64,
+    /// The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where its tendons carry no more in this pose.
+    pub stiffness_scale: f64,
     /// The part of the calibration under way that is done, 0 to 1; 0 where there is none.
     pub calibration: f64,
 }
@@ -189,6 +191,7 @@ impl Hand {
             wake_up: self.timing(finger, realtime::Stage::WakeUp)?,
             losses: report.losses,
             torque_scale: report.cycle.torque_scale,
+            stiffness_scale: report.cycle.stiffness_scale,
             calibration: match report.calibration {
                 Some(Verdict::Going(progress)) => progress.part,
                 _ => 0.0,
@@ -267,7 +270,6 @@ impl Hand {
                 }
             }
             if !opening {
-                self.dispatcher.members().iter().for_each(|member| member.mailbox.adopt());
                 return Ok(());
             }
             sleep(LOOKING);
@@ -289,5 +291,6 @@ impl Drop for Hand {
             // A servo thread catches its own panics. Its ports are closed here, not in the servo: it may take long.
             let _ = servo.join();
         }
+        self.recovery.end();
     }
 }

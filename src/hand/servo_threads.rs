@@ -22,6 +22,8 @@ const HEAD_START: u64 = 2_000_000;
 pub(super) struct Given {
     /// All run under SCHED_FIFO.
     pub scheduling: bool,
+    /// The system has refused that to one of them.
+    pub refused: bool,
     /// All have their memory locked.
     pub memory: bool,
     /// All run on the cores that are configured.
@@ -75,10 +77,10 @@ pub(super) fn start(
     let had: Vec<Realtime> = hear.iter().take(threads.len()).collect();
     let missing = missing(had);
     let tried = real_time != RealTime::Ignore;
+    let refused = tried && missing.iter().any(|missing| matches!(missing, Missing::Scheduling(_)));
     let given = Given {
-        scheduling: tried
-            && threads.iter().all(|&thread| priority(configuration, thread).fifo > 0)
-            && !missing.iter().any(|missing| matches!(missing, Missing::Scheduling(_))),
+        scheduling: tried && !refused && threads.iter().all(|&thread| priority(configuration, thread).fifo > 0),
+        refused,
         memory: tried && !missing.iter().any(|missing| matches!(missing, Missing::Memory(_))),
         core: !missing.iter().any(|missing| matches!(missing, Missing::Core(_)))
             && (tried || configuration.fingers.iter().all(|finger| finger.core.is_none())),

@@ -109,19 +109,29 @@ impl Contact {
         &self.0
     }
 
-    /// The largest eigenvalue of the stiffness, N/cm, with a rotation measured by the way it moves a point at `lever` (cm)
-    /// from the tip. With the length of the last link it is comparable with that of a Kx: turning joint 2 does both.
+    /// The largest eigenvalue of the stiffness, N/cm, with a rotation measured by the way it moves a point at `lever` (cm, 1e-3 or more)
+    /// from the tip. With the length of the last link it is comparable with that of a Kx: turning joint 2 does both. The largest
+    /// finite number, where it is beyond that.
     pub fn largest_eigenvalue(&self, lever: f64) -> f64 {
-        symmetrised(&scaled(&self.0, 1.0 / lever)).symmetric_eigenvalues().max()
+        let (size, measured) = self.measured(lever);
+        (measured.symmetric_eigenvalues().max() * size).min(f64::MAX)
     }
 
     /// The nearest contact without an eigenvalue, in the sense of [`Contact::largest_eigenvalue`], above `bound` or below
     /// zero: it keeps its principal directions.
     pub fn clamped(&self, bound: f64, lever: f64) -> Self {
-        let mut eigen = symmetrised(&scaled(&self.0, 1.0 / lever)).symmetric_eigen();
-        eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
+        let (size, measured) = self.measured(lever);
+        let mut eigen = measured.symmetric_eigen();
+        eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = (*eigenvalue * size).clamp(0.0, bound));
         let recomposed = scaled(&eigen.recompose(), lever);
         Self(symmetrised(&recomposed))
+    }
+
+    /// A size, N/cm, and the stiffness over it, with rotations measured by `lever`. Taken out before they are: where the lever is short the
+    /// product may be beyond all finite numbers, and the eigenvalues of such a matrix NaN.
+    fn measured(&self, lever: f64) -> (f64, Matrix6<f64>) {
+        let size = self.0.amax().max(f64::MIN_POSITIVE);
+        (size, symmetrised(&scaled(&(self.0 / size), 1.0 / lever)))
     }
 }
 

@@ -127,6 +127,7 @@ impl ConfiguredFinger {
         within("tendon.minimum", self.tendon.minimum, 0.1, 1000.0, "N")?;
         within("tendon.maximum", self.tendon.maximum, 0.1, 1000.0, "N")?;
         each("tendon.stiffness", &self.tendon.stiffness, 1.0, 1e6, "N/cm")?;
+        within("tendon.stiffness_tolerance", self.tendon.stiffness_tolerance, 0.0, 1.0, "")?;
         if let Some(ghost) = &self.geometry.ghost_row {
             each("geometry.ghost_row", ghost, -100.0, 100.0, "")?;
         }

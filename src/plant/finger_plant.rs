@@ -9,7 +9,7 @@ use crate::model::configuration::ConfiguredFinger;
 use crate::model::{LinkDynamics, Links, Surface, TendonsError};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
-/// Simulated time of one [`Plant::step`], s.
+/// Simulated time of one [`Plant::step`], s, unless another is chosen.
 pub const PLANT_STEP_SECONDS: f64 = 1e-4;
 
 /// One finger. Its state is theta, theta_dot, m, m_dot; it is integrated by semi-implicit Euler.
@@ -24,8 +24,10 @@ pub struct Plant {
     tendons: ElasticTendons,
     motors: Motors,
     joint_viscous: Vector3<f64>,
-    /// Largest friction impulses of one step, N m s.
-    joint_friction_impulse: Vector3<f64>,
+    /// N m.
+    joint_coulomb: Vector3<f64>,
+    /// Length of a step, s.
+    step: f64,
 
     theta: Vector3<f64>,
     theta_dot: Vector3<f64>,
@@ -54,7 +56,8 @@ impl Plant {
             stops: JointStops::new(finger),
             motors: Motors::new(finger),
             joint_viscous: simulation.joint_viscous_friction.into(),
-            joint_friction_impulse: Vector3::from(simulation.joint_coulomb_friction) * PLANT_STEP_SECONDS,
+            joint_coulomb: simulation.joint_coulomb_friction.into(),
+            step: PLANT_STEP_SECONDS,
             theta,
             theta_dot: Vector3::zeros(),
             motor: tendons.motor_angles_at(&theta),
@@ -67,10 +70,16 @@ impl Plant {
         })
     }
 
-    /// Advances by [`PLANT_STEP_SECONDS`]. `motor_torques`: what the board commands, N m: a positive one pulls where
+    /// With steps of so many seconds, more than 0, instead of [`PLANT_STEP_SECONDS`]: for periods that are no multiple of that. Longer steps
+    /// may swing by themselves.
+    pub fn with_step(self, seconds: f64) -> Self {
+        Self { step: seconds, ..self }
+    }
+
+    /// Advances by a step, [`PLANT_STEP_SECONDS`] by default. `motor_torques`: what the board commands, N m: a positive one pulls where
     /// `motor.sign` is +1. The motors give at most their torque limit.
     pub fn step(&mut self, motor_torques: [f64; 4]) {
-        let h = PLANT_STEP_SECONDS;
+        let h = self.step;
         self.tendons.slip(&self.theta, &self.motor);
         let tensions = self.tensions();
 
@@ -84,7 +93,7 @@ impl Plant {
             - self.dynamics.coriolis(&self.theta, &self.theta_dot);
         let inverse_inertia = inverse(&self.dynamics.inertia(&self.theta));
         let rates = self.theta_dot + inverse_inertia * torque * h;
-        self.theta_dot = stop_by_friction(rates, &inverse_inertia, &self.joint_friction_impulse);
+        self.theta_dot = stop_by_friction(rates, &inverse_inertia, &(self.joint_coulomb * h));
         self.theta += self.theta_dot * h;
 
         if !self.braked {

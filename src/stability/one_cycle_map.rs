@@ -49,12 +49,14 @@ pub struct OneCycleMap {
     tendons: Tendons,
     controller: Controller,
     distribution: TensionDistribution,
-    /// Plant steps in a cycle.
+    /// Plant steps in a cycle, and the length of each, s.
     steps: usize,
+    step: f64,
 }
 
 impl OneCycleMap {
-    /// The finger with its configured scheme, law and gains. Of rates that the plant's step does not divide the next lower one.
+    /// The finger with its configured scheme, law and gains at `rate`, Hz. A period is a whole number of plant steps, of at most the
+    /// usual length.
     ///
     /// # Errors
     /// The key that makes no controller.
@@ -64,9 +66,10 @@ impl OneCycleMap {
         let steps = (1.0 / (rate * PLANT_STEP_SECONDS) - 1e-6).ceil().max(1.0);
         let maximum = Vector4::repeat(finger.tendon.maximum);
         Ok(Self {
-            controller: Controller::new(&finger, 1.0 / (steps * PLANT_STEP_SECONDS))?,
+            controller: Controller::new(&finger, rate)?,
             distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, maximum)?,
             steps: steps as usize,
+            step: 1.0 / (rate * steps),
             tendons,
             finger,
         })
@@ -133,7 +136,9 @@ impl OneCycleMap {
     fn start(&self, rest: &Rest, tensions: &Vector4<f64>) -> Moving {
         let mut finger = self.finger.clone();
         finger.simulation.start_degrees = rest.joints.map(f64::to_degrees).into();
-        let mut plant = Plant::new(&finger, Vector3::zeros()).expect("the tendons of a controller that was made");
+        let mut plant = Plant::new(&finger, Vector3::zeros())
+            .expect("the tendons of a controller that was made")
+            .with_step(self.step);
         plant.release_brake();
         let stretch = (tensions - plant.tensions()).component_div(&Vector4::from(finger.simulation.tendon_stiffness));
         for motor in 0..4 {
@@ -151,7 +156,7 @@ impl OneCycleMap {
     }
 
     fn cycles(&self, seconds: f64) -> usize {
-        (seconds / (self.steps as f64 * PLANT_STEP_SECONDS)).round().max(1.0) as usize
+        (seconds / (self.steps as f64 * self.step)).round().max(1.0) as usize
     }
 
     fn run(&self, finger: &mut Moving, seconds: f64) {

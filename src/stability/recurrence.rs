@@ -1,6 +1,6 @@
 //! The slowest mode of a motion that decays or grows by itself.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// Below this part of the largest sample one is rounding.
 const ROUNDING: f64 = 1e-6;
@@ -15,7 +15,9 @@ const LARGEST_ORDER: usize = 8;
 /// spaced, the channels in proportion to one another.
 ///
 /// After the fast modes have gone the last samples obey a short recurrence y[k] = a1 y[k-1] + ... + ap y[k-p], the same in
-/// every channel, and its roots are the eigenvalues left (Prony). The shortest one that explains them has no others.
+/// every channel, and its roots are the eigenvalues left (Prony). The shortest one that explains them has hardly any others, and of
+/// these the motion has no part. Where none explains them, as at a joint limit that one motion touches and the other does not, roots
+/// say nothing, and the mean change of the samples does.
 pub fn growth(samples: &[DVector<f64>]) -> f64 {
     if samples.iter().any(|sample| !sample.norm().is_finite()) {
         return f64::NAN;
@@ -24,15 +26,20 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
     // What comes after the first sample that is lost in rounding is lost too.
     let end = samples.iter().position(|sample| sample.norm() <= ROUNDING * largest).unwrap_or(samples.len());
     let window = &samples[end.saturating_sub(WINDOW)..end];
-    let mut found = f64::NAN;
     for order in 1..=LARGEST_ORDER.min(window.len().saturating_sub(2)) {
         let Some((coefficients, missed)) = recurrence(window, order) else { break };
-        found = largest_root(&coefficients);
         if missed < EXPLAINED {
-            break;
+            return largest_root(window, &coefficients);
         }
     }
-    found
+    mean_change(window)
+}
+
+/// From the largest sample of the first half to that of the second, as a factor from one to the next.
+fn mean_change(window: &[DVector<f64>]) -> f64 {
+    let half = window.len() / 2;
+    let largest = |part: &[DVector<f64>]| part.iter().map(|sample| sample.norm()).fold(0.0, f64::max);
+    (largest(&window[half..]) / largest(&window[..half])).powf(1.0 / half as f64)
 }
 
 /// a1 .. ap, and the root mean square of what they miss, relative to the samples around.
@@ -54,12 +61,28 @@ fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f6
     Some((coefficients, missed))
 }
 
-/// The largest modulus among the roots of z^p - a1 z^(p-1) - ... - ap.
-fn largest_root(coefficients: &DVector<f64>) -> f64 {
+/// The largest modulus among those roots of z^p - a1 z^(p-1) - ... - ap that the last sample has a part of.
+///
+/// The slowest mode has most of it. A root beyond it fits a last digit somewhere, and would foretell a motion that is not there.
+fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
+    const PART: f64 = 0.01;
     let order = coefficients.len();
     let companion = DMatrix::from_fn(order, order, |row, column| match (row, column) {
         (0, column) => coefficients[column],
         (row, column) => f64::from(row == column + 1),
     });
-    companion.complex_eigenvalues().iter().map(|root| root.norm()).fold(0.0, f64::max)
+    let roots = companion.complex_eigenvalues();
+    // sample[k] = sum of c_i z_i^k, every instant counting alike; every power's largest is 1.
+    let weights: Vec<f64> = window.iter().map(|sample| sample.norm().recip()).collect();
+    let mut powers = DMatrix::from_fn(window.len(), order, |k, root| roots[root].powi(k as i32) * weights[k]);
+    for mut power in powers.column_iter_mut() {
+        let largest = power.iter().map(|power| power.norm()).fold(0.0, f64::max);
+        power.apply(|power| *power /= largest);
+    }
+    let samples =
+        DMatrix::from_fn(window.len(), window[0].len(), |k, channel| Complex::from(window[k][channel] * weights[k]));
+    let Ok(parts) = powers.clone().svd(true, true).solve(&samples, 1e-12) else { return f64::NAN };
+    let last = window.len() - 1;
+    let has_part = |root: &usize| powers[(last, *root)].norm() * parts.row(*root).norm() >= PART;
+    (0..order).filter(has_part).map(|root| roots[root].norm()).fold(0.0, f64::max)
 }

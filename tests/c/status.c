@@ -7,6 +7,9 @@ int main(void)
 {
     struct { struct FingerStatus Known; unsigned char Later[64]; } Larger;
     struct FingerStatus *Status = &Larger.Known;
+    /* Stretched, where the tendons carry less than the bound. */
+    static float Stretched[3] = { 0.0F, 0.0F, 0.1F };
+    static float Stiffest[3][3] = { { 6.0F, 0.0F, 0.0F }, { 0.0F, 6.0F, 0.0F }, { 0.0F, 0.0F, 6.0F } };
     int finger, byte;
 
     CHECK(OpenHand() == 0);
@@ -28,8 +31,16 @@ int main(void)
         CHECK(Status->Cycles >= 900);
         CHECK(Status->WakeUpMedian <= Status->WakeUp99 && Status->WakeUp99 <= Status->WakeUpMaximum);
         CHECK(Status->TorqueScale > 0.0 && Status->TorqueScale <= 1.0);
+        CHECK(Status->StiffnessScale == 1.0);
         CHECK(Status->DamagedFrames == 0);
     }
+    CHECK(SendKx(1, Stiffest) == 0);
+    CHECK(SendPos(1, Stretched) == 0);
+    PAUSE_MS(2000);
+    Status->Size = sizeof *Status;
+    CHECK(GetStatus(1, Status) == 0);
+    printf("stretched, at 6 N/cm: %.3f of it\n", Status->StiffnessScale);
+    CHECK(Status->StiffnessScale > 0.5 && Status->StiffnessScale < 1.0);
     CHECK(CloseHand() == 0);
     return 0;
 }

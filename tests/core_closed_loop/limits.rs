@@ -90,6 +90,35 @@ fn a_motor_that_is_warm_is_limited_to_what_it_can_give_for_ever() {
     assert!(squares.max() > 0.8, "{:?} N^2 cm^2: blind", squares.as_slice());
 }
 
+/// One motor that may give 21 N for ever, three that may give 53 N, and a torque against a stop that asks for more of all of them.
+/// Figure 11 has no gain on the tension error, and leaves the friction of the motors.
+#[test]
+fn a_warm_motor_does_not_turn_the_torque() {
+    for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback] {
+        let mut finger = finger_with(scheme);
+        finger.motor.continuous_torque[0] = 1.0;
+        finger.motor.thermal_time = 0.5;
+        finger.controller.set_point_speed = Some(1.0);
+        let mut servo = Loop::new(&finger, 1000.0);
+        servo.right_alarms = &[Symptom::OverheatedMotor];
+        // Bent about all joints, so that the torque has no symmetry which would keep its direction.
+        let beyond = spring(Vector3::new(0.4, 3.5, 1.0), 5.0);
+        servo.run(6.0, &beyond);
+        let (mut asked, mut true_torque) = (Vector3::zeros(), Vector3::zeros());
+        for _ in 0..500 {
+            servo.cycle(&beyond);
+            asked += servo.report.joint_torques;
+            true_torque += finger.r() * servo.plant.tensions();
+        }
+        let (turned, scale) = (asked.angle(&true_torque).to_degrees(), servo.report.torque_scale);
+        let pull = servo.report.motor_torques[0] / 0.0475;
+        println!("{scheme:?}: turned by {turned:.2} degrees, {scale:.3} of the torque, motor 1 pulls {pull:.1} N");
+        assert!(pull > 17.0 && pull < 22.0, "{scheme:?}: {pull} N: not at its limit");
+        assert!(scale < 0.9, "{scheme:?}: {scale} of the torque, which is not said to be limited");
+        assert!(turned < 1.0, "{scheme:?}: turned by {turned} degrees");
+    }
+}
+
 const FIGURES: [Scheme; 3] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11];
 
 /// A finger whose motors may give 21 N for ever, and are warm after half a second of more.

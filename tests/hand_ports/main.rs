@@ -5,6 +5,8 @@
 mod c;
 mod endings;
 mod faults;
+mod killed;
+mod leaks;
 mod motion;
 mod opening;
 mod recovery;

@@ -3,16 +3,16 @@
 use crate::rig::{
     Board, START, TARGET, close, goes, on_boards, on_one_port, on_ports, open, three_boards, turn, wait_until,
 };
-use std::fs::read_dir;
+use std::fs::{self, read_dir};
 use std::path::Path;
 use sun2xp::board::protocol::Status;
-use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
+use sun2xp::board::{Defect, Pace, SimulatedBoard, SimulatedPort};
 use sun2xp::finger::{FaultKind, Stage};
-use sun2xp::hand::{Hand, stop_all};
+use sun2xp::hand::{Hand, HandError, Recovering, stop_all};
 use sun2xp::model::configuration::{Configuration, OnFault};
 use sun2xp::realtime::Priority;
 
-fn fault(hand: &Hand, finger: i32) -> Option<FaultKind> {
+pub fn fault(hand: &Hand, finger: i32) -> Option<FaultKind> {
     match hand.report(finger).expect("a report").stage {
         Stage::Faulted(fault) => Some(fault.kind),
         _ => None,
@@ -29,7 +29,7 @@ fn recovers(hand: &Hand, finger: i32) {
 }
 
 /// Open descriptors and threads of this process.
-fn held() -> (usize, usize) {
+pub fn held() -> (usize, usize) {
     let count = |folder: &str| read_dir(folder).expect("a folder").count();
     (count("/proc/self/fd"), count("/proc/self/task"))
 }
@@ -119,6 +119,118 @@ fn a_board_that_lost_its_power_recovers_on_the_same_port() {
         assert_eq!(fault(&hand, finger), None, "it shares the port");
         goes(&hand, finger, START);
     }
+    close(hand);
+}
+
+#[test]
+fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found() {
+    let _turn = turn();
+    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
+    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
+    let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
+    goes(&hand, 2, START);
+    // On its way when it is stopped.
+    hand.send_position(2, TARGET).expect("sent");
+    stop_all();
+    (1..=3).for_each(|finger| assert_eq!(faults(&hand, finger), FaultKind::EmergencyStopCall));
+    let again = std::thread::scope(|scope| {
+        let recovering = scope.spawn(|| hand.recover(1));
+        wait_until("opening", || hand.report(1).expect("a report").stage == Stage::Opening);
+        board.with_finger(1, |finger| finger.suffer(&Defect::EmergencyStop)).expect("finger 1");
+        recovering.join().expect("no panic")
+    });
+    assert!(again.expect_err("it faults again").to_string().contains("emergency stop, input"));
+    wait_until("a spring", || hand.report(2).expect("a report").stage == Stage::Running);
+    let found = hand.report(2).expect("a report").set_point.joints;
+    hand.send_damping(2, 2.0).expect("sent");
+    wait_until("taken", || hand.report(2).expect("a report").set_point.damping == 2.0);
+    assert_eq!(hand.report(2).expect("a report").set_point.joints, found, "it moves though nobody has sent it");
+    close(hand);
+}
+
+#[test]
+fn two_that_recover_fingers_of_one_port_at_once_both_succeed() {
+    let _turn = turn();
+    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
+    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
+    let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
+    stop_all();
+    (1..=3).for_each(|finger| assert_ne!(faults(&hand, finger), FaultKind::Companion));
+    // Both have begun before one of them has mended the port.
+    let recovering = [1, 2].map(|finger| Recovering::begin(&hand, finger).expect("begun"));
+    for recovering in &recovering {
+        recovering.mend().unwrap_or_else(|error| panic!("{error}"));
+    }
+    for recovering in &recovering {
+        wait_until("recovered", || recovering.poll(&hand).unwrap_or_else(|error| panic!("{error}")));
+    }
+    assert_eq!(hand.report(1).expect("a report").recoveries, 1);
+    close(hand);
+}
+
+#[test]
+fn a_hand_is_closed_and_its_ports_free_while_somebody_recovers_a_finger() {
+    let _turn = turn();
+    let mut boards = three_boards();
+    let hand = open(on_boards(&boards));
+    boards[1].signal(libc::SIGSTOP);
+    assert_eq!(faults(&hand, 2), FaultKind::LostReplies);
+    let [mending, late] = [(); 2].map(|()| Recovering::begin(&hand, 2).expect("begun"));
+    // It has the link of the finger, and nobody answers there.
+    assert_eq!(mending.mend().expect_err("nobody answers").errno(), libc::ETIMEDOUT);
+    hand.close();
+    let error = late.mend().expect_err("closed");
+    assert!(error.to_string().contains("was closed"), "{error}");
+    boards[1].signal(libc::SIGCONT);
+    // It carries out what it was told while it stood, first.
+    boards[1].wait_for(2, "at rest", |state| !state.has(Status::ENABLED));
+    // Both recoveries are still there, and keep no port.
+    let hand = open(on_boards(&boards));
+    goes(&hand, 2, TARGET);
+    drop((mending, late));
+    close(hand);
+}
+
+/// A board that is another one, or has lost its zero, is not taken for the finger's.
+#[test]
+fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
+    let _turn = turn();
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("other.toml");
+    // Of the same kind and with the same number, but with other encoders.
+    fs::write(&file, "[finger]\nencoder.counts_per_revolution = [4096, 4096, 4096, 4096]\n").expect("written");
+    let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
+    let mut second = Board::start_at(&at(folder.path()), &["2"]);
+    let mut configuration = on_ports([&first.port, &at(folder.path()), &third.port]);
+    configuration.fingers[1].reconnect = true;
+    let hand = open(configuration);
+    let refused = |kind: FaultKind| {
+        let mut told = None;
+        // At first the port may not be there yet.
+        wait_until("refused for a fault", || match hand.recover(2) {
+            Err(HandError::Faulted { finger: 2, fault }) => {
+                told = Some(fault.kind);
+                true
+            }
+            Err(_) => false,
+            Ok(()) => panic!("recovers"),
+        });
+        assert_eq!(told, Some(kind));
+        assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished), "and stays as it was");
+    };
+    second.kill();
+    assert_eq!(faults(&hand, 2), FaultKind::PortVanished);
+    let mut other = Board::start_with(&["--link", &at(folder.path()), "--config", &file.to_string_lossy()], &["2"]);
+    refused(FaultKind::IdentityChanged);
+    assert!(!other.state(2).has(Status::ENABLED) && other.state(2).limp());
+    other.kill();
+    let mut forgetful = Board::start_at(&at(folder.path()), &["2"]);
+    forgetful.order("zero-lost 2");
+    refused(FaultKind::ZeroLost);
+    assert!(!forgetful.state(2).has(Status::ENABLED) && forgetful.state(2).limp());
+    forgetful.order("mend 2");
+    wait_until("recovered", || hand.recover(2).is_ok());
+    goes(&hand, 2, TARGET);
     close(hand);
 }
 

@@ -25,6 +25,9 @@ pub fn turn() -> MutexGuard<'static, ()> {
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// It stands still while a busy machine keeps its host's commands.
+const PATIENT: [&str; 2] = ["--patient", "500"];
+
 /// `sun2xp board` with its orders.
 pub struct Board {
     process: Child,
@@ -40,24 +43,31 @@ pub struct State {
     pub tensions: Vec<f64>,
     /// N cm.
     pub torques: Vec<f64>,
+    /// By the board's clock, ms: now, of the last Command that was obeyed, of the end state.
+    pub times: Vec<f64>,
     pub status: Status,
 }
 
 impl Board {
     /// A board with these fingers. It asks for the priority that simulated boards have in the library, and is as patient.
     pub fn start(fingers: &[&str]) -> Self {
-        Self::start_with(&[], fingers)
+        Self::start_with(&PATIENT, fingers)
     }
 
     /// The same with a link to its port.
     pub fn start_at(link: &str, fingers: &[&str]) -> Self {
-        Self::start_with(&["--link", link], fingers)
+        Self::start_with(&[&PATIENT[..], &["--link", link]].concat(), fingers)
     }
 
-    fn start_with(options: &[&str], fingers: &[&str]) -> Self {
+    /// One whose time passes as on the wall.
+    pub fn start_impatient(fingers: &[&str]) -> Self {
+        Self::start_with(&[], fingers)
+    }
+
+    pub fn start_with(options: &[&str], fingers: &[&str]) -> Self {
         let mut program = Program::new(env!("CARGO_BIN_EXE_sun2xp"));
         program
-            .args(["board", "--patient", "500", "--priority", "20"])
+            .args(["board", "--priority", "20"])
             .args(options)
             .args(fingers.iter().flat_map(|finger| ["--finger", finger]));
         let mut process = program.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("a board");
@@ -84,6 +94,7 @@ impl Board {
             joints: numbers("joints", 3),
             tensions: numbers("tensions", 4),
             torques: numbers("torques", 4),
+            times: numbers("times", 3),
             status: Status(u16::from_str_radix(status, 16).expect("bits")),
         }
     }

@@ -20,11 +20,13 @@ use sun2xp::realtime::Priority;
 ///     ball FINGER X Y Z RADIUS K             a ball
 ///     free FINGER                            no force, no wall, no ball
 ///     state FINGER                           true joints (rad), tip (cm) and tensions (N), torques of the motors (N cm),
-///                                            status bits as in a Reply
+///                                            times by the board's clock (ms): now, of the last Command that was
+///                                            obeyed, of the end state that followed; NaN: not since the last
+///                                            Configure; status bits as in a Reply
 ///     quit
 ///
-/// What is broken stays so until `mend` or `good`. Parts are counted from 1 to 4; a probability is of each frame from the board, and
-/// without MS it is for ever:
+/// What is broken stays so until `mend` or `good`. Parts are counted from 1 to 4; a probability is of each frame from the board, or
+/// with `commands` before it to the board, and without MS it is for ever:
 ///
 ///     cut FINGER TENDON                      a torn tendon
 ///     slack FINGER TENDON GRIP               a tendon that slips and bears no more than GRIP, N
@@ -43,7 +45,9 @@ use sun2xp::realtime::Priority;
 ///     delay PROBABILITY LATER [MS]           frames come LATER ms later
 ///     duplicate PROBABILITY [MS], reorder PROBABILITY [MS]
 ///     stall MS                               nothing comes, then everything
-///     good                                   a good line again
+///     commands drop 0.01, commands stall MS, and so on
+///                                            the same to frames to the board
+///     good                                   a good line again, both ways
 ///     unplug, replug                         the port vanishes; another one comes, whose path is answered
 ///
 /// Positions and forces are in the finger's frame, lengths in cm. The end of standard input does not end the program, so that it

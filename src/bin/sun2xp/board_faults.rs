@@ -9,8 +9,10 @@ pub enum Trouble {
     Finger(u8, Defect),
     /// No defects any more.
     Mend(u8),
-    /// To frames on the line: with this probability, for so long, ns.
+    /// To frames from the board: with this probability, for so long, ns.
     Line(LineFault, f64, u64),
+    /// The same to frames to the board.
+    LineToBoard(LineFault, f64, u64),
     /// The line is good again.
     GoodLine,
     Unplug,
@@ -55,6 +57,10 @@ impl Trouble {
             "stall" => match numbers()?[..] {
                 [time] => Trouble::Line(LineFault::Stall, 1.0, nanoseconds(time)?),
                 _ => return Err("stall MS".into()),
+            },
+            "commands" => match Self::read(rest)? {
+                Some(Trouble::Line(fault, probability, time)) => Trouble::LineToBoard(fault, probability, time),
+                _ => return Err("commands drop, corrupt, delay, duplicate, reorder or stall ...".into()),
             },
             "mend" => match numbers()?[..] {
                 [finger] => Trouble::Mend(whole(finger)?),
@@ -129,6 +135,10 @@ impl Trouble {
                 port.inject(fault, probability, time, seed);
                 "ok".into()
             }
+            Trouble::LineToBoard(fault, probability, time) => {
+                port.inject_to_board(fault, probability, time, seed);
+                "ok".into()
+            }
             Trouble::GoodLine => {
                 port.clear();
                 "ok".into()
@@ -185,6 +195,8 @@ mod tests {
             ("corrupt 1 20", Trouble::Line(LineFault::Corrupt, 1.0, 20_000_000)),
             ("delay 0.5 3 100", Trouble::Line(LineFault::Delay(3_000_000), 0.5, 100_000_000)),
             ("stall 50", Trouble::Line(LineFault::Stall, 1.0, 50_000_000)),
+            ("commands drop 0.05", Trouble::LineToBoard(LineFault::Drop, 0.05, FOR_EVER)),
+            ("commands stall 50", Trouble::LineToBoard(LineFault::Stall, 1.0, 50_000_000)),
             ("unplug", Trouble::Unplug),
             ("replug", Trouble::PlugIn),
             ("good", Trouble::GoodLine),
@@ -204,6 +216,9 @@ mod tests {
             ("drop 1.5", "no probability"),
             ("drop", "PROBABILITY [MS]"),
             ("stall -1", "no time"),
+            ("commands corrupt 2", "no probability"),
+            ("commands mend 1", "commands drop, corrupt"),
+            ("commands", "commands drop, corrupt"),
             ("slack 1 2 -3", "does not take these numbers"),
         ] {
             let error = read(line).unwrap_err();

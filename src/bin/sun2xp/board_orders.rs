@@ -79,6 +79,7 @@ impl Action {
     /// The answer.
     pub fn apply(&self, finger: &mut SimulatedFinger) -> String {
         let (torques, status) = (finger.motor_torques(), finger.status());
+        let times = [Some(finger.clock()), finger.commanded_at(), finger.ended_at()];
         let plant = finger.plant();
         match *self {
             Action::Force(force) => plant.set_external_force(force.into()),
@@ -91,11 +92,12 @@ impl Action {
                 let listed =
                     |numbers: &[f64]| numbers.iter().map(|number| format!("{number:.5}")).collect::<Vec<_>>().join(" ");
                 return format!(
-                    "state joints {} tip {} tensions {} torques {} status {:#06x}",
+                    "state joints {} tip {} tensions {} torques {} times {} status {:#06x}",
                     listed(plant.joints().as_slice()),
                     listed(plant.tip().as_slice()),
                     listed(plant.tensions().as_slice()),
                     listed(torques.as_slice()),
+                    listed(&times.map(|time| time.map_or(f64::NAN, |time| time as f64 * 1e-6))),
                     status.0
                 );
             }

@@ -21,7 +21,7 @@ const HIGHEST_RATE: u32 = 5000;
 /// holds for any phases of the threads. Exit status 1: a deadline may be missed.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration; without it the default one.
+    /// The configuration file. Without it: the one that OpenHand would take.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     /// Worst cases instead of a measurement.
@@ -51,7 +51,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let configuration = match &arguments.config {
         Some(file) => hand::read(file)?,
-        None => Configuration::default(),
+        None => hand::configured()?.0,
     };
     let costs = match &arguments.costs {
         Some(file) => read(file)?,

@@ -3,6 +3,10 @@
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Vector3, Vector4};
 
+/// `tendon.stiffness_tolerance` of what was identified. On the simulated finger it is right to 0.2 %; a real tendon is no straight
+/// spring.
+const STIFFNESS_TOLERANCE: f64 = 0.03;
+
 /// Results of one routine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Findings {
@@ -96,6 +100,7 @@ impl Findings {
                     *scale *= gain;
                 }
                 finger.tendon.stiffness = found.tendon_stiffness.into();
+                finger.tendon.stiffness_tolerance = STIFFNESS_TOLERANCE;
                 finger.friction.motor_coulomb = found.motor_coulomb.into();
                 finger.friction.conduit = found.conduit.into();
                 finger.friction.joint_coulomb = found.joint_coulomb.into();

@@ -26,8 +26,8 @@ use nalgebra::Vector3;
 const TIGHT: f64 = 0.8;
 
 impl Controller {
-    /// The controller of `finger` at `rate` cycles a second. Gains that are not configured come from the nearest of 500,
-    /// 1000 and 2000 Hz. Refused with the key that cannot be used, where the numbers make no controller.
+    /// The controller of `finger` at `rate` cycles a second. Gains that are not configured follow from the rate.
+    /// Refused with the key that cannot be used, where the numbers make no controller.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         Self::in_gravity(finger, &Vector3::zeros(), rate)
     }

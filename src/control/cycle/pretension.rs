@@ -22,10 +22,11 @@ impl Controller {
             Doing::TakingUpSlack(slack) => (slack, false),
             _ => (self.slack.start(&now), true),
         };
+        let limit = self.heating.limit(&state.heat);
         state.report.slackest = self.slack.slackest(&slack, &now);
         match self.slack.step(&mut slack, &now) {
             TakeUp::Pull(pulls) => {
-                self.give(state, &pulls, starts);
+                self.give(state, &pulls, &limit, starts);
                 // Whatever follows begins anew.
                 state.tendons = TendonState::default();
                 state.report.joint_torques = Vector3::zeros();
@@ -34,8 +35,8 @@ impl Controller {
             }
             TakeUp::Hold { torques, below, begins } => {
                 let torques = torques + gravity;
-                let Distribution { tensions, scale } = self.distribution.distribute(&torques);
-                self.bring(state, tensions - below + offset, begins);
+                let Distribution { tensions, scale } = self.reachable(&limit).distribute(&torques);
+                self.bring(state, tensions - below + offset, &limit, begins);
                 state.report.joint_torques = torques;
                 state.report.torque_scale = scale;
                 state.report.under_tension &= below == Vector4::zeros();

@@ -2,6 +2,7 @@
 
 use super::{Controller, Doing, State};
 use crate::control::release::Release;
+use crate::control::tension_distribution::BoundedDistribution;
 use crate::control::tension_integral::{TendonInput, TendonState};
 use nalgebra::{Vector3, Vector4};
 
@@ -14,7 +15,7 @@ impl Controller {
     pub(super) fn tense(&self, state: &mut State, desired: Vector4<f64>) {
         let begins = !matches!(state.doing, Doing::Tensing);
         state.doing = Doing::Tensing;
-        self.bring(state, desired, begins);
+        self.bring(state, desired, &self.heating.limit(&state.heat), begins);
         state.report.joint_torques = Vector3::zeros();
         state.report.torque_scale = 1.0;
     }
@@ -41,26 +42,29 @@ impl Controller {
         state.report.torque_scale = 1.0;
     }
 
-    /// Desired tensions to pulls: the tendon controller.
-    pub(super) fn bring(&self, state: &mut State, desired: Vector4<f64>, begins: bool) {
+    /// The box R^-1, with motors that pull no more than `limit`, N: clamped there, they would turn the joint torque.
+    pub(super) fn reachable(&self, limit: &Vector4<f64>) -> BoundedDistribution<'_> {
+        self.distribution.below(&self.motor_torque.tensions(limit))
+    }
+
+    /// Desired tensions to pulls of at most `limit`, N: the tendon controller.
+    pub(super) fn bring(&self, state: &mut State, desired: Vector4<f64>, limit: &Vector4<f64>, begins: bool) {
         let measured = state.report.tensions;
         let following = matches!(state.doing, Doing::Following(_));
         let slack = std::array::from_fn(|tendon| !following && measured[tendon] < SLACK * desired[tendon]);
         let speed = state.motor_speeds.component_mul(&self.radius);
-        let (limit, acted) = (self.heating.limit(&state.heat), state.acting);
-        let input = TendonInput { desired, measured, speed, slack, limit, acted };
+        let input = TendonInput { desired, measured, speed, slack, limit: *limit, acted: state.acting };
         let asked = self.tendons.pulls(&mut state.tendons, &input);
-        self.give(state, &asked, begins);
+        self.give(state, &asked, limit, begins);
         state.report.desired_tensions = desired;
     }
 
-    /// Pulls to the motors: without a jump where something begins, and within their limits.
-    pub(super) fn give(&self, state: &mut State, asked: &Vector4<f64>, begins: bool) {
+    /// Pulls to the motors: without a jump where something begins, and within their `limit`, N.
+    pub(super) fn give(&self, state: &mut State, asked: &Vector4<f64>, limit: &Vector4<f64>, begins: bool) {
         let goes_on_from = state.goes_on_from.take();
         if let Some(before) = goes_on_from.or(begins.then_some(state.pulls)) {
             state.transition.begin(&before, asked);
         }
-        let limit = &self.heating.limit(&state.heat);
         let pulls = asked + state.transition.advance(self.period);
         state.pulls = pulls.zip_map(limit, |pull, limit| pull.clamp(-limit, limit));
     }

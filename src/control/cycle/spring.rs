@@ -27,8 +27,9 @@ impl Controller {
         let push = self.soft_limits.push(joints);
         let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
         let torques = torques + push.torque - damped + self.gravity.torques(joints);
-        let Distribution { tensions: desired, scale } = self.distribution.distribute(&torques);
-        self.bring(state, desired, begins);
+        let limit = self.heating.limit(&state.heat);
+        let Distribution { tensions: desired, scale } = self.reachable(&limit).distribute(&torques);
+        self.bring(state, desired, &limit, begins);
         state.report.joint_torques = torques;
         state.report.torque_scale = scale;
     }
@@ -42,12 +43,14 @@ impl Controller {
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };
+        let limit = self.heating.limit(&state.heat);
         let begins = !matches!(state.doing, Doing::Following(_));
         state.doing = Doing::Following(elastic.joints);
+        let distribution = self.reachable(&limit.add_scalar(-law.reserve));
         let Decision { pulls, against_friction, joint_torques, distribution } =
-            law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &self.distribution);
+            law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &distribution);
         state.against_friction = against_friction;
-        self.give(state, &pulls, false);
+        self.give(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;
         state.report.desired_tensions = distribution.tensions;
         state.report.torque_scale = distribution.scale;

@@ -11,12 +11,10 @@ use crate::model::Tendons;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 
-/// Disagreement that is let pass, N, and the part of the change of the tensions that is let pass besides: k is known to 20 %.
+/// Disagreement that is let pass, N; besides it what an error of k explains, a part of the change of the tensions.
 const LET_PASS: f64 = 0.5;
-const LET_PASS_OF_TENSION: f64 = 0.2;
 
-/// Below this part of t_min a tendon may be slack, and then it stretches less than nothing; and what is to be said of it, `tension_lost`
-/// says.
+/// Below this part of t_min a tendon may hang, and then it stretches less than nothing: the difference is below zero.
 const SLACK: f64 = 0.35;
 
 /// Samples whose mean is the zero.
@@ -36,6 +34,8 @@ pub(super) struct Agreement {
     /// N.
     home: Vector4<f64>,
     slack: f64,
+    /// `tendon.stiffness_tolerance`.
+    tolerance: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,6 +44,8 @@ pub(super) struct Memory {
     /// Mean tensions above rest while the zero was found, N.
     above: Vector4<f64>,
     samples: u32,
+    /// Less the zero, N.
+    difference: f64,
     /// Disagreement over what is let pass.
     part: f64,
     lasts: f64,
@@ -76,37 +78,38 @@ impl Agreement {
             of_tension: per_stiffness / whole,
             home: tendons.pretension(finger.tendon.minimum),
             slack: SLACK * finger.tendon.minimum,
+            tolerance: finger.tendon.stiffness_tolerance,
         }
     }
 
-    pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
+    /// One sample's difference.
+    pub fn compare(&self, memory: &mut Memory, sample: &Sample) {
         memory.unbalanced += (sample.pulls - sample.tensions - memory.unbalanced) * AVERAGING;
         let above = sample.tensions - self.home;
         let difference = self.of_travel.dot(&sample.travel) - self.of_tension.dot(&above);
-        let slack = sample.tensions.min() < self.slack;
-        if slack {
-            memory.lasts = 0.0;
-        }
+        let hangs = sample.tensions.min() < self.slack;
         if memory.samples < ZEROING {
-            if slack {
-                return None;
+            if !hangs {
+                memory.samples += 1;
+                memory.zero += (difference - memory.zero) / f64::from(memory.samples);
+                memory.above += (above - memory.above) / f64::from(memory.samples);
             }
-            memory.samples += 1;
-            memory.zero += (difference - memory.zero) / f64::from(memory.samples);
-            memory.above += (above - memory.above) / f64::from(memory.samples);
-            return None;
+            return;
         }
-        let difference = difference - memory.zero;
-        memory.missing = self.of_tension.map(|share| difference / share);
-        if slack {
-            return None;
-        }
-        let let_pass = LET_PASS + LET_PASS_OF_TENSION * self.of_tension.dot(&(above - memory.above).abs());
-        memory.part = difference.abs() / let_pass;
-        memory.lasts = if memory.part > 1.0 { memory.lasts + sample.elapsed } else { 0.0 };
+        memory.difference = difference - memory.zero;
+        memory.missing = self.of_tension.map(|share| memory.difference / share);
+        let explained = memory.difference < 0.0 && hangs;
+        let let_pass = LET_PASS + self.tolerance * self.of_tension.dot(&(above - memory.above).abs());
+        memory.part = if explained { 0.0 } else { memory.difference.abs() / let_pass };
+    }
+
+    /// Whether it is too much. `explained`: something else makes them disagree.
+    pub fn watch(&self, memory: &mut Memory, sample: &Sample, explained: bool) -> Option<Alarm> {
+        let counts = memory.part > 1.0 && !explained;
+        memory.lasts = if counts { memory.lasts + sample.elapsed } else { 0.0 };
         // The gauge that its motor contradicts most.
         let suspect = memory.unbalanced.iamax() as u8 + 1;
-        let alarm = Alarm { symptom: Symptom::GaugeDisagrees, part: suspect, value: difference };
+        let alarm = Alarm { symptom: Symptom::GaugeDisagrees, part: suspect, value: memory.difference };
         (memory.lasts >= LASTS).then_some(alarm)
     }
 }

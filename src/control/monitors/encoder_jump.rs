@@ -11,39 +11,53 @@ const MARGIN: f64 = 1.25;
 /// Counts beside that: the last bit flickers at both ends of two differences.
 const FLICKER: f64 = 4.0;
 
+/// Part of a period that a speed is measured over at least: a late cycle is followed by one at once, in which nothing turns, and
+/// over next to no time the last bit would make a speed of its own.
+const SHORTEST: f64 = 0.75;
+
 #[derive(Clone, Debug)]
 pub(super) struct EncoderJump {
+    /// s.
+    shortest: f64,
     /// Largest change of speed, rad/s^2.
     strongest: Vector4<f64>,
     counts_per_radian: Vector4<f64>,
 }
 
-/// Speed over the last sample, rad/s.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
+    /// How far the motors turned since a speed was measured, rad, and in which time, s.
+    turned: Vector4<f64>,
+    elapsed: f64,
+    /// That speed, rad/s.
     speed: Option<Vector4<f64>>,
 }
 
 impl EncoderJump {
-    pub fn new(finger: &ConfiguredFinger) -> Self {
+    pub fn new(finger: &ConfiguredFinger, period: f64) -> Self {
         let inertia = Vector4::from(finger.motor.inertia);
         let pulled = Vector4::from(finger.geometry.motor_radius) * finger.tendon.maximum;
         // 1 N cm = 0.01 N m.
         let torque = (Vector4::from(finger.motor.torque_limit) + pulled) * 0.01;
         Self {
+            shortest: SHORTEST * period,
             strongest: torque.component_div(&inertia) * MARGIN,
             counts_per_radian: Vector4::from(finger.encoder.counts_per_revolution.map(f64::from)) / TAU,
         }
     }
 
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
-        let speed = sample.turned / sample.elapsed;
-        let before = memory.speed.replace(speed)?;
+        memory.turned += sample.turned;
+        memory.elapsed += sample.elapsed;
+        if memory.elapsed < self.shortest {
+            return None;
+        }
+        let (turned, elapsed) = (std::mem::take(&mut memory.turned), std::mem::take(&mut memory.elapsed));
+        let before = memory.speed.replace(turned / elapsed)?;
         first_of(Symptom::EncoderJump, |encoder| {
-            let unexpected =
-                (sample.turned[encoder] - before[encoder] * sample.elapsed) * self.counts_per_radian[encoder];
+            let unexpected = (turned[encoder] - before[encoder] * elapsed) * self.counts_per_radian[encoder];
             // Both speeds are means: the change had up to two intervals of this length.
-            let possible = 2.0 * self.strongest[encoder] * sample.elapsed.powi(2) * self.counts_per_radian[encoder];
+            let possible = 2.0 * self.strongest[encoder] * elapsed.powi(2) * self.counts_per_radian[encoder];
             (unexpected.abs() > possible + FLICKER).then_some(unexpected)
         })
     }

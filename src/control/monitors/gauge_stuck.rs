@@ -5,14 +5,20 @@ use super::{Alarm, Sample, Symptom, first_of};
 use crate::model::configuration::ConfiguredFinger;
 
 /// Part of the way that the mean of the flicker goes in a sample.
-const LEARNING: f64 = 1.0 / 64.0;
+const LEARNING: f64 = 1.0 / 256.0;
 
 /// Samples after which the flicker is known.
 const KNOWN: u32 = 256;
 
+/// A gauge that shows one count in so many samples while all others are known to flicker was dead in the beginning.
+const NEVER: u32 = 512;
+
 /// The chance at which a live gauge that flickers as before would show one count for so long, as a natural logarithm: once
 /// in 10^11 samples, a year of four gauges at 1000 Hz.
 const UNLIKELY: f64 = -25.3;
+
+/// No gauge is taken to repeat itself less often than this: one in motion hardly does, and its flicker at rest is to be known still.
+const LEAST_REPEATS: f64 = 0.2;
 
 /// A gauge that repeats itself more often than this is not known to flicker: without noise, or converted slowly.
 const MOST_REPEATS: f64 = 0.7;
@@ -29,6 +35,9 @@ const SLACK: f64 = 0.3;
 
 /// So many samples with the same count are a row that a gauge may be judged by.
 const ROW: u32 = 4;
+
+/// A gauge that flickered and then showed one count in so many samples is dead if something else says so too.
+const SILENT: u32 = 6;
 
 /// Without flicker a gauge is dead only for its tendon's sake; see `tension_lost`.
 #[derive(Clone, Debug)]
@@ -66,6 +75,13 @@ pub(super) struct Flicker {
     pub same: [u32; 4],
 }
 
+impl Flicker {
+    /// Whether a gauge that flickered shows one count.
+    pub fn silent(&self, gauge: usize) -> bool {
+        self.known[gauge] && self.same[gauge] >= SILENT
+    }
+}
+
 impl Memory {
     pub fn flickers(&self) -> Flicker {
         let known = std::array::from_fn(|gauge| {
@@ -84,7 +100,8 @@ impl GaugeStuck {
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
         let counts = sample.feedback.gauge_counts;
         memory.samples = memory.samples.saturating_add(1);
-        let slow = LEARNING_REVERSALS.max(1.0 / f64::from(memory.samples));
+        let from_all = 1.0 / f64::from(memory.samples);
+        let (fast, slow) = (LEARNING.max(from_all), LEARNING_REVERSALS.max(from_all));
         let last = std::mem::replace(&mut memory.last, counts);
         let same = |gauge: usize| counts[gauge] == last[gauge];
         let rises = |gauge: usize| counts[gauge] > last[gauge];
@@ -101,7 +118,7 @@ impl GaugeStuck {
             if memory.same[gauge] < ROW || !others_flicker(gauge) {
                 let learn = |mean: &mut f64, is: bool, gain: f64| *mean += (f64::from(u8::from(is)) - *mean) * gain;
                 let same = memory.same[gauge] > 0;
-                learn(&mut memory.repeats[gauge], same, LEARNING);
+                learn(&mut memory.repeats[gauge], same, fast);
                 learn(&mut memory.reversals[gauge], !same && rises(gauge) != memory.rose[gauge], slow);
             }
             if memory.same[gauge] == 0 {
@@ -109,9 +126,20 @@ impl GaugeStuck {
             }
         }
         let known = memory.flickers().known;
+        let alone = |gauge: usize| (0..4).all(|other| other == gauge || known[other]);
         first_of(Symptom::GaugeStuck, |gauge| {
-            let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(0.1).ln() < UNLIKELY;
-            (known[gauge] && unlikely && others_flicker(gauge)).then_some(f64::from(counts[gauge]))
+            // Where a tendon hangs its gauge may be at its end, and show half of the noise only.
+            let least = if sample.tensions[gauge] < self.slack { MOST_REPEATS } else { LEAST_REPEATS };
+            let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(least).ln() < UNLIKELY;
+            let died = known[gauge] && unlikely && others_flicker(gauge);
+            let was_dead = memory.same[gauge] >= NEVER && alone(gauge) && sample.tensions[gauge] > self.slack;
+            (died || was_dead).then_some(f64::from(counts[gauge]))
         })
     }
+}
+
+/// That this gauge, 0 to 3, is dead.
+pub(super) fn alarm(sample: &Sample, gauge: usize) -> Alarm {
+    let value = f64::from(sample.feedback.gauge_counts[gauge]);
+    Alarm { symptom: Symptom::GaugeStuck, part: gauge as u8 + 1, value }
 }

@@ -153,7 +153,7 @@ impl Monitors {
             gauge_range: GaugeRange::new(finger),
             gauge_stuck: GaugeStuck::new(finger),
             agreement: Agreement::new(finger, tendons),
-            encoder_jump: EncoderJump::new(finger),
+            encoder_jump: EncoderJump::new(finger, 1.0 / rate),
             stalled_motor: StalledMotor::new(finger, tendons),
             motor_heat: MotorHeat::new(finger),
             joint_stop: JointStop::new(finger),
@@ -190,9 +190,13 @@ impl Monitors {
         let jumped = self.encoder_jump.watch(&mut watch.encoder_jump, &sample);
         let range = self.gauge_range.watch(&mut watch.gauge_range, &sample);
         let flickers = watch.gauge_stuck.flickers();
-        let disagrees = self.agreement.watch(&mut watch.agreement, &sample);
+        self.agreement.compare(&mut watch.agreement, &sample);
         let missing = watch.agreement.missing();
         let lost = self.tension_lost.watch(&mut watch.tension_lost, &sample, &missing, &flickers);
+        let suspects = watch.tension_lost.suspects();
+        let disagrees = self.agreement.watch(&mut watch.agreement, &sample, suspects);
+        let silent = (0..4).find(|&gauge| flickers.silent(gauge)).filter(|_| disagrees.is_some());
+        let stuck = stuck.or(silent.map(|gauge| gauge_stuck::alarm(&sample, gauge)));
         let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
         // Where the gauge drifts, its motor stands still against a tension that is not there.
         let doubtful = watch.agreement.doubtful();

@@ -1,9 +1,11 @@
 //! Tendons that lose their tension: torn, slipping, or with a gauge that is dead.
 //!
 //! A fast motion or a blow makes a whole tendon slack for a moment. Then it hangs; one that is torn, slips, or has a dead gauge
-//! has no tension although the other three and the encoders say that it is stretched.
+//! has no tension although the other three and the encoders say that it is stretched. They say so from one sample to the next: where
+//! it grew while the gauge still showed tension, a gauge drifts, and its controller keeps the tendon at what the gauge shows; that is
+//! for `agreement` to say.
 
-use super::gauge_stuck::Flicker;
+use super::gauge_stuck::{self, Flicker};
 use super::{Alarm, Alarms, Sample, Symptom, first_of};
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
@@ -14,8 +16,11 @@ const LOW: f64 = 0.3;
 /// Its tension is gone below this part.
 const GONE: f64 = 0.1;
 
-/// From this part of t_min on a low tendon is missed: its stretch says that it should have so much.
+/// From this part of t_min on a low tendon is missed: its stretch says that it should have so much, and did not before it went low.
 const MISSED: f64 = 0.3;
+
+/// Time constant, s, of what it said before.
+const BEFORE: f64 = 0.02;
 
 /// So long, s, a tendon that is missed must be low.
 const LASTS: f64 = 0.012;
@@ -26,8 +31,8 @@ const TOO_LONG: f64 = 0.5;
 /// So long, s, tension must be gone for a warning.
 const NOTICED: f64 = 0.003;
 
-/// A gauge that flickered and then showed one count in so many samples is dead.
-const SILENT: u32 = 6;
+/// A gauge that flickered, and has shown one count in this many samples since its tendon is low, is dead. Where a gauge ends at no tension noise shows on one side only, and that of a torn tendon shows one count now and then.
+const CERTAIN: u32 = 15;
 
 #[derive(Clone, Debug)]
 pub(super) struct TensionLost {
@@ -39,13 +44,23 @@ pub(super) struct TensionLost {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
-    /// For how long each tendon has been low, s, and its tension since, N s.
+    /// For how long each tendon has been low, s, in how many samples, and its tension since, N s.
     low: Vector4<f64>,
+    samples: [u32; 4],
     impulse: Vector4<f64>,
+    /// Mean of what its stretch said beyond its gauge before it went low, N.
+    before: Vector4<f64>,
     /// For how long it has been low and missed, s.
     missed: Vector4<f64>,
     /// For how long its tension has been gone, s.
     gone: Vector4<f64>,
+}
+
+impl Memory {
+    /// Whether a tendon seems to have lost its tension a moment ago.
+    pub fn suspects(&self) -> bool {
+        self.missed.max() > 0.0
+    }
 }
 
 impl TensionLost {
@@ -61,7 +76,12 @@ impl TensionLost {
             let low = tension < self.low;
             let counted = |so_far: f64, holds: bool| if holds { so_far + sample.elapsed } else { 0.0 };
             memory.low[tendon] = counted(memory.low[tendon], low);
-            memory.missed[tendon] = counted(memory.missed[tendon], low && missing[tendon] > self.missed);
+            memory.samples[tendon] = if low { memory.samples[tendon].saturating_add(1) } else { 0 };
+            if !low {
+                memory.before[tendon] += (missing[tendon] - memory.before[tendon]) * (sample.elapsed / BEFORE).min(1.0);
+            }
+            let suddenly = missing[tendon] - memory.before[tendon].max(0.0);
+            memory.missed[tendon] = counted(memory.missed[tendon], low && suddenly > self.missed);
             memory.gone[tendon] = counted(memory.gone[tendon], tension < self.gone);
             let impulse = memory.impulse[tendon] + tension * sample.elapsed;
             memory.impulse[tendon] = if low { impulse } else { 0.0 };
@@ -81,17 +101,15 @@ impl TensionLost {
 
     fn fault(&self, memory: &Memory, sample: &Sample, flicker: &Flicker, tendon: usize) -> Option<Alarm> {
         let others_hold = (0..4).all(|other| other == tendon || memory.low[other] == 0.0);
+        let same = flicker.same[tendon];
+        let silent = flicker.known[tendon] && same + 1 >= memory.samples[tendon];
         let dead = match flicker.known[tendon] {
             // A little later it is certain.
-            true if flicker.same[tendon] >= SILENT => return None,
-            true => false,
+            true if silent && same < CERTAIN => return None,
+            true => silent,
             false => others_hold,
         };
-        if !dead {
-            return Some(self.lost(memory, tendon));
-        }
-        let count = f64::from(sample.feedback.gauge_counts[tendon]);
-        Some(Alarm { symptom: Symptom::GaugeStuck, part: tendon as u8 + 1, value: count })
+        Some(if dead { gauge_stuck::alarm(sample, tendon) } else { self.lost(memory, tendon) })
     }
 
     fn lost(&self, memory: &Memory, tendon: usize) -> Alarm {

@@ -41,39 +41,39 @@ faults! {
     1 SlackTendon "SLACK_TENDON" Fault Tendon Tension "slack tendon",
         "a tendon does not come under tension, or does not keep it, though its motor pulls",
         "a knot or clamp slips, the tendon is off its pulley, or a sign or zero of motor or gauge is wrong",
-        "Look after the tendon, then CloseHand and OpenHand; for wrong signs and zeros: sun2xp calibrate";
+        "Look after the tendon, RecoverHand; for wrong signs and zeros: CloseHand, sun2xp calibrate";
     2 BrokenTendon "BROKEN_TENDON" Fault Tendon Tension "broken tendon",
         "the tension of a tendon is gone while its motor turns, and the finger no longer holds the others tight",
         "the tendon is torn or has come off",
-        "Replace the tendon, zero the finger, OpenHand";
+        "Replace the tendon, RecoverHand, ZeroFinger";
     3 OverTension "OVER_TENSION" Fault Tendon Tension "over-tension",
         "a tendon is pulled far beyond finger.tendon.maximum",
         "the finger was struck or bent by force, a joint jams, or the gauge's scale is wrong",
-        "Take away what loads the finger; check finger.tendon.maximum and the gauge's scale";
+        "Take away what loads the finger, RecoverHand; check finger.tendon.maximum and the gauge's scale";
     4 GaugeStuck "GAUGE_STUCK" Fault Gauge Counts "gauge stuck",
         "a strain gauge shows the same count whatever happens",
         "its wire is broken, or its amplifier or converter has failed",
-        "Check the gauge's wiring and the board, zero the finger, OpenHand";
+        "Check the gauge's wiring and the board, RecoverHand, ZeroFinger";
     5 GaugeOutOfRange "GAUGE_OUT_OF_RANGE" Fault Gauge Counts "gauge out of range",
         "a strain gauge is at the end of its converter, or far below no tension",
         "a short circuit or a broken wire, or finger.gauge.zero is wrong",
-        "Check the gauge's wiring; zero the finger";
+        "Check the gauge's wiring, RecoverHand, ZeroFinger";
     6 GaugeDisagrees "GAUGE_DISAGREES" Fault Gauge Tension "gauge against encoders",
         "the tensions no longer fit the stretch that the four encoders tell",
         "a gauge drifts, an encoder or a pulley slipped, or a tendon has stretched for good",
-        "Zero the finger; if it comes back, look after the gauge and the tendon that are named";
+        "RecoverHand, ZeroFinger; if it comes back, look after the gauge and the tendon that are named";
     7 EncoderJump "ENCODER_JUMP" Fault Encoder Counts "encoder jump",
         "an encoder moved farther in one cycle than its motor can",
         "interference on the encoder's lines, a loose plug, or a board that lost its counts",
-        "Check the encoder's cable and screen; zero the finger, OpenHand";
+        "Check the encoder's cable and screen, RecoverHand, ZeroFinger";
     8 StalledMotor "STALLED_MOTOR" Fault Motor Tension "stalled motor",
         "a motor does not turn though its torque and its tendon are far out of balance",
         "the motor or its gear jams, its wires are broken, or its driver is off",
-        "Turn the motor by hand with the power off; check its wiring, OpenHand";
+        "Turn the motor by hand with the power off, check its wiring, RecoverHand";
     9 OverheatedMotor "OVERHEATED_MOTOR" Fault Motor Share "over-heated motor",
         "a motor has been as warm as it may be for too long, by the square of its torque over time",
         "the finger presses or holds more than it can for ever",
-        "Let it cool, ask for less; check finger.motor.continuous_torque and thermal_time";
+        "Let it cool, RecoverHand, ask for less; check finger.motor.continuous_torque and thermal_time";
     10 JointAtStop "JOINT_AT_STOP" Warning Joint Angle "joint at its stop",
         "a joint is beyond its limit, at its mechanical stop",
         "something pushes the finger, or the zero of the encoders is wrong",
@@ -81,7 +81,7 @@ faults! {
     11 ImpossiblePose "IMPOSSIBLE_POSE" Fault Joint Angle "impossible pose",
         "a joint reads an angle that it cannot reach",
         "a tendon is broken or off its pulley, an encoder lost its zero, or an encoder sign is wrong",
-        "Look after the tendons; sun2xp calibrate, OpenHand";
+        "Look after the tendons, RecoverHand; if it comes back: CloseHand, sun2xp calibrate";
     12 SlackInMotion "SLACK_IN_MOTION" Warning Tendon Tension "slack in motion",
         "a tendon lost its tension for a moment",
         "a motion or a blow faster than the motors follow",
@@ -89,11 +89,11 @@ faults! {
     13 LostReplies "LOST_REPLIES" Fault Finger Time "lost replies",
         "no valid reply from the board for so long",
         "the cable is out, the board has no power, or there is too much noise on the line",
-        "Check cable and power, then CloseHand and OpenHand";
+        "Check cable and power, RecoverHand";
     14 DamagedReplies "DAMAGED_REPLIES" Fault Finger Share "damaged replies",
         "replies come in damaged (their CRC is wrong), too many to go on",
         "interference, a bad earth, a cable too long for the baud rate",
-        "Check the cable's screen and earth, or lower finger.baud";
+        "Check the cable's screen and earth, RecoverHand; or lower finger.baud";
     15 LineNoise "LINE_NOISE" Warning Finger Share "noise on the line",
         "replies are lost or damaged now and then",
         "interference, a loose plug, a USB adapter that holds bytes back",
@@ -101,47 +101,47 @@ faults! {
     16 Watchdog "WATCHDOG" Fault Finger Status "watchdog",
         "the board's watchdog stopped the motors: commands came too late",
         "the servo is not real-time, or the machine is overloaded or was suspended",
-        "Permit real time (README), free the machine or raise hand.watchdog_ms; CloseHand, OpenHand";
+        "Permit real time (README) or free the machine, RecoverHand; or raise hand.watchdog_ms";
     17 BoardStopped "BOARD_STOPPED" Fault Finger Status "board stopped",
         "the board stopped the motors by itself and names no fault",
         "another program told it to stop, or its firmware did",
-        "See the status bits in docs/board-protocol.md; CloseHand, OpenHand";
+        "See the status bits in docs/board-protocol.md; RecoverHand";
     18 EmergencyStopInput "EMERGENCY_STOP_INPUT" Fault Finger Status "emergency stop, input",
         "the emergency stop input of the board is active, or was",
         "somebody pressed the button, or its wire is broken",
-        "Make sure that it is safe, release the button, CloseHand, OpenHand";
+        "Make sure that it is safe, release the button, RecoverHand";
     19 EmergencyStopCall "EMERGENCY_STOP_CALL" Fault Finger Nothing "emergency stop, call",
         "the planner called for an emergency stop",
         "the planner or its user saw a danger",
-        "Make sure that it is safe, CloseHand, OpenHand";
+        "Make sure that it is safe, RecoverHand";
     20 SupplyFault "SUPPLY_FAULT" Fault Finger Status "motor supply",
         "the motor supply is missing or out of range",
         "the supply is off or overloaded, or a fuse is blown",
-        "Check the supply, CloseHand, OpenHand";
+        "Check the supply, RecoverHand";
     21 DriverFault "DRIVER_FAULT" Fault Finger Status "motor driver",
         "a motor driver reports over-current, over-temperature or a short circuit",
         "a motor is hot, jammed or short-circuited",
-        "Let it cool, look after motors and wires, CloseHand, OpenHand";
+        "Let it cool, look after motors and wires, RecoverHand";
     22 SensorFault "SENSOR_FAULT" Fault Finger Status "sensor, by the board",
         "the board cannot read an encoder or a gauge",
         "a sensor's cable is out",
-        "Check the sensors' cables, zero the finger, OpenHand";
+        "Check the sensors' cables, RecoverHand, ZeroFinger";
     23 BoardReset "BOARD_RESET" Fault Finger Nothing "board reset",
         "the board refuses commands because it is not configured: it was switched on or lost its power meanwhile",
         "the board's power failed or it was reset",
-        "Check its power, CloseHand, OpenHand";
+        "Check its power, RecoverHand";
     24 CommandRefused "COMMAND_REFUSED" Fault Finger Reason "command refused",
         "the board refuses the frames of this finger",
         "another program is using the board, or its firmware is wrong",
-        "End the other program or update the firmware, CloseHand, OpenHand";
+        "End the other program, RecoverHand; or CloseHand and update the firmware";
     25 PortVanished "PORT_VANISHED" Fault Finger Nothing "port vanished",
         "the serial port is gone",
         "the cable was unplugged, or the adapter or board lost its power",
-        "Plug it in, CloseHand, OpenHand";
+        "Plug it in, RecoverHand; without finger.reconnect CloseHand, OpenHand";
     26 PortFailed "PORT_FAILED" Fault Finger Errno "port failed",
         "reading or writing the serial port failed",
         "the adapter or its driver failed",
-        "Plug the adapter out and in, CloseHand, OpenHand";
+        "Plug the adapter out and in, RecoverHand; without finger.reconnect CloseHand, OpenHand";
     27 PortMissing "PORT_MISSING" Refusal Finger Nothing "port missing",
         "the configured serial port does not exist",
         "the cable is out, the board off, or finger.port is wrong",
@@ -185,11 +185,11 @@ faults! {
     37 IdentityChanged "IDENTITY_CHANGED" Fault Finger Nothing "identity changed",
         "another board answers than before",
         "boards or cables were exchanged while the hand was open",
-        "Put the cables back as they were, or CloseHand, OpenHand";
+        "Put the cables back as they were, RecoverHand; or CloseHand, OpenHand with the new board";
     38 ZeroLost "ZERO_LOST" Fault Finger Status "zero lost",
         "the board no longer vouches for its encoder counts",
         "the board or its encoders lost their power",
-        "Zero the finger: ZeroFinger or sun2xp calibrate";
+        "CloseHand, OpenHand, ZeroFinger";
     39 Overrun "OVERRUN" Warning Finger Share "overrun",
         "the servo comes late and skips periods",
         "the machine is overloaded, or the rate is too high for it",

@@ -64,6 +64,8 @@ impl FingerServo {
         let report = FingerReport {
             stage: Stage::Opening,
             set_point: initial,
+            springs: 0,
+            controller: 0,
             cycle: Default::default(),
             orders: 0,
             calibration: None,

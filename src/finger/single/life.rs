@@ -29,8 +29,8 @@ impl FingerServo {
             }
             self.carry_out(order);
         }
-        if let Some(set_point) = self.mailbox.new_set_point()
-            && let Activity::Follow(_) = self.activity
+        if let Some(set_point) = self.mailbox.new_set_point(self.report.springs)
+            && self.report.stage == Stage::Running
         {
             self.report.set_point = set_point;
             self.activity = Activity::Follow(set_point);
@@ -103,6 +103,7 @@ impl FingerServo {
                     }
                     let joints = self.report.cycle.joints;
                     self.report.set_point = SetPoint { joints, ..self.initial };
+                    self.report.springs += 1;
                     self.activity = Activity::Follow(self.report.set_point);
                     self.watching.begin();
                     self.enter(Stage::Running);
@@ -137,6 +138,11 @@ impl FingerServo {
         self.anew = true;
         self.link.answered();
         self.calibration = None;
+        // What was ordered before the fault and not begun is gone with it; what was handed over stays, but nothing goes over to it.
+        self.report.orders += u32::from(self.mailbox.new_order().is_some());
+        if let Some(new) = self.mailbox.new_adjustable() {
+            self.adjustable = new.clone();
+        }
         self.stops_left = STOPS_AFTER_FAULT;
         self.report.recoveries += 1;
         self.take_up_slack();

@@ -119,11 +119,13 @@ pub struct ConfiguredTendon {
     pub maximum: f64,
     /// Stiffness between motor pulley and joint, N/cm, for the stretch that the encoders do not see.
     pub stiffness: [f64; 4],
+    /// How well `stiffness` is known, as a part of it: what it explains when gauges and encoders disagree. Identification sets it.
+    pub stiffness_tolerance: f64,
 }
 
 impl Default for ConfiguredTendon {
     fn default() -> Self {
-        Self { minimum: 5.0, maximum: 60.0, stiffness: [300.0; 4] }
+        Self { minimum: 5.0, maximum: 60.0, stiffness: [300.0; 4], stiffness_tolerance: 0.2 }
     }
 }
 

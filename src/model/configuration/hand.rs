@@ -104,7 +104,9 @@ impl Default for ConfiguredHand {
             hold_time_ms: 2000,
             hold_torque_limit: 1.0,
             release_ramp_ms: 200,
-            watchdog_ms: 20,
+            // A finger shall be in its end state 20 ms after the last good reply, or the death of its planner. A board's timer may
+            // be 1 ms coarse and 1 % slow, and with 20 ms in whole periods a Stop that leaves a moment late would come too late.
+            watchdog_ms: 18,
             open_timeout_ms: 5000,
             on_fault: OnFault::Finger,
             out_of_range: OutOfRange::Refuse,

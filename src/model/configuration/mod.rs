@@ -165,6 +165,14 @@ impl Default for ConfiguredStiffness {
     }
 }
 
+impl ConfiguredStiffness {
+    /// The bound that holds for the default finger under every controller at `rate` Hz, N/cm: less than what `sun2xp bound` finds for any
+    /// of them (`docs/stiffness.md`).
+    pub fn default_bound(rate: f64) -> f64 {
+        if rate >= 1000.0 { 6.0 } else { 5.0 }
+    }
+}
+
 impl ConfiguredFinger {
     /// Whether the finger has a simulated board instead of a port.
     pub fn simulated(&self) -> bool {
@@ -194,7 +202,7 @@ impl ConfiguredFinger {
 
     /// The bound on the largest eigenvalue of Kx, N/cm, at `rate` Hz.
     pub fn stiffness_bound(&self, rate: f64) -> f64 {
-        self.stiffness.bound.unwrap_or(if rate >= 1000.0 { 6.0 } else { 5.0 })
+        self.stiffness.bound.unwrap_or_else(|| ConfiguredStiffness::default_bound(rate))
     }
 
     /// Soft joint limits, rad: lower, upper.

@@ -1,0 +1,225 @@
+//! What is injected, what it is to be called, and from when on it can be known.
+
+use crate::rig::{Bench, Truth};
+use nalgebra::{Vector3, Vector4};
+use std::f64::consts::TAU;
+use sun2xp::board::{Defect, LineFault};
+use sun2xp::finger::FaultKind;
+use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
+
+const MICROSECOND: u64 = 1000;
+const MILLISECOND: u64 = 1000 * MICROSECOND;
+
+/// Something that goes wrong.
+pub struct Case {
+    pub what: &'static str,
+    /// What it is to be called.
+    pub called: FaultKind,
+    /// Makes it happen; which part it happens to, where the fault names it.
+    pub inject: fn(&mut Bench) -> Injected,
+    /// What is configured otherwise.
+    pub configure: fn(&mut Configuration),
+    /// From when on it can be known; none: from the injection on.
+    pub knowable: Option<Knowable>,
+}
+
+/// To which part, where the fault names it, and how fast something drifts, N/s.
+#[derive(Clone, Copy, Default)]
+pub struct Injected {
+    pub part: Option<u8>,
+    pub drift: Vector4<f64>,
+}
+
+/// A fault can be known from the beginning of the first stretch of so many ms on during which this holds for what the finger
+/// truly is.
+#[derive(Clone, Copy)]
+pub struct Knowable {
+    pub holds: fn(&Truth, &Injected, &ConfiguredFinger) -> bool,
+    pub lasts_ms: f64,
+}
+
+fn suffer(bench: &mut Bench, defect: Defect) -> Injected {
+    assert!(bench.with_finger(|finger| finger.suffer(&defect)));
+    Injected::default()
+}
+
+fn at(part: u8) -> Injected {
+    Injected { part: Some(part), ..Default::default() }
+}
+
+/// Frames from the board, each with this probability, for so many ms.
+pub fn line(bench: &mut Bench, fault: LineFault, probability: f64, milliseconds: u64) -> Injected {
+    let until = bench.now() + milliseconds * MILLISECOND;
+    let seed = bench.random(0.0, 1e9) as u64;
+    bench.with_cable(|cable| cable.inject(fault, probability, until, seed));
+    Injected::default()
+}
+
+fn push(bench: &mut Bench, force: [f64; 3]) -> Injected {
+    bench.with_finger(|finger| finger.plant().set_external_force(Vector3::from(force)));
+    Injected::default()
+}
+
+fn case(what: &'static str, called: FaultKind, inject: fn(&mut Bench) -> Injected) -> Case {
+    Case { what, called, inject, configure: |_| {}, knowable: None }
+}
+
+impl Case {
+    fn with(self, configure: fn(&mut Configuration)) -> Self {
+        Self { configure, ..self }
+    }
+
+    fn from(self, lasts_ms: f64, holds: fn(&Truth, &Injected, &ConfiguredFinger) -> bool) -> Self {
+        Self { knowable: Some(Knowable { holds, lasts_ms }), ..self }
+    }
+}
+
+/// Of the finger itself.
+pub fn of_the_finger() -> Vec<Case> {
+    use FaultKind::*;
+    vec![
+        case("cut tendon", BrokenTendon, |bench| {
+            let tendon = bench.part();
+            suffer(bench, Defect::CutTendon(tendon));
+            at(tendon)
+        }),
+        case("slack tendon (grip 1 N)", SlackTendon, |bench| {
+            let tendon = bench.part();
+            suffer(bench, Defect::SlackTendon { tendon, grip: 1.0 });
+            at(tendon)
+        }),
+        case("dead gauge, as it was", GaugeStuck, |bench| {
+            let gauge = bench.part();
+            suffer(bench, Defect::DeadGauge { gauge, count: None });
+            at(gauge)
+        })
+        // With this noise one count in five is the one before: so often in a row once in 10^11 samples.
+        .from(0.0, |truth, _, _| truth.time > 0.0165),
+        case("dead gauge, at nothing", GaugeStuck, |bench| {
+            let gauge = bench.part();
+            suffer(bench, Defect::DeadGauge { gauge, count: Some(0) });
+            at(gauge)
+        }),
+        case("dead gauge, at full scale", GaugeOutOfRange, |bench| {
+            let gauge = bench.part();
+            suffer(bench, Defect::DeadGauge { gauge, count: Some(4095) });
+            at(gauge)
+        }),
+        case("drifting gauge (20 N/s), k known to 20 %", GaugeDisagrees, drift).from(10.0, disagrees),
+        case("drifting gauge (20 N/s), k identified", GaugeDisagrees, drift)
+            .with(|configuration| configuration.fingers[0].tendon.stiffness_tolerance = 0.03)
+            .from(10.0, disagrees),
+        case("encoder jump (150 counts)", EncoderJump, |bench| {
+            let (encoder, way) = (bench.part(), bench.random(-1.0, 1.0).signum());
+            suffer(bench, Defect::EncoderJump { encoder, counts: 150 * way as i32 });
+            at(encoder)
+        }),
+        case("jammed motor", StalledMotor, |bench| {
+            let motor = bench.part();
+            suffer(bench, Defect::JammedMotor(motor));
+            at(motor)
+        })
+        .from(12.0, stands),
+        case("hot motor, by its driver", DriverFault, |bench| suffer(bench, Defect::HotMotor(1))),
+        case("hot motor, by I^2 t", OverheatedMotor, |bench| push(bench, [0.0, 0.0, -1.6]))
+            .with(with_small_motors)
+            .from(0.0, |truth, _, finger| truth.hot_for.max() > finger.motor.thermal_time),
+        case("a blow (40 N)", OverTension, |bench| push(bench, [0.0, 40.0, 0.0]))
+            .from(4.0, |truth, _, finger| truth.tensions.max() > 1.3 * finger.tendon.maximum),
+        // Interference that the line and the counters meet together: nobody sees the counters jump.
+        case("impossible pose", ImpossiblePose, |bench| {
+            line(bench, LineFault::Drop, 1.0, 12);
+            let finger = bench.finger();
+            let tendons = finger.tendons().expect("tendons");
+            let turned = (tendons.r.tr_mul(&Vector3::new(0.0, -3.0, 0.0))).component_div(&tendons.radius);
+            let per_turn = finger.encoder.counts_per_revolution.map(f64::from);
+            for (index, per_turn) in per_turn.into_iter().enumerate() {
+                let counts = (turned[index] * per_turn / TAU) as i32;
+                suffer(bench, Defect::EncoderJump { encoder: index as u8 + 1, counts });
+            }
+            Injected::default()
+        }),
+        case("zero lost", ZeroLost, |bench| suffer(bench, Defect::ZeroLost)),
+        case("emergency stop, input", EmergencyStopInput, |bench| suffer(bench, Defect::EmergencyStop)),
+        case("motor supply", SupplyFault, |bench| suffer(bench, Defect::Supply)),
+        case("sensor, by the board", SensorFault, |bench| suffer(bench, Defect::Sensor)),
+        case("reset", BoardReset, |bench| suffer(bench, Defect::Reset)),
+    ]
+}
+
+/// Of the line between finger and servo, at its best at any rate.
+pub fn of_the_line() -> Vec<Case> {
+    use FaultKind::*;
+    vec![
+        case("drop", LostReplies, |bench| line(bench, LineFault::Drop, 1.0, 1000)),
+        case("corrupt", DamagedReplies, |bench| line(bench, LineFault::Corrupt, 1.0, 1000)),
+        case("delay (3 ms)", LostReplies, |bench| line(bench, LineFault::Delay(3 * MILLISECOND), 1.0, 1000)),
+        case("stall (100 ms)", LostReplies, |bench| line(bench, LineFault::Stall, 1.0, 100)),
+        case("unplug, replug", PortVanished, |bench| {
+            bench.with_cable(|cable| cable.set_plugged(false));
+            Injected::default()
+        }),
+        case("silent host (30 ms)", Watchdog, |bench| {
+            bench.pause(30 * MILLISECOND);
+            Injected::default()
+        }),
+    ]
+}
+
+/// What the finger is only warned of.
+pub fn warnings() -> Vec<Case> {
+    use FaultKind::*;
+    vec![
+        case("warm motor, by I^2 t", WarmMotor, |bench| push(bench, [0.0, 0.0, -1.6]))
+            .with(with_small_motors)
+            .from(0.0, |truth, _, _| truth.heat.max() > 0.8),
+        case("joint at its stop", JointAtStop, |bench| push(bench, [-6.0, 0.0, 0.0])).from(0.0, |truth, _, finger| {
+            let ((low, high), (lower, upper)) = (finger.joint_limits(), finger.stops());
+            let (low, high) = (low.lerp(&lower, 0.8), high.lerp(&upper, 0.8));
+            // Where the joints are, tendons that hang do not say.
+            truth.tensions.min() > 0.5 && (0..3).any(|joint| !(low[joint]..=high[joint]).contains(&truth.joints[joint]))
+        }),
+        case("line noise (drop 30 %)", LineNoise, |bench| line(bench, LineFault::Drop, 0.3, 1000))
+            .from(0.0, |truth, _, _| truth.lost > 0.02),
+        case("overrun (every eighth cycle 2.2 ms late)", Overrun, |bench| {
+            bench.wake_late(2200 * MICROSECOND);
+            Injected::default()
+        })
+        .from(0.0, |truth, _, _| truth.skipping > 0.02),
+    ]
+}
+
+/// Motors that a push makes hot in no time, and that hold the finger all the same.
+fn with_small_motors(configuration: &mut Configuration) {
+    let motor = &mut configuration.fingers[0].motor;
+    (motor.continuous_torque, motor.thermal_time) = ([0.8; 4], 0.3);
+}
+
+fn drift(bench: &mut Bench) -> Injected {
+    let (gauge, way) = (bench.part(), bench.random(-1.0, 1.0).signum());
+    suffer(bench, Defect::DriftingGauge { gauge, speed: 20.0 * way });
+    let mut drift = Vector4::zeros();
+    drift[usize::from(gauge) - 1] = 20.0 * way;
+    // One equation does not say which of four gauges it is.
+    Injected { part: None, drift }
+}
+
+/// The gauge is off by more than what a tendon stiffness known so well explains.
+fn disagrees(truth: &Truth, injected: &Injected, finger: &ConfiguredFinger) -> bool {
+    let null: Vector4<f64> = finger.tendons().expect("tendons").q.column(3).into_owned();
+    let per_stiffness = null.component_div(&Vector4::from(finger.tendon.stiffness));
+    let shares = per_stiffness / per_stiffness.sum();
+    let off = injected.drift * truth.time;
+    let changed = (truth.tensions + off - truth.tensions_at_first).abs();
+    // 0.5 N, and what the last bits of the encoders and the noise of the gauges hide.
+    shares.dot(&off).abs() > 0.6 + finger.tendon.stiffness_tolerance * shares.dot(&changed)
+}
+
+/// A motor is asked to turn by more than its friction may hold.
+fn stands(truth: &Truth, injected: &Injected, finger: &ConfiguredFinger) -> bool {
+    let motor = usize::from(injected.part.expect("a motor")) - 1;
+    let (pull, tension) = (truth.pulls[motor], truth.tensions[motor]);
+    let larger = pull.abs().max(tension);
+    let coulomb = finger.friction.motor_coulomb[motor] / finger.geometry.motor_radius[motor];
+    (pull - tension).abs() > 3.0 * (coulomb + finger.friction.conduit[motor] * larger) + 0.3 * larger + 1.0
+}

@@ -1,0 +1,165 @@
+//! Faults and warnings that the finger's servo names itself, each made to happen. Those of tendons, gauges, encoders and motors are in
+//! tests/fault_injection, those of opening a port in tests/hand_ports.
+
+use crate::rig::{Bench, MILLISECOND, TARGET};
+use nalgebra::Vector3;
+use std::io;
+use sun2xp::board::protocol::{Frame, Kind, Reason, Refused, Status, Stop};
+use sun2xp::board::{Defect, LineFault, PortError, Transport};
+use sun2xp::control::calibration::{Calibration, Task};
+use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
+use sun2xp::model::configuration::Configuration;
+
+#[test]
+fn a_joint_that_is_pushed_beyond_its_limit_is_said_to_be_at_its_stop() {
+    let mut bench = Bench::with(|configuration| {
+        // A stop that is near: it is at 12 degrees.
+        (configuration.fingers[0].joints.minimum_degrees[0], configuration.fingers[0].joints.maximum_degrees[0]) =
+            (-60.0, 5.0);
+    });
+    assert_eq!(bench.warning(), None);
+    bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(5.0, 0.0, 0.0)));
+    let warning = bench.warns(FaultKind::JointAtStop);
+    assert!(warning.part == 0 && warning.value > 7.0, "{warning}");
+    bench.with_finger(|finger| finger.plant().set_external_force(Vector3::zeros()));
+    bench.cycles(3000);
+    assert_eq!((bench.stage(), bench.warning()), (Stage::Running, None), "it went on, and the warning went away");
+}
+
+#[test]
+fn a_finger_that_reads_an_angle_it_cannot_have_does_not_become_a_spring() {
+    let mut bench = Bench::believing(
+        |_| {},
+        |configuration| {
+            configuration.fingers[0].encoder.zero = configuration.fingers[0].encoder.zero.map(|zero| zero + 40_000)
+        },
+    );
+    let fault = bench.faults(FaultKind::ImpossiblePose);
+    let read = bench.report().cycle.joints[usize::from(fault.part)].to_degrees();
+    assert!(fault.value == read && fault.value.abs() > 90.0, "{fault}");
+}
+
+#[test]
+fn a_tendon_that_is_without_tension_for_a_moment_is_no_fault() {
+    let mut bench = Bench::new();
+    bench.with_finger(|finger| finger.suffer(&Defect::SlackTendon { tendon: 3, grip: 0.0 }));
+    bench.cycles(6);
+    bench.with_finger(|finger| finger.mend());
+    let warning = bench.warns(FaultKind::SlackInMotion);
+    assert!(warning.part == 3 && warning.value < 0.5, "{warning}");
+    bench.cycles(3000);
+    assert_eq!((bench.stage(), bench.warning()), (Stage::Running, None));
+}
+
+#[test]
+fn a_line_that_loses_replies_now_and_then_is_said_to_be_noisy() {
+    let mut bench = Bench::new();
+    bench.with_cable(|cable| cable.inject(LineFault::Drop, 0.05, u64::MAX, 3));
+    let warning = bench.warns(FaultKind::LineNoise);
+    assert!((2.0..10.0).contains(&warning.value), "{warning}");
+    bench.with_cable(|cable| cable.clear());
+    bench.cycles(10_000);
+    assert_eq!((bench.stage(), bench.warning()), (Stage::Running, None));
+}
+
+#[test]
+fn a_board_that_another_program_has_stopped_is_told_of() {
+    let mut bench = Bench::new();
+    bench.another_program_sends(Frame::Stop(Stop));
+    let fault = bench.faults(FaultKind::BoardStopped);
+    assert!(Status(fault.value as u16).has(Status::ENDED), "{fault}");
+}
+
+#[test]
+fn a_board_that_refuses_this_fingers_frames_is_told_of_with_the_reason() {
+    let mut bench = Bench::new();
+    let reason = Reason::UnknownFrame;
+    bench.answer_with(Frame::Refused(Refused { request: Kind::Command as u8, reason, detail: 9 }));
+    let fault = bench.faults(FaultKind::CommandRefused);
+    assert_eq!(fault.value, f64::from(reason.number()));
+    bench.cycles(3);
+    assert!(bench.with_finger(|finger| finger.status().has(Status::ENDED)), "and is told to stop");
+}
+
+#[test]
+fn a_port_that_fails_is_told_of_with_its_errno_and_its_board_is_told_to_stop() {
+    let mut bench = Bench::new();
+    bench.fail_port(PortError::Failed(io::Error::from_raw_os_error(libc::EIO)));
+    let fault = bench.faults(FaultKind::PortFailed);
+    assert_eq!(fault.value, f64::from(libc::EIO));
+    bench.cycles(3);
+    assert!(bench.with_finger(|finger| finger.status().has(Status::ENDED) && finger.motor_torques().amax() == 0.0));
+}
+
+#[test]
+fn a_servo_that_comes_late_says_so() {
+    let mut bench = Bench::new();
+    for _ in 0..100 {
+        bench.cycles(19);
+        // What else runs on the machine takes three periods and a half.
+        bench.with_cable(|cable| {
+            let later = cable.now() + 7 * MILLISECOND / 2;
+            cable.advance_to(later);
+        });
+    }
+    let warning = bench.warns(FaultKind::Overrun);
+    assert!((2.0..10.0).contains(&warning.value), "{warning}");
+    // The last is counted with the next cycle.
+    assert!(bench.report().losses.skipped_periods >= 99, "{}", bench.report().losses.skipped_periods);
+}
+
+#[test]
+fn a_board_that_clips_torques_is_told_of() {
+    let mut bench = Bench::believing(
+        |configuration| configuration.fingers[0].motor.torque_limit = [1.0; 4],
+        |configuration| configuration.fingers[0].motor.torque_limit = [4.75; 4],
+    );
+    bench.opens();
+    assert_eq!(bench.warning(), None);
+    bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(0.0, 0.0, -4.0)));
+    bench.warns(FaultKind::CurrentLimit);
+}
+
+#[test]
+fn a_torque_that_the_tension_limits_do_not_let_through_is_told_of() {
+    let mut bench = Bench::with(|configuration| configuration.fingers[0].tendon.maximum = 12.0);
+    bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(0.0, 0.0, -1.5)));
+    bench.mailbox.send(|set_point| set_point.joints = TARGET * 1.3).expect("not faulted");
+    let warning = bench.warns(FaultKind::TorqueNotAdmitted);
+    assert!((0.0..100.0).contains(&warning.value), "{warning}");
+}
+
+#[test]
+fn a_calibration_that_gives_up_leaves_its_warning() {
+    let mut bench = Bench::new();
+    bench.with_finger(|finger| finger.suffer(&Defect::DeadGauge { gauge: 2, count: Some(2000) }));
+    let mut configuration = Configuration::default();
+    let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
+    configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], 1000.0);
+    let adjustable = Adjustable::new(&configuration, 0, 1).expect("a controller");
+    let order = Order::Calibrate(CalibrationRun { calibration, adjustable });
+    assert_eq!(bench.mailbox.order(order), Ok(Some(1)));
+    bench.warns(FaultKind::CalibrationFailed);
+    assert_eq!(bench.stage(), Stage::Limp);
+    bench.cycles(3000);
+    assert_eq!(
+        bench.warning().map(|warning| warning.kind),
+        Some(FaultKind::CalibrationFailed),
+        "as long as it is limp"
+    );
+}
+
+/// By the library's own count of torque and time; the board says nothing.
+#[test]
+fn a_motor_that_gives_more_than_it_can_for_ever_is_limited_and_then_stopped() {
+    let mut bench = Bench::with(|configuration| {
+        configuration.fingers[0].motor.continuous_torque = [0.8; 4];
+        configuration.fingers[0].motor.thermal_time = 0.5;
+    });
+    bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(0.0, 0.0, -2.5)));
+    let warm = bench.warns(FaultKind::WarmMotor);
+    let fault = bench.faults(FaultKind::OverheatedMotor);
+    assert!(fault.part == warm.part && fault.value > 95.0, "{warm}; {fault}");
+    bench.cycles(2);
+    assert!(bench.with_finger(|finger| finger.status().has(Status::ENDED)));
+}

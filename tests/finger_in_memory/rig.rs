@@ -1,0 +1,226 @@
+//! A finger with its servo, its link and its board in memory, on simulated time, and a link that can be mended after a fault.
+
+use nalgebra::Vector3;
+use rtrb::RingBuffer;
+use std::cell::RefCell;
+use std::rc::Rc;
+use sun2xp::board::protocol::{Frame, Message, WireFrame};
+use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, SimulatedFinger, Terms, Transport};
+use sun2xp::finger::{
+    BlackBox, Borrower, ControllerSource, Fault, FaultKind, FingerReport, FingerServo, Mailbox, Mended, ServedPort,
+    Servo, Stage, lending, stop_calls,
+};
+use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::{Clock, Schedule};
+
+pub const MILLISECOND: u64 = 1_000_000;
+
+/// A pose.
+pub const TARGET: Vector3<f64> = Vector3::new(0.2, 0.6, 1.1);
+
+type Read = Result<Vec<u8>, PortError>;
+
+/// The cable, and the clock at both its ends.
+#[derive(Clone)]
+pub struct World {
+    cable: Rc<RefCell<SimulatedCable>>,
+    /// What the next read finds instead of what the board has sent.
+    instead: Rc<RefCell<Option<Read>>>,
+}
+
+impl Transport for World {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
+        self.cable.borrow_mut().write(bytes)
+    }
+
+    fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
+        match self.instead.borrow_mut().take() {
+            Some(Err(failure)) => Err(failure),
+            Some(Ok(bytes)) => {
+                buffer[..bytes.len()].copy_from_slice(&bytes);
+                Ok(bytes.len())
+            }
+            None => self.cable.borrow_mut().read_until(buffer, deadline),
+        }
+    }
+
+    fn discard_input(&mut self) -> Result<(), PortError> {
+        self.cable.borrow_mut().discard_input()
+    }
+
+    fn now(&self) -> u64 {
+        self.cable.borrow().now()
+    }
+}
+
+impl Clock for World {
+    fn now(&self) -> u64 {
+        self.cable.borrow().now()
+    }
+
+    fn sleep_until(&self, deadline: u64) {
+        self.cable.borrow_mut().advance_to(deadline);
+    }
+}
+
+/// Finger 1 with all that it needs.
+pub struct Bench {
+    pub world: World,
+    pub servo: Servo<World, World>,
+    pub mailbox: Mailbox,
+    borrower: Borrower<World>,
+    /// As the board has it.
+    configuration: Configuration,
+}
+
+impl Bench {
+    /// Opens the finger of the default configuration and waits until it is a spring.
+    pub fn new() -> Self {
+        Self::with(|_| {})
+    }
+
+    /// The same with another configuration.
+    pub fn with(change: impl FnOnce(&mut Configuration)) -> Self {
+        let mut bench = Self::believing(change, |_| {});
+        bench.opens();
+        bench
+    }
+
+    /// A finger that begins to open, and of which the servo believes something else than is so.
+    pub fn believing(is: impl FnOnce(&mut Configuration), believed: impl FnOnce(&mut Configuration)) -> Self {
+        let mut configuration = Configuration::default();
+        // Not "simulated": a built-in board is waited for patiently.
+        configuration.fingers[0].port = "in memory".into();
+        is(&mut configuration);
+        let mut belief = configuration.clone();
+        believed(&mut belief);
+        let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
+        let board = SimulatedBoard::new(&configuration, &[0]).expect("a board");
+        let cable = Rc::new(RefCell::new(SimulatedCable::new(board)));
+        let world = World { cable, instead: Rc::default() };
+        let mut link = Link::new(world.clone());
+        let (identity, configured) =
+            link.shake_hands(1, &Terms::new(hand, finger), 1000 * MILLISECOND).expect("a board answers");
+        let (timings, _) = RingBuffer::new(1);
+        let source = ControllerSource { number: 0, gravity: configuration.gravity(0), finger: finger.clone() };
+        // Nobody reads it.
+        let (recorder, _) = BlackBox::new(1, hand, source);
+        let (finger, mailbox) =
+            FingerServo::new(&belief, 0, finger.initial_stiffness(), &identity, &configured, timings, recorder)
+                .expect("a finger");
+        let period = (1e9 / hand.rate) as u64;
+        let schedule = Schedule::new(Transport::now(&world) + period, period);
+        let (lender, borrower) = lending();
+        let port = ServedPort::new(link, vec![finger]).lent_through(lender);
+        let servo = Servo::new(world.clone(), schedule, vec![port]);
+        Self { world, servo, mailbox, borrower, configuration }
+    }
+
+    pub fn report(&self) -> FingerReport {
+        self.mailbox.report()
+    }
+
+    pub fn stage(&self) -> Stage {
+        self.report().stage
+    }
+
+    /// What has stopped the finger.
+    pub fn fault(&self) -> Option<Fault> {
+        match self.stage() {
+            Stage::Faulted(fault) => Some(fault),
+            _ => None,
+        }
+    }
+
+    /// What the finger is warned of.
+    pub fn warning(&self) -> Option<Fault> {
+        self.report().warnings.newest()
+    }
+
+    pub fn with_cable<R>(&self, act: impl FnOnce(&mut SimulatedCable) -> R) -> R {
+        act(&mut self.world.cable.borrow_mut())
+    }
+
+    pub fn with_finger<R>(&self, act: impl FnOnce(&mut SimulatedFinger) -> R) -> R {
+        self.with_cable(|cable| act(cable.board().finger(1).expect("the board has finger 1")))
+    }
+
+    /// The next read of the port meets this.
+    pub fn fail_port(&self, failure: PortError) {
+        *self.world.instead.borrow_mut() = Some(Err(failure));
+    }
+
+    /// The board's next answer is this.
+    pub fn answer_with(&self, frame: Frame) {
+        let wire = WireFrame::new(&Message { address: 1, sequence: 200, frame });
+        *self.world.instead.borrow_mut() = Some(Ok(wire.as_bytes().to_vec()));
+    }
+
+    /// Another program at the same port sends this to the finger's board, and leaves the answer to whoever reads first.
+    pub fn another_program_sends(&mut self, frame: Frame) {
+        let message = Message { address: 1, sequence: 200, frame };
+        self.world.write(WireFrame::new(&message).as_bytes()).expect("written");
+    }
+
+    /// Periods.
+    pub fn cycles(&mut self, count: usize) {
+        for _ in 0..count {
+            self.servo.cycle();
+        }
+    }
+
+    /// Periods until it is so, 10 000 at most.
+    pub fn until(&mut self, what: &str, wanted: impl Fn(&Self) -> bool) {
+        for _ in 0..10_000 {
+            if wanted(self) {
+                return;
+            }
+            self.servo.cycle();
+        }
+        panic!("not {what}: {:?}, warned of {:?}", self.stage(), self.warning());
+    }
+
+    /// Until the finger is a spring.
+    pub fn opens(&mut self) {
+        self.until("a spring", |bench| bench.stage() != Stage::Opening);
+        assert_eq!(self.stage(), Stage::Running);
+    }
+
+    /// Sends the finger to a pose.
+    pub fn goes(&mut self, joints: Vector3<f64>) {
+        self.mailbox.send(|set_point| set_point.joints = joints).expect("not faulted");
+        self.cycles(1500);
+        let off = (self.report().cycle.joints - joints).amax();
+        assert!(off < 0.03, "off by {off} rad");
+    }
+
+    /// Until the finger is stopped by this.
+    pub fn faults(&mut self, kind: FaultKind) -> Fault {
+        self.until("faulted", |bench| bench.fault().is_some());
+        let fault = self.fault().expect("faulted");
+        assert_eq!(fault.kind, kind, "{fault}");
+        fault
+    }
+
+    /// Until the finger is warned of this, and goes on.
+    pub fn warns(&mut self, kind: FaultKind) -> Fault {
+        self.until(&format!("warned of {kind:?}"), |bench| {
+            assert_eq!(bench.fault(), None);
+            bench.warning().is_some_and(|warning| warning.kind == kind)
+        });
+        self.warning().expect("warned")
+    }
+
+    /// The link in other hands, which shake hands with the board and give it back: the finger takes up slack.
+    pub fn mend(&mut self) {
+        self.until("at rest", |bench| bench.borrower.lent.slots() > 0);
+        let mut link = self.borrower.lent.pop().expect("lent").link;
+        let terms = Terms::new(&self.configuration.hand, &self.configuration.fingers[0]);
+        let deadline = Transport::now(&self.world) + 1000 * MILLISECOND;
+        let (_, configured) = link.shake_hands(1, &terms, deadline).expect("the board answers");
+        let mended = Mended { link, configured: [Some(configured), None, None], stop_calls: stop_calls() };
+        assert!(self.borrower.mended.push(mended).is_ok());
+        self.cycles(1);
+        assert_eq!(self.stage(), Stage::Opening);
+    }
+}

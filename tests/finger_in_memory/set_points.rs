@@ -1,0 +1,122 @@
+//! Which set point a finger holds after open, after a fault and after a calibration: its own, until a planner sends another.
+
+use crate::rig::{Bench, TARGET};
+use nalgebra::Vector3;
+use sun2xp::board::Defect;
+use sun2xp::control::calibration::{Calibration, Task, Verdict};
+use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
+use sun2xp::model::configuration::Configuration;
+
+/// What SendKx sends.
+fn soften(bench: &Bench) {
+    bench.mailbox.send(|set_point| set_point.stiffness *= 0.5).expect("not faulted");
+}
+
+fn stop(bench: &mut Bench) {
+    bench.with_finger(|finger| finger.suffer(&Defect::EmergencyStop));
+    bench.faults(FaultKind::EmergencyStopInput);
+    bench.with_finger(|finger| finger.mend());
+}
+
+/// The finger holds these joints, with half of its initial stiffness.
+fn holds(bench: &mut Bench, joints: Vector3<f64>) {
+    bench.cycles(1);
+    let held = bench.report().set_point;
+    assert_eq!(held.joints, joints, "where it shall be");
+    assert!((held.stiffness[(0, 0)] - 1.5).abs() < 1e-12, "{}", held.stiffness);
+    bench.cycles(500);
+    let moved = (bench.report().cycle.joints - joints).amax();
+    assert!(moved < 0.03, "moved by {moved} rad");
+}
+
+#[test]
+fn a_stiffness_sent_first_after_open_leaves_the_finger_where_it_was_found() {
+    let mut bench = Bench::new();
+    let found = bench.report().set_point.joints;
+    soften(&bench);
+    holds(&mut bench, found);
+}
+
+#[test]
+fn what_was_sent_before_a_fault_is_gone() {
+    let mut bench = Bench::new();
+    bench.goes(TARGET);
+    let far = TARGET + Vector3::new(0.3, 0.3, 0.3);
+    bench.mailbox.send(|set_point| set_point.joints = far).expect("not faulted");
+    bench.cycles(20);
+    stop(&mut bench);
+    bench.mend();
+    // Nor does a set point count that was sent while slack is taken up.
+    bench.mailbox.send(|set_point| set_point.joints = far).expect("not faulted");
+    bench.opens();
+    let found = bench.report().set_point.joints;
+    assert!((found - far).amax() > 0.1, "the case must be one of another pose");
+    // The first thing that is sent, before anybody has looked at the finger.
+    soften(&bench);
+    holds(&mut bench, found);
+}
+
+#[test]
+fn of_two_that_send_within_a_period_after_recovery_none_is_overwritten() {
+    let mut bench = Bench::new();
+    bench.goes(TARGET);
+    stop(&mut bench);
+    bench.mend();
+    bench.opens();
+    let near = bench.report().set_point.joints + Vector3::new(0.1, 0.0, 0.0);
+    bench.mailbox.send(|set_point| set_point.joints = near).expect("not faulted");
+    soften(&bench);
+    assert_eq!(bench.mailbox.sent().joints, near);
+    bench.cycles(1);
+    assert_eq!(bench.report().set_point.joints, near);
+}
+
+#[test]
+fn what_is_on_its_way_when_a_finger_faults_is_not_carried_out_after_recovery() {
+    let mut bench = Bench::new();
+    bench.goes(TARGET);
+    bench.with_finger(|finger| finger.suffer(&Defect::EmergencyStop));
+    // The servo has not told of the fault yet.
+    let configuration = Configuration::default();
+    let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
+    let adjustable = Adjustable::new(&configuration, 0, 1).expect("a controller");
+    let order = bench.mailbox.order(Order::Calibrate(CalibrationRun { calibration, adjustable }));
+    assert_eq!(order, Ok(Some(1)));
+    bench.faults(FaultKind::EmergencyStopInput);
+    bench.with_finger(|finger| finger.mend());
+    bench.mend();
+    bench.opens();
+    bench.cycles(10);
+    assert_eq!((bench.stage(), bench.report().orders), (Stage::Running, 1));
+    // The next one is taken.
+    assert_eq!(bench.mailbox.order(Order::Restart { limp: true }), Ok(Some(2)));
+    bench.cycles(1);
+    assert_eq!(bench.stage(), Stage::Limp);
+}
+
+#[test]
+fn what_was_sent_during_a_calibration_is_gone() {
+    let mut bench = Bench::new();
+    bench.goes(TARGET);
+    let mut configuration = Configuration::default();
+    let task = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
+    configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], 1000.0);
+    let adjustable = Adjustable::new(&configuration, 0, 1).expect("a controller");
+    let order = Order::Calibrate(CalibrationRun { calibration: task, adjustable });
+    assert_eq!(bench.mailbox.order(order), Ok(Some(1)));
+    bench.cycles(10);
+    assert_eq!(bench.stage(), Stage::Calibrating);
+    let before = bench.report().set_point;
+    bench.mailbox.send(|set_point| set_point.joints = Vector3::new(0.0, 0.0, 0.5)).expect("not faulted");
+    bench.until("limp", |bench| {
+        assert_eq!(bench.report().set_point, before);
+        bench.stage() == Stage::Limp
+    });
+    assert!(matches!(bench.report().calibration, Some(Verdict::Found(_) | Verdict::Refused(_))));
+    assert_eq!(bench.mailbox.order(Order::Restart { limp: false }), Ok(Some(2)));
+    bench.cycles(1);
+    bench.opens();
+    let found = bench.report().set_point.joints;
+    soften(&bench);
+    holds(&mut bench, found);
+}

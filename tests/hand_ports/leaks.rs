@@ -1,0 +1,171 @@
+//! Everything that can happen to a finger on a port, again and again: it recovers every time, and the process holds no more
+//! than before.
+
+use crate::recovery::{fault, held};
+use crate::rig::{START, TARGET, close, goes, on_ports, open, turn, wait_until};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::fs::remove_file;
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicI64, Ordering};
+use std::time::{Duration, Instant};
+use sun2xp::board::{Defect, LineFault, Pace, SimulatedBoard, SimulatedPort};
+use sun2xp::hand::Hand;
+use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::Priority;
+
+/// Bytes on the heap.
+static ALLOCATED: AtomicI64 = AtomicI64::new(0);
+
+struct Counting;
+
+// SAFETY: the system's allocator, with a count beside it.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATED.fetch_add(layout.size() as i64, Ordering::Relaxed);
+        // SAFETY: as the caller promised.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        ALLOCATED.fetch_sub(layout.size() as i64, Ordering::Relaxed);
+        // SAFETY: as the caller promised.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+/// Black boxes make room for a few states more where recoveries come close together.
+const COMES_AND_GOES: i64 = 128 * 1024;
+
+#[derive(Debug)]
+enum Trouble {
+    Finger(Defect),
+    Line(LineFault),
+    Unplug,
+}
+
+const TROUBLES: [Trouble; 18] = [
+    Trouble::Finger(Defect::CutTendon(2)),
+    Trouble::Finger(Defect::DeadGauge { gauge: 1, count: None }),
+    Trouble::Line(LineFault::Drop),
+    Trouble::Finger(Defect::SlackTendon { tendon: 3, grip: 1.0 }),
+    Trouble::Finger(Defect::DeadGauge { gauge: 2, count: Some(0) }),
+    Trouble::Line(LineFault::Corrupt),
+    Trouble::Finger(Defect::DeadGauge { gauge: 4, count: Some(4095) }),
+    Trouble::Finger(Defect::DriftingGauge { gauge: 1, speed: 20.0 }),
+    Trouble::Unplug,
+    Trouble::Finger(Defect::EncoderJump { encoder: 4, counts: 2000 }),
+    Trouble::Finger(Defect::JammedMotor(1)),
+    Trouble::Finger(Defect::Reset),
+    Trouble::Finger(Defect::HotMotor(1)),
+    Trouble::Finger(Defect::ZeroLost),
+    Trouble::Line(LineFault::Stall),
+    Trouble::Finger(Defect::EmergencyStop),
+    Trouble::Finger(Defect::Supply),
+    Trouble::Finger(Defect::Sensor),
+];
+
+/// A board behind a link to its port.
+struct Bench {
+    /// 1 to 3.
+    finger: i32,
+    port: SimulatedPort,
+    link: PathBuf,
+}
+
+impl Bench {
+    fn new(folder: &Path, index: usize) -> Self {
+        let board = SimulatedBoard::new(&Configuration::default(), &[index]).expect("a board");
+        let port = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None });
+        let bench =
+            Self { finger: index as i32 + 1, port: port.expect("a port"), link: folder.join(format!("board-{index}")) };
+        bench.name();
+        bench
+    }
+
+    fn name(&self) {
+        // There is none the first time.
+        let _ = remove_file(&self.link);
+        symlink(self.port.path(), &self.link).expect("a link");
+    }
+
+    fn happen(&self, trouble: &Trouble) {
+        match trouble {
+            Trouble::Finger(defect) => {
+                assert_eq!(self.port.with_finger(self.finger as u8, |finger| finger.suffer(defect)), Some(true));
+            }
+            Trouble::Line(fault) => self.port.inject(*fault, 1.0, 60_000_000_000, 1),
+            Trouble::Unplug => self.port.unplug(),
+        }
+    }
+
+    fn mend(&self) {
+        self.port.with_finger(self.finger as u8, |finger| finger.mend()).expect("the finger");
+        self.port.clear();
+        if self.port.path().as_os_str().is_empty() {
+            self.port.plug_in().expect("a new port");
+            self.name();
+        }
+    }
+}
+
+/// Three fingers at a time suffer one trouble each while they move, and recover.
+fn suffer(hand: &Hand, benches: &[Bench], troubles: &[Trouble]) {
+    for (bench, trouble) in benches.iter().zip(troubles) {
+        bench.happen(trouble);
+    }
+    let (mut sent, mut there) = (Instant::now(), false);
+    wait_until(&format!("faulted by {troubles:?}"), || {
+        // A motor that jams is known when something wants it to turn.
+        if sent.elapsed() > Duration::from_millis(300) {
+            (sent, there) = (Instant::now(), !there);
+            for bench in benches {
+                // Faulted ones refuse.
+                let _ = hand.send_position(bench.finger, if there { TARGET } else { START });
+            }
+        }
+        benches.iter().all(|bench| fault(hand, bench.finger).is_some())
+    });
+    for bench in benches {
+        bench.mend();
+        wait_until("recovered", || hand.recover(bench.finger).is_ok());
+    }
+}
+
+/// `SUN2XP_ROUNDS=100 cargo test --test hand_ports nothing_leaks -- --nocapture` for more rounds.
+#[test]
+fn everything_that_happens_to_a_finger_is_recovered_from_and_nothing_leaks() {
+    let _turn = turn();
+    let rounds = std::env::var("SUN2XP_ROUNDS").map_or(1, |rounds| rounds.parse().expect("a number"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let benches = [0, 1, 2].map(|index| Bench::new(folder.path(), index));
+    let links = benches.each_ref().map(|bench| bench.link.to_string_lossy());
+    let mut configuration = on_ports(links.each_ref().map(|link| &**link));
+    configuration.fingers.iter_mut().for_each(|finger| finger.reconnect = true);
+    let hand = open(configuration);
+    let all = || TROUBLES.chunks(3).for_each(|troubles| suffer(&hand, &benches, troubles));
+    // What is made once is made now.
+    all();
+    // Black boxes are full after two seconds.
+    let cycles = |finger: i32| hand.report(finger).expect("a report").losses.cycles;
+    let full = [1, 2, 3].map(|finger| cycles(finger) + 1500);
+    wait_until("run for three seconds", || (1..=3).zip(full).all(|(finger, full)| cycles(finger) > full));
+    let before = (held(), ALLOCATED.load(Ordering::Relaxed));
+    (0..rounds).for_each(|_| all());
+    let after = (held(), ALLOCATED.load(Ordering::Relaxed));
+    println!(
+        "{} faults recovered from: descriptors and threads {:?}, then {:?}; on the heap {} bytes, then {}",
+        rounds * TROUBLES.len(),
+        before.0,
+        after.0,
+        before.1,
+        after.1
+    );
+    assert_eq!(before.0, after.0, "descriptors and threads");
+    assert!(after.1 - before.1 < COMES_AND_GOES, "{} bytes more", after.1 - before.1);
+    goes(&hand, 1, TARGET);
+    close(hand);
+}
