@@ -5,13 +5,15 @@ use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Scheme};
 use nalgebra::{Matrix3, Matrix3x4};
 
-/// The part of the stiffness of the locked tendons that K_theta may have, below 750 Hz and from there on: as far as the loop
-/// was found stable. That of Figure 11, which has no gain on the tension error, carries less.
+/// The part of the stiffness of the locked tendons that K_theta may have: as far as the loop was found stable, so less below
+/// 750 Hz, and less with Figure 11, which has no gain on the tension error, at every rate.
 fn share(scheme: Scheme, rate: f64) -> f64 {
     match scheme {
         Scheme::Figure11 => 0.7,
-        _ if rate < 750.0 => 0.7,
-        _ => 0.95,
+        _ if rate >= 750.0 => 0.95,
+        // At 500 Hz: with 0.95 stretched poses grew at 5 N/cm.
+        Scheme::StateFeedback => 0.75,
+        Scheme::Figure9 | Scheme::Figure10 => 0.7,
     }
 }
 
@@ -30,7 +32,7 @@ impl AdmissibleStiffness {
         let stiffness = finger.tendon.stiffness;
         let stretched = Matrix3x4::from_fn(|joint, tendon| tendons.r[(joint, tendon)] * stiffness[tendon]);
         let inverse = (stretched * tendons.r.transpose()).cholesky()?.l().try_inverse()?;
-        Some(Self { inverse, share: share(finger.controller.scheme(rate), rate) })
+        Some(Self { inverse, share: share(finger.controller.scheme, rate) })
     }
 
     /// The factor, 0 to 1, that K_theta (N cm/rad) has to be scaled by.

@@ -23,17 +23,17 @@ const SET_POINT_SPEED: f64 = 2.0;
 /// rad/s. State feedback follows its reference, which therefore may move as fast as the tensions can carry it: from 1000 Hz up.
 const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 5.0;
 
-/// Rate, Hz, then the fields of [`Gains`] in their order but the last two, at that rate. Found by experiment with the finger of the
-/// default configuration. The rates rise.
-type Row = (f64, [f64; 6]);
+/// Rate, Hz, and numbers at that rate, none negative. The rates of a table rise.
+pub(super) type Row<const NUMBERS: usize> = (f64, [f64; NUMBERS]);
 
-const FIGURE_9: [Row; 3] = [
+/// The fields of [`Gains`] in their order but the last two. Found by experiment with the finger of the default configuration.
+const FIGURE_9: [Row<6>; 3] = [
     (500.0, [0.0, 50.0, 250.0, 0.020, 160.0, 3.0]),
     (1000.0, [0.0, 75.0, 310.0, 0.050, 180.0, 2.0]),
     (2000.0, [0.0, 100.0, 440.0, 0.060, 160.0, 5.0]),
 ];
 
-const FIGURE_10: [Row; 3] = [
+const FIGURE_10: [Row<6>; 3] = [
     (500.0, [0.1, 55.0, 265.0, 0.020, 190.0, 3.0]),
     (1000.0, [2.0, 250.0, 450.0, 0.015, 400.0, 6.0]),
     (2000.0, [5.0, 550.0, 460.0, 0.020, 400.0, 6.0]),
@@ -41,7 +41,7 @@ const FIGURE_10: [Row; 3] = [
 
 /// At 500 and 2000 Hz by a random search of 50 rows for the smallest largest eigenvalue of the one-cycle map, over 40 poses at 1, 3
 /// and 6 N/cm.
-const FIGURE_11: [Row; 3] = [
+const FIGURE_11: [Row<6>; 3] = [
     (500.0, [0.0, 0.0, 60.0, 0.020, 200.0, 3.0]),
     (1000.0, [0.0, 0.0, 86.0, 0.0055, 400.0, 20.0]),
     (2000.0, [0.0, 0.0, 54.0, 0.0041, 385.0, 6.0]),
@@ -50,10 +50,10 @@ const FIGURE_11: [Row; 3] = [
 /// 1/s.
 const ADAPTATION_GAIN: f64 = 20.0;
 
-/// The row of a table for `rate`, Hz: between two rates each gain is a power of the rate, beyond the last ones it stays.
+/// The row of a table for `rate`, Hz: between two rates each number is a power of the rate, beyond the last ones it stays.
 ///
 /// Not the nearest row: gains of a higher rate act on a delay for which they are too large, and were unstable in every pose tried.
-fn at(table: &[Row], rate: f64) -> [f64; 6] {
+pub(super) fn at<const NUMBERS: usize>(table: &[Row<NUMBERS>], rate: f64) -> [f64; NUMBERS] {
     let above = table.iter().position(|row| row.0 >= rate).unwrap_or(table.len() - 1);
     let ((low, lower), (high, upper)) = (table[above.saturating_sub(1)], table[above]);
     if rate <= low || rate >= high {
@@ -66,7 +66,7 @@ fn at(table: &[Row], rate: f64) -> [f64; 6] {
 impl Gains {
     /// What is configured; the rest from the table of the scheme.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
-        let scheme = configured.scheme(rate);
+        let scheme = configured.scheme;
         let table = match scheme {
             Scheme::Figure9 => &FIGURE_9,
             // Slack is taken up with Figure 10.
@@ -126,7 +126,7 @@ mod tests {
         configured.motor_damping = Some(77.0);
         let gains = Gains::new(&configured, 1000.0).unwrap();
         assert_eq!((gains.motor_damping, gains.tension_integral), (77.0, 250.0));
-        configured.scheme = Some(Scheme::Figure9);
+        configured.scheme = Scheme::Figure9;
         assert_eq!(Gains::new(&configured, 1000.0).unwrap().tension_integral, 75.0);
     }
 
@@ -134,8 +134,7 @@ mod tests {
     fn what_cannot_work_is_refused_by_name() {
         let refused = |configured: ConfiguredController| Gains::new(&configured, 1000.0).unwrap_err().key;
         let base = ConfiguredController::default();
-        let proportional =
-            ConfiguredController { scheme: Some(Scheme::Figure9), tension_gain: Some(1.0), ..base.clone() };
+        let proportional = ConfiguredController { scheme: Scheme::Figure9, tension_gain: Some(1.0), ..base.clone() };
         assert_eq!(refused(proportional), "controller.tension_gain");
         assert_eq!(refused(ConfiguredController { rate_time: Some(f64::NAN), ..base.clone() }), "controller.rate_time");
         assert_eq!(refused(ConfiguredController { stretch_filter: Some(0.0), ..base }), "controller.stretch_filter");

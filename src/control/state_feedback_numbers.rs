@@ -4,6 +4,7 @@
 //! and a bandwidth. What remains has no unit, or is one in cycles, and was searched on the eigenvalues of the exact one-cycle
 //! map of the default finger, never for a pose.
 
+use super::gains::{Row, at};
 use super::usable::{not_negative, positive};
 use crate::model::configuration::{ConfiguredController, Unusable};
 
@@ -52,50 +53,44 @@ const DITHER_FREQUENCY: f64 = 40.0;
 /// See [`Numbers::rubbing`].
 const RUBBING: f64 = 0.4;
 
-/// alpha, zeta, relative zeta, disturbance and link bandwidth (rad/s), ahead, lag, common gain, common damping, felt, reference
-/// time (s).
-type Row = (f64, [f64; 11]);
-
-const TABLE: [Row; 3] = [
-    (500.0, [0.45, 0.4, 0.12, 40.0, 800.0, 0.0, 1.0, 0.3, 1.0, 1.0, 0.012]),
-    (1000.0, [2.3, 0.178, 0.31, 13000.0, 1634.0, -0.12, 0.015, 0.043, 0.266, 10.2, 0.008]),
-    (2000.0, [3.58, 0.274, 0.557, 30900.0, 1140.0, -0.359, 0.042, 0.095, 0.184, 9.03, 0.008]),
+/// alpha, zeta, relative zeta, disturbance and link bandwidth (radians a cycle), cycles that it looks back, lag, common gain, common damping,
+/// felt, reference time (s).
+const TABLE: [Row<11>; 3] = [
+    (500.0, [0.95, 0.42, 0.19, 48.0, 2.6, 0.6, 0.04, 0.2, 0.6, 1.4, 0.012]),
+    (1000.0, [2.3, 0.178, 0.31, 13.0, 1.634, 0.12, 0.015, 0.043, 0.266, 10.2, 0.008]),
+    (2000.0, [3.58, 0.274, 0.557, 15.45, 0.57, 0.359, 0.042, 0.095, 0.184, 9.03, 0.008]),
 ];
 
 impl Numbers {
-    /// What is configured; the rest from the tabulated rate nearest to `rate` (by ratio).
+    /// What is configured; the rest from the table.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
-        let apart = |row: &Row| (row.0 / rate).ln().abs();
-        let nearest = TABLE.iter().fold(&TABLE[0], |best, row| if apart(row) < apart(best) { row } else { best });
         let [
             inertia_gain,
             damping_ratio,
             relative_damping,
             disturbance,
             link,
-            ahead,
+            behind,
             lag,
             common_gain,
             common_damping,
             felt,
             reference_time,
-        ] = nearest.1;
-        // A bandwidth is a number of radians in a cycle.
-        let scale = rate / nearest.0;
+        ] = at(&TABLE, rate);
         let numbers = Self {
             inertia_gain: configured.inertia_gain.unwrap_or(inertia_gain),
             damping_ratio: configured.damping_ratio.unwrap_or(damping_ratio),
             relative_damping,
-            disturbance_bandwidth: disturbance * scale,
-            link_bandwidth: link * scale,
-            ahead,
+            disturbance_bandwidth: disturbance * rate,
+            link_bandwidth: link * rate,
+            ahead: -behind,
             lag,
             felt,
             common_gain,
             common_damping,
             rubbing: RUBBING,
             least_frequency: LEAST_FREQUENCY,
-            reference_time: configured.set_point_time.unwrap_or(reference_time / scale.min(1.0)),
+            reference_time: configured.set_point_time.unwrap_or(reference_time / (rate / TABLE[0].0).min(1.0)),
             dither: configured.dither.unwrap_or(2.0),
             dither_frequency: DITHER_FREQUENCY.min(rate / 12.0),
         };

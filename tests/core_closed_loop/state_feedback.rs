@@ -125,11 +125,10 @@ fn steps_are_short_and_hardly_overshoot() {
         assert!(found.worst <= 0.15 && found.overshoot <= 0.1);
         assert!(found.least_commanded >= 5.0 && found.least_true >= 2.5);
     }
-    for (stiffness, time) in [(3.0, 0.88), (5.0, 1.0)] {
+    for stiffness in [3.0, 5.0] {
         let found = steps(500.0, stiffness, 0.0, |_| ());
-        // At 3 N/cm Figure 10 takes 0.88 s and overshoots by 48 % at 1000 Hz already.
-        assert!(found.worst <= time && found.overshoot <= 0.48);
-        assert!(found.least_commanded >= 5.0 && found.least_true >= 2.0);
+        assert!(found.worst <= 0.25 && found.overshoot <= 0.1);
+        assert!(found.least_commanded >= 5.0 && found.least_true >= 2.5);
     }
 }
 
@@ -185,7 +184,7 @@ fn friction_does_not_hold_the_finger_and_does_without_dither() {
         harsh(finger);
         finger.controller.dither = Some(0.0);
     });
-    assert!(stuck > 0.3, "{stuck}");
+    assert!(stuck > 0.5, "{stuck}");
 }
 
 #[test]
@@ -201,9 +200,7 @@ fn the_spring_begins_where_the_finger_is() {
                 servo.cycle(&target);
                 farthest = farthest.max((servo.plant.joints() - pose).amax());
             }
-            // At 500 Hz, where it is not the default, it is less damped.
-            let most = if rate < 1000.0 { 0.06 } else { 0.02 };
-            assert!(farthest < most, "{rate} Hz: {farthest} rad from {pose}");
+            assert!(farthest < 0.02, "{rate} Hz: {farthest} rad from {pose}");
         }
     }
 }
@@ -275,13 +272,13 @@ fn walls_are_stable() {
         println!("{rate} Hz, {stiffness} N/cm: tip moves {worst:.4} cm rms against a wall");
         println!("{restless:.4?}");
         // At the bound of Kx some contacts swing a little: there is no margin left, but nothing grows.
-        // At 500 Hz, where state feedback is not the default, contacts swing, but within half a millimetre.
-        let most = match (rate, stiffness) {
-            (500.0, _) => 0.06,
-            (_, 3.0) => 0.005,
-            _ => 0.03,
+        // At 500 Hz more of them do, by a tenth of a millimetre.
+        let (most, few) = match (rate, stiffness) {
+            (500.0, _) => (0.015, 10),
+            (_, 3.0) => (0.005, 0),
+            _ => (0.03, 4),
         };
         assert!(worst < most);
-        assert!(restless.len() <= 4, "{restless:.4?}");
+        assert!(restless.len() <= few, "{restless:.4?}");
     }
 }
