@@ -13,6 +13,10 @@ const KNOWN: u32 = 256;
 /// A gauge that shows one count in so many samples while all others are known to flicker was dead in the beginning.
 const NEVER: u32 = 512;
 
+/// A dead gauge is also off from the tension that is commanded by more than this part of t_min, before long: a controller goes on, and its
+/// dither does at rest. One without noise whose tendon is where it shall be may show one count for ever, and did while others flickered.
+const OFF: f64 = 0.015;
+
 /// The chance at which a live gauge that flickers as before would show one count for so long, as a natural logarithm: once
 /// in 10^11 samples, a year of four gauges at 1000 Hz.
 const UNLIKELY: f64 = -25.3;
@@ -37,13 +41,15 @@ const SLACK: f64 = 0.3;
 const ROW: u32 = 4;
 
 /// A gauge that flickered and then showed one count in so many samples is dead if something else says so too.
-const SILENT: u32 = 6;
+const SILENT: u32 = 10;
 
 /// Without flicker a gauge is dead only for its tendon's sake; see `tension_lost`.
 #[derive(Clone, Debug)]
 pub(super) struct GaugeStuck {
     /// Below so much, N, a tendon may hang, and where its gauge ends noise shows on one side only: no witness for another.
     slack: f64,
+    /// N.
+    off: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +100,7 @@ impl Memory {
 
 impl GaugeStuck {
     pub fn new(finger: &ConfiguredFinger) -> Self {
-        Self { slack: SLACK * finger.tendon.minimum }
+        Self { slack: SLACK * finger.tendon.minimum, off: OFF * finger.tendon.minimum }
     }
 
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
@@ -131,9 +137,10 @@ impl GaugeStuck {
             // Where a tendon hangs its gauge may be at its end, and show half of the noise only.
             let least = if sample.tensions[gauge] < self.slack { MOST_REPEATS } else { LEAST_REPEATS };
             let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(least).ln() < UNLIKELY;
+            let off = (sample.tensions[gauge] - sample.report.desired_tensions[gauge]).abs() > self.off;
             let died = known[gauge] && unlikely && others_flicker(gauge);
             let was_dead = memory.same[gauge] >= NEVER && alone(gauge) && sample.tensions[gauge] > self.slack;
-            (died || was_dead).then_some(f64::from(counts[gauge]))
+            (off && (died || was_dead)).then_some(f64::from(counts[gauge]))
         })
     }
 }
