@@ -83,20 +83,32 @@ fn slack_tendons_are_taken_up_when_the_hand_is_opened_again() {
     close(hand);
 
     // Nothing winds the tendons now: a finger that is pushed by hand loosens those on its other side.
-    boards[1].order("force 2 2 0 0");
-    let pushed = |state: &State| state.tensions.contains(&0.0) && (state.joints[0] - TARGET[0]).abs() > 0.2;
-    boards[1].wait_for(2, "slack", pushed);
-    boards[1].order("free 2");
-    let slack = boards[1].state(2);
-    assert!(slack.tensions.contains(&0.0), "{slack:?}");
+    let off = |state: &State| (Vector3::from_column_slice(&state.joints) - Vector3::from(TARGET)).amax();
+    let at_rest = |board: &mut Board| {
+        let mut last = board.state(2);
+        wait_until("at rest", || {
+            std::thread::sleep(Duration::from_millis(50));
+            let before = std::mem::replace(&mut last, board.state(2));
+            (Vector3::from_column_slice(&before.joints) - Vector3::from_column_slice(&last.joints)).amax() < 1e-4
+        });
+        last
+    };
+    // One that is pushed for long may bounce back from a stop, to where it was.
+    let found = (0..10).find_map(|_| {
+        boards[1].order("force 2 2 0 0");
+        boards[1].wait_for(2, "pushed", |state| off(state) > 0.2);
+        boards[1].order("free 2");
+        Some(at_rest(&mut boards[1])).filter(|state| state.tensions.contains(&0.0) && off(state) > 0.15)
+    });
+    let found = found.expect("a push that loosens tendons");
 
     let hand = open(on_boards(&boards));
     let tight = boards[1].state(2);
     assert!(tight.tensions.iter().all(|&tension| tension > 3.0), "{tight:?}");
-    // It holds the pose that it was found in, whatever that was, and goes on from there.
+    // It holds the pose that it was found in, and goes on from there.
     let held = hand.report(2).expect("report").set_point.joints;
     assert!((Vector3::from(hand.position(2).expect("position")) - held).amax() < 0.02);
-    assert!((held - Vector3::from(TARGET)).amax() > 0.1, "the push did not move it: {held}");
+    assert!((held - Vector3::from_column_slice(&found.joints)).amax() < 0.1, "found at {found:?}, held at {held}");
     goes(&hand, 2, TARGET);
     goes(&hand, 2, START);
 }
