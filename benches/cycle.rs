@@ -23,7 +23,7 @@ fn follow_over_limit(bencher: Bencher, scheme: Scheme) {
 
 fn cycle(bencher: Bencher, scheme: Scheme, stiffness: f64) {
     let mut finger = ConfiguredFinger::default();
-    finger.controller.scheme = scheme;
+    finger.controller.scheme = Some(scheme);
     let controller = Controller::new(&finger, 1000.0).expect("the default finger");
     let mut plant = Plant::new(&finger, Vector3::zeros()).expect("the default finger");
     let mut sensors = Sensors::new(&finger);

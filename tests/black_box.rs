@@ -25,7 +25,7 @@ fn own_board(scheme: Scheme, folder: Option<&Path>) -> (SimulatedPort, Hand) {
     configuration.hand.black_box = folder.map(|folder| folder.to_string_lossy().into_owned());
     for finger in &mut configuration.fingers {
         finger.port = port.path().to_string_lossy().into_owned();
-        (finger.baud, finger.thread, finger.controller.scheme) = (2_000_000, 1, scheme);
+        (finger.baud, finger.thread, finger.controller.scheme) = (2_000_000, 1, Some(scheme));
     }
     let hand = Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"));
     (port, hand)

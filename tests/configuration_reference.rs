@@ -121,6 +121,7 @@ fn the_optional_keys_say_what_counts_without_them() {
         let filters = [gains.speed_filter, gains.stretch_filter, gains.set_point_speed];
         let of_states = [gains.inertia_gain, gains.damping_ratio, gains.set_point_time, gains.dither];
         assert!(given.iter().chain(&filters).chain(&of_states).all(Option::is_some), "{gains:?}");
+        assert!(gains.scheme.is_some());
         let controller = |finger| format!("{:?}", Controller::new(finger, default.hand.rate).expect("a controller"));
         assert_eq!(controller(&unshown), controller(reference));
         assert!(finger.simulation.surface.is_some());

@@ -271,7 +271,7 @@ fn a_board_without_its_planner_is_in_its_end_state_within_the_watchdogs_time() {
 fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
     let mut configuration = Configuration::default();
     // It holds; state feedback predicts.
-    configuration.fingers[0].controller.scheme = Scheme::Figure10;
+    configuration.fingers[0].controller.scheme = Some(Scheme::Figure10);
     let mut rig = Rig::new(&mut configuration);
     rig.cycles(200);
     // The sample of the last good reply was taken with this cycle's command.

@@ -15,7 +15,7 @@ const SCHEMES: [Scheme; 4] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure1
 
 fn finger(scheme: Scheme) -> ConfiguredFinger {
     let mut finger = ConfiguredFinger::default();
-    finger.controller.scheme = scheme;
+    finger.controller.scheme = Some(scheme);
     finger
 }
 

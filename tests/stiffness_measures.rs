@@ -185,7 +185,7 @@ fn the_printed_r_is_found_out() {
     assert_eq!(printed.geometry.r[1][3], -1.09);
     printed.geometry.r[1][3] = 1.09;
     for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback] {
-        printed.controller.scheme = scheme;
+        printed.controller.scheme = Some(scheme);
         let refused = Controller::new(&printed, case.rate).expect_err("a singular R");
         assert_eq!(refused.key, "geometry.r", "{scheme:?}: {}", refused.reason);
     }

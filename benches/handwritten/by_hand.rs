@@ -31,7 +31,7 @@ impl Gains {
 
     pub fn configure(&self, finger: &mut ConfiguredFinger) {
         let controller = &mut finger.controller;
-        if controller.scheme != Scheme::Figure9 {
+        if controller.scheme != Some(Scheme::Figure9) {
             controller.tension_gain = Some(self.tension_gain);
         }
         controller.tension_integral = Some(self.tension_integral);

@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     {
         let gains = Gains::new(scheme);
         let mut finger = ConfiguredFinger::default();
-        finger.controller.scheme = scheme;
+        finger.controller.scheme = Some(scheme);
         gains.configure(&mut finger);
         let parameters = Parameters::new(&finger, &gains, RATE)?;
         let recording = Recording::new(finger)?;

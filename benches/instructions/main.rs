@@ -85,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn steps(scheme: &str) -> Result<(), Box<dyn Error>> {
     let mut finger = ConfiguredFinger::default();
     let name: StrDeserializer<ValueError> = scheme.into_deserializer();
-    finger.controller.scheme = Scheme::deserialize(name)?;
+    finger.controller.scheme = Some(Scheme::deserialize(name)?);
     let recording = Recording::new(finger)?;
     recording.repeat(|controller, state, feedback, activity| {
         counted_step(controller, state, feedback, activity);

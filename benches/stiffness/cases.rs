@@ -48,7 +48,7 @@ impl Case {
     /// slowed down: steps are steps.
     pub fn finger(&self, pose: &Vector3<f64>, friction: Friction) -> ConfiguredFinger {
         let mut finger = ConfiguredFinger::default();
-        finger.controller.scheme = self.scheme;
+        finger.controller.scheme = Some(self.scheme);
         finger.controller.set_point_speed = Some(1000.0);
         finger.simulation.start_degrees = pose.map(f64::to_degrees).into();
         finger.simulation.seed = self.seed;

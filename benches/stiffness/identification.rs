@@ -20,7 +20,8 @@ pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obsta
         let (motor_counts, gauge_counts) = sensors.read(plant);
         Feedback { motor_counts, gauge_counts }
     };
-    let controller = Controller::new(&Calibration::controlled(&belief), case.rate).expect("the default controller");
+    let controller =
+        Controller::new(&Calibration::controlled(&belief, case.rate), case.rate).expect("the default controller");
     let mut state = controller.start(&read(&plant));
     plant.release_brake();
     let mut command = Command::default();

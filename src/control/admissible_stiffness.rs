@@ -32,7 +32,7 @@ impl AdmissibleStiffness {
         let stiffness = finger.tendon.stiffness;
         let stretched = Matrix3x4::from_fn(|joint, tendon| tendons.r[(joint, tendon)] * stiffness[tendon]);
         let inverse = (stretched * tendons.r.transpose()).cholesky()?.l().try_inverse()?;
-        Some(Self { inverse, share: share(finger.controller.scheme, rate) })
+        Some(Self { inverse, share: share(finger.controller.scheme(rate), rate) })
     }
 
     /// The factor, 0 to 1, that K_theta (N cm/rad) has to be scaled by.

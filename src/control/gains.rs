@@ -66,7 +66,7 @@ pub(super) fn at<const NUMBERS: usize>(table: &[Row<NUMBERS>], rate: f64) -> [f6
 impl Gains {
     /// What is configured; the rest from the table of the scheme.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
-        let scheme = configured.scheme;
+        let scheme = configured.scheme(rate);
         let table = match scheme {
             Scheme::Figure9 => &FIGURE_9,
             // Slack is taken up with Figure 10.
@@ -126,7 +126,7 @@ mod tests {
         configured.motor_damping = Some(77.0);
         let gains = Gains::new(&configured, 1000.0).unwrap();
         assert_eq!((gains.motor_damping, gains.tension_integral), (77.0, 250.0));
-        configured.scheme = Scheme::Figure9;
+        configured.scheme = Some(Scheme::Figure9);
         assert_eq!(Gains::new(&configured, 1000.0).unwrap().tension_integral, 75.0);
     }
 
@@ -134,7 +134,8 @@ mod tests {
     fn what_cannot_work_is_refused_by_name() {
         let refused = |configured: ConfiguredController| Gains::new(&configured, 1000.0).unwrap_err().key;
         let base = ConfiguredController::default();
-        let proportional = ConfiguredController { scheme: Scheme::Figure9, tension_gain: Some(1.0), ..base.clone() };
+        let proportional =
+            ConfiguredController { scheme: Some(Scheme::Figure9), tension_gain: Some(1.0), ..base.clone() };
         assert_eq!(refused(proportional), "controller.tension_gain");
         assert_eq!(refused(ConfiguredController { rate_time: Some(f64::NAN), ..base.clone() }), "controller.rate_time");
         assert_eq!(refused(ConfiguredController { stretch_filter: Some(0.0), ..base }), "controller.stretch_filter");

@@ -99,7 +99,7 @@ fn adjusted(number: i32, finger: &ConfiguredFinger, keys: &str, rate: f64) -> Re
     let mut changed: ConfiguredFinger =
         deserialize(merged).map_err(|error| wrong(line_of(keys, error.span()), error.message().into()))?;
     let named = over.get("stiffness").is_some_and(|stiffness| stiffness.get("bound").is_some());
-    if changed.controller.scheme != finger.controller.scheme && !named {
+    if changed.controller.scheme(rate) != finger.controller.scheme(rate) && !named {
         let default = ConfiguredStiffness::default_bound(rate);
         changed.stiffness.bound = changed.stiffness.bound.map(|bound| bound.min(default));
     }

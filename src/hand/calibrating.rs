@@ -49,7 +49,7 @@ impl Calibrating {
         let rate = configuration.hand.rate;
         let refused = |unusable| refusal(finger, unusable);
         let calibration = Calibration::new(task, &configuration.fingers[index], rate).map_err(refused)?;
-        configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index]);
+        configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index], rate);
         let adjustable = Adjustable::new(&configuration, index, 0).map_err(refused)?;
         hand.dispatcher.hand_over(finger, &configuration, |number| {
             let run = CalibrationRun { calibration, adjustable: Adjustable { number, ..adjustable } };

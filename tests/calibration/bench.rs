@@ -97,7 +97,7 @@ impl Bench {
         mut happen: impl FnMut(f64, &mut Plant),
     ) -> Result<Findings, Obstacle> {
         let mut calibration = Calibration::new(task, &self.belief, self.rate).unwrap();
-        self.controller = Controller::new(&Calibration::controlled(&self.belief), self.rate).unwrap();
+        self.controller = Controller::new(&Calibration::controlled(&self.belief, self.rate), self.rate).unwrap();
         self.largest_tension = 0.0;
         let mut last = 0.0;
         for cycle in 0.. {

@@ -184,7 +184,7 @@ pub fn poses_of(seed: u64) -> Vec<Vector3<f64>> {
 
 pub fn finger_with(scheme: Scheme) -> ConfiguredFinger {
     let mut finger = ConfiguredFinger::default();
-    finger.controller.scheme = scheme;
+    finger.controller.scheme = Some(scheme);
     finger
 }
 

@@ -201,7 +201,7 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
     for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback] {
         for fault in [LineFault::Drop, LineFault::Corrupt, LineFault::Duplicate, LineFault::Delay(2_000_000)] {
             let mut configuration = Configuration::default();
-            configuration.fingers[0].controller.scheme = scheme;
+            configuration.fingers[0].controller.scheme = Some(scheme);
             configuration.fingers[0].simulation.joint_coulomb_friction = [2e-3; 3];
             // The simulated stiffness is the configured one: what was identified must not be a cause of alarms either.
             configuration.fingers[0].tendon.stiffness_tolerance = 0.03;

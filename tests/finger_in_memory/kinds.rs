@@ -135,7 +135,7 @@ fn a_calibration_that_gives_up_leaves_its_warning() {
     bench.with_finger(|finger| finger.suffer(&Defect::DeadGauge { gauge: 2, count: Some(2000) }));
     let mut configuration = Configuration::default();
     let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
-    configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0]);
+    configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], configuration.hand.rate);
     let adjustable = Adjustable::new(&configuration, 0, 1).expect("a controller");
     let order = Order::Calibrate(CalibrationRun { calibration, adjustable });
     assert_eq!(bench.mailbox.order(order), Ok(Some(1)));

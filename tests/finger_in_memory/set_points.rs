@@ -100,7 +100,7 @@ fn what_was_sent_during_a_calibration_is_gone() {
     bench.goes(TARGET);
     let mut configuration = Configuration::default();
     let task = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
-    configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0]);
+    configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], configuration.hand.rate);
     let adjustable = Adjustable::new(&configuration, 0, 1).expect("a controller");
     let order = Order::Calibrate(CalibrationRun { calibration: task, adjustable });
     assert_eq!(bench.mailbox.order(order), Ok(Some(1)));

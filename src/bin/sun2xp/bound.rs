@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => hand::configured()?.0,
     };
     if let Some(scheme) = arguments.scheme {
-        configuration.fingers.iter_mut().for_each(|finger| finger.controller.scheme = scheme);
+        configuration.fingers.iter_mut().for_each(|finger| finger.controller.scheme = Some(scheme));
     }
     configuration.hand.rate = arguments.rate.unwrap_or(configuration.hand.rate);
     let search = Search { samples: arguments.samples, seed: arguments.seed };

@@ -113,19 +113,19 @@ impl Calibration {
         })
     }
 
-    /// The same finger as its controller must be made while a routine runs: by Figure 10, whatever is configured. State
+    /// The same finger as its controller must be made while a routine runs at `rate`, Hz: by Figure 10, whatever is configured. State
     /// feedback is built upon the stiffness, friction and zeros that are looked for, and Figure 11 adapts to what the gauges show.
     /// Gains of Figure 10 that are configured stay.
-    pub fn controlled(finger: &ConfiguredFinger) -> ConfiguredFinger {
+    pub fn controlled(finger: &ConfiguredFinger, rate: f64) -> ConfiguredFinger {
         let configured = &finger.controller;
-        let controller = match configured.scheme {
+        let controller = match configured.scheme(rate) {
             Scheme::Figure10 | Scheme::StateFeedback => configured.clone(),
             Scheme::Figure9 | Scheme::Figure11 => {
                 ConfiguredController { gravity_compensation: configured.gravity_compensation, ..Default::default() }
             }
         };
         ConfiguredFinger {
-            controller: ConfiguredController { scheme: Scheme::Figure10, ..controller },
+            controller: ConfiguredController { scheme: Some(Scheme::Figure10), ..controller },
             ..finger.clone()
         }
     }

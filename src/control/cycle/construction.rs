@@ -40,7 +40,7 @@ impl Controller {
         let motor_torque = MotorTorque::new(finger, &tendons)?;
         // A tendon is pulled no harder than its motor can: clamping there would turn the joint torque.
         let strongest = motor_torque.limit.map(|limit| limit.min(finger.tendon.maximum));
-        let scheme = finger.controller.scheme;
+        let scheme = finger.controller.scheme(rate);
         let state_feedback = match scheme {
             Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
             Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,

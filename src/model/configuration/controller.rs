@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Which tendon controller runs.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Scheme {
     /// Figure 9: an integral on the tension error.
     #[serde(rename = "figure 9")]
@@ -15,7 +15,6 @@ pub enum Scheme {
     #[serde(rename = "figure 11")]
     Figure11,
     /// Feedback of the whole state of links, elastic tendons and motors.
-    #[default]
     #[serde(rename = "state feedback")]
     StateFeedback,
 }
@@ -35,8 +34,8 @@ pub enum Law {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredController {
-    /// The tendon controller.
-    pub scheme: Scheme,
+    /// The tendon controller; none: what [`ConfiguredController::scheme`] says.
+    pub scheme: Option<Scheme>,
     /// The stiffness law behind SendPos. A fingertip set point always has the exact one.
     pub law: Law,
     /// Whether the torques of gravity on the links are compensated.
@@ -71,7 +70,7 @@ pub struct ConfiguredController {
 impl Default for ConfiguredController {
     fn default() -> Self {
         Self {
-            scheme: Scheme::default(),
+            scheme: None,
             law: Law::default(),
             gravity_compensation: true,
             tension_gain: None,
@@ -87,5 +86,14 @@ impl Default for ConfiguredController {
             set_point_time: None,
             dither: None,
         }
+    }
+}
+
+impl ConfiguredController {
+    /// The tendon controller at `rate`, Hz. Unless one is configured, state feedback from 750 Hz up, and Figure 10 below: at 500 Hz
+    /// state feedback is better in most respects, but not in all, and does not bear a link that loses a tenth of the replies
+    /// (`docs/stiffness.md`).
+    pub fn scheme(&self, rate: f64) -> Scheme {
+        self.scheme.unwrap_or(if rate >= 750.0 { Scheme::StateFeedback } else { Scheme::Figure10 })
     }
 }
