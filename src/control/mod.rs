@@ -21,6 +21,7 @@ mod joint_positions;
 mod joint_stiffness;
 mod low_pass;
 pub mod monitors;
+mod motor_friction;
 mod motor_heating;
 mod motor_torque;
 mod reference;

@@ -1,5 +1,6 @@
 //! The box M^-1: motor torques from pulls at the tendon, eq. 22, with the sign of each motor.
 
+use super::motor_friction::MotorFriction;
 use super::usable::{positive, signs};
 use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
@@ -12,8 +13,8 @@ pub(super) struct MotorTorque {
     signed_radius: Vector4<f64>,
     /// Largest pull of each motor, N.
     pub limit: Vector4<f64>,
-    /// Friction of each motor, N, and what its conduit leaves of the rest.
-    coulomb: Vector4<f64>,
+    friction: MotorFriction,
+    /// What each conduit leaves of a pull.
     past_conduit: Vector4<f64>,
 }
 
@@ -22,11 +23,12 @@ impl MotorTorque {
         signs("motor.sign", &finger.motor.sign)?;
         positive("geometry.motor_radius", &finger.geometry.motor_radius)?;
         positive("motor.torque_limit", &finger.motor.torque_limit)?;
+        let friction = MotorFriction::new(finger, tendons);
         Ok(Self {
             signed_radius: tendons.radius.component_mul(&Vector4::from(finger.motor.sign.map(f64::from))),
             limit: Vector4::from(finger.motor.torque_limit).component_div(&tendons.radius),
-            coulomb: Vector4::from(finger.friction.motor_coulomb).component_div(&tendons.radius),
-            past_conduit: Vector4::from(finger.friction.conduit).map(|conduit| (1.0 + conduit).recip()),
+            past_conduit: friction.conduit.map(|conduit| (1.0 + conduit).recip()),
+            friction,
         })
     }
 
@@ -37,7 +39,7 @@ impl MotorTorque {
 
     /// The tension, N, that a motor with so much pull, N, brings about whichever way it turns: its friction may hold against it.
     pub fn tensions(&self, pulls: &Vector4<f64>) -> Vector4<f64> {
-        (pulls - self.coulomb).component_mul(&self.past_conduit)
+        (pulls - self.friction.coulomb).component_mul(&self.past_conduit)
     }
 
     /// The other way round: N at the tendon.

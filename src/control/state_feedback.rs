@@ -8,6 +8,7 @@ use super::dither::{Dither, DitherState};
 use super::friction_feed_forward::FrictionFeedForward;
 use super::gravity_compensation::GravityCompensation;
 use super::joint_stiffness::JointStiffness;
+use super::motor_friction::MotorFriction;
 use super::reference::{Reference, ReferenceState};
 use super::signals::Measured;
 use super::slew::Slew;
@@ -193,10 +194,7 @@ impl StateFeedback {
             slew: Slew::new(set_point_speed, rate),
             dither: Dither::new(shaken, numbers.dither_frequency, rate),
             reserve: (pseudo_inverse.abs() * shaken).max() + NOISE_RESERVE * GAUGE_NOISE,
-            friction: FrictionFeedForward {
-                coulomb: Vector4::from(finger.friction.motor_coulomb).component_div(&tendons.radius),
-                conduit: finger.friction.conduit.into(),
-            },
+            friction: FrictionFeedForward(MotorFriction::new(finger, tendons)),
             r,
             pseudo_inverse,
             common,

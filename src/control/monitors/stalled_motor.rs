@@ -1,9 +1,9 @@
 //! Motors that do not turn although something should turn them.
 
 use super::{Alarm, Sample, Symptom, first_of};
+use crate::control::motor_friction::MotorFriction;
 use crate::model::Tendons;
 use crate::model::configuration::ConfiguredFinger;
-use nalgebra::Vector4;
 
 /// Out-of-balance that friction may hold: the configured friction so many times, because it is known badly, and this part of
 /// the pull, for the error of the torque constant.
@@ -21,10 +21,7 @@ const AT_REST: f64 = 0.007;
 
 #[derive(Clone, Debug)]
 pub(super) struct StalledMotor {
-    /// Coulomb friction, N at the tendon.
-    coulomb: Vector4<f64>,
-    /// Part of the pull.
-    conduit: Vector4<f64>,
+    friction: MotorFriction,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,17 +33,14 @@ pub(super) struct Memory {
 
 impl StalledMotor {
     pub fn new(finger: &ConfiguredFinger, tendons: &Tendons) -> Self {
-        Self {
-            coulomb: Vector4::from(finger.friction.motor_coulomb).component_div(&tendons.radius),
-            conduit: Vector4::from(finger.friction.conduit),
-        }
+        Self { friction: MotorFriction::new(finger, tendons) }
     }
 
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
         for motor in 0..4 {
             let unbalanced = sample.pulls[motor] - sample.tensions[motor];
             let larger = sample.pulls[motor].abs().max(sample.tensions[motor]);
-            let friction = FRICTION * (self.coulomb[motor] + self.conduit[motor] * larger);
+            let friction = FRICTION * self.friction.at(motor, larger);
             let held = friction + TORQUE_CONSTANT * larger + LET_PASS;
             let turned = memory.turned[motor] + sample.turned[motor];
             let stands = unbalanced.abs() > held && turned.abs() <= AT_REST;
