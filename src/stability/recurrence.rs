@@ -35,9 +35,12 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
     mean_change(window)
 }
 
-/// From the largest sample of the first half to that of the second, as a factor from one to the next.
+/// From the largest sample of the first half to that of the second, as a factor from one to the next. NaN of less than two.
 fn mean_change(window: &[DVector<f64>]) -> f64 {
     let half = window.len() / 2;
+    if half == 0 {
+        return f64::NAN;
+    }
     let largest = |part: &[DVector<f64>]| part.iter().map(|sample| sample.norm()).fold(0.0, f64::max);
     (largest(&window[half..]) / largest(&window[..half])).powf(1.0 / half as f64)
 }

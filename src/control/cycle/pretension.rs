@@ -1,9 +1,9 @@
 //! Every tendon under tension, with the joints held where they are: slack taken up.
 
+use super::pulls::open_loop;
 use super::{Controller, Doing, State};
 use crate::control::slack::{Slackness, TakeUp};
 use crate::control::tension_distribution::Distribution;
-use crate::control::tension_integral::TendonState;
 use nalgebra::{Vector3, Vector4};
 
 impl Controller {
@@ -27,11 +27,7 @@ impl Controller {
         match self.slack.step(&mut slack, &now) {
             TakeUp::Pull(pulls) => {
                 self.give(state, &pulls, &limit, starts);
-                // Whatever follows begins anew.
-                state.tendons = TendonState::default();
-                state.report.joint_torques = Vector3::zeros();
-                state.report.desired_tensions = pulls;
-                state.report.torque_scale = 1.0;
+                open_loop(state, pulls);
             }
             TakeUp::Hold { torques, below, begins } => {
                 let torques = torques + gravity;

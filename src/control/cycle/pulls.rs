@@ -35,11 +35,7 @@ impl Controller {
         let limit = &self.motor_torque.limit;
         state.pulls = pulls.zip_map(limit, |pull, limit| pull.clamp(-limit, limit));
         state.doing = Doing::PullingFreely;
-        // Whatever follows begins anew.
-        state.tendons = TendonState::default();
-        state.report.joint_torques = Vector3::zeros();
-        state.report.desired_tensions = state.pulls;
-        state.report.torque_scale = 1.0;
+        open_loop(state, state.pulls);
     }
 
     /// The box R^-1, with motors that pull no more than `limit`, N: clamped there, they would turn the joint torque.
@@ -77,10 +73,14 @@ impl Controller {
         };
         state.pulls = release.advance(self.period, ramp);
         state.doing = Doing::Releasing(release);
-        // Whatever follows begins anew.
-        state.tendons = TendonState::default();
-        state.report.joint_torques = Vector3::zeros();
-        state.report.desired_tensions = state.pulls;
-        state.report.torque_scale = 1.0;
+        open_loop(state, state.pulls);
     }
+}
+
+/// What such pulls leave behind: no tension controller decided them, and the next one begins anew.
+pub(super) fn open_loop(state: &mut State, pulls: Vector4<f64>) {
+    state.tendons = TendonState::default();
+    state.report.joint_torques = Vector3::zeros();
+    state.report.desired_tensions = pulls;
+    state.report.torque_scale = 1.0;
 }

@@ -31,7 +31,8 @@ const TOO_LONG: f64 = 0.5;
 /// So long, s, tension must be gone for a warning.
 const NOTICED: f64 = 0.003;
 
-/// A gauge that flickered, and has shown one count in this many samples since its tendon is low, is dead. Where a gauge ends at no tension noise shows on one side only, and that of a torn tendon shows one count now and then.
+/// A gauge that flickered, and has shown one count in this many samples since its tendon is low, is dead. Where a gauge ends at no
+/// tension noise shows on one side only, and that of a torn tendon shows one count now and then.
 const CERTAIN: u32 = 15;
 
 #[derive(Clone, Debug)]

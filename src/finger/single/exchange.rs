@@ -65,7 +65,7 @@ impl FingerServo {
         let mut age = self.sample_age as f64;
         // This cycle's command took effect as it was sampled; what it was computed from was sampled before.
         if let Some(before) = self.sampled_at
-            && self.sample_age as f64 * self.limits.period_ms < CLOCK_UNKNOWN_MS
+            && age * self.limits.period_ms < CLOCK_UNKNOWN_MS
         {
             let microseconds = reply.sampled_at.wrapping_sub(before);
             self.timing.note(Stage::Age, 0, u64::from(microseconds) * 1000);
