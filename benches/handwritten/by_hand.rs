@@ -68,7 +68,11 @@ pub struct Parameters {
     ghost: [f64; 4],
     inverse_ghost: [f64; 4],
     ratio: [[f64; 4]; 4],
-    headroom: [[f64; 4]; 4],
+    idle: [[f64; 4]; 4],
+    at_rest: [f64; 4],
+    strongest: [f64; 4],
+    coulomb: [f64; 4],
+    past_conduit: [f64; 4],
     least_tension: f64,
     tension_gain: f64,
     integral_gain: f64,
@@ -94,7 +98,7 @@ impl Parameters {
         let ghost: [f64; 4] = from_fn(|i| tendons.q[(i, 3)]);
         let ratio = from_fn(|i| from_fn(|j| ghost[i] / ghost[j]));
         let ratios: &[[f64; 4]; 4] = &ratio;
-        let headroom = from_fn(|i| from_fn(|j| limit[i].min(finger.tendon.maximum) - minimum * ratios[i][j]));
+        let idle = from_fn(|i| from_fn(|j| minimum * ratios[i][j]));
         let low_pass = |corner: f64| 1.0 - (-std::f64::consts::TAU * corner / rate).exp();
         let [l0, l1, l2] = finger.links().0;
         let (low, high) = finger.joint_limits();
@@ -125,7 +129,11 @@ impl Parameters {
             ghost,
             inverse_ghost: ghost.map(f64::recip),
             ratio,
-            headroom,
+            idle,
+            at_rest: from_fn(|i| ratios[i].iter().fold(0.0, |most, ratio| ratio.max(most)) * minimum),
+            strongest: from_fn(|i| limit[i].min(finger.tendon.maximum)),
+            coulomb: from_fn(|i| finger.friction.motor_coulomb[i] / tendons.radius[i]),
+            past_conduit: finger.friction.conduit.map(|conduit| 1.0 / (1.0 + conduit)),
             least_tension: minimum,
             tension_gain: gains.tension_gain,
             integral_gain: gains.tension_integral / rate,

@@ -32,7 +32,9 @@ struct parameters {
     double from_torque[TENDONS][JOINTS];
     double ghost[TENDONS], inverse_ghost[TENDONS];
     double ratio[TENDONS][TENDONS];
-    double headroom[TENDONS][TENDONS];
+    double idle[TENDONS][TENDONS];
+    double at_rest[TENDONS], strongest[TENDONS];
+    double coulomb[TENDONS], past_conduit[TENDONS];
     double least_tension;
     double tension_gain, integral_gain, motor_damping;
     double limit[TENDONS], continuous[TENDONS];
@@ -213,18 +215,33 @@ static double admissible(const struct parameters *p, const double k_theta[JOINTS
     return largest > p->share ? p->share / largest : 1.0;
 }
 
-/* Eqs. 18 to 20 with an upper bound. */
-static double distribute(const struct parameters *p, const double torques[JOINTS], double tensions[TENDONS])
+/* What motors as warm as these may pull. */
+static void warm_limits(const struct parameters *p, const struct state *s, double limit[TENDONS])
+{
+    for (int i = 0; i < TENDONS; i++) {
+        double part = s->heat[i] / (p->continuous[i] * p->continuous[i]);
+        limit[i] = p->limit[i] + (p->continuous[i] - p->limit[i]) * clamp((part - WARM) / (1.0 - WARM), 0.0, 1.0);
+    }
+}
+
+/* Eqs. 18 to 20 with an upper bound, which is never beyond what motors with this limit give. */
+static double distribute(const struct parameters *p, const double limit[TENDONS], const double torques[JOINTS],
+                         double tensions[TENDONS])
 {
     double wanted[TENDONS], scale = 1.0, ghost_torque = -INFINITY;
     for (int i = 0; i < TENDONS; i++)
         wanted[i] = p->from_torque[i][0] * torques[0] + p->from_torque[i][1] * torques[1] + p->from_torque[i][2] * torques[2];
-    for (int i = 0; i < TENDONS; i++)
+    for (int i = 0; i < TENDONS; i++) {
+        double given = (limit[i] - p->coulomb[i]) * p->past_conduit[i];
+        double most = p->strongest[i] < given ? p->strongest[i] : given;
+        most = most > p->at_rest[i] ? most : p->at_rest[i];
         for (int j = 0; j < TENDONS; j++) {
             double added = wanted[i] - p->ratio[i][j] * wanted[j];
-            if (added * scale > p->headroom[i][j])
-                scale = p->headroom[i][j] / added;
+            double headroom = most - p->idle[i][j];
+            if (added * scale > headroom)
+                scale = headroom / added;
         }
+    }
     for (int i = 0; i < TENDONS; i++) {
         double needed = (p->least_tension - wanted[i] * scale) * p->inverse_ghost[i];
         ghost_torque = needed > ghost_torque ? needed : ghost_torque;
@@ -289,7 +306,7 @@ static void joint_torques(const struct parameters *p, struct state *s, const str
 
 static inline void follow(const struct parameters *p, struct state *s, const struct set_point *set_point, int proportional)
 {
-    double torques[JOINTS], asked[TENDONS];
+    double torques[JOINTS], asked[TENDONS], limit[TENDONS];
     int begins = !s->following;
     if (begins) {
         memcpy(s->anchor, s->report.joints, sizeof s->anchor);
@@ -300,7 +317,8 @@ static inline void follow(const struct parameters *p, struct state *s, const str
         s->following = 1;
     }
     joint_torques(p, s, set_point, torques);
-    s->report.torque_scale = distribute(p, torques, s->report.desired_tensions);
+    warm_limits(p, s, limit);
+    s->report.torque_scale = distribute(p, limit, torques, s->report.desired_tensions);
     memcpy(s->report.joint_torques, torques, sizeof torques);
 
     for (int i = 0; i < TENDONS; i++) {
@@ -310,17 +328,22 @@ static inline void follow(const struct parameters *p, struct state *s, const str
             rest += error * p->tension_gain;
         double integral = s->integral[i] + p->integral_gain * error;
         double pull = rest + integral;
-        if (!(fabs(pull) > p->limit[i] && pull * error > 0.0))
+        if (!(fabs(pull) > limit[i] && pull * error > 0.0)) {
             s->integral[i] = integral;
-        asked[i] = clamp(rest + s->integral[i], -p->limit[i], p->limit[i]);
+        } else if (pull > 0.0) {
+            double room = limit[i] - rest > 0.0 ? limit[i] - rest : 0.0;
+            s->integral[i] = s->integral[i] < room ? s->integral[i] : room;
+        } else {
+            double room = -limit[i] - rest < 0.0 ? -limit[i] - rest : 0.0;
+            s->integral[i] = s->integral[i] > room ? s->integral[i] : room;
+        }
+        asked[i] = clamp(rest + s->integral[i], -limit[i], limit[i]);
     }
     double fade = p->period / FADE < 1.0 ? p->period / FADE : 1.0;
     for (int i = 0; i < TENDONS; i++) {
         if (begins)
             s->transition[i] = s->pulls[i] - asked[i];
-        double part = s->heat[i] / (p->continuous[i] * p->continuous[i]);
-        double limit = p->limit[i] + (p->continuous[i] - p->limit[i]) * clamp((part - WARM) / (1.0 - WARM), 0.0, 1.0);
-        s->pulls[i] = clamp(asked[i] + s->transition[i], -limit, limit);
+        s->pulls[i] = clamp(asked[i] + s->transition[i], -limit[i], limit[i]);
         s->transition[i] -= s->transition[i] * fade;
     }
 }

@@ -6,7 +6,7 @@ use crate::fingers::reach;
 use sun2xp::board::capacity;
 use sun2xp::board::protocol::Kind;
 use sun2xp::finger::{Mailbox, Servo, Stage};
-use sun2xp::model::configuration::Configuration;
+use sun2xp::model::configuration::{Configuration, Scheme};
 use sun2xp::realtime::{Clock, Priority, now, spawn};
 
 /// Cycles a second with the rate limit off, three fingers on three pseudo-terminals.
@@ -55,6 +55,10 @@ impl Clock for Impatient {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut configuration = Configuration::default();
     configuration.hand.rate = TOLD;
+    for finger in &mut configuration.fingers {
+        // State feedback reckons with equal periods, and without a rate limit none is like the other.
+        finger.controller.scheme = Some(Scheme::Figure10);
+    }
     let (mut mailboxes, mut boards, mut threads) = (Vec::new(), Vec::new(), Vec::new());
     let fingers = reach(&configuration, LONGEST_CYCLE, BOARD_PRIORITY)?;
     let begun = now();
