@@ -17,6 +17,9 @@ const LATE: f64 = 0.1;
 /// Later than this, and a period is lost every now and then.
 const TOO_LATE: f64 = 0.5;
 
+/// What the kernel may add to the wake-up of a thread that is not real-time, ns: servos ask for 1. The kernel's own default is 50 us.
+const SLACK: u64 = 1000;
+
 /// What wakes up as the servos would, all at once and staggered as they are.
 pub(super) fn wake_ups(configuration: &Configuration, duration: Duration) -> Result<Vec<Finding>, HandError> {
     let period = (1e9 / configuration.hand.rate).round() as u64;
@@ -36,15 +39,20 @@ pub(super) fn wake_ups(configuration: &Configuration, duration: Duration) -> Res
     let measuring = measuring.map_err(|source| HandError::System { doing: "start a thread", source })?;
     // A thread that panicked has nothing to tell.
     let measured = measuring.into_iter().filter_map(|(thread, measuring)| Some((thread, measuring.join().ok()?)));
-    Ok(measured.map(|(thread, wake_up)| judge(configuration, thread, wake_up)).collect())
+    Ok(measured
+        .flat_map(|(thread, wake_up)| {
+            let slack = judge_slack(thread, priority(configuration, thread).fifo > 0, &wake_up);
+            [judge(configuration, thread, wake_up), slack]
+        })
+        .collect())
 }
 
 fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding {
     let subject = format!("wake-up of servo thread {thread}");
-    let WakeUp { late, had, timer_slack } = wake_up;
+    let WakeUp { late, had, .. } = wake_up;
     let period = 1e6 / configuration.hand.rate;
     let found = format!(
-        "median {:.0}, 99 % {:.0}, worst {:.0} us of a period of {period:.0} us; timer slack {timer_slack} ns",
+        "median {:.0}, 99 % {:.0}, worst {:.0} us of a period of {period:.0} us",
         late.median, late.p99, late.maximum
     );
     let verdict = match late.p99 / period {
@@ -61,6 +69,19 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
         return lacking(configuration, &subject, found, missing.to_string());
     }
     Finding::good(subject, found)
+}
+
+fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
+    let (subject, slack) = (format!("timer slack of servo thread {thread}"), wake_up.timer_slack);
+    if slack <= SLACK {
+        return Finding::good(subject, format!("{slack} ns"));
+    }
+    if asked && wake_up.had.scheduling.is_none() {
+        return Finding::good(subject, format!("{slack} ns, which a real-time thread does not wait for"));
+    }
+    let advice = "The kernel may wake this thread so much too late, and has refused to change it (prctl, PR_SET_TIMERSLACK). Allow that \
+                  call where a sandbox forbids it, or let the thread be real-time: finger.priority";
+    Finding::new(Verdict::Warning, subject, format!("{slack} ns"), advice)
 }
 
 #[cfg(test)]
@@ -82,5 +103,18 @@ mod tests {
         let scheduling = Some(std::io::Error::from_raw_os_error(libc::EPERM));
         let refused = judged(1000.0, 90.0, Realtime { scheduling, ..Realtime::default() });
         assert!(refused.verdict == Verdict::Warning && refused.advice.contains("rtprio"), "{refused:?}");
+    }
+
+    #[test]
+    fn timer_slack_counts_for_a_thread_that_is_not_real_time() {
+        let judged = |timer_slack, asked, scheduling| {
+            let had = Realtime { scheduling, ..Realtime::default() };
+            judge_slack(1, asked, &WakeUp { late: Distribution::default(), had, timer_slack }).verdict
+        };
+        let refused = || Some(std::io::Error::from_raw_os_error(libc::EPERM));
+        assert_eq!(judged(1, false, None), Verdict::Good);
+        assert_eq!(judged(50_000, true, None), Verdict::Good);
+        assert_eq!(judged(50_000, true, refused()), Verdict::Warning);
+        assert_eq!(judged(50_000, false, None), Verdict::Warning);
     }
 }
