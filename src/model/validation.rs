@@ -1,6 +1,8 @@
 //! What a configuration must satisfy before a motor may move.
 
-use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, FINGERS, RealTime, Unusable};
+use crate::model::configuration::{
+    Configuration, ConfiguredFinger, ConfiguredHand, FINGERS, RATES, RealTime, Unusable,
+};
 use crate::model::{Surface, TendonsError};
 
 /// A configuration that cannot be used: which finger's, or the hand's, and why.
@@ -70,19 +72,17 @@ impl Configuration {
     }
 }
 
-/// Hz. The gains of 500 Hz are stable down to 470, and swing at 450.
-const LEAST_RATE: f64 = 500.0;
-
 impl ConfiguredHand {
     fn check(&self) -> Result<(), Unusable> {
-        if self.rate < LEAST_RATE {
+        let (least, most) = (*RATES.start(), *RATES.end());
+        if self.rate < least {
             let reason = format!(
-                "of {} Hz is under {LEAST_RATE} Hz, the least at which every finger is known to be stable: raise it",
+                "of {} Hz is under {least} Hz, the least at which every finger is known to be stable: raise it",
                 self.rate
             );
             return unusable("rate", reason);
         }
-        within("rate", self.rate, LEAST_RATE, 5000.0, "Hz")?;
+        within("rate", self.rate, least, most, "Hz")?;
         within("hold_time_ms", self.hold_time_ms.into(), 1.0, 60_000.0, "ms")?;
         within("hold_torque_limit", self.hold_torque_limit, 0.0, 1000.0, "N cm")?;
         within("release_ramp_ms", self.release_ramp_ms.into(), 0.0, 5000.0, "ms")?;

@@ -7,7 +7,7 @@ use serde::de::value::{Error, StrDeserializer};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use sun2xp::hand;
-use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, Scheme};
+use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RATES, Scheme};
 use sun2xp::stability::{Limit, Search, StiffnessBound};
 
 /// Finds the bound on the largest eigenvalue of Kx: the stiffness up to which every finger is stable in every pose.
@@ -44,7 +44,11 @@ fn scheme(name: &str) -> Result<Scheme, String> {
 
 fn rate(text: &str) -> Result<f64, String> {
     let rate = text.parse().map_err(|_| format!("{text} is no number"))?;
-    if (500.0..=5000.0).contains(&rate) { Ok(rate) } else { Err(format!("{rate} is outside 500 to 5000 Hz")) }
+    if RATES.contains(&rate) {
+        Ok(rate)
+    } else {
+        Err(format!("{rate} is outside {} to {} Hz", RATES.start(), RATES.end()))
+    }
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {

@@ -7,11 +7,8 @@ use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::Duration;
 use sun2xp::hand::{self, Costs, Hand, Limit, Scheduled, Sensor, fastest_rate, off_line_schedule};
-use sun2xp::model::configuration::Configuration;
+use sun2xp::model::configuration::{Configuration, RATES};
 use sun2xp::realtime::{Distribution, Stage};
-
-/// The highest rate that a hand can be configured for, Hz.
-const HIGHEST_RATE: u32 = 5000;
 
 /// Whether every cycle of the hand ends in time: response times from worst cases, line times and the allocation of fingers.
 ///
@@ -70,7 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let title = format!("{rate:.0} Hz and {} bytes, {:.0} us more a finger", sensor.bytes, sensor.compute);
     table(&mut out, &more, &title)?;
     let [fastest, with_sensor] =
-        [&none, &sensor].map(|sensor| fastest_rate(&configuration, &costs, sensor, HIGHEST_RATE));
+        [&none, &sensor].map(|sensor| fastest_rate(&configuration, &costs, sensor, *RATES.end() as u32));
     let limited = |rate: u32, sensor| limits(&off_line_schedule(&configuration, f64::from(rate + 1), &costs, sensor));
     writeln!(out, "Every deadline is met up to {fastest} Hz: {}.", limited(fastest, &none))?;
     writeln!(out, "With the sensor up to {with_sensor} Hz: {}.", limited(with_sensor, &sensor))?;

@@ -16,9 +16,13 @@ pub use crate::model::calibrated::{ConfiguredZeroing, ZeroingMethod};
 use crate::model::{ConfiguredFriction, ConfiguredLinks, ConfiguredSimulation, Links, Tendons, TendonsError};
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// How many fingers a hand has.
 pub const FINGERS: usize = 3;
+
+/// The rates that a hand may have, Hz. The gains of 500 Hz are stable down to 470, and swing at 450.
+pub const RATES: RangeInclusive<f64> = 500.0..=5000.0;
 
 /// A key whose value cannot be used, and why. The key is relative to the finger's table, with dots: `tendon.maximum`.
 #[derive(Clone, Debug, PartialEq)]
