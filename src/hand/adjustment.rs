@@ -53,9 +53,9 @@ impl Hand {
         changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys, configuration.hand.rate)?;
         check(&changed)?;
         let unusable = |unusable: Unusable| HandError::Unusable { section: format!("finger.{finger}"), unusable };
-        let adjustable = Adjustable::new(&changed, index, 0).map_err(unusable)?;
-        self.dispatcher.hand_over(finger, &changed, |number| {
-            adjust_member(member, admission(&changed, index), Adjustable { number, ..adjustable })
+        let adjustable = Adjustable::new(&changed, index).map_err(unusable)?;
+        self.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
+            adjust_member(member, admission(&changed, index), adjustable)
         })?;
         *configuration = changed;
         Ok(())

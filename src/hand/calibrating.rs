@@ -50,9 +50,9 @@ impl Calibrating {
         let refused = |unusable| refusal(finger, unusable);
         let calibration = Calibration::new(task, &configuration.fingers[index], rate).map_err(refused)?;
         configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index], rate);
-        let adjustable = Adjustable::new(&configuration, index, 0).map_err(refused)?;
-        hand.dispatcher.hand_over(finger, &configuration, |number| {
-            let run = CalibrationRun { calibration, adjustable: Adjustable { number, ..adjustable } };
+        let adjustable = Adjustable::new(&configuration, index).map_err(refused)?;
+        hand.dispatcher.hand_over(finger, &configuration, adjustable, |adjustable| {
+            let run = CalibrationRun { calibration, adjustable };
             Self::ordered(finger, member.mailbox.order(Order::Calibrate(run)), None)
         })
     }
@@ -94,12 +94,11 @@ impl Calibrating {
                 let mut configuration = hand.configuration.write();
                 let mut changed = configuration.clone();
                 found.apply(&mut changed.fingers[index]);
-                let adjustable = Adjustable::new(&changed, index, 0).map_err(|unusable| refusal(finger, unusable))?;
+                let adjustable = Adjustable::new(&changed, index).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = matches!(found, Findings::Signs(_));
                 let member = hand.dispatcher.member(finger)?;
-                *self = hand.dispatcher.hand_over(finger, &changed, |number| {
-                    let given = member.mailbox.restart(Adjustable { number, ..adjustable }, limp);
-                    Self::ordered(finger, given, Some(found))
+                *self = hand.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
+                    Self::ordered(finger, member.mailbox.restart(adjustable, limp), Some(found))
                 })?;
                 *configuration = changed;
                 Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))

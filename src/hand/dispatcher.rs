@@ -1,7 +1,7 @@
 //! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
 
 use crate::control::{SetPoint, spatial};
-use crate::finger::{self, BlackBox, FingerReport, KeptRecord, Losses, Mailbox, Recording};
+use crate::finger::{self, Adjustable, BlackBox, FingerReport, KeptRecord, Losses, Mailbox, Recording};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::black_box::keep;
@@ -164,20 +164,22 @@ impl Dispatcher {
         Ok(collected.black_box.record(cycle))
     }
 
-    /// Lets `give` hand a finger a controller that was made from this configuration, under the number that it gets. The black box
-    /// keeps the configuration if that is done, and nothing of it where it is refused.
+    /// Lets `give` hand a finger what was made from this configuration, under the number that it gets here. The black box keeps the
+    /// configuration if that is done, and nothing of it where it is refused.
     pub fn hand_over<T>(
         &self,
         finger: i32,
         configuration: &Configuration,
-        give: impl FnOnce(u32) -> Result<T, HandError>,
+        mut adjustable: Adjustable,
+        give: impl FnOnce(Adjustable) -> Result<T, HandError>,
     ) -> Result<T, HandError> {
         let index = self.index(finger)?;
         // Locked throughout: no record that names the controller is collected before the black box knows it.
         let mut collected = self.collected(finger)?;
         let taken = self.members[index].mailbox.report().controller;
         collected.collect();
-        let given = give(collected.black_box.next_number())?;
+        adjustable.number = collected.black_box.next_number();
+        let given = give(adjustable)?;
         let (finger, gravity) = (configuration.fingers[index].clone(), configuration.gravity(index));
         collected.black_box.announce(finger, gravity, taken);
         Ok(given)

@@ -136,7 +136,7 @@ fn a_calibration_that_gives_up_leaves_its_warning() {
     let mut configuration = Configuration::default();
     let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
     configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], configuration.hand.rate);
-    let adjustable = Adjustable::new(&configuration, 0, 1).expect("a controller");
+    let adjustable = Adjustable { number: 1, ..Adjustable::new(&configuration, 0).expect("a controller") };
     let order = Order::Calibrate(CalibrationRun { calibration, adjustable });
     assert_eq!(bench.mailbox.order(order), Ok(Some(1)));
     bench.warns(FaultKind::CalibrationFailed);

@@ -79,7 +79,7 @@ fn what_is_on_its_way_when_a_finger_faults_is_not_carried_out_after_recovery() {
     // The servo has not told of the fault yet.
     let configuration = Configuration::default();
     let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
-    let adjustable = Adjustable::new(&configuration, 0, 1).expect("a controller");
+    let adjustable = Adjustable { number: 1, ..Adjustable::new(&configuration, 0).expect("a controller") };
     let order = bench.mailbox.order(Order::Calibrate(CalibrationRun { calibration, adjustable }));
     assert_eq!(order, Ok(Some(1)));
     bench.faults(FaultKind::EmergencyStopInput);
@@ -101,7 +101,7 @@ fn what_was_sent_during_a_calibration_is_gone() {
     let mut configuration = Configuration::default();
     let task = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
     configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], configuration.hand.rate);
-    let adjustable = Adjustable::new(&configuration, 0, 1).expect("a controller");
+    let adjustable = Adjustable { number: 1, ..Adjustable::new(&configuration, 0).expect("a controller") };
     let order = Order::Calibrate(CalibrationRun { calibration: task, adjustable });
     assert_eq!(bench.mailbox.order(order), Ok(Some(1)));
     bench.cycles(10);

@@ -22,16 +22,16 @@ const BEYOND_LIMITS: f64 = 0.5;
 const WARNING_MS: f64 = 1000.0;
 
 impl Adjustable {
-    /// What the configuration says. `number`: of the controller, in the finger's black box.
+    /// What the configuration says, with the number of a finger's first controller.
     ///
     /// # Errors
     /// A configuration that no controller can be made from.
-    pub fn new(configuration: &Configuration, index: usize, number: u32) -> Result<Self, Unusable> {
+    pub fn new(configuration: &Configuration, index: usize) -> Result<Self, Unusable> {
         let finger = &configuration.fingers[index];
         let (low, high) = finger.joint_limits();
         let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
         let controller = Controller::in_gravity(finger, &configuration.gravity(index), configuration.hand.rate)?;
-        Ok(Self { number, controller, pose })
+        Ok(Self { number: 0, controller, pose })
     }
 }
 
@@ -54,7 +54,7 @@ impl FingerServo {
     ) -> Result<(Self, Mailbox), Unusable> {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
         let address = configuration.address(index);
-        let adjustable = Adjustable::new(configuration, index, 0)?;
+        let adjustable = Adjustable::new(configuration, index)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
