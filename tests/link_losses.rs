@@ -9,9 +9,7 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use sun2xp::board::protocol::Status;
 use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, Terms, Transport};
-use sun2xp::finger::{
-    BlackBox, ControllerSource, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage,
-};
+use sun2xp::finger::{BlackBox, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage};
 use sun2xp::model::configuration::{Configuration, EndState, Scheme};
 use sun2xp::realtime::{Clock, Schedule};
 
@@ -168,8 +166,7 @@ impl Rig {
         let world = Rc::new(RefCell::new(world));
         let mut link = Link::new(End(world.clone()));
         let (identity, configured) = link.shake_hands(1, &Terms::new(hand, finger), 500 * MS).expect("a handshake");
-        let source = ControllerSource { number: 0, gravity: configuration.gravity(0), finger: finger.clone() };
-        let (recorder, black_box) = BlackBox::new(1, hand, source);
+        let (recorder, black_box) = BlackBox::new(configuration, 0);
         let (timings, _) = rtrb::RingBuffer::new(1);
         let stiffness = finger.initial_stiffness();
         let (finger, mailbox) =

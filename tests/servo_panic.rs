@@ -5,9 +5,7 @@ use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use sun2xp::board::protocol::Status;
 use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, Terms, Transport};
-use sun2xp::finger::{
-    BlackBox, Borrower, ControllerSource, Fault, FaultKind, FingerServo, Mailbox, ServedPort, Servo, Stage, lending,
-};
+use sun2xp::finger::{BlackBox, Borrower, Fault, FaultKind, FingerServo, Mailbox, ServedPort, Servo, Stage, lending};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleTiming, Schedule};
 
@@ -69,8 +67,7 @@ fn servo(panics: u32) -> (Defective, Servo<Defective, Defective>, Mailbox, Uncol
     let here = Defective { cable, panics: Rc::new(Cell::new(panics)) };
     let mut link = Link::new(here.clone());
     let (identity, configured) = link.shake_hands(1, &Terms::new(hand, finger), FIRST).expect("a handshake");
-    let source = ControllerSource { number: 0, gravity: configuration.gravity(0), finger: finger.clone() };
-    let (recorder, black_box) = BlackBox::new(1, hand, source);
+    let (recorder, black_box) = BlackBox::new(&configuration, 0);
     let (producer, timings) = RingBuffer::new(16);
     let stiffness = finger.initial_stiffness();
     let (finger, mailbox) =

@@ -9,9 +9,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 use sun2xp::board::{Link, Pace, PacedTime, PortError, SimulatedBoard, Terms, Transport};
-use sun2xp::finger::{
-    BlackBox, ControllerSource, Fault, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage,
-};
+use sun2xp::finger::{BlackBox, Fault, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleTiming, Schedule};
 
@@ -154,8 +152,7 @@ impl Rig {
         let terms = Terms::new(&configuration.hand, finger);
         let (identity, configured) = link.shake_hands(1, &terms, 1000 * MILLISECOND).expect("the board answers");
         let (producer, timings) = RingBuffer::new(16);
-        let source = ControllerSource { number: 0, gravity: configuration.gravity(0), finger: finger.clone() };
-        let (recorder, black_box) = BlackBox::new(1, &configuration.hand, source);
+        let (recorder, black_box) = BlackBox::new(&configuration, 0);
         let stiffness = finger.initial_stiffness();
         let (finger, mailbox) =
             FingerServo::new(&configuration, 0, stiffness, &identity, &configured, producer, recorder)

@@ -5,7 +5,7 @@ use rtrb::{Consumer, RingBuffer};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, Terms, Transport};
-use sun2xp::finger::{BlackBox, ControllerSource, FingerServo, Mailbox, ServedPort, Servo};
+use sun2xp::finger::{BlackBox, FingerServo, Mailbox, ServedPort, Servo};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleTiming, Distribution, Histograms, Schedule, Stage};
 
@@ -105,10 +105,8 @@ impl Rig {
         let (identity, configured) = link.shake_hands(1, &terms, FIRST).expect("the board answers");
         let (producer, timings) = RingBuffer::new(100_000);
         let stiffness = Matrix3::from_diagonal_element(3.0);
-        let source =
-            ControllerSource { number: 0, gravity: configuration.gravity(0), finger: configuration.fingers[0].clone() };
         // Nobody reads it.
-        let (recorder, _) = BlackBox::new(1, &configuration.hand, source);
+        let (recorder, _) = BlackBox::new(&configuration, 0);
         let (finger, mailbox) =
             FingerServo::new(&configuration, 0, stiffness, &identity, &configured, producer, recorder)
                 .expect("a finger");

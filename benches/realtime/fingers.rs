@@ -3,7 +3,7 @@
 use crate::Failure;
 use rtrb::{Consumer, RingBuffer};
 use sun2xp::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms};
-use sun2xp::finger::{BlackBox, ControllerSource, FingerServo, Mailbox, ServedPort};
+use sun2xp::finger::{BlackBox, FingerServo, Mailbox, ServedPort};
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{CycleTiming, Priority, Schedule, now};
 
@@ -31,8 +31,7 @@ pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> 
         let (identity, configured) = link.shake_hands(configuration.address(index), &terms, now() + 1_000_000_000)?;
         let (producer, timings) = RingBuffer::new(16);
         let stiffness = finger.initial_stiffness();
-        let source = ControllerSource { number: 0, gravity: configuration.gravity(index), finger: finger.clone() };
-        let (recorder, black_box) = BlackBox::new(index as i32 + 1, &configuration.hand, source);
+        let (recorder, black_box) = BlackBox::new(configuration, index);
         let (servo, mailbox) =
             FingerServo::new(configuration, index, stiffness, &identity, &configured, producer, recorder)
                 .map_err(|unusable| unusable.reason)?;

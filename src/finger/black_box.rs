@@ -8,7 +8,7 @@
 use crate::control::{Command, Feedback, Report, State};
 use crate::finger::recording::{Origin, Recording};
 use crate::finger::{ControlInput, Stage};
-use crate::model::configuration::{ConfiguredFinger, ConfiguredHand};
+use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
 use crate::realtime::{CycleTiming, Memory};
 use nalgebra::Vector3;
 use rtrb::{Consumer, Producer, RingBuffer};
@@ -110,8 +110,10 @@ pub struct BlackBox {
 }
 
 impl BlackBox {
-    /// An empty one for finger 1, 2 or 3, whose first controller is made from `controller`; and the servo's end of it.
-    pub fn new(finger: i32, hand: &ConfiguredHand, controller: ControllerSource) -> (Recorder, Self) {
+    /// An empty one for the finger with this index, 0 to 2, whose first controller is made from `configuration`; and the servo's end
+    /// of it.
+    pub fn new(configuration: &Configuration, index: usize) -> (Recorder, Self) {
+        let (hand, finger) = (&configuration.hand, configuration.fingers[index].clone());
         let cycles = |seconds: f64| (seconds * hand.rate).ceil() as usize;
         let apart = cycles(1.0 / KEYFRAMES);
         let (mut records, mut arriving) = RingBuffer::new(cycles(UNCOLLECTED));
@@ -124,9 +126,9 @@ impl BlackBox {
             records: VecDeque::new(),
             keyframes: VecDeque::new(),
             length: cycles(KEPT) as u64,
-            finger,
+            finger: index as i32 + 1, // 1 to 3
             hand: hand.clone(),
-            controllers: vec![controller],
+            controllers: vec![ControllerSource { number: 0, gravity: configuration.gravity(index), finger }],
             faulted: false,
         };
         (recorder, black_box)

@@ -3,7 +3,7 @@
 use crate::board::protocol::Status;
 use crate::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms, capacity};
 use crate::control::InverseKinematics;
-use crate::finger::{Alarm, BlackBox, ControllerSource, FingerServo, Mailbox, ServedPort, lending, stop_calls};
+use crate::finger::{Alarm, BlackBox, FingerServo, Mailbox, ServedPort, lending, stop_calls};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::announcement::say;
@@ -177,8 +177,7 @@ fn shake_hands(
     }
     let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;
     let (producer, timings) = RingBuffer::new(TIMINGS);
-    let first = ControllerSource { number: 0, gravity: configuration.gravity(index), finger: finger.clone() };
-    let (recorder, black_box) = BlackBox::new(index as i32 + 1, hand, first); // 1 to 3
+    let (recorder, black_box) = BlackBox::new(configuration, index);
     let (servo, mailbox) =
         FingerServo::new(configuration, index, stiffness, &identity, &configured, producer, recorder)
             .map_err(unusable)?;

@@ -10,8 +10,7 @@ use sun2xp::board::protocol::Identity;
 use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, SimulatedFinger, Terms, Transport};
 use sun2xp::control::Law;
 use sun2xp::finger::{
-    BlackBox, Borrower, ControllerSource, Fault, FingerServo, Lent, Mailbox, Mended, ServedPort, Servo, Stage, lending,
-    stop_calls,
+    BlackBox, Borrower, Fault, FingerServo, Lent, Mailbox, Mended, ServedPort, Servo, Stage, lending, stop_calls,
 };
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::realtime::{Clock, Schedule};
@@ -151,9 +150,8 @@ impl Bench {
         let (identity, configured) = link.shake_hands(1, &terms, deadline).expect("a board answers");
         let (timings, _) = RingBuffer::new(1);
         let stiffness = finger.initial_stiffness();
-        let source = ControllerSource { number: 0, gravity: configuration.gravity(0), finger: finger.clone() };
         // Nobody reads it.
-        let (recorder, _) = BlackBox::new(1, hand, source);
+        let (recorder, _) = BlackBox::new(&configuration, 0);
         let (finger, mailbox) =
             FingerServo::new(&configuration, 0, stiffness, &identity, &configured, timings, recorder)
                 .expect("a finger");

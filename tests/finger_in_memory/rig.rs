@@ -7,8 +7,8 @@ use std::rc::Rc;
 use sun2xp::board::protocol::{Frame, Message, WireFrame};
 use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, SimulatedFinger, Terms, Transport};
 use sun2xp::finger::{
-    BlackBox, Borrower, ControllerSource, Fault, FaultKind, FingerReport, FingerServo, Mailbox, Mended, ServedPort,
-    Servo, Stage, lending, stop_calls,
+    BlackBox, Borrower, Fault, FaultKind, FingerReport, FingerServo, Mailbox, Mended, ServedPort, Servo, Stage,
+    lending, stop_calls,
 };
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, Schedule};
@@ -102,9 +102,8 @@ impl Bench {
         let (identity, configured) =
             link.shake_hands(1, &Terms::new(hand, finger), 1000 * MILLISECOND).expect("a board answers");
         let (timings, _) = RingBuffer::new(1);
-        let source = ControllerSource { number: 0, gravity: configuration.gravity(0), finger: finger.clone() };
         // Nobody reads it.
-        let (recorder, _) = BlackBox::new(1, hand, source);
+        let (recorder, _) = BlackBox::new(&configuration, 0);
         let (finger, mailbox) =
             FingerServo::new(&belief, 0, finger.initial_stiffness(), &identity, &configured, timings, recorder)
                 .expect("a finger");
