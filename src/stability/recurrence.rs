@@ -9,6 +9,8 @@ const WINDOW: usize = 80;
 /// A recurrence that misses by less than this part explains the samples.
 const EXPLAINED: f64 = 1e-3;
 const LARGEST_ORDER: usize = 8;
+/// Of the last sample: a root with less of it is none.
+const PART: f64 = 0.01;
 
 /// By which factor the slowest mode of a freely decaying (or growing) linear system changes from one sample to the next: its
 /// largest eigenvalue's modulus. `samples`: one vector of channels an instant, equally
@@ -29,10 +31,17 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
     for order in 1..=LARGEST_ORDER.min(window.len().saturating_sub(2)) {
         let Some((coefficients, missed)) = recurrence(window, order) else { break };
         if missed < EXPLAINED {
-            return largest_root(window, &coefficients);
+            let root = largest_root(window, &coefficients);
+            return if has_died(&samples[end..], root, ROUNDING * largest) { mean_change(window) } else { root };
         }
     }
     mean_change(window)
+}
+
+/// Whether what `follows` shows that a root is none: of a mode that grows so fast, with the least part that counts, something would be
+/// left above `rounding`.
+fn has_died(follows: &[DVector<f64>], root: f64, rounding: f64) -> bool {
+    root.powi(follows.len() as i32) * PART > 1.0 && follows.iter().all(|sample| sample.norm() <= rounding)
 }
 
 /// From the largest sample of the first half to that of the second, as a factor from one to the next. NaN of less than two.
@@ -68,7 +77,6 @@ fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f6
 ///
 /// The slowest mode has most of it. A root beyond it fits a last digit somewhere, and would foretell a motion that is not there.
 fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
-    const PART: f64 = 0.01;
     let order = coefficients.len();
     let companion = DMatrix::from_fn(order, order, |row, column| match (row, column) {
         (0, column) => coefficients[column],
@@ -88,4 +96,25 @@ fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
     let last = window.len() - 1;
     let has_part = |root: &usize| powers[(last, *root)].norm() * parts.row(*root).norm() >= PART;
     (0..order).filter(has_part).map(|root| roots[root].norm()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A decay with a tiny part of something that grows, for so many samples, and then `after`.
+    fn growing(length: i32, after: &[f64]) -> f64 {
+        let decay = (0..length).map(|k| 0.8f64.powi(k) + 1e-14 * 1.3f64.powi(k));
+        let samples: Vec<_> = decay.chain(after.iter().copied()).map(|sample| DVector::repeat(2, sample)).collect();
+        growth(&samples)
+    }
+
+    #[test]
+    fn a_root_that_what_follows_contradicts_is_none() {
+        assert!((growing(61, &[]) - 1.3).abs() < 1e-3);
+        assert!((growing(61, &[0.0; 5]) - 1.3).abs() < 1e-3, "too soon to tell");
+        assert!((growing(61, &[0.0; 30]) - 0.8).abs() < 0.05);
+        let grows: Vec<f64> = (61..91).map(|k| 1e-14 * 1.3f64.powi(k)).collect();
+        assert!((growing(61, &grows) - 1.3).abs() < 1e-3);
+    }
 }
