@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector6};
 use proptest::prelude::*;
+use std::f64::consts::FRAC_PI_2;
 use sun2xp::control::{JointStiffness, Law, SetPoint};
 use sun2xp::model::{Contact, Links};
 
@@ -22,8 +23,40 @@ fn soft_finger(root: [f64; 16], normal: [f64; 3]) -> (Matrix4<f64>, Vector3<f64>
     (k, normal, Contact::soft_finger(k, normal).expect("a spring"))
 }
 
+/// Off the axis of joint 0, where the tip alone does not hold that joint.
 fn theta() -> impl Strategy<Value = Vector3<f64>> {
-    (-1.0..1.0f64, -0.5..1.7f64, 0.1..2.0f64).prop_map(|(a, b, c)| Vector3::new(a, b, c))
+    (-1.0..1.0f64, -0.5..1.7f64, 0.1..2.0f64)
+        .prop_map(|(a, b, c)| Vector3::new(a, b, c))
+        .prop_filter("5 mm off the axis", |theta| LINKS.reach(theta).abs() > 0.5)
+}
+
+/// With a lever of 5 mm and less joint 0 is held as a lever of 5 mm would, by both laws; a spring without stiffness there does not
+/// hold it, and at 5 mm the torque has no jump.
+#[test]
+fn near_its_axis_joint_0_is_held() {
+    // Joint 1 at 90 degrees; l0 = -l2 C12 puts the tip on the axis.
+    let folded = |reach: f64| Vector3::new(0.3, FRAC_PI_2, ((reach - 3.556) / 4.0).acos() - FRAC_PI_2);
+    let away = Vector3::new(0.1, 0.0, 0.0);
+    for law_of in [Law::Report, Law::Exact] {
+        for reach in [-0.4, 0.0, 0.2, 0.499] {
+            let theta = folded(reach);
+            assert!((LINKS.reach(&theta) - reach).abs() < 1e-12);
+            let torque = |kx: Matrix3<f64>| {
+                let contact = Contact::hard_finger(kx).expect("a spring");
+                law().spring(&set_point(theta + away, &contact, law_of).into(), &theta)
+            };
+            let held = torque(Matrix3::identity() * 3.0);
+            assert!((held[0] - 3.0 * 0.25 * 0.1).abs() < 2e-3, "{law_of:?} at {reach} cm: {held}");
+            assert!(held.fixed_rows::<2>(1).amax() < 0.1);
+            let way = Vector3::new(theta[0].cos(), 0.0, -theta[0].sin());
+            assert!(torque(Matrix3::identity() * 3.0 - way * way.transpose() * 3.0)[0].abs() < 2e-3);
+        }
+        let [within, beyond] = [0.5 - 1e-9, 0.5 + 1e-9].map(|reach| {
+            let contact = Contact::hard_finger(Matrix3::identity() * 3.0).expect("a spring");
+            law().spring(&set_point(folded(reach) + away, &contact, law_of).into(), &folded(reach))
+        });
+        assert!((within - beyond).amax() < 1e-6);
+    }
 }
 
 fn normal() -> impl Strategy<Value = [f64; 3]> {

@@ -2,13 +2,18 @@
 
 use super::spring_transition::Spring;
 use crate::model::Links;
-use nalgebra::{Matrix3, Matrix6x3, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Matrix6x3, Vector3, Vector6};
 
 /// Kx at which `rate_time` holds, N/cm.
 const REFERENCE_STIFFNESS: f64 = 3.0;
 
 /// Damping of a finger without stiffness, N cm s/rad: a few times what its joints have, a fifth of what a spring needs.
 const LIMP_DAMPING: f64 = 0.2;
+
+/// What joint 0's lever counts as at least, cm. On that axis no stiffness of the tip holds the joint, and near it a force on the tip
+/// turns the joint away: one that presses the spring together by d toward the axis takes k d r of its k r^2. With a least lever of
+/// 5 mm, deflections of up to 5 mm leave the joint held.
+const LEAST_LEVER: f64 = 0.5;
 
 /// tau = spring - z (B K_theta B + d) theta_dot, with K_theta = J^T K J, a diagonal B, a small d and the set point's relative
 /// damping z.
@@ -18,6 +23,9 @@ const LIMP_DAMPING: f64 = 0.2;
 ///
 /// B^2 is beta where K_theta has its reference value, and is scaled with 1/sqrt(K_theta), joint by joint: the damping ratio
 /// stays where Kx or the lever of a joint changes. A tip near the axis of joint 0, which then is soft, needs it.
+///
+/// Nearer to that axis than a least lever, r < rho, joint 0 has n^T K n (rho^2 - r^2) of its own beside, n being the way that it moves
+/// the tip: a spring to theta_d that begins with nothing at rho, and that a spring without stiffness there does not have.
 #[derive(Clone, Debug)]
 pub struct JointStiffness {
     links: Links,
@@ -36,6 +44,8 @@ pub(super) struct PosedSpring<'a> {
     stiffened: Matrix6x3<f64>,
     /// The part of its stiffness that the spring has.
     scale: f64,
+    /// Of joint 0 where the tip is near its axis, before any scaling, N cm/rad.
+    hold: f64,
     /// K_theta of eq. 6, N cm/rad.
     pub k_theta: Matrix3<f64>,
 }
@@ -69,9 +79,11 @@ impl JointStiffness {
     pub(super) fn posed(&self, spring: &Spring, joints: &Vector3<f64>) -> PosedSpring<'_> {
         let jacobian = self.links.spatial_jacobian(joints);
         let stiffened = spring.stiffness * jacobian;
-        let k_theta = jacobian.tr_mul(&stiffened);
+        let mut k_theta = jacobian.tr_mul(&stiffened);
+        let hold = hold(&spring.stiffness, &jacobian);
+        k_theta[(0, 0)] += hold;
         let Spring { exact, damping, .. } = *spring;
-        PosedSpring { of: self, joints: *joints, exact, damping, stiffened, scale: 1.0, k_theta }
+        PosedSpring { of: self, joints: *joints, exact, damping, stiffened, scale: 1.0, hold, k_theta }
     }
 
     /// Translation (cm) and rotation vector (rad) from the tip's pose at `joints` to that at `desired`.
@@ -87,6 +99,18 @@ impl JointStiffness {
         deflection.fixed_rows_mut::<3>(3).copy_from(&rotation);
         deflection
     }
+}
+
+/// What holds joint 0 beside the spring of the tip, N cm/rad: K and J as above.
+fn hold(stiffness: &Matrix6<f64>, jacobian: &Matrix6x3<f64>) -> f64 {
+    let turned = jacobian.fixed_view::<3, 1>(0, 0);
+    let lacking = LEAST_LEVER * LEAST_LEVER - turned.norm_squared();
+    if lacking <= 0.0 {
+        return 0.0;
+    }
+    // Joint 0 moves the tip along the axis of joints 1 and 2, on its own axis too, where J has no direction left.
+    let way = jacobian.fixed_view::<3, 1>(3, 1);
+    way.dot(&(stiffness.fixed_view::<3, 3>(0, 0) * way)) * lacking
 }
 
 impl PosedSpring<'_> {
@@ -105,7 +129,9 @@ impl PosedSpring<'_> {
         if self.exact > 0.0 {
             // K is symmetric: J^T K d = (K J)^T d.
             let deflection = self.of.deflection(desired, &self.joints);
-            torques += self.stiffened.tr_mul(&deflection) * (self.scale * self.exact);
+            let mut exact = self.stiffened.tr_mul(&deflection);
+            exact[0] += self.hold * (desired[0] - self.joints[0]);
+            torques += exact * (self.scale * self.exact);
         }
         torques
     }
