@@ -3,7 +3,7 @@
 use super::eigenvalues::eigenvalues;
 use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Scheme};
-use nalgebra::{Matrix3, Matrix3x4};
+use nalgebra::{Matrix3, Matrix3x4, Vector3};
 
 /// The part of the stiffness of the locked tendons that K_theta may have: as far as the loop was found stable, so less below
 /// 750 Hz, and less with Figure 11, which has no gain on the tension error, at every rate.
@@ -23,6 +23,8 @@ fn share(scheme: Scheme, rate: f64) -> f64 {
 pub(super) struct AdmissibleStiffness {
     /// L^-1, (N cm/rad)^(-1/2).
     inverse: Matrix3<f64>,
+    /// The diagonal of (R k R^T)^-1, rad/(N cm).
+    compliance: Vector3<f64>,
     share: f64,
 }
 
@@ -32,12 +34,21 @@ impl AdmissibleStiffness {
         let stiffness = finger.tendon.stiffness;
         let stretched = Matrix3x4::from_fn(|joint, tendon| tendons.r[(joint, tendon)] * stiffness[tendon]);
         let inverse = (stretched * tendons.r.transpose()).cholesky()?.l().try_inverse()?;
-        Some(Self { inverse, share: share(finger.controller.scheme(rate), rate) })
+        let compliance = inverse.tr_mul(&inverse).diagonal();
+        Some(Self { inverse, compliance, share: share(finger.controller.scheme(rate), rate) })
     }
 
-    /// The factor, 0 to 1, that K_theta (N cm/rad) has to be scaled by.
-    pub fn scale(&self, k_theta: &Matrix3<f64>) -> f64 {
+    /// The factor, 0 to 1, that K_theta has to be scaled by beside what joints at their limits have of their own; all N cm/rad.
+    ///
+    /// The largest eigenvalue of a sum is at most the sum of the largest ones, and that of the limits at most their trace.
+    pub fn scale(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> f64 {
         let [largest, ..] = eigenvalues(&(self.inverse * k_theta * self.inverse.transpose()));
-        if largest > self.share { self.share / largest } else { 1.0 }
+        let left = self.share - limits.dot(&self.compliance);
+        if largest > left { left / largest } else { 1.0 }
+    }
+
+    /// What each joint can have if the others have nothing, N cm/rad.
+    pub fn of_joints(&self) -> Vector3<f64> {
+        self.compliance.map(|compliance| self.share / compliance)
     }
 }

@@ -20,7 +20,7 @@ use crate::control::tendon_controller::TendonController;
 use crate::control::tension_distribution::TensionDistribution;
 use crate::control::usable::positive;
 use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector4};
 
 /// A tendon counts as tight from this part of t_min on.
 const TIGHT: f64 = 0.8;
@@ -42,18 +42,22 @@ impl Controller {
         let strongest = motor_torque.limit.map(|limit| limit.min(finger.tendon.maximum));
         let scheme = finger.controller.scheme(rate);
         let state_feedback = match scheme {
-            Scheme::StateFeedback => Some(StateFeedback::new(finger, &tendons, gains.set_point_speed, rate)?),
+            Scheme::StateFeedback => {
+                Some(StateFeedback::new(finger, &tendons, &strongest, gains.set_point_speed, rate)?)
+            }
             Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };
         // What shakes the tensions shall stay within their bounds.
-        let reserve = state_feedback.as_ref().map_or(0.0, |law| law.reserve);
+        let lower_reserve = state_feedback.as_ref().map_or(0.0, |law| law.lower_reserve);
+        let upper_reserve = state_feedback.as_ref().map_or(Vector4::zeros(), |law| law.upper_reserve);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
         let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
+        let admissible = AdmissibleStiffness::new(finger, &tendons, rate).ok_or_else(soft)?;
         Ok(Self {
-            admissible: AdmissibleStiffness::new(finger, &tendons, rate).ok_or_else(soft)?,
             spring_transition: SpringTransition::new(rate),
-            soft_limits: SoftLimits::new(finger),
+            soft_limits: SoftLimits::new(finger, &admissible.of_joints()),
+            admissible,
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
             monitors: Monitors::new(finger, &tendons, rate)?,
@@ -67,8 +71,8 @@ impl Controller {
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
             distribution: TensionDistribution::new(
                 &tendons,
-                finger.tendon.minimum + reserve,
-                strongest.add_scalar(-reserve),
+                finger.tendon.minimum + lower_reserve,
+                strongest - upper_reserve,
             )?,
             tendons: TendonController::new(scheme, &gains, rate),
             motor_torque,

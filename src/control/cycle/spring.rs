@@ -2,6 +2,7 @@
 
 use super::{Controller, Doing, State};
 use crate::control::signals::{Report, SetPoint};
+use crate::control::soft_limits::Push;
 use crate::control::spring_transition::Spring;
 use crate::control::state_feedback::Decision;
 use crate::control::tension_distribution::Distribution;
@@ -15,7 +16,8 @@ impl Controller {
     pub(super) fn follow(&self, state: &mut State, set_point: &SetPoint) {
         let spring = self.spring_transition.advance(&mut state.spring, set_point);
         let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
-        spring.soften(self.carried(&mut state.report, &spring.k_theta));
+        let push = self.soft_limits.push(&state.report.joints);
+        spring.soften(self.carried(&mut state.report, &spring.k_theta, &push));
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
             _ => (state.report.joints, true),
@@ -24,7 +26,6 @@ impl Controller {
         state.doing = Doing::Following(anchor);
         let Report { joints, joint_rates, .. } = &state.report;
         let torques = spring.torques(&anchor) - spring.damper(joint_rates);
-        let push = self.soft_limits.push(joints);
         let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
         let torques = torques + push.torque - damped + self.gravity.torques(joints);
         let limit = self.heating.limit(&state.heat);
@@ -38,7 +39,8 @@ impl Controller {
     pub(super) fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
         let spring = self.spring_transition.advance(&mut state.spring, set_point);
         let k_theta = self.joint_stiffness.joint_stiffness(spring, &state.report.joints);
-        let scale = self.carried(&mut state.report, &k_theta);
+        let push = self.soft_limits.push(&state.report.joints);
+        let scale = self.carried(&mut state.report, &k_theta, &push);
         let spring = &Spring { stiffness: spring.stiffness * scale, ..*spring };
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
@@ -46,7 +48,7 @@ impl Controller {
         let limit = self.heating.limit(&state.heat);
         let begins = !matches!(state.doing, Doing::Following(_));
         state.doing = Doing::Following(elastic.joints);
-        let distribution = self.reachable(&limit.add_scalar(-law.reserve));
+        let distribution = self.reachable(&(limit - law.upper_reserve));
         let Decision { pulls, against_friction, joint_torques, distribution } =
             law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &distribution);
         state.against_friction = against_friction;
@@ -56,9 +58,9 @@ impl Controller {
         state.report.torque_scale = distribution.scale;
     }
 
-    /// The part of a spring's K_theta, N cm/rad, that the pose can carry.
-    fn carried(&self, report: &mut Report, k_theta: &Matrix3<f64>) -> f64 {
-        report.stiffness_scale = self.admissible.scale(k_theta);
+    /// The part of a spring's K_theta, N cm/rad, that the pose can carry beside the limits of its joints.
+    fn carried(&self, report: &mut Report, k_theta: &Matrix3<f64>, push: &Push) -> f64 {
+        report.stiffness_scale = self.admissible.scale(k_theta, &push.stiffness);
         report.stiffness_scale
     }
 }
