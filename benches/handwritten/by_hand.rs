@@ -61,9 +61,11 @@ pub struct Parameters {
     links: [f64; 3],
     joint_damping: [f64; 3],
     inverse_cholesky: [[f64; 3]; 3],
+    compliance: [f64; 3],
     share: f64,
     low: [f64; 3],
     high: [f64; 3],
+    limit_stiffness: [f64; 3],
     from_torque: [[f64; 3]; 4],
     ghost: [f64; 4],
     inverse_ghost: [f64; 4],
@@ -85,6 +87,9 @@ pub struct Parameters {
     encoder_zero: [i32; 4],
 }
 
+/// Of what the locked tendons carry, from 750 Hz up.
+const SHARE: f64 = 0.95;
+
 impl Parameters {
     pub fn new(finger: &ConfiguredFinger, gains: &Gains, rate: f64) -> Result<Self, Box<dyn Error>> {
         use std::array::from_fn;
@@ -94,6 +99,7 @@ impl Parameters {
         let stretched = Matrix3x4::from_fn(|i, j| tendons.r[(i, j)] * finger.tendon.stiffness[j]);
         let cholesky = (stretched * tendons.r.transpose()).cholesky().ok_or("R has no rank of 3")?;
         let inverse = cholesky.l().try_inverse().ok_or("R has no rank of 3")?;
+        let compliance: [f64; 3] = from_fn(|i| inverse.column(i).norm_squared());
         let limit: [f64; 4] = from_fn(|i| motor.torque_limit[i] / tendons.radius[i]);
         let ghost: [f64; 4] = from_fn(|i| tendons.q[(i, 3)]);
         let ratio = from_fn(|i| from_fn(|j| ghost[i] / ghost[j]));
@@ -122,9 +128,11 @@ impl Parameters {
             links: [l0, l1, l2],
             joint_damping: levers.map(|lever| lever * 3.0 * gains.rate_time * gains.rate_time),
             inverse_cholesky: from_fn(|i| from_fn(|j| inverse[(i, j)])),
-            share: 0.95,
+            compliance,
+            share: SHARE,
             low: low.into(),
             high: high.into(),
+            limit_stiffness: compliance.map(|compliance| (0.3 * SHARE / compliance).min(150.0)),
             from_torque: from_fn(|i| from_fn(|j| tendons.q[(i, j)])),
             ghost,
             inverse_ghost: ghost.map(f64::recip),

@@ -27,8 +27,10 @@ struct parameters {
     double links[JOINTS];
     double joint_damping[JOINTS];
     double inverse_cholesky[JOINTS][JOINTS];
+    double compliance[JOINTS];
     double share;
     double low[JOINTS], high[JOINTS];
+    double limit_stiffness[JOINTS];
     double from_torque[TENDONS][JOINTS];
     double ghost[TENDONS], inverse_ghost[TENDONS];
     double ratio[TENDONS][TENDONS];
@@ -84,7 +86,7 @@ struct feedback {
     uint16_t gauge_counts[TENDONS];
 };
 
-static const double SOFT_LIMIT_STIFFNESS = 150.0, SOFT_LIMIT_DAMPING = 0.015, LIMP_DAMPING = 0.2;
+static const double SOFT_LIMIT_DEPTH = 0.0175, SOFT_LIMIT_DAMPING = 0.015, LIMP_DAMPING = 0.2, LEAST_LEVER = 0.5;
 static const double FADE = 0.02, REST = 0.05, WANDER = 0.007, WARM = 0.8;
 
 static double clamp(double value, double low, double high)
@@ -202,8 +204,21 @@ static double largest_eigenvalue(const double m[JOINTS][JOINTS])
     return third + 2.0 * root * cos(acos(clamp(cubic / (spread * root), -1.0, 1.0)) / 3.0);
 }
 
-/* How much of K_theta the locked tendons can carry. */
-static double admissible(const struct parameters *p, const double k_theta[JOINTS][JOINTS])
+/* Of joint 0 near its axis, beside J^T K J. */
+static double hold(const double k[TIP][TIP], const double j[TIP][JOINTS])
+{
+    double lacking = LEAST_LEVER * LEAST_LEVER - (j[0][0] * j[0][0] + j[1][0] * j[1][0] + j[2][0] * j[2][0]);
+    if (lacking <= 0.0)
+        return 0.0;
+    double held = 0.0;
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 3; column++)
+            held += j[3 + row][1] * k[row][column] * j[3 + column][1];
+    return held * lacking;
+}
+
+/* How much of K_theta the locked tendons can carry beside the joints' limits. */
+static double admissible(const struct parameters *p, const double k_theta[JOINTS][JOINTS], const double limits[JOINTS])
 {
     double half[JOINTS][JOINTS], transposed[JOINTS][JOINTS], whole[JOINTS][JOINTS];
     multiply(p->inverse_cholesky, k_theta, half);
@@ -212,7 +227,10 @@ static double admissible(const struct parameters *p, const double k_theta[JOINTS
             transposed[row][column] = p->inverse_cholesky[column][row];
     multiply(half, transposed, whole);
     double largest = largest_eigenvalue(whole);
-    return largest > p->share ? p->share / largest : 1.0;
+    double left = p->share;
+    for (int i = 0; i < JOINTS; i++)
+        left -= limits[i] * p->compliance[i];
+    return largest > left ? left / largest : 1.0;
 }
 
 /* What motors as warm as these may pull. */
@@ -266,12 +284,19 @@ static void approach(struct spring *spring, const double stiffness[TIP][TIP], do
 static void joint_torques(const struct parameters *p, struct state *s, const struct set_point *set_point, double torques[JOINTS])
 {
     const double *joints = s->report.joints, *rates = s->report.joint_rates;
-    double j[TIP][JOINTS], k_theta[JOINTS][JOINTS], way[JOINTS], farthest = 0.0, b[JOINTS];
+    double j[TIP][JOINTS], k_theta[JOINTS][JOINTS], way[JOINTS], farthest = 0.0, b[JOINTS], pushed[JOINTS], limits[JOINTS];
     approach(&s->first, set_point->stiffness, 0.0, set_point->damping, p->spring_part);
     approach(&s->second, (const double (*)[TIP])s->first.stiffness, s->first.exact, s->first.damping, p->spring_part);
     spatial_jacobian(p->links, joints, j);
     joint_stiffness((const double (*)[TIP])s->second.stiffness, j, k_theta);
-    double carried = admissible(p, k_theta);
+    k_theta[0][0] += hold((const double (*)[TIP])s->second.stiffness, j);
+    for (int i = 0; i < JOINTS; i++) {
+        double beyond = clamp(joints[i], p->low[i], p->high[i]) - joints[i];
+        double deep = fabs(beyond) / SOFT_LIMIT_DEPTH < 1.0 ? fabs(beyond) / SOFT_LIMIT_DEPTH : 1.0;
+        limits[i] = p->limit_stiffness[i] * deep;
+        pushed[i] = limits[i] * (beyond - clamp(0.5 * beyond, -0.5 * SOFT_LIMIT_DEPTH, 0.5 * SOFT_LIMIT_DEPTH));
+    }
+    double carried = admissible(p, k_theta, limits);
     s->report.stiffness_scale = carried;
 
     for (int i = 0; i < JOINTS; i++) {
@@ -297,10 +322,8 @@ static void joint_torques(const struct parameters *p, struct state *s, const str
             spring += k_theta[row][column] * (s->anchor[column] - joints[column]);
             damper += b[row] * k_theta[row][column] * b[column] * rates[column];
         }
-        double beyond = clamp(joints[row], p->low[row], p->high[row]) - joints[row];
-        double limit_stiffness = beyond == 0.0 ? 0.0 : SOFT_LIMIT_STIFFNESS;
-        torques[row] = spring * (1.0 - s->second.exact) - damper * s->second.damping + beyond * SOFT_LIMIT_STIFFNESS
-            - limit_stiffness * rates[row] * SOFT_LIMIT_DAMPING;
+        torques[row] = spring * (1.0 - s->second.exact) - damper * s->second.damping + pushed[row]
+            - limits[row] * rates[row] * SOFT_LIMIT_DAMPING;
     }
 }
 
