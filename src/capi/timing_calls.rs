@@ -111,8 +111,9 @@ pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTi
     guarded("GetTiming", || {
         let least = size_up_to!(FingerTiming, CorruptReplies: c_ulong);
         let tell = |hand: &Hand| {
-            let losses = hand.losses(i)?;
+            // Times first: then there are no more of them than cycles.
             let times = hand.timing(i, stage(Stage).ok_or(HandError::NoSuchStage(Stage))?)?;
+            let losses = hand.losses(i)?;
             Ok(told(Stage, &times, &losses))
         };
         // SAFETY: the manual's contract: null, or as much room as its first member says.

@@ -135,7 +135,8 @@ impl Dispatcher {
     /// What went wrong.
     pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
         let index = self.index(finger)?;
-        // The report is read under the lock: a reset of another thread's is then before both or after both.
+        // The report is read under the lock: a reset of another thread's is then before both or after both. A servo reports a cycle
+        // before it tells its times: whoever reads these first counts none that is no cycle yet.
         let collected = self.collected(finger)?;
         Ok(self.members[index].mailbox.report().losses.since(&collected.losses_before))
     }
@@ -144,9 +145,10 @@ impl Dispatcher {
     pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
         let index = self.index(finger)?;
         let mut collected = self.collected(finger)?;
+        // Before the times, for the same reason: those of a cycle that is not counted are collected here.
+        collected.losses_before = self.members[index].mailbox.report().losses;
         collected.collect();
         collected.histograms.reset();
-        collected.losses_before = self.members[index].mailbox.report().losses;
         Ok(())
     }
 
