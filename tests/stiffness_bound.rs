@@ -136,3 +136,37 @@ fn the_tool_stores_the_bound_and_keeps_the_rest_of_the_file() {
     assert!(String::from_utf8(written.stdout).unwrap().contains(&format!("finger 3: {bound:.1} N/cm")));
     assert!(!run(&["--write", "--rate", "500"]).status.success(), "a bound for another rate must not be stored");
 }
+
+/// Fingers of another build: their masses, motors, tendons and lengths are those of the default finger times these.
+fn other_fingers(scheme: Scheme) -> Vec<(&'static str, ConfiguredFinger)> {
+    let scaled = |masses: f64, inertia: f64, tendons: f64, lengths: f64| {
+        let mut finger = finger(scheme);
+        finger.links.masses = finger.links.masses.map(|mass| mass * masses);
+        finger.motor.inertia = finger.motor.inertia.map(|motor| motor * inertia);
+        finger.tendon.stiffness = finger.tendon.stiffness.map(|stiffness| stiffness * tendons);
+        finger.geometry.links = finger.geometry.links.map(|length| length * lengths);
+        finger
+    };
+    vec![
+        ("half the masses", scaled(0.5, 1.0, 1.0, 1.0)),
+        ("twice the masses", scaled(2.0, 1.0, 1.0, 1.0)),
+        ("half the motors", scaled(1.0, 0.5, 1.0, 1.0)),
+        ("twice the motors", scaled(1.0, 2.0, 1.0, 1.0)),
+        ("softer tendons", scaled(1.0, 1.0, 0.5, 1.0)),
+        ("stiffer tendons", scaled(1.0, 1.0, 1.5, 1.0)),
+        ("shorter", scaled(0.7, 1.0, 1.0, 0.7)),
+        ("longer", scaled(1.3, 1.0, 1.0, 1.3)),
+    ]
+}
+
+/// Each is limited by what its tendons carry, not by the loop: the numbers of state feedback follow from the configuration. The gains
+/// of the figures do not, and leave most of these fingers unstable.
+#[test]
+fn state_feedback_is_made_for_the_finger_that_is_configured() {
+    for (name, finger) in other_fingers(Scheme::StateFeedback) {
+        let found = SEARCH.bound(&finger, 1000.0).unwrap_or_else(|unusable| panic!("{name}: {}", unusable.reason));
+        assert!(matches!(found.limit, Limit::Scaled(_)), "{name}: {found:?}");
+    }
+    let figure = other_fingers(Scheme::Figure10).into_iter().map(|(_, finger)| SEARCH.bound(&finger, 1000.0));
+    assert!(figure.filter(Result::is_err).count() >= 4);
+}
