@@ -92,7 +92,7 @@ pub struct Report {
     pub joint_rates: Vector3<f64>,
     /// Measured tensions, N.
     pub tensions: Vector4<f64>,
-    /// Commanded tensions, N: never below t_min but while slack is taken up and during a release.
+    /// Commanded tensions, N, with the dither of state feedback: never below t_min but while slack is taken up and during a release.
     pub desired_tensions: Vector4<f64>,
     /// Joint torques that the stiffness law asked for, N cm.
     pub joint_torques: Vector3<f64>,

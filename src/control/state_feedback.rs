@@ -31,8 +31,8 @@ const GAUGE_NOISE: f64 = 0.03;
 const NOISE_RESERVE: f64 = 14.0;
 
 /// The part of a motor's friction at t_max that its tendon keeps off t_max beside that: a motor at rest is held by its friction, and
-/// a tendon keeps what it has until what is missing, or too much, is observed. Over 24 seeds of 24 fingers at a stop none of it left
-/// 0.39 N above t_max at 1000 Hz and 1.03 N at 500 Hz; with 0.15, 0.37 N below it and 0.16 N above.
+/// a tendon keeps what it has until what is missing, or too much, is observed. Without it tendons of a finger at a stop had up to
+/// 0.39 N more than t_max at 1000 Hz, with it 0.46 N less, over 24 seeds of 24 poses.
 const FRICTION_RESERVE: f64 = 0.2;
 
 /// Of the low-pass on the motion of the joints beside the reference, rad/s: above it dither and noise are, below it pushes.
@@ -122,7 +122,10 @@ pub(super) struct Decision {
     pub against_friction: Vector4<f64>,
     /// N cm.
     pub joint_torques: Vector3<f64>,
-    pub distribution: Distribution,
+    /// With the dither, N.
+    pub desired_tensions: Vector4<f64>,
+    /// The part of the torque that the bounds let through.
+    pub torque_scale: f64,
 }
 
 impl StateFeedback {
@@ -347,11 +350,10 @@ impl StateFeedback {
             + self.joint_viscous.component_mul(&reference.rates)
             + rubbing;
         let joint_torques = torque * 100.0;
-        let distribution = distribution.distribute(&joint_torques);
+        let Distribution { tensions: distributed, scale: torque_scale } = distribution.distribute(&joint_torques);
         if begins {
-            state.transition.begin(&tensions, &distribution.tensions);
+            state.transition.begin(&tensions, &distributed);
         }
-        let desired = distribution.tensions + state.transition.advance(self.period);
 
         // The tendons as force sources: what the reference and the dither ask of the motors is fed forward.
         let tension_rates = self.pseudo_inverse * (inertia * reference.jerk);
@@ -361,7 +363,9 @@ impl StateFeedback {
         let (shake, shake_rates) =
             (self.pseudo_inverse * shake, self.pseudo_inverse * quarter_ahead * self.dither.frequency);
         let omega_squared = self.dither.frequency * self.dither.frequency;
-        let error = self.softer_in_common(&(desired + shake - tensions), self.common_gain);
+        let desired_tensions = distributed + shake;
+        let error = desired_tensions + state.transition.advance(self.period) - tensions;
+        let error = self.softer_in_common(&error, self.common_gain);
         // The share of the joints' speed must be exactly 1: with 0.94 it was a drag of three times D.
         let stretching = motor_speeds - speeds - (tension_rates + shake_rates).component_div(&self.stiffness);
         let stretching = self.softer_in_common(&stretching, self.common_damping);
@@ -370,7 +374,8 @@ impl StateFeedback {
             + self.viscous.component_mul(&motor_rates)
             + self.mass.component_mul(&yielding);
         let against_friction = self.friction.pulls(&motor_speeds, &tensions);
-        Decision { pulls: pulls + against_friction, against_friction, joint_torques, distribution }
+        let pulls = pulls + against_friction;
+        Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale }
     }
 
     /// `values` with this part of what the tendons have in common.

@@ -49,13 +49,13 @@ impl Controller {
         let begins = !matches!(state.doing, Doing::Following(_));
         state.doing = Doing::Following(elastic.joints);
         let distribution = self.reachable(&(limit - law.upper_reserve));
-        let Decision { pulls, against_friction, joint_torques, distribution } =
+        let Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale } =
             law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &distribution);
         state.against_friction = against_friction;
         self.give(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;
-        state.report.desired_tensions = distribution.tensions;
-        state.report.torque_scale = distribution.scale;
+        state.report.desired_tensions = desired_tensions;
+        state.report.torque_scale = torque_scale;
     }
 
     /// The part of a spring's K_theta, N cm/rad, that the pose can carry beside the limits of its joints.

@@ -9,6 +9,10 @@ use crate::finger::{Fault, FaultKind, Stage};
 use crate::model::configuration::EndState;
 use nalgebra::Vector4;
 
+/// While its tendons hang after a blow a joint seems to be so much further, rad, than any at rest does. Of 100 fingers that a force of
+/// 6 N flung aside one seemed to be 0.55 rad beyond its limits, and came back.
+const FLUNG: f64 = 0.3;
+
 impl FingerServo {
     /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
     pub(super) fn take_commands(&mut self) -> Option<Adjustable> {
@@ -97,7 +101,7 @@ impl FingerServo {
                 // Without a reply it says what was, not what is.
                 self.settled_cycles += u32::from(self.answered);
                 if self.settled_cycles >= self.limits.settled {
-                    self.check_pose();
+                    self.check_pose(0.0);
                     if !self.under_control() {
                         return;
                     }
@@ -117,7 +121,7 @@ impl FingerServo {
                     self.fault(Fault { kind: FaultKind::SlackTendon, part: slackest as u8 + 1, value });
                 }
             }
-            Stage::Running => self.check_pose(),
+            Stage::Running => self.check_pose(FLUNG),
             Stage::Closing if self.stage_cycles > self.limits.ramp => self.enter(Stage::Closed),
             _ => {}
         }
@@ -154,9 +158,11 @@ impl FingerServo {
         self.enter(Stage::Opening);
     }
 
-    /// A spring pulls a finger that is believed to be where it cannot be with all it has.
-    fn check_pose(&mut self) {
+    /// A spring pulls a finger that is believed to be where it cannot be with all it has. `further`: rad, beyond
+    /// what a joint at rest can seem to be.
+    fn check_pose(&mut self, further: f64) {
         let (low, high) = self.adjustable.pose;
+        let (low, high) = (low.add_scalar(-further), high.add_scalar(further));
         let joints = self.report.cycle.joints;
         if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
             let value = joints[joint].to_degrees();
