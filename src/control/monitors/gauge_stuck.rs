@@ -13,8 +13,9 @@ const KNOWN: u32 = 256;
 /// A gauge that shows one count in so many samples while all others are known to flicker was dead in the beginning.
 const NEVER: u32 = 512;
 
-/// A dead gauge is also off from the tension that is commanded by more than this part of t_min, before long: a controller goes on, and the
-/// dither that is commanded does at rest. One without noise whose tendon is where it shall be may show one count for ever, and did while others flickered.
+/// A dead gauge is also off from the tension that is commanded by more than this part of t_min, before long: a controller goes on, and
+/// the dither that is commanded does at rest. One without noise whose tendon is where it shall be may show one count for ever, and did
+/// while others flickered.
 const OFF: f64 = 0.015;
 
 /// The chance at which a live gauge that flickers as before would show one count for so long, as a natural logarithm: once
