@@ -33,7 +33,6 @@ mod slew;
 mod soft_limits;
 mod spring_transition;
 mod state_feedback;
-mod state_feedback_numbers;
 mod stillness;
 mod tendon_controller;
 mod tendon_observer;

@@ -8,7 +8,7 @@ use super::average::Average;
 use super::instruments::Instruments;
 use super::joint_lead::JointLead;
 use super::obstacle::Obstacle;
-use super::routine::Sample;
+use super::step::Sample;
 use nalgebra::{Vector3, Vector4};
 
 /// How far the joints are led to both sides, rad, and how fast, rad/s.

@@ -2,7 +2,7 @@
 
 use super::average::Average;
 use super::instruments::Instruments;
-use super::routine::Sample;
+use super::step::Sample;
 use nalgebra::{Vector3, Vector4};
 
 /// s.

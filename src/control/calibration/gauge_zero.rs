@@ -4,7 +4,7 @@
 use super::average::Average;
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
-use super::routine::Sample;
+use super::step::Sample;
 use crate::control::signals::Activity;
 use nalgebra::Vector4;
 use std::ops::ControlFlow::{self, Break, Continue};

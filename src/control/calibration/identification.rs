@@ -8,7 +8,7 @@ use super::joint_lead::JointLead;
 use super::motor_friction::MotorFriction;
 use super::obstacle::Obstacle;
 use super::pressing::Pressing;
-use super::routine::{Progress, Sample, Step, Stepped};
+use super::step::{Progress, Sample, Step, Stepped};
 use super::stop_search::StopSearch;
 use super::take_up::TakeUp;
 use super::tendon_stiffness::TendonStiffness;

@@ -7,7 +7,7 @@ use super::instruments::Instruments;
 use super::joint_lead::JointLead;
 use super::least_squares::LeastSquares;
 use super::obstacle::Obstacle;
-use super::routine::Sample;
+use super::step::Sample;
 use nalgebra::Vector3;
 
 /// Speeds, rad/s, and how far each goes, rad.

@@ -2,7 +2,7 @@
 //! that is held.
 
 use super::instruments::Instruments;
-use super::routine::Sample;
+use super::step::Sample;
 use crate::control::joint_hold::HOLDING_STIFFNESS;
 use crate::control::signals::Activity;
 use nalgebra::{Vector3, Vector4};

@@ -18,6 +18,7 @@ mod obstacle;
 mod pressing;
 mod routine;
 mod signs;
+mod step;
 mod stop_search;
 mod take_up;
 mod tendon_stiffness;
@@ -26,4 +27,5 @@ mod zeroing;
 
 pub use findings::{Findings, Identified, Signs, Zeros};
 pub use obstacle::Obstacle;
-pub use routine::{Calibration, Progress, Sample, Step, Task, Verdict};
+pub use routine::{Calibration, Task, Verdict};
+pub use step::{Progress, Sample, Step};

@@ -5,7 +5,7 @@
 use super::instruments::Instruments;
 use super::least_squares::LeastSquares;
 use super::obstacle::Obstacle;
-use super::routine::Sample;
+use super::step::Sample;
 use nalgebra::{Vector3, Vector4};
 
 /// Time constant of the smoothed travel, s, and the speed from which a motor counts as turning, cm/s at the tendon.

@@ -5,11 +5,12 @@ use super::identification::Identification;
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
 use super::signs::SignSearch;
+use super::step::{Progress, Sample};
 use super::zeroing::Zeroing;
-use crate::control::signals::{Activity, Feedback, Report};
+use crate::control::signals::Activity;
 use crate::model::configuration::{ConfiguredController, ConfiguredFinger, Scheme, Unusable};
 use nalgebra::Vector4;
-use std::ops::ControlFlow::{self, Break, Continue};
+use std::ops::ControlFlow::{Break, Continue};
 
 /// What can be asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,49 +21,6 @@ pub enum Task {
     Zero,
     /// Gains of the gauges, friction of motors and joints, stiffness of tendons. The finger moves to its lower stops and presses against them.
     Identify,
-}
-
-/// What a routine sees of one cycle.
-#[derive(Clone, Copy, Debug)]
-pub struct Sample<'a> {
-    /// What the board measured.
-    pub feedback: &'a Feedback,
-    /// What the last cycle found and decided.
-    pub report: &'a Report,
-    /// Whether the board says that its encoder counts are still good.
-    pub zero_valid: bool,
-}
-
-/// What a routine is just doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// Tendons are brought under tension.
-    TakingUpSlack,
-    /// Gauges are read with the tendons let out.
-    ZeroingGauges,
-    /// Counts are read.
-    ReadingEncoders,
-    /// A joint is on its way to a stop.
-    SeekingStops,
-    /// Motors turn one by one.
-    TryingMotors,
-    /// Joints are moved to and fro at two levels of tension.
-    ComparingGauges,
-    /// Joints are moved to and fro.
-    MovingJoints,
-    /// The finger presses against its stops.
-    Pressing,
-    /// Back to where it began.
-    Returning,
-}
-
-/// How far a routine is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// What it is doing.
-    pub step: Step,
-    /// The part of the routine that is done, roughly, 0 to 1.
-    pub part: f64,
 }
 
 /// What became of a routine.
@@ -153,6 +111,3 @@ impl Calibration {
 fn refused(obstacle: Obstacle) -> (Activity, Verdict) {
     (Activity::Turn(Vector4::zeros()), Verdict::Refused(obstacle))
 }
-
-/// What a routine's step yields: something to do, or what was found.
-pub(super) type Stepped = Result<ControlFlow<Findings, (Activity, Progress)>, Obstacle>;

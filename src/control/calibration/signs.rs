@@ -9,7 +9,7 @@ use super::average::Average;
 use super::findings::{Findings, Signs};
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
-use super::routine::{Progress, Sample, Step, Stepped};
+use super::step::{Progress, Sample, Step, Stepped};
 use super::wiring::Wiring;
 use crate::control::signals::{Activity, Feedback};
 use crate::model::configuration::ConfiguredFinger;

@@ -2,7 +2,7 @@
 
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
-use super::routine::Sample;
+use super::step::Sample;
 use crate::control::signals::Activity;
 use crate::control::stillness::Stillness;
 use nalgebra::Vector4;

@@ -7,7 +7,7 @@
 use super::instruments::Instruments;
 use super::least_squares::LeastSquares;
 use super::obstacle::Obstacle;
-use super::routine::Sample;
+use super::step::Sample;
 use nalgebra::{SVector, Vector4};
 
 /// N/cm, outside which no tendon is.

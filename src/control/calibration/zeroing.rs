@@ -6,7 +6,7 @@ use super::gauge_zero::GaugeZero;
 use super::instruments::Instruments;
 use super::joint_lead::JointLead;
 use super::obstacle::Obstacle;
-use super::routine::{Progress, Sample, Step, Stepped};
+use super::step::{Progress, Sample, Step, Stepped};
 use super::stop_search::StopSearch;
 use super::take_up::TakeUp;
 use crate::control::signals::Activity;
