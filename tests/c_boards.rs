@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use sun2xp::hand::{Hand, read};
+use sun2xp::hand::{Hand, HandError, read};
+use sun2xp::model::configuration::Configuration;
 
 const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/c/second_board.c");
 const FIRMWARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/firmware");
@@ -84,15 +85,25 @@ impl Drop for Board {
     }
 }
 
+/// What an attempt has come to. Texts, because a fault and a finger in a wrong place are alike here.
+type Attempt = Result<(), String>;
+
+fn told(error: HandError) -> String {
+    error.to_string()
+}
+
 /// Sends all fingers to their targets and waits until each is there and stays.
-fn settle(hand: &Hand, targets: [[f64; 3]; 3]) {
+fn settle(hand: &Hand, targets: [[f64; 3]; 3]) -> Attempt {
     for (finger, target) in (1..).zip(targets) {
-        hand.send_position(finger, target).expect("the target is taken");
+        hand.send_position(finger, target).map_err(told)?;
     }
     let begin = Instant::now();
     let mut since = None;
     loop {
-        let positions = [1, 2, 3].map(|finger| hand.position(finger).expect("the finger is running"));
+        let mut positions = [[0.0; 3]; 3];
+        for (finger, position) in (1..).zip(&mut positions) {
+            *position = hand.position(finger).map_err(told)?;
+        }
         let worst = positions
             .iter()
             .flatten()
@@ -103,9 +114,11 @@ fn settle(hand: &Hand, targets: [[f64; 3]; 3]) {
         let arrived = if worst < CLOSE { Some(*since.get_or_insert_with(Instant::now)) } else { None };
         since = arrived;
         if arrived.is_some_and(|instant| instant.elapsed() > Duration::from_millis(200)) {
-            return;
+            return Ok(());
         }
-        assert!(begin.elapsed() < PATIENCE, "after {PATIENCE:?} at {positions:?} instead of {targets:?}");
+        if begin.elapsed() > PATIENCE {
+            return Err(format!("after {PATIENCE:?} at {positions:?} instead of {targets:?}"));
+        }
         std::thread::sleep(Duration::from_millis(5));
     }
 }
@@ -137,39 +150,69 @@ fn make(folder: &Path, arguments: &[&str]) {
     succeeds(Command::new("make").args(["-C", FIRMWARE]).arg(format!("BUILD={}", folder.display())).args(arguments));
 }
 
+/// Boards that are ordinary processes get what a busy machine leaves them, and a controller that misses much of what they do may meet any
+/// fault. So an attempt that fails is judged if the replies came, and else made anew; of a hand that does not open nobody knows.
 fn settles_three_fingers_and_notices_a_dead_board(program: &Path, folder: &Path) {
-    let mut boards = [1, 2, 3].map(|address| Board::start(program, address));
+    for _ in 0..5 {
+        let mut boards = [1, 2, 3].map(|address| Board::start(program, address));
+        let failure = match Hand::open(configuration(&boards, folder)) {
+            Err(error) => error.to_string(),
+            Ok(hand) => match hold_and_settle(&hand, &mut boards) {
+                Ok(()) => return notices_a_dead_board(&hand, &mut boards[1]),
+                Err(failure) => {
+                    let losses = [1, 2, 3].map(|finger| hand.losses(finger).expect("a finger"));
+                    let starved = losses.iter().any(|losses| losses.lost_replies * MANY > losses.cycles);
+                    assert!(starved, "{failure}, {losses:?}");
+                    failure
+                }
+            },
+        };
+        eprintln!("the machine keeps the boards from running: {failure}");
+    }
+    panic!("this machine has no time for three boards");
+}
 
+/// One reply in so many is three times what is lost on a machine with time for it. One pause of a board takes several in a row, while
+/// its finger moves on under the last torque.
+const MANY: u64 = 200;
+
+fn configuration(boards: &[Board; 3], folder: &Path) -> Configuration {
     // A busy machine may keep servo or board from running for longer than the usual watchdog.
     let mut text = "[hand]\nwatchdog_ms = 1000\n".to_string();
-    for (finger, board) in (1..).zip(&boards) {
+    for (finger, board) in (1..).zip(boards) {
         text += &format!("[finger.{finger}]\nport = \"{}\"\n", board.port);
     }
     let path = folder.join("sun2xp.toml");
     std::fs::write(&path, text).expect("the configuration is written");
-    let hand = Hand::open(read(&path).expect("the configuration is good")).expect("all boards answer");
+    read(&path).expect("the configuration is good")
+}
 
+fn hold_and_settle(hand: &Hand, boards: &mut [Board; 3]) -> Attempt {
     // The hand holds the pose in which it found the fingers.
     for finger in 1..=3 {
-        let position = hand.position(finger).expect("the finger is running");
+        let position = hand.position(finger).map_err(told)?;
         let start = [0.0, 30.0_f64.to_radians(), 60.0_f64.to_radians()];
-        for (is, was) in position.iter().zip(start) {
-            assert!((is - was).abs() < CLOSE, "finger {finger} begins at {position:?} instead of {start:?}");
+        if position.iter().zip(start).any(|(is, was)| (is - was).abs() > CLOSE) {
+            return Err(format!("finger {finger} begins at {position:?} instead of {start:?}"));
         }
     }
-
     for targets in
         [[[0.1, 0.4, 0.9], [-0.1, 0.6, 1.1], [0.0, 0.7, 0.8]], [[-0.15, 0.7, 1.2], [0.15, 0.3, 0.8], [0.1, 0.4, 1.3]]]
     {
-        settle(&hand, targets);
+        settle(hand, targets)?;
         for (board, target) in boards.iter_mut().zip(targets) {
             let joints = board.joints();
             let worst = joints.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max);
-            assert!(worst < CLOSE, "the finger is truly at {joints:?} instead of {target:?}");
+            if worst > CLOSE {
+                return Err(format!("the finger is truly at {joints:?} instead of {target:?}"));
+            }
         }
     }
+    Ok(())
+}
 
-    boards[1].kill();
+fn notices_a_dead_board(hand: &Hand, board: &mut Board) {
+    board.kill();
     let begin = Instant::now();
     let error = loop {
         match hand.position(2) {
