@@ -219,6 +219,21 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
     }
 }
 
+/// A thread that does not run cannot help it; what it predicted meanwhile must not be believed when it runs again.
+#[test]
+fn a_servo_that_now_and_then_does_not_run_for_twelve_milliseconds_keeps_its_finger() {
+    for seed in 0..10 {
+        let mut bench = Bench::new(Configuration::default(), seed);
+        for _ in 0..60 {
+            let before = bench.random(100.0, 500.0) as u64;
+            bench.run(before);
+            bench.pause(12_300_000);
+            (0..200).for_each(|_| bench.cycle());
+            assert_eq!(bench.fault(), None, "{seed}");
+        }
+    }
+}
+
 /// The table of `docs/faults.md`: `cargo test --test fault_injection -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
