@@ -1,14 +1,11 @@
 //! What is injected, what it is to be called, and from when on it can be known.
 
-use crate::rig::{Bench, Truth};
+use crate::rig::{Bench, MICROSECOND, MILLISECOND, Truth};
 use nalgebra::{Vector3, Vector4};
 use std::f64::consts::TAU;
 use sun2xp::board::{Defect, LineFault};
 use sun2xp::finger::FaultKind;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
-
-const MICROSECOND: u64 = 1000;
-const MILLISECOND: u64 = 1000 * MICROSECOND;
 
 /// Something that goes wrong.
 pub struct Case {

@@ -5,7 +5,7 @@ mod cases;
 mod rig;
 
 use cases::{Case, Injected, line, of_the_finger, of_the_line, warnings};
-use rig::Bench;
+use rig::{Bench, MICROSECOND, MILLISECOND};
 use sun2xp::board::LineFault;
 use sun2xp::finger::Losses;
 use sun2xp::model::configuration::{Configuration, Scheme};
@@ -227,7 +227,7 @@ fn a_servo_that_now_and_then_does_not_run_for_twelve_milliseconds_keeps_its_fing
         for _ in 0..60 {
             let before = bench.random(100.0, 500.0) as u64;
             bench.run(before);
-            bench.pause(12_300_000);
+            bench.pause(12 * MILLISECOND + 300 * MICROSECOND);
             (0..200).for_each(|_| bench.cycle());
             assert_eq!(bench.fault(), None, "{seed}");
         }

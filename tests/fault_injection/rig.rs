@@ -15,7 +15,8 @@ use sun2xp::finger::{
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::realtime::{Clock, Schedule};
 
-const MILLISECOND: u64 = 1_000_000;
+pub const MICROSECOND: u64 = 1000;
+pub const MILLISECOND: u64 = 1000 * MICROSECOND;
 
 /// How often the end state is looked at, ns.
 const LOOK: u64 = MILLISECOND / 10;
