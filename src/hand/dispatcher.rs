@@ -145,7 +145,8 @@ impl Dispatcher {
     pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
         let index = self.index(finger)?;
         let mut collected = self.collected(finger)?;
-        // Before the times, for the same reason: those of a cycle that is not counted are collected here.
+        // Before the times, for the same reason: those of a cycle that is not counted are collected here, but for one that is just
+        // being told.
         collected.losses_before = self.members[index].mailbox.report().losses;
         collected.collect();
         collected.histograms.reset();
