@@ -8,6 +8,7 @@
 pub mod board;
 mod capi;
 pub mod control;
+pub mod files;
 pub mod finger;
 pub mod hand;
 pub mod model;

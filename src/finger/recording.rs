@@ -1,6 +1,7 @@
 //! A black box as a file: lines of JSON, the first of which says what all others need. docs/black-box.md describes it.
 
 use crate::control::State;
+use crate::files::open_regular_file;
 use crate::finger::{ControllerSource, CycleRecord};
 use crate::model::configuration::ConfiguredHand;
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,9 @@ use thiserror::Error;
 
 /// Version of the format.
 const VERSION: u32 = 1;
+
+/// The largest recording that is read, bytes. Two seconds at the highest rate take 13 MB.
+const LARGEST: u64 = 1 << 28;
 
 /// A stretch of a finger's life, without a gap, and everything that is needed to compute it again.
 #[derive(Clone, Debug)]
@@ -142,7 +146,7 @@ impl Recording {
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let file = path.display().to_string();
         let unreadable = |error| RecordingError::Unreadable(file.clone(), error);
-        let mut lines = BufReader::new(File::open(path).map_err(unreadable)?).lines();
+        let mut lines = BufReader::new(open_regular_file(path, LARGEST).map_err(unreadable)?).lines();
         let first = lines.next().transpose().map_err(unreadable)?.unwrap_or_default();
         let Identity { sun2xp_black_box: found, library } =
             serde_json::from_str(&first).map_err(|error| RecordingError::Foreign(file.clone(), error))?;

@@ -1,5 +1,6 @@
 //! Finds the configuration file and turns it into a [`Configuration`], naming file, line and reason where it cannot.
 
+use crate::files::read_regular_file;
 use crate::hand::HandError;
 use crate::hand::opening::check;
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, FINGERS};
@@ -9,6 +10,9 @@ use std::env;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml_edit::{Document, Item, Table, Value};
+
+/// The largest configuration file that is read, bytes: more than sixty times docs/sun2xp.toml, which names every key.
+const LARGEST: u64 = 1 << 20;
 
 /// The file that `SUN2XP_CONFIG` names, else `sun2xp.toml` in the working directory, else `sun2xp/sun2xp.toml` in the
 /// user's configuration folder, else in the system's (`XDG_CONFIG_DIRS`, or `/etc/xdg`); none of them: no path, and the
@@ -27,9 +31,10 @@ pub fn configured() -> Result<(Configuration, Option<PathBuf>), HandError> {
 /// Reads and checks one configuration file.
 ///
 /// # Errors
-/// [`HandError::Configuration`] with file, line and reason; [`HandError::ConfigurationFile`] where it cannot be read.
+/// [`HandError::Configuration`] with file, line and reason; [`HandError::ConfigurationFile`] where it cannot be read, is no regular file
+/// or is larger than 1 MiB.
 pub fn read(path: &Path) -> Result<Configuration, HandError> {
-    let text = std::fs::read_to_string(path)
+    let text = read_regular_file(path, LARGEST)
         .map_err(|source| HandError::ConfigurationFile { path: path.to_path_buf(), source })?;
     parse(&text).map_err(|(line, reason)| HandError::Configuration { file: path.to_path_buf(), line, reason })
 }

@@ -149,8 +149,8 @@ pub enum HandError {
     },
     /// A configuration file cannot be read.
     #[error(
-        "cannot read the configuration file {}: {source}. It must be a text file that this user can read; where SUN2XP_CONFIG \
-         names one it must exist", path.display()
+        "cannot read the configuration file {}: {source}. It must be a text file of at most 1 MiB that this \
+         user can read; where SUN2XP_CONFIG names one it must exist", path.display()
     )]
     ConfigurationFile {
         /// The file.

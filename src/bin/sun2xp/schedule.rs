@@ -3,12 +3,16 @@
 
 use crate::board::Failure;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
+use sun2xp::files::read_regular_file;
 use sun2xp::hand::{self, Costs, Hand, Limit, Scheduled, Sensor, fastest_rate, off_line_schedule};
 use sun2xp::model::configuration::{Configuration, RATES};
 use sun2xp::realtime::{Distribution, Stage};
+
+/// The largest file of costs that is read, bytes: it holds four numbers.
+const LARGEST_COSTS: u64 = 1 << 16;
 
 /// Whether every cycle of the hand ends in time: response times from worst cases, line times and the allocation of fingers.
 ///
@@ -78,9 +82,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn read(file: &PathBuf) -> Result<Costs, Failure> {
+fn read(file: &Path) -> Result<Costs, Failure> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", file.display());
-    let text = std::fs::read_to_string(file).map_err(|error| named(&error))?;
+    let text = read_regular_file(file, LARGEST_COSTS).map_err(|error| named(&error))?;
     let costs: Costs = toml_edit::de::from_str(&text).map_err(|error| named(&error))?;
     if [costs.wake_up, costs.write, costs.read, costs.compute].iter().any(|cost| !(cost.is_finite() && *cost >= 0.0)) {
         return Err(named(&"a cost is not a number of 0 or more").into());

@@ -1,0 +1,123 @@
+//! Opens and reads files that must be regular files of a limited size.
+
+use std::fs::{FileType, Metadata, OpenOptions, metadata};
+use std::io::{self, Read, Take};
+use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
+use std::path::Path;
+
+/// Opens a regular file for reading. The reader ends after `largest` + 1 bytes, so that a file that grows while it is read cannot fill the
+/// memory.
+///
+/// A path that leads to a FIFO, a device, a socket or a directory is refused without waiting for anything.
+///
+/// # Errors
+/// What the system reports; [`io::ErrorKind::InvalidInput`] where the path leads to something other than a regular file;
+/// [`io::ErrorKind::FileTooLarge`] where the file has more than `largest` bytes.
+pub fn open_regular_file(path: &Path, largest: u64) -> io::Result<Take<std::fs::File>> {
+    // Opening some devices has an effect: a modem line rises, a tape rewinds. So the kind is known before the path is opened.
+    check(&metadata(path)?, largest)?;
+    // O_NONBLOCK: the path may lead to a FIFO by now, which would wait for a writer. It has no effect on regular files.
+    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY).open(path)?;
+    // What counts is what was opened.
+    check(&file.metadata()?, largest)?;
+    Ok(file.take(largest.saturating_add(1)))
+}
+
+/// Reads a regular file of at most `largest` bytes as text.
+///
+/// # Errors
+/// As [`open_regular_file`], and [`io::ErrorKind::InvalidData`] with the line where the file is not UTF-8.
+pub fn read_regular_file(path: &Path, largest: u64) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    open_regular_file(path, largest)?.read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > largest {
+        return Err(too_large(largest));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        io::Error::new(io::ErrorKind::InvalidData, format!("line {line} is not UTF-8 text"))
+    })
+}
+
+fn check(metadata: &Metadata, largest: u64) -> io::Result<()> {
+    if !metadata.is_file() {
+        let reason = format!("it is {} and not a regular file", name_of(metadata.file_type()));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+    }
+    match metadata.len() {
+        length if length > largest => Err(too_large(largest)),
+        _ => Ok(()),
+    }
+}
+
+fn too_large(largest: u64) -> io::Error {
+    io::Error::new(io::ErrorKind::FileTooLarge, format!("it is larger than {largest} bytes"))
+}
+
+fn name_of(kind: FileType) -> &'static str {
+    match kind {
+        kind if kind.is_dir() => "a directory",
+        kind if kind.is_fifo() => "a FIFO (a pipe)",
+        kind if kind.is_socket() => "a socket",
+        kind if kind.is_char_device() || kind.is_block_device() => "a device",
+        _ => "something else",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs::{create_dir, write};
+    use std::os::unix::net::UnixListener;
+    use std::process::Command;
+
+    fn refused(path: &Path) -> String {
+        read_regular_file(path, 1000).expect_err("refused").to_string()
+    }
+
+    #[test]
+    fn text_up_to_the_limit_is_read() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("file");
+        for length in [0, 1, 1000] {
+            write(&file, "x".repeat(length)).expect("written");
+            assert_eq!(read_regular_file(&file, 1000).expect("read").len(), length);
+        }
+        write(&file, "x".repeat(1001)).expect("written");
+        assert_eq!(refused(&file), "it is larger than 1000 bytes");
+    }
+
+    #[test]
+    fn what_is_no_regular_file_is_refused_by_its_kind_at_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        assert!(Command::new("mkfifo").arg(path("fifo")).status().expect("mkfifo").success());
+        create_dir(path("folder")).expect("made");
+        let _socket = UnixListener::bind(path("socket")).expect("bound");
+        std::os::unix::fs::symlink("/dev/zero", path("link")).expect("made");
+        for (name, kind) in
+            [("fifo", "a FIFO (a pipe)"), ("folder", "a directory"), ("socket", "a socket"), ("link", "a device")]
+        {
+            assert_eq!(refused(&path(name)), format!("it is {kind} and not a regular file"));
+        }
+        assert_eq!(refused(Path::new("/dev/zero")), "it is a device and not a regular file");
+        assert!(refused(&path("missing")).contains("No such file"));
+    }
+
+    #[test]
+    fn a_file_without_a_size_is_read_no_further_than_the_limit() {
+        // The kernel gives files in /proc no size.
+        let maps = Path::new("/proc/self/maps");
+        assert!(read_regular_file(maps, 1 << 20).expect("read").contains("[stack]"));
+        assert_eq!(read_regular_file(maps, 10).expect_err("refused").kind(), io::ErrorKind::FileTooLarge);
+    }
+
+    #[test]
+    fn the_line_that_is_no_text_is_named() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("file");
+        write(&file, b"one\ntwo\n\xff\nfour\n").expect("written");
+        assert_eq!(refused(&file), "line 3 is not UTF-8 text");
+    }
+}

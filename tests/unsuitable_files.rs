@@ -1,0 +1,64 @@
+//! Paths that lead to something other than a file of a sensible size are refused at once, wherever the library or the tool reads one.
+
+use std::fs::{File, write};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// What the tool answers. It must not take longer than this, and must not use more than half a gigabyte of memory.
+fn tool(arguments: &[&str], configuration: Option<&Path>) -> Output {
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -v 524288; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_sun2xp")]).args(arguments);
+    if let Some(path) = configuration {
+        command.env("SUN2XP_CONFIG", path);
+    }
+    let mut process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the tool starts");
+    let limit = Instant::now() + Duration::from_secs(20);
+    while process.try_wait().expect("a child").is_none() {
+        if Instant::now() > limit {
+            process.kill().expect("a child");
+            panic!("{arguments:?} with {configuration:?} did not end");
+        }
+        sleep(Duration::from_millis(5));
+    }
+    process.wait_with_output().expect("its output")
+}
+
+fn refusal(arguments: &[&str], configuration: Option<&Path>) -> String {
+    let output = tool(arguments, configuration);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{arguments:?} with {configuration:?}: {text}");
+    text
+}
+
+#[test]
+fn every_file_that_is_read_is_a_regular_file_of_a_sensible_size() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    assert!(Command::new("mkfifo").arg(path("fifo")).status().expect("mkfifo").success());
+    // Sparse: it takes no space.
+    File::create(path("large")).and_then(|file| file.set_len(1 << 40)).expect("made");
+    write(path("good"), "").expect("written");
+    write(path("costs"), "wake_up = 1\nwrite = 1\nread = 1\ncompute = 1\n").expect("written");
+    let text = |name: &str| path(name).to_str().expect("a name").to_owned();
+
+    for (unsuitable, reason) in [
+        (text("fifo"), "it is a FIFO (a pipe) and not a regular file"),
+        ("/dev/zero".into(), "it is a device and not a regular file"),
+        ("/dev/tty".into(), "it is a device and not a regular file"),
+        (folder.path().display().to_string(), "it is a directory and not a regular file"),
+        (text("large"), "it is larger than"),
+    ] {
+        let costs = text("costs");
+        for (arguments, configuration) in [
+            (vec!["schedule", "--costs", &costs], Some(Path::new(&unsuitable))),
+            (vec!["schedule", "--costs", &costs, "--config", &unsuitable], None),
+            (vec!["schedule", "--costs", &unsuitable], Some(&*path("good"))),
+            (vec!["replay", &unsuitable], None),
+        ] {
+            let said = refusal(&arguments, configuration);
+            assert!(said.contains(reason) && said.contains(&unsuitable), "{arguments:?}: {said}");
+        }
+    }
+}
