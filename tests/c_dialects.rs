@@ -3,7 +3,7 @@
 #[allow(dead_code)]
 mod c;
 
-use c::{Bench, STRICT, c_compilers, cpp_compilers};
+use c::{Bench, STRICT, c_compiler, c_compilers, cpp_compiler, cpp_compilers};
 
 const C: &[&str] = &["-ansi", "-std=c89", "-std=gnu89", "-std=c99", "-std=gnu99", "-std=c11", "-std=c17", "-std=c2x"];
 const CPP: &[&str] = &["-std=c++98", "-std=c++11", "-std=c++14", "-std=c++17", "-std=c++20"];
@@ -106,7 +106,8 @@ fn other_element_types_do_not_compile() {
 fn only_float_and_double_can_be_named() {
     let bench = Bench::new();
     for value in ["-DSUN2XP_REAL", "-DSUN2XP_REAL=", "-DSUN2XP_REAL=int"] {
-        for (compiler, source) in [(c_compilers()[0], "header_twice.c"), (cpp_compilers()[0], "header_twice.cpp")] {
+        let cpp = cpp_compiler().map(|compiler| (compiler, "header_twice.cpp"));
+        for (compiler, source) in [(c_compiler(), "header_twice.c")].into_iter().chain(cpp) {
             let refused = bench.check(compiler, &[value], source).expect_err("an unusable type is taken");
             assert!(refused.contains("SUN2XP_REAL must be float or double"), "{refused}");
         }

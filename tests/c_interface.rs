@@ -3,7 +3,7 @@
 #[allow(dead_code)]
 mod c;
 
-use c::{Bench, STRICT, c_compilers, library, root, said};
+use c::{Bench, STRICT, c_compiler, library, root, said};
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -122,7 +122,7 @@ fn a_signal_handler_stops_the_hand_and_the_planner_recovers_it() {
 #[test]
 fn a_black_box_is_written_and_replayed() {
     let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], &strict(&[]), &["black_box.c"]);
+    let program = bench.build(c_compiler(), &strict(&[]), &["black_box.c"]);
     let file = bench.path().join("finger-1.jsonl");
     let mut command = Command::new(&program);
     command.arg(&file);
@@ -203,7 +203,7 @@ fn faults_are_told_by_number_and_in_words() {
 
 fn succeed_while_the_board_dies(source: &str) {
     let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], &strict(&["-std=c99"]), &[source]);
+    let program = bench.build(c_compiler(), &strict(&["-std=c99"]), &[source]);
     let board = Board::start(&bench);
     let mut command = Command::new(&program);
     command.arg(board.process.id().to_string());
@@ -215,7 +215,7 @@ fn succeed_while_the_board_dies(source: &str) {
 #[test]
 fn a_planner_that_leaves_without_closing_lets_the_tendons_go() {
     let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], STRICT, &["leaves.c"]);
+    let program = bench.build(c_compiler(), STRICT, &["leaves.c"]);
     for (way, status) in
         [("return", Some(3)), ("exit", Some(3)), ("handler", Some(3)), ("thread", Some(3)), ("killed", None)]
     {
@@ -236,7 +236,7 @@ fn the_static_library_serves_too() {
     let bench = Bench::new();
     let archive = library().with_extension("a");
     let program = bench.path().join("static");
-    let mut compiler = Command::new(c_compilers()[0]);
+    let mut compiler = Command::new(c_compiler());
     compiler.arg("-I").arg(root().join("include")).args(["-D_DEFAULT_SOURCE", "-o"]).arg(&program);
     compiler.arg(root().join("tests/c/closed.c")).arg(&archive).args(["-lpthread", "-ldl", "-lm"]);
     let built = compiler.output().expect("the compiler can be started");
@@ -249,7 +249,7 @@ fn the_static_library_serves_too() {
 fn opened_with(configuration: &str) -> (Option<i32>, String, String) {
     let bench = Bench::new();
     fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
-    let program = bench.build(c_compilers()[0], STRICT, &["opens.c"]);
+    let program = bench.build(c_compiler(), STRICT, &["opens.c"]);
     let run = bench.run(Command::new(&program));
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     (run.status.code(), text(&run.stdout), text(&run.stderr))
@@ -308,7 +308,7 @@ fn a_configuration_that_cannot_be_used_is_told_with_its_line() {
 #[test]
 fn the_nearest_configuration_file_counts() {
     let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], STRICT, &["opens.c"]);
+    let program = bench.build(c_compiler(), STRICT, &["opens.c"]);
     let (user, system) = (bench.path().join("user"), bench.path().join("system"));
     let files = [bench.path().to_path_buf(), user.join("sun2xp"), system.join("sun2xp")];
     for folder in &files {
@@ -334,7 +334,7 @@ fn the_nearest_configuration_file_counts() {
 #[test]
 fn a_named_configuration_must_exist() {
     let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], STRICT, &["opens.c"]);
+    let program = bench.build(c_compiler(), STRICT, &["opens.c"]);
     let mut command = Command::new("env");
     command.arg("SUN2XP_CONFIG=missing.toml").arg(&program);
     let run = bench.run(command);
@@ -353,7 +353,7 @@ fn a_port_that_does_not_exist_is_told() {
 #[test]
 fn the_simulated_hand_is_announced_in_one_line() {
     let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], STRICT, &["opens.c"]);
+    let program = bench.build(c_compiler(), STRICT, &["opens.c"]);
     let run = bench.run(Command::new(&program));
     let announced = said(&run).lines().filter(|line| line.contains("simulated")).count();
     assert_eq!(announced, 1, "{}", said(&run));

@@ -4,7 +4,7 @@
 #[allow(dead_code)]
 mod c;
 
-use c::{Bench, STRICT, c_compilers};
+use c::{Bench, STRICT, c_compiler};
 use std::fs;
 use std::os::unix::process::CommandExt;
 use std::process::Command;
@@ -38,7 +38,7 @@ fn opened_without(right: Right, configuration: &str) -> (Option<i32>, String, St
 fn run_without(right: Right, configuration: &str, program: &str) -> (Option<i32>, String, String) {
     let bench = Bench::new();
     fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
-    let mut command = Command::new(bench.build(c_compilers()[0], STRICT, &[program]));
+    let mut command = Command::new(bench.build(c_compiler(), STRICT, &[program]));
     let give_up = move || {
         let (limit, capability) = right;
         let nothing = libc::rlimit { rlim_cur: 0, rlim_max: 0 };

@@ -1,6 +1,9 @@
 //! Compiles the C programs of this folder against the header and the library that the same `cargo test` has built, and runs
 //! them where no configuration of the machine can be found.
 
+#[path = "../common/tools.rs"]
+mod tools;
+
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -10,21 +13,26 @@ use tempfile::TempDir;
 /// Flags that every C program must pass without a warning.
 pub const STRICT: &[&str] = &["-pedantic", "-Wall", "-Wextra", "-Werror"];
 
-/// The C compilers that are here; gcc, or whatever `cc` is, must be.
+/// The compiler of C programs where one is enough: gcc, or else the one that Rust links with.
+pub fn c_compiler() -> &'static str {
+    if tools::available("gcc", "under gcc") { "gcc" } else { "cc" }
+}
+
+/// All C compilers that the tests know. What is left out without clang is noted.
 pub fn c_compilers() -> Vec<&'static str> {
-    here(&["gcc", "clang"]).unwrap_or_else(|| vec!["cc"])
+    let clang = tools::available("clang", "under clang").then_some("clang");
+    [c_compiler()].into_iter().chain(clang).collect()
 }
 
-/// The C++ compilers that are here.
+/// The compiler of C++ programs where one is enough. Without it the test is left out.
+pub fn cpp_compiler() -> Option<&'static str> {
+    tools::available("g++", "C++").then_some("g++")
+}
+
+/// All C++ compilers that the tests know. What is left out without one of them is noted.
 pub fn cpp_compilers() -> Vec<&'static str> {
-    here(&["g++", "clang++"]).unwrap_or_else(|| vec!["c++"])
-}
-
-fn here(compilers: &[&'static str]) -> Option<Vec<&'static str>> {
-    let answers =
-        |compiler: &&str| Command::new(compiler).arg("--version").output().is_ok_and(|run| run.status.success());
-    let found: Vec<_> = compilers.iter().copied().filter(answers).collect();
-    (!found.is_empty()).then_some(found)
+    let clang = tools::available("clang++", "C++ under clang++").then_some("clang++");
+    cpp_compiler().into_iter().chain(clang).collect()
 }
 
 /// A scratch folder with the library under the names that programs look for. There is one at a time: three servo threads and
@@ -73,9 +81,10 @@ impl Bench {
         command
     }
 
-    /// Compiles, links and runs one program that must exit with 0, under gcc.
+    /// Compiles, links and runs one program that must exit with 0. Without a compiler of C++ a program in C++ is left out.
     pub fn succeed(&self, flags: &[&str], sources: &[&str]) {
-        let compiler = if sources[0].ends_with("cpp") { cpp_compilers()[0] } else { c_compilers()[0] };
+        let compiler = if sources[0].ends_with("cpp") { cpp_compiler() } else { Some(c_compiler()) };
+        let Some(compiler) = compiler else { return };
         let program = self.build(compiler, flags, sources);
         let run = self.run(Command::new(&program));
         assert!(run.status.success(), "{sources:?} {flags:?}: {}\n{}", run.status, said(&run));

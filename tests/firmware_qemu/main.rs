@@ -2,6 +2,9 @@
 //! a microcontroller, with its own interrupts and its own time.
 
 mod machine;
+#[allow(dead_code)]
+#[path = "../common/tools.rs"]
+mod tools;
 
 use machine::{Asked, Machine, build};
 use std::path::Path;
@@ -15,10 +18,11 @@ use sun2xp::hand::{Hand, HandError, read};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 
-/// One machine at a time: two share no processor well.
-fn alone() -> MutexGuard<'static, ()> {
+/// One machine at a time: two share no processor well. None without an emulator, or without a compiler for it.
+fn alone() -> Option<MutexGuard<'static, ()>> {
     static ONE: Mutex<()> = Mutex::new(());
-    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+    let usable = ["arm-none-eabi-gcc", "qemu-system-arm"].iter().all(|tool| tools::available(tool, "the whole test"));
+    usable.then(|| ONE.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
 /// `keys` are of the table `[hand]`.
@@ -101,7 +105,7 @@ const KEYS: &str = "rate = 500.0\nwatchdog_ms = 1000";
 
 #[test]
 fn a_hand_settles_where_it_does_on_the_simulated_board() {
-    let _alone = alone();
+    let Some(_alone) = alone() else { return };
     let simulated = Hand::open(configuration(Path::new("simulated"), KEYS)).expect("simulated boards answer");
     let expected = settled(&simulated).expect("the simulated hand runs");
     // A finger whose replies are lost is still on its way at times.
@@ -123,7 +127,7 @@ fn a_hand_settles_where_it_does_on_the_simulated_board() {
 
 #[test]
 fn its_emergency_stop_stops_the_hand() {
-    let _alone = alone();
+    let Some(_alone) = alone() else { return };
     with_hand(|machine, hand| {
         assert_ne!(machine.finger(1).asked.currents, [0; 4]);
         machine.finger(1).faults = Status::EMERGENCY_STOP;
@@ -247,7 +251,7 @@ fn a_killed_planner_leaves_the_motors_in_their_end_state() {
     if let Ok(port_and_keys) = std::env::var(PLANNER) {
         plan(&port_and_keys);
     }
-    let _alone = alone();
+    let Some(_alone) = alone() else { return };
     let folder = tempfile::tempdir().expect("a scratch folder");
     let machine = Machine::start(&build(folder.path()));
     let none = |currents: [i32; 4]| currents == [0; 4];

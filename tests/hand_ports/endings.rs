@@ -1,6 +1,6 @@
 //! Planners that end without CloseHand: their boards go to the configured end state.
 
-use crate::c::{Bench, STRICT, c_compilers};
+use crate::c::{Bench, STRICT, c_compiler};
 use crate::rig::{Board, State, TARGET, goes, on_boards, open, three_boards, turn, write_configuration};
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -22,7 +22,7 @@ struct Planner {
 impl Planner {
     fn start(boards: &[Board; 3], hand: &str, ending: &str) -> Self {
         let bench = Bench::new();
-        let program = bench.build(c_compilers()[0], STRICT, &["goes.c"]);
+        let program = bench.build(c_compiler(), STRICT, &["goes.c"]);
         let configuration = bench.path().join("sun2xp.toml");
         write_configuration(&configuration, boards, hand);
         let mut planner = Command::new(program);

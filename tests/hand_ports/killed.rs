@@ -1,6 +1,6 @@
 //! SIGKILL for a planner: how long its boards' motors go on, by the boards' own clocks.
 
-use crate::c::{Bench, STRICT, c_compilers};
+use crate::c::{Bench, STRICT, c_compiler};
 use crate::rig::{Board, State, turn};
 use std::fmt::Write;
 use std::fs;
@@ -79,7 +79,7 @@ fn a_killed_planners_motors_are_in_their_end_state_after_the_watchdogs_time() {
     let _turn = turn();
     let rounds = std::env::var("SUN2XP_ROUNDS").map_or(1, |rounds| rounds.parse().expect("a number"));
     let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], STRICT, &["goes.c"]);
+    let program = bench.build(c_compiler(), STRICT, &["goes.c"]);
     let strongest = |state: &State| state.torques.iter().fold(0.0f64, |most, torque| most.max(torque.abs()));
     let hold = "end_state = 'hold'\nhold_time_ms = 1500\nhold_torque_limit = 0.2\n";
     for (name, keys) in [("release", ""), ("hold", hold)] {

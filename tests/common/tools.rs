@@ -1,0 +1,92 @@
+//! What the tests need besides Rust, and what was left out because it is missing. `tests/tools.txt` names the tools and their Debian
+//! packages. Without a tool the tests that need it pass, and tests/zz_left_out.rs lists them at the end of `cargo test`. With CI=true
+//! they fail.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::{env, fs};
+
+const TOOLS: &str = include_str!("../tools.txt");
+
+/// A line of `tests/tools.txt`.
+struct Tool {
+    name: &'static str,
+    packages: &'static str,
+    /// A shell command that succeeds where the tool can be used.
+    probe: &'static str,
+}
+
+fn tools() -> impl Iterator<Item = Tool> {
+    TOOLS.lines().filter(|line| !line.starts_with('#')).filter_map(|line| {
+        let mut columns = line.splitn(3, '|').map(str::trim);
+        Some(Tool { name: columns.next()?, packages: columns.next()?, probe: columns.next()? })
+    })
+}
+
+/// Whether the tests can use a tool of `tests/tools.txt`. If not, `part` of the current test is noted as left out; with CI=true the
+/// test fails.
+pub fn available(name: &str, part: &str) -> bool {
+    let tool = tools().find(|tool| tool.name == name).expect("tests/tools.txt has a line for the tool");
+    let mut probe = Command::new("sh");
+    probe.args(["-c", tool.probe]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    if probe.status().is_ok_and(|status| status.success()) {
+        return true;
+    }
+    let remedy = format!("apt-get install --no-install-recommends {}", tool.packages);
+    assert!(
+        env::var("CI").as_deref() != Ok("true"),
+        "{name} is missing. Nothing may be left out with CI=true. Run tests/run, or as root: {remedy}"
+    );
+    let thread = std::thread::current();
+    let test = thread.name().filter(|&name| name != "main").unwrap_or("tests");
+    note(&format!("{}, {test}, {part}: {name} is missing ({remedy})", env!("CARGO_CRATE_NAME")));
+    false
+}
+
+/// Prints a line, also where the test's output is captured, and keeps it for the list at the end.
+fn note(line: &str) {
+    // The streams' own functions are not captured; the printing macros are.
+    let _ = writeln!(std::io::stderr(), "left out: {line}");
+    let folder = folder_of_runs();
+    let kept = fs::create_dir_all(&folder).and_then(|()| {
+        let file = folder.join(run(std::os::unix::process::parent_id()).expect("the parent waits for this process"));
+        // One write a line: processes of one run may append at the same time.
+        fs::OpenOptions::new().create(true).append(true).open(file)?.write_all(format!("{line}\n").as_bytes())
+    });
+    if let Err(error) = kept {
+        let _ = writeln!(std::io::stderr(), "this line will be missing from the list at the end: {error}");
+    }
+}
+
+/// Takes what the children of a process have left out, in the order of the alphabet, and forgets what earlier runs have left out.
+pub fn take_left_out(parent: u32) -> Vec<String> {
+    let folder = folder_of_runs();
+    let this = run(parent);
+    let mut lines: Vec<String> = Vec::new();
+    for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
+        let name = entry.file_name().into_string().unwrap_or_default();
+        if Some(&name) == this.as_ref() {
+            lines.extend(fs::read_to_string(entry.path()).unwrap_or_default().lines().map(str::to_owned));
+        } else if name.split_once('-').and_then(|(process, _)| run(process.parse().ok()?)) == Some(name) {
+            continue;
+        }
+        let _ = fs::remove_file(entry.path());
+    }
+    lines.sort();
+    lines.dedup();
+    lines
+}
+
+fn folder_of_runs() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("left_out")
+}
+
+/// One run of the tests: its parent process by number and by when it started, because numbers are used again. None where there is no
+/// such process.
+fn run(parent: u32) -> Option<String> {
+    let stat = fs::read_to_string(format!("/proc/{parent}/stat")).ok()?;
+    // The name of the program is in parentheses and may contain any character. The start is field 22, the state after the name field 3.
+    let start = stat.rsplit_once(')')?.1.split_whitespace().nth(22 - 3)?;
+    Some(format!("{parent}-{start}"))
+}

@@ -1,0 +1,146 @@
+//! Machines without the tools that tests need: what `cargo test` leaves out and lists, and what `tests/run` installs.
+
+#[allow(dead_code)]
+#[path = "common/tools.rs"]
+mod tools;
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Command, Output};
+use std::sync::{Mutex, PoisonError};
+
+/// In the environment of a process that is this test program on a machine without tools.
+const BARE: &str = "SUN2XP_TEST_BARE";
+
+/// The user `nobody`.
+const NOBODY: u32 = 65534;
+
+#[test]
+fn a_test_that_needs_clang() {
+    if std::env::var_os(BARE).is_some() {
+        assert!(!tools::available("clang", "under clang"));
+    }
+}
+
+/// A program cannot be started while a process that was forked in between still has it open for writing, so tests take turns.
+static TURN: Mutex<()> = Mutex::new(());
+
+/// Runs `a_test_that_needs_clang` where there is no program at all.
+fn run_without_tools(ci: &str) -> Output {
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut test = Command::new(std::env::current_exe().expect("the test's own program"));
+    test.args(["--exact", "a_test_that_needs_clang"]).env(BARE, "1").env("PATH", "/nowhere").env("CI", ci);
+    test.output().expect("the test starts")
+}
+
+fn said(run: &Output) -> String {
+    [&run.stdout, &run.stderr].map(|text| String::from_utf8_lossy(text)).concat()
+}
+
+#[test]
+fn without_a_tool_a_test_passes_and_is_listed_and_with_ci_it_fails() {
+    let run = run_without_tools("");
+    let expected = "left_out, a_test_that_needs_clang, under clang: clang is missing";
+    assert!(run.status.success() && said(&run).contains(expected), "{}", said(&run));
+    run_without_tools("false");
+
+    // This process was the parent of both, and lists them once.
+    let listed = tools::take_left_out(std::process::id());
+    assert!(listed.len() == 1 && listed[0].starts_with(expected), "{listed:?}");
+    assert!(listed[0].contains("apt-get install --no-install-recommends clang"), "{listed:?}");
+    assert_eq!(tools::take_left_out(std::process::id()), Vec::<String>::new(), "lines of an earlier run");
+
+    let run = run_without_tools("true");
+    let told = said(&run);
+    assert!(!run.status.success() && told.contains("apt-get install --no-install-recommends clang"), "{told}");
+    assert_eq!(tools::take_left_out(std::process::id()), Vec::<String>::new());
+}
+
+/// Runs `tests/run` in a copy of its own, with these programs as the only ones beside a few of the system's.
+fn run_script(programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let (tests, bin) = (folder.path().join("tests"), folder.path().join("bin"));
+    fs::create_dir(&tests).expect("a folder");
+    fs::create_dir(&bin).expect("a folder");
+    fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).expect("everybody may enter");
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/run");
+    fs::copy(source, tests.join("run")).expect("a copy");
+    fs::write(tests.join("tools.txt"), "# name\nhere | not-wanted | true\nclang | clang libc6-dev | looks-for-clang\n")
+        .expect("written");
+    let write = |name: &str, text: &str| {
+        let file = bin.join(name);
+        fs::write(&file, format!("#!/bin/sh\n{text}\n")).expect("written");
+        fs::set_permissions(file, fs::Permissions::from_mode(0o755)).expect("executable");
+    };
+    for (name, text) in programs {
+        write(name, text);
+    }
+    for name in ["dirname", "env", "sh", "bash"] {
+        std::os::unix::fs::symlink(Path::new("/usr/bin").join(name), bin.join(name)).expect("a link");
+    }
+    let mut script = Command::new("/bin/bash");
+    script.arg(tests.join("run")).arg("--test").arg("hand").env("PATH", &bin).env_remove("CI");
+    if let Some(user) = user {
+        script.uid(user);
+    }
+    let run = script.output().expect("the script starts");
+    (run.status.success(), said(&run))
+}
+
+const CARGO: (&str, &str) = ("cargo", "echo CI=$CI: cargo $*");
+const APT: (&str, &str) = ("apt-get", "echo apt-get $*");
+const SUDO: (&str, &str) = ("sudo", "echo sudo; exec \"$@\"");
+
+/// A probe that fails at first, and succeeds from the second time on: after packages were installed.
+const CLANG_AFTER_APT: (&str, &str) =
+    ("looks-for-clang", "if [ -e \"$0.asked\" ]; then exit 0; fi; : > \"$0.asked\"; exit 1");
+
+#[test]
+fn nothing_is_installed_where_nothing_is_missing() {
+    let (passed, told) = run_script(&[CARGO, APT, SUDO, ("looks-for-clang", "exit 0")], None);
+    assert!(passed, "{told}");
+    assert_eq!(told, "CI=true: cargo test --locked --test hand\n");
+}
+
+#[test]
+fn what_is_missing_is_named_and_installed() {
+    let (passed, told) = run_script(&[CARGO, APT, SUDO, CLANG_AFTER_APT], None);
+    assert!(passed, "{told}");
+    let lines = [
+        "missing: clang. Installing the Debian packages clang libc6-dev",
+        "install --yes --no-install-recommends clang libc6-dev",
+        "CI=true: cargo test --locked --test hand",
+    ];
+    assert!(lines.iter().all(|line| told.contains(line)) && !told.contains("not-wanted"), "{told}");
+}
+
+#[test]
+fn what_cannot_be_installed_is_told_with_the_remedy() {
+    let remedy = "Run as root: apt-get install --no-install-recommends clang libc6-dev";
+    let never = ("looks-for-clang", "exit 1");
+    let failing = ("apt-get", "echo no network; exit 100");
+    for (programs, reason) in [
+        (&[CARGO, failing, SUDO, never][..], remedy),
+        (&[CARGO, APT, SUDO, never], "still missing after the packages were installed: clang"),
+        (&[CARGO, SUDO, never], "apt-get is missing"),
+        (&[APT, SUDO, never], "cargo is missing"),
+    ] {
+        let (passed, told) = run_script(programs, None);
+        assert!(!passed && told.contains(reason) && !told.contains("cargo test --locked"), "{told}");
+    }
+}
+
+#[test]
+fn an_ordinary_user_needs_sudo() {
+    // SAFETY: no arguments and no conditions.
+    let user = if unsafe { libc::getuid() } == 0 { Some(NOBODY) } else { None };
+    let never = ("looks-for-clang", "exit 1");
+    let (passed, told) = run_script(&[CARGO, APT, SUDO, never], user);
+    assert!(!passed && told.contains("sudo\napt-get -qq update\nsudo\napt-get -qq install --yes"), "{told}");
+    let (passed, told) = run_script(&[CARGO, APT, never], user);
+    let reason = "not root, and sudo is missing. Run as root: apt-get install --no-install-recommends clang libc6-dev";
+    assert!(!passed && told.contains(reason) && !told.contains("apt-get -qq"), "{told}");
+}
