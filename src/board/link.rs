@@ -1,6 +1,9 @@
 //! The host's end of the cable: handshake, one exchange of frames a period, and what went wrong.
 
+mod allowance;
 mod handshake;
+
+pub use allowance::Allowance;
 
 use super::link_error::LinkError;
 use super::port::Port;
@@ -80,6 +83,8 @@ pub struct Link<T = Port> {
     input: [u8; 512],
     /// Where in `input` the bytes lie that the decoder has not seen.
     unread: std::ops::Range<usize>,
+    /// Reading has ended while more was to be had.
+    cut_short: bool,
     /// Next outgoing frame follows an incomplete one, or the noise of plugging in.
     delimit_first: bool,
     handshake_sequence: u8,
@@ -103,6 +108,7 @@ impl<T: Transport> Link<T> {
             decoder: Decoder::default(),
             input: [0; 512],
             unread: 0..0,
+            cut_short: false,
             delimit_first: true,
             handshake_sequence: 0,
             read_at: 0,
@@ -136,8 +142,9 @@ impl<T: Transport> Link<T> {
     /// Sends the Commands of all fingers on the port, 15 at most, in one write. What the port does not take at once is
     /// lost and counted: the missing Reply will tell the same.
     pub fn send(&mut self, commands: &[OutgoingCommand]) -> Result<(), LinkError> {
-        // Half a Reply of the last period is of no use any more, and must not take the next one with it.
-        if self.unread.is_empty() {
+        // Half a Reply of the last period is of no use any more, and must not take the next one with it. Where reading was cut short, its
+        // other half comes next.
+        if self.unread.is_empty() && !self.cut_short {
             self.decoder.abandon();
         }
         let mut bytes = [0; 1 + MOST_FINGERS * Kind::Command.wire_length()];
@@ -158,7 +165,12 @@ impl<T: Transport> Link<T> {
     /// The next Reply, or none at `deadline` (ns on the transport's clock). With a deadline in the past: a Reply that is
     /// there already. A refused Command is an error: the board lost its configuration, or is no longer the board it was.
     pub fn receive(&mut self, deadline: u64) -> Result<Option<Received>, LinkError> {
-        while let Some(Message { address, sequence, frame }) = self.next_message(deadline)? {
+        self.receive_within(&mut Allowance::for_replies(deadline))
+    }
+
+    /// The same for one of several Replies that are awaited together: all calls share one allowance. None when it is used up.
+    pub fn receive_within(&mut self, allowance: &mut Allowance) -> Result<Option<Received>, LinkError> {
+        while let Some(Message { address, sequence, frame }) = self.next_message(allowance)? {
             match frame {
                 Frame::Reply(reply) => return Ok(Some(Received { address, sequence, reply })),
                 // A refused handshake frame has missed its time.
@@ -187,19 +199,21 @@ impl<T: Transport> Link<T> {
         Ok(())
     }
 
-    fn next_message(&mut self, deadline: u64) -> Result<Option<Message>, LinkError> {
+    /// The next message; none when the allowance is used up. What was read within it is handed out in any case.
+    fn next_message(&mut self, allowance: &mut Allowance) -> Result<Option<Message>, LinkError> {
         loop {
             if let Some(message) = self.message_at_hand() {
                 return Ok(Some(message));
             }
-            // One read past the deadline is enough: even an endless stream of rubbish holds nobody up.
-            let last = self.transport.now() >= deadline;
-            let taken = self.transport.read_until(&mut self.input, deadline)?;
+            if !allowance.permits(self.transport.now()) {
+                self.cut_short = allowance.left_some();
+                return Ok(None);
+            }
+            let taken = self.transport.read_until(&mut self.input, allowance.deadline())?;
             self.read_at = self.transport.now();
             self.unread = 0..taken;
-            if last || taken == 0 {
-                return Ok(self.message_at_hand());
-            }
+            self.cut_short = false;
+            allowance.take(taken);
         }
     }
 

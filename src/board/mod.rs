@@ -17,7 +17,7 @@ mod terms;
 mod transport;
 
 pub use capacity::{TooFast, USABLE_SHARE, capacity, exchange_microseconds};
-pub use link::{Link, LinkCounters, OutgoingCommand, Received};
+pub use link::{Allowance, Link, LinkCounters, OutgoingCommand, Received};
 pub use link_error::LinkError;
 pub use port::{Port, PortError};
 pub use simulated_board::{SimulatedBoard, SimulatedBoardError};

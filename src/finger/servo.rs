@@ -1,6 +1,6 @@
 //! A servo thread: periods by absolute deadlines, one transaction a finger and period.
 
-use crate::board::{Link, LinkCounters, LinkError, OutgoingCommand, Transport};
+use crate::board::{Allowance, Link, LinkCounters, LinkError, OutgoingCommand, Transport};
 use crate::finger::{Fault, FaultKind, FingerServo, Lender, Lent, Mended};
 use crate::model::configuration::FINGERS;
 use crate::realtime::{Clock, Follower, Memory, Schedule, Stage};
@@ -224,17 +224,15 @@ impl<T: Transport> ServedPort<T> {
     }
 
     fn receive(&mut self, deadline: u64, sent: u64, clock: &impl Clock) {
+        // One for all replies of the period: a board that sends without end must not hold the thread.
+        let mut allowance = Allowance::for_replies(deadline);
         while self.fingers.iter().any(FingerServo::waiting) {
             let Some(link) = &mut self.link else { return };
-            match link.receive(deadline) {
+            match link.receive_within(&mut allowance) {
                 Ok(Some(received)) => {
                     let mut addressed = self.fingers.iter_mut().find(|finger| finger.address() == received.address);
                     let Some(finger) = addressed.take_if(|finger| finger.awaits(&received)) else {
                         addressed.into_iter().for_each(|finger| finger.pass_over(&received));
-                        // A board that babbles faster than it is read must not hold the thread.
-                        if clock.now() >= deadline {
-                            break;
-                        }
                         continue;
                     };
                     finger.take(&received);

@@ -1,6 +1,7 @@
 //! One finger from planner to board in memory, on simulated time: what it holds, what it is stopped by and warned of.
 
 mod commands;
+mod floods;
 mod kinds;
 mod rig;
 mod set_points;

@@ -26,7 +26,21 @@ pub struct World {
     cable: Rc<RefCell<SimulatedCable>>,
     /// What the next read finds instead of what the board has sent.
     instead: Rc<RefCell<Option<Read>>>,
+    /// What every read finds before what the board has sent.
+    flood: Rc<RefCell<Option<Flood>>>,
 }
+
+/// A frame that comes without end.
+struct Flood {
+    wire: Vec<u8>,
+    reads: u32,
+}
+
+/// What a read of the flood takes, ns.
+const FLOODED_READ: u64 = 10_000;
+
+/// More reads of the flood than any test needs; without this bound a test that fails would never end.
+const MOST_FLOODED_READS: u32 = 1_000_000;
 
 impl Transport for World {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
@@ -34,6 +48,15 @@ impl Transport for World {
     }
 
     fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
+        if let Some(Flood { wire, reads }) = &mut *self.flood.borrow_mut() {
+            *reads += 1;
+            assert!(*reads < MOST_FLOODED_READS, "no end of reading");
+            let mut cable = self.cable.borrow_mut();
+            let now = cable.now() + FLOODED_READ;
+            cable.advance_to(now);
+            buffer.chunks_exact_mut(wire.len()).for_each(|place| place.copy_from_slice(wire));
+            return Ok(buffer.len() / wire.len() * wire.len());
+        }
         match self.instead.borrow_mut().take() {
             Some(Err(failure)) => Err(failure),
             Some(Ok(bytes)) => {
@@ -97,7 +120,7 @@ impl Bench {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
         let board = SimulatedBoard::new(&configuration, &[0]).expect("a board");
         let cable = Rc::new(RefCell::new(SimulatedCable::new(board)));
-        let world = World { cable, instead: Rc::default() };
+        let world = World { cable, instead: Rc::default(), flood: Rc::default() };
         let mut link = Link::new(world.clone());
         let (identity, configured) =
             link.shake_hands(1, &Terms::new(hand, finger), 1000 * MILLISECOND).expect("a board answers");
@@ -153,6 +176,16 @@ impl Bench {
     pub fn answer_with(&self, frame: Frame) {
         let wire = WireFrame::new(&Message { address: 1, sequence: 200, frame });
         *self.world.instead.borrow_mut() = Some(Ok(wire.as_bytes().to_vec()));
+    }
+
+    /// From now on the board's answers are lost in this frame, which comes without end.
+    pub fn flood_with(&self, frame: Frame) {
+        let wire = WireFrame::new(&Message { address: 1, sequence: 200, frame }).as_bytes().to_vec();
+        *self.world.flood.borrow_mut() = Some(Flood { wire, reads: 0 });
+    }
+
+    pub fn end_flood(&self) {
+        *self.world.flood.borrow_mut() = None;
     }
 
     /// Another program at the same port sends this to the finger's board, and leaves the answer to whoever reads first.

@@ -5,6 +5,7 @@
 mod c;
 mod endings;
 mod faults;
+mod floods;
 mod killed;
 mod leaks;
 mod motion;

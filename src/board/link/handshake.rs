@@ -1,6 +1,6 @@
 //! What is asked until it is answered: who the board is, its terms, and that it stops.
 
-use super::Link;
+use super::{Allowance, Link};
 use crate::board::link_error::LinkError;
 use crate::board::protocol::{
     ANY_ADDRESS, Configure, Configured, Frame, Hello, Identity, Kind, MAX_WIRE, Message, Reason, Refused, Stop,
@@ -110,8 +110,8 @@ impl<T: Transport> Link<T> {
         self.delimit_first = true;
         self.write(&mut bytes[..length])?;
 
-        let deadline = deadline.min(self.transport.now() + PATIENCE);
-        while let Some(message) = self.next_message(deadline)? {
+        let mut allowance = Allowance::until(deadline.min(self.transport.now() + PATIENCE));
+        while let Some(message) = self.next_message(&mut allowance)? {
             let answers = match message.frame {
                 Frame::Refused(refused) => refused.request == request.kind() as u8,
                 // An answer's type is its request's with the top bit set.
@@ -128,7 +128,8 @@ impl<T: Transport> Link<T> {
 
     /// Lets time pass without missing a hang-up.
     fn let_pass(&mut self, until: u64) -> Result<(), LinkError> {
-        while self.next_message(until)?.is_some() {
+        let mut allowance = Allowance::until(until);
+        while self.next_message(&mut allowance)?.is_some() {
             self.foreign += 1;
         }
         Ok(())

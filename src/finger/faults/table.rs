@@ -88,8 +88,8 @@ faults! {
         "Move more slowly, or raise finger.tendon.minimum";
     13 LostReplies "LOST_REPLIES" Fault Finger Time "lost replies",
         "no valid reply from the board for so long",
-        "the cable is out, the board has no power, or there is too much noise on the line",
-        "Check cable and power, RecoverHand";
+        "the cable is out, the board has no power, there is too much noise on the line, or the board sends without end",
+        "Check cable, power and the board's firmware, RecoverHand";
     14 DamagedReplies "DAMAGED_REPLIES" Fault Finger Share "damaged replies",
         "replies come in damaged (their CRC is wrong), too many to go on",
         "interference, a bad earth, a cable too long for the baud rate",

@@ -1,7 +1,7 @@
 //! The ports of a hand: whether they can be opened, hold bytes back, and how long a round trip to the board takes.
 
 use crate::board::protocol::Command;
-use crate::board::{Link, LinkError, OutgoingCommand, Port, PortError, SimulatedPort, Terms};
+use crate::board::{Allowance, Link, LinkError, OutgoingCommand, Port, PortError, SimulatedPort, Terms};
 use crate::finger::REPLY_WINDOW;
 use crate::hand::HandError;
 use crate::hand::doctor::{Finding, Verdict};
@@ -121,10 +121,10 @@ fn round_trips(
         let began = now();
         link.send(&commands[..fingers.len()])?;
         // Longer than the servo would wait, to know how long it takes.
-        let deadline = began + period;
+        let mut allowance = Allowance::for_replies(began + period);
         let mut missing = fingers.len();
         while missing > 0
-            && let Some(received) = link.receive(deadline)?
+            && let Some(received) = link.receive_within(&mut allowance)?
         {
             missing -= usize::from(received.sequence == sequence);
         }

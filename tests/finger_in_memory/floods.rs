@@ -1,0 +1,46 @@
+//! A board that sends valid frames without end: its finger faults in time, is stopped, and recovers when the flood is over.
+
+use crate::rig::{Bench, MILLISECOND, TARGET};
+use sun2xp::board::Transport;
+use sun2xp::board::protocol::{Configured, Frame, Reply, Status, Stopped};
+use sun2xp::finger::{FaultKind, Stage};
+
+fn ended(bench: &Bench) -> bool {
+    bench.with_finger(|finger| finger.status().has(Status::ENDED))
+}
+
+#[test]
+fn a_flood_stops_its_finger_in_the_watchdogs_time() {
+    for frame in [Frame::Reply(Reply::default()), Frame::Stopped(Stopped::default())] {
+        let mut bench = Bench::new();
+        bench.goes(TARGET);
+        bench.flood_with(frame);
+        let begun = bench.world.now();
+        bench.faults(FaultKind::LostReplies);
+        bench.cycles(1);
+        // It may have begun just after a good reply.
+        let milliseconds = (bench.world.now() - begun) as f64 / MILLISECOND as f64;
+        assert!(milliseconds <= 19.0, "{frame:?}: {milliseconds} ms");
+        assert!(ended(&bench), "{frame:?}: the board was not told to stop");
+        bench.end_flood();
+        bench.mend();
+        bench.opens();
+        bench.goes(TARGET);
+    }
+}
+
+#[test]
+fn a_flood_does_not_keep_a_finger_from_being_closed() {
+    for frame in [Frame::Reply(Reply::default()), Frame::Configured(Configured::default())] {
+        let mut bench = Bench::new();
+        bench.mailbox.close();
+        bench.flood_with(frame);
+        let begun = bench.world.now();
+        bench.servo.run();
+        assert!(matches!(bench.stage(), Stage::Closed | Stage::Faulted(_)), "{:?}", bench.stage());
+        assert!(ended(&bench), "{frame:?}: the board was not told to stop");
+        // The watchdog's time, and as long as a board may take to confirm that it has stopped.
+        let milliseconds = (bench.world.now() - begun) / MILLISECOND;
+        assert!(milliseconds <= 18 + 2 + 100, "{frame:?}: {milliseconds} ms");
+    }
+}

@@ -1,0 +1,168 @@
+//! A board that sends valid frames without end: OpenHand refuses it, its finger faults, and nobody else is held up.
+
+use crate::rig::{TARGET, close, goes, on_ports, open, three_boards, turn, wait_until};
+use serialport::{SerialPort, TTYPort};
+use std::io::{Read, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use sun2xp::board::protocol::{Frame, Message, Reply, Stopped, WireFrame};
+use sun2xp::board::{Pace, PacedTime, SimulatedBoard};
+use sun2xp::finger::{FaultKind, Stage};
+use sun2xp::hand::{Hand, stop_all};
+use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::now;
+
+/// No call may take longer because a board sends without end. A busy machine needs most of this; before reads had a bound, a flood held a
+/// servo for longer.
+const PROMPT: Duration = Duration::from_secs(1);
+
+/// A board with finger 2 that sends one frame again and again while it is told to, and has no room for answers then.
+struct FloodingBoard {
+    port: String,
+    flooding: Arc<AtomicBool>,
+    ended: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl FloodingBoard {
+    fn start(frame: Frame, flooding: bool) -> Self {
+        let (mut device, port) = TTYPort::pair().expect("a pseudo-terminal");
+        device.set_timeout(Duration::from_millis(1)).expect("set");
+        let name = port.name().expect("its name");
+        let [flooding, ended] = [flooding, false].map(|set| Arc::new(AtomicBool::new(set)));
+        // Of another finger: a Reply of this one would be the answer to a Command now and then.
+        let wire = WireFrame::new(&Message { address: 9, sequence: 200, frame }).as_bytes().repeat(100);
+        let thread = {
+            let (flooding, ended) = (flooding.clone(), ended.clone());
+            std::thread::spawn(move || {
+                // Open here too, so that the host may come and go.
+                let _port = port;
+                let mut board = SimulatedBoard::new(&Configuration::default(), &[1]).expect("a board");
+                let mut clock = PacedTime::new(Pace::patient(500.0), now());
+                let mut input = [0; 512];
+                // Where the flood goes on after a write that did not take all of it: every frame is whole.
+                let mut place = 0;
+                while !ended.load(Ordering::Relaxed) {
+                    let flooding = flooding.load(Ordering::Relaxed);
+                    let taken = match flooding && device.bytes_to_read().is_ok_and(|count| count == 0) {
+                        true => 0,
+                        false => device.read(&mut input).unwrap_or(0),
+                    };
+                    let time = clock.wake(now(), taken > 0);
+                    let mut answers = Vec::new();
+                    board.receive(time, &input[..taken], &mut |answer| answers.extend(answer));
+                    if flooding || place > 0 {
+                        place = (place + device.write(&wire[place..]).unwrap_or(0)) % wire.len();
+                    } else {
+                        // What finds no room is lost, as in a UART.
+                        let _ = device.write(&answers);
+                    }
+                }
+            })
+        };
+        Self { port: name, flooding, ended, thread: Some(thread) }
+    }
+
+    fn flood(&self, flooding: bool) {
+        self.flooding.store(flooding, Ordering::Relaxed);
+    }
+}
+
+impl Drop for FloodingBoard {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Relaxed);
+        let thread = self.thread.take().expect("it is joined here only");
+        thread.join().expect("no panic");
+    }
+}
+
+/// Replies are what a servo waits for, everything else is dropped by the link.
+fn floods() -> [Frame; 2] {
+    [Frame::Reply(Reply::default()), Frame::Stopped(Stopped::default())]
+}
+
+fn fault(hand: &Hand, finger: i32) -> Option<FaultKind> {
+    match hand.report(finger).expect("a report").stage {
+        Stage::Faulted(fault) => Some(fault.kind),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_flooding_board_is_refused_in_time() {
+    let _turn = turn();
+    for frame in floods() {
+        let mut boards = three_boards();
+        let board = FloodingBoard::start(frame, true);
+        let mut configuration = on_ports([&boards[0].port, &board.port, &boards[2].port]);
+        configuration.hand.open_timeout_ms = 400;
+        let begun = Instant::now();
+        let error = Hand::open(configuration).err().expect("refused");
+        let lasted = begun.elapsed();
+        assert!(error.to_string().contains("does not answer a Hello frame"), "{error}");
+        assert!(lasted < Duration::from_millis(400) + PROMPT, "{lasted:?}");
+        assert!(boards[0].state(1).limp());
+    }
+}
+
+#[test]
+fn a_board_that_begins_to_flood_faults_its_finger_only() {
+    let _turn = turn();
+    for frame in floods() {
+        for one_thread in [false, true] {
+            let boards = three_boards();
+            let board = FloodingBoard::start(frame, false);
+            let mut configuration = on_ports([&boards[0].port, &board.port, &boards[2].port]);
+            // Long enough for a busy machine, and short enough for a test.
+            configuration.hand.watchdog_ms = 300;
+            if one_thread {
+                configuration.fingers.iter_mut().for_each(|finger| finger.thread = 1);
+            }
+            let hand = open(configuration);
+            goes(&hand, 2, TARGET);
+            board.flood(true);
+            wait_until("faulted", || fault(&hand, 2).is_some());
+            assert_eq!(fault(&hand, 2), Some(FaultKind::LostReplies), "{frame:?}");
+            goes(&hand, 1, TARGET);
+            goes(&hand, 3, TARGET);
+
+            let begun = Instant::now();
+            let error = hand.recover(2).expect_err("it floods");
+            assert!(error.to_string().contains("does not answer a Hello frame"), "{error}");
+            assert!(begun.elapsed() < Duration::from_millis(300) + PROMPT, "{:?}", begun.elapsed());
+            goes(&hand, 1, TARGET);
+
+            board.flood(false);
+            wait_until("recovered", || hand.recover(2).is_ok());
+            goes(&hand, 2, TARGET);
+
+            // Stopped while it floods.
+            board.flood(true);
+            let begun = Instant::now();
+            stop_all();
+            wait_until("stopped", || (1..=3).all(|finger| fault(&hand, finger).is_some()));
+            assert!(begun.elapsed() < PROMPT, "{:?}", begun.elapsed());
+            let begun = Instant::now();
+            close(hand);
+            assert!(begun.elapsed() < PROMPT, "{:?}", begun.elapsed());
+        }
+    }
+}
+
+#[test]
+fn a_hand_closes_while_a_board_floods() {
+    let _turn = turn();
+    for frame in floods() {
+        let mut boards = three_boards();
+        let board = FloodingBoard::start(frame, false);
+        let hand = open(on_ports([&boards[0].port, &board.port, &boards[2].port]));
+        let ramp = Duration::from_millis(200);
+        board.flood(true);
+        let begun = Instant::now();
+        close(hand);
+        assert!(begun.elapsed() < ramp + PROMPT, "{:?}", begun.elapsed());
+        assert!(boards[0].state(1).limp());
+    }
+}
