@@ -3,7 +3,7 @@
 use crate::control::SetPoint;
 use crate::finger::Adjustable;
 use crate::hand::admission::Admission;
-use crate::hand::configuration_file::{deserialize, line_of, overlay};
+use crate::hand::configuration_file::{Wrong, deserialize, overlay};
 use crate::hand::dispatcher::Member;
 use crate::hand::opening::{admission, check};
 use crate::hand::{Hand, HandError};
@@ -87,17 +87,19 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
 
 /// The configuration of a finger at `rate`, Hz, with `keys` laid over it.
 fn adjusted(number: i32, finger: &ConfiguredFinger, keys: &str, rate: f64) -> Result<ConfiguredFinger, HandError> {
-    let wrong =
-        |line: Option<usize>, reason: String| HandError::Adjustment { finger: number, line: line.unwrap_or(1), reason };
-    let over = Document::parse(keys).map_err(|error| wrong(line_of(keys, error.span()), error.message().into()))?;
+    let refused = |wrong: Wrong| HandError::Adjustment {
+        finger: number,
+        line: wrong.line(keys).unwrap_or(1),
+        reason: wrong.to_string(),
+    };
+    let over = Document::parse(keys).map_err(|error| refused(Wrong::in_syntax(error)))?;
     if let Some(key) = permanent(over.as_table(), "") {
         return Err(HandError::Permanent { key });
     }
-    let present = toml_edit::ser::to_document(finger).map_err(|error| wrong(None, error.to_string()))?;
+    let present = toml_edit::ser::to_document(finger).map_err(|error| refused(Wrong::at(None, error.to_string())))?;
     let mut merged = present.as_table().clone();
     overlay(&mut merged, over.as_table());
-    let mut changed: ConfiguredFinger =
-        deserialize(merged).map_err(|error| wrong(line_of(keys, error.span()), error.message().into()))?;
+    let mut changed: ConfiguredFinger = deserialize(&merged).map_err(refused)?;
     let named = over.get("stiffness").is_some_and(|stiffness| stiffness.get("bound").is_some());
     if changed.controller.scheme(rate) != finger.controller.scheme(rate) && !named {
         let default = ConfiguredStiffness::default_bound(rate);
@@ -188,7 +190,8 @@ mod tests {
         for (keys, place, word) in [
             ("tendon.minimum = 6\ntendon.minimun = 5", 2, "minimun"),
             ("\n\ntendon.minimum = ", 3, ""),
-            ("controller.tension_gain = 'much'", 1, "invalid type"),
+            ("controller.tension_gain = 'much'", 1, "controller.tension_gain: must be a number, not a text"),
+            ("\ntendon.stiffness = [300, 300, 300, 300, 300]", 2, "tendon.stiffness: has 5 entries, and must have 4"),
         ] {
             match adjusted(2, &ConfiguredFinger::default(), keys, 1000.0).expect_err("refused") {
                 HandError::Adjustment { finger: 2, line, reason } => {

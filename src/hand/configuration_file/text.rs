@@ -1,0 +1,203 @@
+//! From the text of a configuration file to a [`Configuration`], or to the line and the reason why there is none.
+
+use super::values::deserialize;
+use super::wrong::Wrong;
+use crate::hand::opening::check;
+use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, FINGERS};
+use crate::model::{Refusal, Shown};
+use std::ops::Range;
+use toml_edit::{Document, Item, Table, Value};
+
+/// Reads and checks the text of a configuration file.
+pub(super) fn parse(text: &str) -> Result<Configuration, Wrong> {
+    let document = Document::parse(text).map_err(Wrong::in_syntax)?;
+    let root = document.as_table();
+    if let Some((key, _)) = root.iter().find(|(key, _)| !matches!(*key, "hand" | "finger")) {
+        let reason = format!("unknown key `{}`, expected `hand` or `finger`", Shown(key));
+        return Err(Wrong::at(span_of_key(root, key), reason));
+    }
+    let hand: ConfiguredHand = deserialize(&table(root, "hand")?).map_err(|wrong| wrong.in_key("hand"))?;
+    let all = table(root, "finger")?;
+    let numbers = || (1..=FINGERS).map(|number| number.to_string());
+    if let Some((key, _)) = all.iter().find(|(key, _)| is_number(key) && !numbers().any(|number| number == *key)) {
+        let reason = format!("there is no finger {}: fingers are 1, 2 and 3", Shown(key));
+        return Err(Wrong::at(span_of_key(&all, key), reason));
+    }
+    let mut common = all.clone();
+    for number in numbers() {
+        common.remove(&number);
+    }
+    let mut fingers: [ConfiguredFinger; FINGERS] = Default::default();
+    for (number, finger) in numbers().zip(&mut fingers) {
+        let section = format!("finger.{number}");
+        let own = table(&all, &number).map_err(|wrong| wrong.in_key("finger"))?;
+        let mut merged = common.clone();
+        overlay(&mut merged, &own);
+        *finger = deserialize(&merged).map_err(|wrong| wrong.in_key(&section))?;
+    }
+
+    let configuration = Configuration { hand, fingers };
+    check(&configuration).map_err(|refusal| unusable(root, &refusal))?;
+    Ok(configuration)
+}
+
+/// A value that the checks refuse, with the place in the file that it comes from.
+fn unusable(root: &Table, refusal: &Refusal) -> Wrong {
+    let key = refusal.unusable.key;
+    let number = refusal.finger.map(|index| (index + 1).to_string());
+    let (section, places) = match &number {
+        None => ("hand".to_string(), [root.get("hand"), None]),
+        Some(number) => {
+            let shared = root.get("finger");
+            (format!("finger.{number}"), [shared.and_then(|all| all.get(number)), shared])
+        }
+    };
+    let span = places.iter().find_map(|&place| span_of(place, key));
+    let near = || places.iter().find_map(|&place| nearest_table(place, key));
+    Wrong::at(span.or_else(near), refusal.unusable.reason.clone()).in_key(key).in_key(&section)
+}
+
+fn is_number(key: &str) -> bool {
+    key.trim_start_matches('-').parse::<f64>().is_ok()
+}
+
+fn span_of_key(table: &Table, key: &str) -> Option<Range<usize>> {
+    table.key(key)?.span()
+}
+
+/// The table behind a key; an empty one where there is no such key. An inline table is a table too.
+fn table(parent: &Table, key: &str) -> Result<Table, Wrong> {
+    match parent.get(key).cloned() {
+        None => Ok(Table::new()),
+        Some(Item::Table(table)) => Ok(table),
+        Some(Item::Value(Value::InlineTable(table))) => Ok(table.into_table()),
+        Some(other) => Err(Wrong::at(other.span(), "must be a table".into()).in_key(key)),
+    }
+}
+
+/// Lays `over` on `base`, table by table: what `over` does not name stays.
+pub(in crate::hand) fn overlay(base: &mut Table, over: &Table) {
+    for (key, item) in over.iter() {
+        let both = (table(base, key), table(over, key));
+        let merged = match both {
+            (Ok(mut below), Ok(above)) if base.contains_key(key) => {
+                overlay(&mut below, &above);
+                Item::Table(below)
+            }
+            _ => item.clone(),
+        };
+        // The key is taken along, because it knows its line.
+        match over.key(key).cloned() {
+            Some(named) => {
+                base.remove(key);
+                base.insert_formatted(&named, merged);
+            }
+            None => {
+                base.insert(key, merged);
+            }
+        }
+    }
+}
+
+/// Where a dotted key stands in the file, if it stands there.
+fn span_of(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
+    let (path, last) = dotted.rsplit_once('.').unwrap_or(("", dotted));
+    let parent = path.split('.').filter(|part| !part.is_empty()).try_fold(section?, |item, part| item.get(part))?;
+    parent.as_table_like()?.key(last)?.span()
+}
+
+/// Where the innermost table around a dotted key begins. A default does not fit what the file says, so the key itself is not
+/// there, but what it does not fit mostly stands beside it.
+fn nearest_table(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
+    let (path, _) = dotted.rsplit_once('.').unwrap_or(("", dotted));
+    let mut item = section?;
+    let mut span = item.span();
+    for part in path.split('.').filter(|part| !part.is_empty()) {
+        let Some(inner) = item.get(part) else { break };
+        item = inner;
+        span = item.span().or(span);
+    }
+    span
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(text: &str) -> (Option<usize>, String) {
+        let wrong = parse(text).expect_err("refused");
+        (wrong.line(text), wrong.to_string())
+    }
+
+    #[test]
+    fn an_empty_file_is_the_default_hand() {
+        assert_eq!(parse("").expect("usable"), Configuration::default());
+    }
+
+    #[test]
+    fn a_finger_overrides_what_all_fingers_share() {
+        let text = "[finger]\nbaud = 2000000\n[finger.tendon]\nminimum = 4\nmaximum = 50\n\
+                    [finger.2]\nport = '/dev/ttyUSB1'\n[finger.2.tendon]\nminimum = 6\n";
+        let hand = parse(text).expect("usable");
+        assert_eq!(hand.fingers.each_ref().map(|f| f.baud), [2_000_000; 3]);
+        assert_eq!(hand.fingers.each_ref().map(|f| f.tendon.minimum), [4.0, 6.0, 4.0]);
+        assert_eq!(hand.fingers.each_ref().map(|f| f.tendon.maximum), [50.0; 3]);
+        assert_eq!(hand.fingers[1].port, "/dev/ttyUSB1");
+        assert_eq!(hand.fingers[0].port, "simulated");
+    }
+
+    #[test]
+    fn unknown_keys_are_named_with_their_line() {
+        for (text, line, word) in [
+            ("[hand]\nrate = 1000\nrat = 5\n", 3, "rat"),
+            ("[finger]\n[finger.gauge]\nzeros = [0, 0, 0, 0]\n", 3, "zeros"),
+            ("[finger.3]\n\nbord = 1\n", 3, "bord"),
+            ("[fingers]\n", 1, "fingers"),
+            ("[finger.4]\n", 1, "4"),
+        ] {
+            let (found, reason) = refusal(text);
+            assert_eq!(found, Some(line), "{text:?}: {reason}");
+            assert!(reason.contains(word), "{text:?}: {reason}");
+        }
+    }
+
+    #[test]
+    fn wrong_types_are_named_with_their_line() {
+        for (text, line) in [
+            ("[hand]\n\nrate = 'fast'\n", 3),
+            ("[finger.tendon]\nstiffness = [1, 2, 3]\n", 2),
+            ("hand = 3\n", 1),
+            ("[finger]\n2 = 7\n", 2),
+            ("[hand]\nrate = \n", 2),
+        ] {
+            let (found, reason) = refusal(text);
+            assert_eq!(found, Some(line), "{text:?}: {reason}");
+        }
+    }
+
+    #[test]
+    fn impossible_values_are_named_with_line_and_reason() {
+        let printed =
+            "[finger.geometry]\nr = [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, 1.09], [0, 0.62, -0.62, 0]]\n";
+        let with_ones = &format!("{printed}ghost_row = [1, 1, 1, 1]\n");
+        for (text, line, words) in [
+            (printed, Some(2), "positive"),
+            (with_ones, Some(2), "singular"),
+            ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [2, 1, 1, 1]]\n", Some(2), "singular"),
+            ("[finger.1.geometry]\nghost_row = [-1, -1, -1, -1]\n", Some(2), "positive"),
+            ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [0, 1, 0, 0]]\n", Some(2), "positive"),
+            ("[finger.3.tendon]\nmaximum = 8\n", Some(2), "null vector"),
+            // The key is a default: the table that makes it impossible.
+            ("[finger.tendon]\n\nminimum = 40\n", Some(1), "null vector"),
+            ("[hand]\nrate = 500\n\n[finger.3.tendon]\nminimum = 40\n", Some(4), "null vector"),
+            ("[hand]\nrate = nan\n", Some(2), "outside"),
+            ("[hand]\nwatchdog_ms = 3\nrate = 500\n", Some(2), "two periods"),
+            ("[finger.2.joints]\nminimum_degrees = [0, 0, -5]\n", Some(2), "singular"),
+            ("[finger]\nport = '/dev/ttyUSB0'\naddress = 1\n", Some(1), "thread"),
+        ] {
+            let (found, reason) = refusal(text);
+            assert_eq!(found, line, "{text:?}: {reason}");
+            assert!(reason.contains(words), "{text:?}: {reason}");
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! From TOML to the types of a configuration. General deserializers take an array that is longer than its type, and an array in the place of
+//! a table; this one takes only what a key can mean, and says of everything else where it stands and what belongs there.
+
+mod choice;
+mod content;
+
+use super::wrong::{Wrong, one_of};
+use choice::Choice;
+use content::Content;
+use serde::de::value::StrDeserializer;
+use serde::de::{DeserializeOwned, DeserializeSeed, MapAccess, SeqAccess, Visitor};
+use serde::forward_to_deserialize_any;
+use std::ops::Range;
+use toml_edit::{Item, Table, TableLike, Value};
+
+/// Turns a table into a type of the configuration. Keys of the table that the type does not have are refused.
+pub(in crate::hand) fn deserialize<T: DeserializeOwned>(table: &Table) -> Result<T, Wrong> {
+    T::deserialize(Node { content: Content::Table(table), span: table.span() })
+}
+
+/// A value, or a table, and where it stands.
+struct Node<'a> {
+    content: Content<'a>,
+    span: Option<Range<usize>>,
+}
+
+impl<'a> Node<'a> {
+    fn item(item: &'a Item) -> Self {
+        Self { content: Content::of_item(item), span: item.span() }
+    }
+
+    fn value(value: &'a Value) -> Self {
+        Self { content: Content::of_value(value), span: value.span() }
+    }
+
+    fn refuse<T>(self, expected: impl std::fmt::Display) -> Result<T, Wrong> {
+        Err(Wrong::at(self.span, format!("must be {expected}, not {}", self.content.kind())))
+    }
+
+    fn float<'de, V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+        match self.content {
+            Content::Float(number) => visitor.visit_f64(number),
+            Content::Integer(number) => visitor.visit_f64(number as f64),
+            _ => self.refuse("a number"),
+        }
+    }
+
+    fn integer<'de, V: Visitor<'de>>(
+        self,
+        low: impl Into<i128>,
+        high: impl Into<i128>,
+        visitor: V,
+    ) -> Result<V::Value, Wrong> {
+        let Content::Integer(number) = self.content else { return self.refuse("a whole number") };
+        let misfit = match i128::from(number) {
+            less if less < low.into() => "small",
+            more if more > high.into() => "large",
+            _ => return visitor.visit_i64(number),
+        };
+        Err(Wrong::at(self.span, format!("{number} is too {misfit}")))
+    }
+}
+
+macro_rules! integers {
+    ($($method:ident: $type:ty),*) => {
+        $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+            self.integer(<$type>::MIN, <$type>::MAX, visitor)
+        })*
+    };
+}
+
+impl<'de> serde::Deserializer<'de> for Node<'_> {
+    type Error = Wrong;
+
+    integers! {
+        deserialize_u8: u8, deserialize_u16: u16, deserialize_u32: u32, deserialize_u64: u64,
+        deserialize_i8: i8, deserialize_i16: i16, deserialize_i32: i32, deserialize_i64: i64
+    }
+
+    fn deserialize_f32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+        self.float(visitor)
+    }
+
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+        self.float(visitor)
+    }
+
+    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+        match self.content {
+            Content::Boolean(flag) => visitor.visit_bool(flag),
+            _ => self.refuse("true or false"),
+        }
+    }
+
+    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+        match self.content {
+            Content::Text(text) => visitor.visit_str(text),
+            _ => self.refuse("a text in quotes"),
+        }
+    }
+
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+        self.deserialize_str(visitor)
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+        // A key that is left out does not come here.
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _name: &'static str, visitor: V) -> Result<V::Value, Wrong> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Wrong> {
+        let Content::Array(array) = self.content else {
+            return self.refuse(format_args!("an array of {length} entries"));
+        };
+        let found = array.len();
+        if found != length {
+            return Err(Wrong::at(self.span, format!("has {found} entries, and must have {length}")));
+        }
+        visitor.visit_seq(Entries { entries: array.iter().enumerate() })
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        _keys: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Wrong> {
+        let Content::Table(table) = self.content else { return self.refuse("a table") };
+        let span = self.span;
+        visitor.visit_map(Keys { table, rest: table.iter(), item: None }).map_err(|wrong: Wrong| wrong.or_at(span))
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        variants: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Wrong> {
+        let span = self.span.clone();
+        let choice = match self.content {
+            Content::Text(name) => Choice { name, span: self.span, inside: None },
+            Content::Table(table) => match table.iter().next().filter(|_| table.len() == 1) {
+                Some((name, item)) => Choice { name, span: self.span, inside: Some(Node::item(item)) },
+                None => {
+                    return Err(Wrong::at(self.span, format!("must have one key, {}", one_of(variants))));
+                }
+            },
+            _ => return self.refuse(one_of(variants)),
+        };
+        visitor.visit_enum(choice).map_err(|wrong: Wrong| wrong.or_at(span))
+    }
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+        match self.content {
+            Content::Text(_) => self.deserialize_str(visitor),
+            Content::Integer(number) => visitor.visit_i64(number),
+            Content::Float(number) => visitor.visit_f64(number),
+            Content::Boolean(flag) => visitor.visit_bool(flag),
+            Content::Array(array) => visitor.visit_seq(Entries { entries: array.iter().enumerate() }),
+            Content::Table(_) => self.deserialize_struct("", &[], visitor),
+            Content::Date | Content::Tables => self.refuse("something else"),
+        }
+    }
+
+    forward_to_deserialize_any! {
+        i128 u128 char bytes byte_buf unit unit_struct seq tuple_struct map identifier ignored_any
+    }
+}
+
+/// The entries of an array, one after the other.
+struct Entries<I> {
+    entries: I,
+}
+
+impl<'de, 'a, I: Iterator<Item = (usize, &'a Value)>> SeqAccess<'de> for Entries<I> {
+    type Error = Wrong;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Wrong> {
+        let Some((index, value)) = self.entries.next() else { return Ok(None) };
+        seed.deserialize(Node::value(value)).map(Some).map_err(|wrong| wrong.or_at(value.span()).in_entry(index))
+    }
+}
+
+/// The keys of a table, one after the other.
+struct Keys<'a> {
+    table: &'a dyn TableLike,
+    rest: Box<dyn Iterator<Item = (&'a str, &'a Item)> + 'a>,
+    /// What belongs to the key that was given last.
+    item: Option<(&'a str, &'a Item)>,
+}
+
+impl<'de> MapAccess<'de> for Keys<'_> {
+    type Error = Wrong;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Wrong> {
+        self.item = self.rest.next();
+        let Some((key, _)) = self.item else { return Ok(None) };
+        let span = || self.table.key(key).and_then(|key| key.span());
+        seed.deserialize(StrDeserializer::new(key)).map(Some).map_err(|wrong: Wrong| wrong.or_at(span()))
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Wrong> {
+        // Serde asks for a value after its key only.
+        let (key, item) = self.item.take().ok_or_else(|| Wrong::at(None, "has no value".into()))?;
+        let span = || item.span().or_else(|| self.table.key(key)?.span());
+        seed.deserialize(Node::item(item)).map_err(|wrong| wrong.or_at(span()).in_key(key))
+    }
+}

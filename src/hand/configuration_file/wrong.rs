@@ -1,0 +1,88 @@
+//! What is wrong with a configuration, and where.
+
+use crate::model::Shown;
+use serde::de::{Error, Expected, Unexpected};
+use std::fmt::{self, Display, Formatter};
+use std::ops::Range;
+use toml_edit::TomlError;
+
+/// Text that is no TOML, a key that a table cannot have, or a value that a key cannot have.
+#[derive(Debug)]
+pub(in crate::hand) struct Wrong {
+    /// Dotted path of the key, as far as it is known.
+    pub path: String,
+    /// Where it stands in the text.
+    pub span: Option<Range<usize>>,
+    /// What is wrong, without the path.
+    pub reason: String,
+}
+
+impl Wrong {
+    pub(in crate::hand) fn at(span: Option<Range<usize>>, reason: String) -> Self {
+        Self { path: String::new(), span, reason }
+    }
+
+    /// Text that is no TOML.
+    pub(in crate::hand) fn in_syntax(error: TomlError) -> Self {
+        Self::at(error.span(), Shown(error.message()).to_string())
+    }
+
+    /// The same, standing here unless its place is known better.
+    pub(super) fn or_at(mut self, span: Option<Range<usize>>) -> Self {
+        self.span = self.span.or(span);
+        self
+    }
+
+    pub(in crate::hand) fn in_key(mut self, key: &str) -> Self {
+        let point = if self.path.is_empty() || self.path.starts_with('[') { "" } else { "." };
+        self.path = format!("{key}{point}{}", self.path);
+        self
+    }
+
+    pub(super) fn in_entry(self, index: usize) -> Self {
+        self.in_key(&format!("[{index}]"))
+    }
+
+    /// The line of `text` where it stands, counted from 1.
+    pub(in crate::hand) fn line(&self, text: &str) -> Option<usize> {
+        let before = text.get(..self.span.as_ref()?.start)?;
+        Some(before.matches('\n').count() + 1)
+    }
+}
+
+impl Display for Wrong {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        let colon = if self.path.is_empty() { "" } else { ": " };
+        write!(formatter, "{}{colon}{}", self.path, self.reason)
+    }
+}
+
+impl std::error::Error for Wrong {}
+
+impl Error for Wrong {
+    /// What serde finds by itself.
+    fn custom<T: Display>(reason: T) -> Self {
+        Self::at(None, Shown(&reason.to_string()).to_string())
+    }
+
+    fn invalid_type(_: Unexpected, expected: &dyn Expected) -> Self {
+        Self::at(None, format!("must be {expected}"))
+    }
+
+    fn unknown_variant(variant: &str, expected: &'static [&'static str]) -> Self {
+        Self::at(None, format!("must be {}, not \"{}\"", one_of(expected), Shown(variant)))
+    }
+
+    fn unknown_field(field: &str, expected: &'static [&'static str]) -> Self {
+        Self::at(None, format!("unknown key `{}`, expected {}", Shown(field), one_of(expected)))
+    }
+
+    fn missing_field(field: &'static str) -> Self {
+        Self::at(None, format!("`{field}` is missing"))
+    }
+}
+
+/// The names of which one is to be chosen.
+pub(super) fn one_of(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" or ")
+}

@@ -1,0 +1,5 @@
+//! Configuration files: what they can say, and what is refused.
+
+mod arrays;
+mod reading;
+mod reference;

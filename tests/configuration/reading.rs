@@ -1,0 +1,57 @@
+//! Reads configurations, and the reference with every key.
+
+use std::fs;
+use sun2xp::hand::{self, HandError};
+use sun2xp::model::configuration::Configuration;
+
+pub const REFERENCE: &str = include_str!("../../docs/sun2xp.toml");
+
+pub fn read(text: &str) -> Result<Configuration, (Option<usize>, String)> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("sun2xp.toml");
+    fs::write(&file, text).expect("written");
+    hand::read(&file).map_err(|error| match error {
+        HandError::Configuration { line, reason, .. } => (line, reason),
+        other => panic!("{other}"),
+    })
+}
+
+pub fn usable(text: &str) -> Configuration {
+    read(text).unwrap_or_else(|(line, reason)| panic!("line {line:?}: {reason}\n{text}"))
+}
+
+/// The reference with the optional keys in force: a # without a space behind it hides a key.
+pub fn with_optional_keys() -> String {
+    let shown = |line: &'static str| match line.strip_prefix('#') {
+        Some(key) if key.starts_with(|first: char| first.is_ascii_lowercase() || first == '[') => key,
+        _ => line,
+    };
+    REFERENCE.lines().map(|line| shown(line).to_owned() + "\n").collect()
+}
+
+/// A key with its table, its value, the line it stands on (from 1), and the comment above it.
+#[derive(Debug)]
+pub struct Key {
+    pub table: String,
+    pub name: String,
+    pub value: String,
+    pub line: usize,
+    pub comment: String,
+}
+
+pub fn keys(text: &str) -> Vec<Key> {
+    let (mut keys, mut table, mut comment) = (Vec::new(), String::new(), String::new());
+    for (index, line) in text.lines().enumerate() {
+        if let Some(words) = line.strip_prefix('#') {
+            comment += words;
+        } else if let Some(name) = line.strip_prefix('[') {
+            table = name.trim_end_matches(']').into();
+        } else if let Some((name, value)) = line.split_once(" = ") {
+            let (name, value) = (name.to_owned(), value.to_owned());
+            keys.push(Key { table: table.clone(), name, value, line: index + 1, comment: comment.clone() });
+        } else {
+            comment.clear();
+        }
+    }
+    keys
+}
