@@ -14,8 +14,9 @@ pub const USABLE_SHARE: f64 = 0.8;
 #[error(
     "{fingers} finger(s) at {rate} Hz do not fit on a port at {baud} baud: a command of {command} bytes takes \
      {command_us:.0} us, the board {turnaround} us to answer, and {fingers} replies of {reply} bytes {replies_us:.0} us \
-     (10 bits a byte), {needed_us:.0} us in all, but {share:.0} % of a period are {usable_us:.0} us. Use at least \
-     {least_baud} baud, at most {fastest_rate:.0} Hz, or fewer fingers on the port",
+     (10 bits a byte), {needed_us:.0} us in all, but {share:.0} % of a period are {usable_us:.0} us. Set \
+     baud = {least_baud} or more for every finger of the port and in its board, set hand.rate = {fastest_rate:.0} or less, or put fewer \
+     fingers on the port",
     command = Kind::Command.wire_length(), reply = Kind::Reply.wire_length(), turnaround = TURNAROUND_MICROSECONDS,
     share = 100.0 * USABLE_SHARE
 )]
@@ -97,7 +98,7 @@ mod tests {
         // 170 + 100 + 840 us.
         assert!((refusal.needed_us - 1110.0).abs() < 1e-9);
         let text = refusal.to_string();
-        for part in ["1110 us in all", "80 % of a period are 800 us", "2000000 baud", "720 Hz"] {
+        for part in ["1110 us in all", "80 % of a period are 800 us", "baud = 2000000", "hand.rate = 720"] {
             assert!(text.contains(part), "{part:?} is not in: {text}");
         }
         assert!(capacity(2_000_000, 3, 1000.0).is_ok());

@@ -191,6 +191,7 @@ mod tests {
             ("tendon.minimum = 6\ntendon.minimun = 5", 2, "minimun"),
             ("\n\ntendon.minimum = ", 3, ""),
             ("controller.tension_gain = 'much'", 1, "controller.tension_gain: must be a number, not a text"),
+            ("\"tendon\\n\" = 1", 1, "unknown key `tendon\\n`"),
             ("\ntendon.stiffness = [300, 300, 300, 300, 300]", 2, "tendon.stiffness: has 5 entries, and must have 4"),
         ] {
             match adjusted(2, &ConfiguredFinger::default(), keys, 1000.0).expect_err("refused") {

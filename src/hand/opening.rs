@@ -8,8 +8,8 @@ use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::announcement::say;
 use crate::hand::recovery::{KnownBoard, Workshop};
-use crate::model::Refusal;
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
+use crate::model::{Refusal, Shown};
 use crate::realtime::{CycleTiming, Priority, now};
 use nalgebra::Matrix3;
 use rtrb::{Consumer, RingBuffer};
@@ -67,7 +67,7 @@ pub(super) fn check(configuration: &Configuration) -> Result<(), Refusal> {
 pub(super) fn check_folder(configuration: &Configuration) -> Result<(), Refusal> {
     match &configuration.hand.black_box {
         Some(folder) if !Path::new(folder).is_dir() => {
-            let reason = format!("{folder} is no folder: make it (mkdir -p {folder}), or name another");
+            let reason = format!("{} is no folder: make it (mkdir -p), or name another", Shown(folder));
             Err(Refusal { finger: None, unusable: Unusable { key: "black_box", reason } })
         }
         _ => Ok(()),

@@ -1,9 +1,13 @@
 //! What a configuration must satisfy before a motor may move.
 
+mod ranges;
+mod sharing;
+
 use crate::model::configuration::{
     Configuration, ConfiguredFinger, ConfiguredHand, FINGERS, RATES, RealTime, Unusable,
 };
 use crate::model::{Surface, TendonsError};
+use ranges::{each, path, unusable, within};
 
 /// A configuration that cannot be used: which finger's, or the hand's, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,40 +40,6 @@ impl Configuration {
         }
         Ok(())
     }
-
-    fn check_sharing(&self, first: usize, second: usize) -> Result<(), Unusable> {
-        let (one, other) = (&self.fingers[first], &self.fingers[second]);
-        let same_thread = self.thread(first) == self.thread(second);
-        if same_thread && (one.core != other.core || one.priority != other.priority) {
-            return unusable(
-                "thread",
-                format!(
-                    "fingers {} and {} share thread {} but name different cores or priorities",
-                    first + 1,
-                    second + 1,
-                    self.thread(first)
-                ),
-            );
-        }
-        if one.simulated() || one.port != other.port {
-            return Ok(());
-        }
-        if !same_thread {
-            let (thread, finger) = (self.thread(first), first + 1);
-            let reason =
-                format!("shares the port {} with finger {finger}, so it needs the same thread: {thread}", one.port);
-            return unusable("thread", reason);
-        }
-        if self.address(first) == self.address(second) {
-            let reason = format!("fingers {} and {} have the same address on {}", first + 1, second + 1, one.port);
-            return unusable("address", reason);
-        }
-        if one.baud != other.baud {
-            let reason = format!("{} and {} on the one port {}", one.baud, other.baud, one.port);
-            return unusable("baud", reason);
-        }
-        Ok(())
-    }
 }
 
 impl ConfiguredHand {
@@ -96,6 +66,7 @@ impl ConfiguredHand {
             );
             return unusable("watchdog_ms", reason);
         }
+        path("black_box", self.black_box.as_deref().unwrap_or_default())?;
         each("gravity", &self.gravity, -100.0, 100.0, "m/s^2")
     }
 }
@@ -105,6 +76,7 @@ impl ConfiguredFinger {
         if self.port.is_empty() {
             return unusable("port", "is empty: the path of a serial port, or \"simulated\"".into());
         }
+        path("port", &self.port)?;
         within("baud", self.baud.into(), 9600.0, 12_000_000.0, "baud")?;
         within("address", self.address.into(), 0.0, 15.0, "")?;
         within("thread", self.thread.into(), 0.0, 3.0, "")?;
@@ -284,20 +256,4 @@ impl ConfiguredFinger {
             }
         }
     }
-}
-
-fn unusable<T>(key: &'static str, reason: String) -> Result<T, Unusable> {
-    Err(Unusable { key, reason })
-}
-
-fn within(key: &'static str, value: f64, low: f64, high: f64, unit: &str) -> Result<(), Unusable> {
-    // Written so that NaN is outside.
-    if value >= low && value <= high {
-        return Ok(());
-    }
-    unusable(key, format!("{value} is outside {low} to {high} {unit}").trim_end().into())
-}
-
-fn each(key: &'static str, values: &[f64], low: f64, high: f64, unit: &str) -> Result<(), Unusable> {
-    values.iter().try_for_each(|&value| within(key, value, low, high, unit))
 }

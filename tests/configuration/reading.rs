@@ -55,3 +55,16 @@ pub fn keys(text: &str) -> Vec<Key> {
     }
     keys
 }
+
+/// `value` with each of its numbers replaced.
+pub fn with_numbers(value: &str, number: &str) -> String {
+    let part_of_a_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | 'e' | '+');
+    let mut replaced = String::new();
+    let mut rest = value;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit() || c == '-') {
+        replaced += &rest[..start];
+        replaced += number;
+        rest = rest[start..].trim_start_matches(part_of_a_number);
+    }
+    replaced + rest
+}

@@ -1,6 +1,6 @@
 //! `docs/sun2xp.toml` against the configuration types: complete, true and never stale.
 
-use crate::reading::{REFERENCE, keys, read, usable, with_optional_keys};
+use crate::reading::{REFERENCE, keys, read, usable, with_numbers, with_optional_keys};
 use std::collections::BTreeSet;
 use sun2xp::control::Controller;
 use sun2xp::model::configuration::Configuration;
@@ -102,19 +102,6 @@ fn every_key_is_read_and_a_misspelt_one_is_refused_with_its_line() {
         assert!(reason.contains(&format!("`{}s`", key.name)), "{}.{}: {reason}", key.table, key.name);
         assert_eq!(line, Some(key.line), "{}.{}: {reason}", key.table, key.name);
     }
-}
-
-/// `value` with each of its numbers replaced.
-fn with_numbers(value: &str, number: &str) -> String {
-    let part_of_a_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | 'e' | '+');
-    let mut replaced = String::new();
-    let mut rest = value;
-    while let Some(start) = rest.find(|c: char| c.is_ascii_digit() || c == '-') {
-        replaced += &rest[..start];
-        replaced += number;
-        rest = rest[start..].trim_start_matches(part_of_a_number);
-    }
-    replaced + rest
 }
 
 /// Whether a range is there, and not as the part of another one.

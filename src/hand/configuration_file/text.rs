@@ -58,7 +58,8 @@ fn unusable(root: &Table, refusal: &Refusal) -> Wrong {
 }
 
 fn is_number(key: &str) -> bool {
-    key.trim_start_matches('-').parse::<f64>().is_ok()
+    let digits = key.trim_start_matches('-');
+    !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 fn span_of_key(table: &Table, key: &str) -> Option<Range<usize>> {

@@ -22,9 +22,12 @@ impl Wrong {
         Self { path: String::new(), span, reason }
     }
 
-    /// Text that is no TOML.
+    /// Text that is no TOML. The parser's messages hold nothing of the text.
     pub(in crate::hand) fn in_syntax(error: TomlError) -> Self {
-        Self::at(error.span(), Shown(error.message()).to_string())
+        match error.span() {
+            None => Self::at(None, "a key of 80 parts or more, which no configuration has".into()),
+            span => Self::at(span, error.message().into()),
+        }
     }
 
     /// The same, standing here unless its place is known better.
@@ -84,5 +87,9 @@ impl Error for Wrong {
 
 /// The names of which one is to be chosen.
 pub(super) fn one_of(names: &[&str]) -> String {
-    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" or ")
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    match names.len() {
+        0..3 => names.join(" or "),
+        _ => format!("one of {}", names.join(", ")),
+    }
 }

@@ -1,0 +1,53 @@
+//! What fingers that share a thread or a port must have in common.
+
+use super::ranges::unusable;
+use crate::model::Shown;
+use crate::model::configuration::{Configuration, Unusable};
+
+impl Configuration {
+    /// Whether two fingers, 0 to 2, can have the threads and ports that they have.
+    pub(super) fn check_sharing(&self, first: usize, second: usize) -> Result<(), Unusable> {
+        let (one, other) = (&self.fingers[first], &self.fingers[second]);
+        let (first_number, second_number) = (first + 1, second + 1);
+        let same_thread = self.thread(first) == self.thread(second);
+        if same_thread && (one.core != other.core || one.priority != other.priority) {
+            return unusable(
+                "thread",
+                format!(
+                    "fingers {first_number} and {second_number} share thread {}, but have different cores or priorities: set core and \
+                     priority in [finger], for all of them",
+                    self.thread(first)
+                ),
+            );
+        }
+        if one.simulated() || one.port != other.port {
+            return Ok(());
+        }
+        let port = Shown(&one.port);
+        if !same_thread {
+            let thread = self.thread(first);
+            let reason = format!(
+                "fingers {first_number} and {second_number} share the port {port}, and one thread serves all fingers of a port: set \
+                 thread = {thread} for every finger of the port"
+            );
+            return unusable("thread", reason);
+        }
+        if self.address(first) == self.address(second) {
+            let reason = format!(
+                "fingers {first_number} and {second_number} have the address {} on the one port {port}: leave `address` out, or give each \
+                 finger the address that its board has",
+                self.address(first)
+            );
+            return unusable("address", reason);
+        }
+        if one.baud != other.baud {
+            let reason = format!(
+                "fingers {first_number} and {second_number} share the port {port}, but one has {} baud and the other {}: set baud in \
+                 [finger], for all of them",
+                one.baud, other.baud
+            );
+            return unusable("baud", reason);
+        }
+        Ok(())
+    }
+}
