@@ -1080,23 +1080,28 @@ int GetRecord(int i,
      int WriteBlackBox(int i, const char *Path);
 
    i       finger, 1 to 3
-   Path    the file, new or to be written over. Read during the call only
+   Path    the file, new or to be replaced. Read during the call only
 
  The library keeps the last two seconds of every finger: feedback, set points, motor
  commands, timing, state. Of a faulted finger they are the last two before the fault.
  docs/black-box.md describes the file; `sun2xp replay Path` computes it again. With
  hand.black_box the library writes such a file by itself whenever a finger faults.
 
- Takes about 50 ms, in which the servos go on.
+ The file is written beside its place, under a temporary name that begins with ".sun2xp-",
+ and takes its place once it is whole and on the disk. A call that fails leaves an old file
+ as it was. The folder must be writable.
+
+ Takes about 50 ms, and as long as the disk needs for some MB. The servos go on.
 
  Returns 0, or -1 with
    EFAULT   Path is null
-   EINVAL   no such finger
+   EINVAL   no such finger; Path names something other than a regular file, such as a
+            symbolic link, a device or a folder
    ENODEV   no hand is open
    EPERM    forked child
    ENOENT, EACCES, ENOSPC ...  the file cannot be written
 
- Threads: any, but not two at once with the same Path.
+ Threads: any. Of two calls with the same Path the last one leaves its file.
 
      WriteBlackBox(1, "/tmp/finger-1.jsonl");
  */

@@ -74,8 +74,10 @@ fn replayed(file: &Path) -> (Option<i32>, String) {
     (status.code(), [stdout, stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat())
 }
 
+/// The black boxes in a folder. While one is written it has another name.
 fn files(folder: &Path) -> Vec<PathBuf> {
-    fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect()
+    let paths = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    paths.filter(|path| path.extension().is_some_and(|extension| extension == "jsonl")).collect()
 }
 
 fn controls(recording: &Recording) -> impl Iterator<Item = &sun2xp::finger::ControlRecord> {
@@ -91,9 +93,7 @@ fn an_eventful_run_that_ends_in_a_fault_is_written_and_replayed() {
         eventful(&board, &hand);
         assert!(files(folder.path()).is_empty(), "no finger has faulted");
         board.with_finger(2, |finger| finger.set_faults(Status::EMERGENCY_STOP)).expect("finger 2");
-        let lines = |file: &PathBuf| fs::read_to_string(file).expect("text").lines().count();
-        let whole = |file: &PathBuf| Recording::open(file).is_ok();
-        wait_until("written", || files(folder.path()).first().is_some_and(|file| lines(file) > 0 && whole(file)));
+        wait_until("written", || !files(folder.path()).is_empty());
         let [file] = &files(folder.path())[..] else { panic!("one file") };
 
         let recording = Recording::open(file).expect("a recording");
@@ -272,6 +272,8 @@ fn a_file_comes_back_as_it_was_and_a_damaged_one_is_refused_with_its_reason() {
 
     let refused = hand.write_black_box(2, &folder.path().join("none/file")).expect_err("no such folder");
     assert_eq!(refused.errno(), libc::ENOENT, "{refused}");
+    let refused = hand.write_black_box(2, Path::new("/dev/null")).expect_err("no regular file");
+    assert_eq!(refused.errno(), libc::EINVAL, "{refused}");
     assert_eq!(hand.write_black_box(4, &file).expect_err("no such finger").errno(), libc::EINVAL);
 }
 

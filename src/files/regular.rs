@@ -1,6 +1,6 @@
 //! Opens and reads files that must be regular files of a limited size.
 
-use std::fs::{FileType, Metadata, OpenOptions, metadata};
+use std::fs::{File, FileType, Metadata, OpenOptions, metadata};
 use std::io::{self, Read, Take};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::Path;
@@ -13,14 +13,19 @@ use std::path::Path;
 /// # Errors
 /// What the system reports; [`io::ErrorKind::InvalidInput`] where the path leads to something other than a regular file;
 /// [`io::ErrorKind::FileTooLarge`] where the file has more than `largest` bytes.
-pub fn open_regular_file(path: &Path, largest: u64) -> io::Result<Take<std::fs::File>> {
+pub fn open_regular_file(path: &Path, largest: u64) -> io::Result<Take<File>> {
+    Ok(open(path, OpenOptions::new().read(true), largest)?.take(largest.saturating_add(1)))
+}
+
+/// Opens a regular file of at most `largest` bytes with these options.
+pub(super) fn open(path: &Path, options: &mut OpenOptions, largest: u64) -> io::Result<File> {
     // Opening some devices has an effect: a modem line rises, a tape rewinds. So the kind is known before the path is opened.
     check(&metadata(path)?, largest)?;
     // O_NONBLOCK: the path may lead to a FIFO by now, which would wait for a writer. It has no effect on regular files.
-    let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY).open(path)?;
+    let file = options.custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY).open(path)?;
     // What counts is what was opened.
     check(&file.metadata()?, largest)?;
-    Ok(file.take(largest.saturating_add(1)))
+    Ok(file)
 }
 
 /// Reads a regular file of at most `largest` bytes as text.
@@ -28,8 +33,13 @@ pub fn open_regular_file(path: &Path, largest: u64) -> io::Result<Take<std::fs::
 /// # Errors
 /// As [`open_regular_file`], and [`io::ErrorKind::InvalidData`] with the line where the file is not UTF-8.
 pub fn read_regular_file(path: &Path, largest: u64) -> io::Result<String> {
+    read_text(&mut open_regular_file(path, largest)?, largest)
+}
+
+/// Reads text of at most `largest` bytes.
+pub(super) fn read_text(input: &mut impl Read, largest: u64) -> io::Result<String> {
     let mut bytes = Vec::new();
-    open_regular_file(path, largest)?.read_to_end(&mut bytes)?;
+    input.take(largest.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > largest {
         return Err(too_large(largest));
     }
@@ -40,11 +50,17 @@ pub fn read_regular_file(path: &Path, largest: u64) -> io::Result<String> {
     })
 }
 
-fn check(metadata: &Metadata, largest: u64) -> io::Result<()> {
-    if !metadata.is_file() {
-        let reason = format!("it is {} and not a regular file", name_of(metadata.file_type()));
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+/// Refuses everything but regular files.
+pub(super) fn check_kind(kind: FileType) -> io::Result<()> {
+    if kind.is_file() {
+        return Ok(());
     }
+    let reason = format!("it is {} and not a regular file", name_of(kind));
+    Err(io::Error::new(io::ErrorKind::InvalidInput, reason))
+}
+
+fn check(metadata: &Metadata, largest: u64) -> io::Result<()> {
+    check_kind(metadata.file_type())?;
     match metadata.len() {
         length if length > largest => Err(too_large(largest)),
         _ => Ok(()),
@@ -58,6 +74,7 @@ fn too_large(largest: u64) -> io::Error {
 fn name_of(kind: FileType) -> &'static str {
     match kind {
         kind if kind.is_dir() => "a directory",
+        kind if kind.is_symlink() => "a symbolic link",
         kind if kind.is_fifo() => "a FIFO (a pipe)",
         kind if kind.is_socket() => "a socket",
         kind if kind.is_char_device() || kind.is_block_device() => "a device",

@@ -1,11 +1,10 @@
 //! A black box as a file: lines of JSON, the first of which says what all others need. docs/black-box.md describes it.
 
 use crate::control::State;
-use crate::files::open_regular_file;
+use crate::files::{open_regular_file, replace_file};
 use crate::finger::{ControllerSource, CycleRecord};
 use crate::model::configuration::ConfiguredHand;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Write};
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -110,12 +109,12 @@ impl Recording {
         Self { origin, library: env!("CARGO_PKG_VERSION").into(), cycles }
     }
 
-    /// Writes it into a new file, or over an old one.
+    /// Writes it into a new file, or in the place of an old one, which stays as it was until the new one is whole.
     ///
     /// # Errors
-    /// What the system says.
+    /// What the system says; a path that leads to something other than a regular file, such as a symbolic link.
     pub fn save(&self, path: &Path) -> io::Result<()> {
-        self.write(File::create(path)?)
+        replace_file(path, |output| self.write(output))
     }
 
     /// Writes it.

@@ -1,9 +1,9 @@
 //! The black boxes of an open hand: kept at all times, written to a file at a fault where that is configured, and when asked.
 
+use crate::files::create_file;
 use crate::finger::{KeptRecord, Recording};
 use crate::hand::announcement::say;
 use crate::hand::{Hand, HandError};
-use std::fs::OpenOptions;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -28,10 +28,11 @@ impl Hand {
         self.dispatcher.record(finger, cycle)?.ok_or(HandError::NoRecord { finger, cycle: cycle.unwrap_or_default() })
     }
 
-    /// Writes them into a file, new or over an old one: `sun2xp replay` and docs/black-box.md tell what to do with it.
+    /// Writes them into a file, new or in the place of an old one: `sun2xp replay` and docs/black-box.md tell what to
+    /// do with it. If that fails, an old file stays as it was.
     ///
     /// # Errors
-    /// No such finger, a file that cannot be written.
+    /// No such finger, a file that cannot be written, a path that leads to something other than a regular file.
     pub fn write_black_box(&self, finger: i32, path: &Path) -> Result<(), HandError> {
         save(&self.recording(finger)?, path)
     }
@@ -58,14 +59,6 @@ pub(super) fn keep(recording: &Recording, folder: &Path) {
 
 fn write_new(recording: &Recording, folder: &Path) -> io::Result<PathBuf> {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let mut taken = io::Error::from(io::ErrorKind::AlreadyExists);
-    for attempt in 1..=MOST {
-        let path = folder.join(format!("finger-{}-{seconds}-{attempt}.jsonl", recording.origin.finger));
-        match OpenOptions::new().write(true).create_new(true).open(&path) {
-            Ok(file) => return recording.write(file).map(|()| path),
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => taken = error,
-            Err(error) => return Err(error),
-        }
-    }
-    Err(taken)
+    let names = (1..=MOST).map(|count| format!("finger-{}-{seconds}-{count}.jsonl", recording.origin.finger));
+    create_file(folder, names, |output| recording.write(output))
 }

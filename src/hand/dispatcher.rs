@@ -67,8 +67,8 @@ impl Dispatcher {
         Self { members, collected: Arc::new(collected), collector: None }
     }
 
-    /// Starts the thread that collects timings and black boxes, so that none is lost while nobody asks, and that writes the black
-    /// box of a finger that faults into `folder`.
+    /// Starts the thread that collects timings and black boxes, so that none is lost while nobody asks, and that has the
+    /// black box of a finger that faults written into `folder`.
     pub fn start_collecting(&mut self, folder: Option<PathBuf>) -> io::Result<()> {
         let (stop, stopped) = bounded(0);
         let fingers = self.collected.clone();
@@ -220,6 +220,7 @@ impl Drop for Dispatcher {
 
 fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopped: &Receiver<()>) {
     let mut ended = false;
+    let mut writing = Vec::new();
     while !ended {
         // Once more at the end: a finger may just have faulted.
         ended = stopped.recv_timeout(COLLECTING) != Err(RecvTimeoutError::Timeout);
@@ -229,8 +230,26 @@ fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopped: &Receiv
             let recording = collected.black_box.faulted().then(|| collected.black_box.recording()).flatten();
             drop(collected);
             if let (Some(folder), Some(recording)) = (folder, recording) {
-                keep(&recording, folder);
+                writing.extend(write(recording, folder.to_path_buf()));
             }
+        }
+    }
+    for thread in writing {
+        // A panic while a black box is written loses that file only.
+        let _ = thread.join();
+    }
+}
+
+/// Writes a black box on a thread of its own: a disk may take longer to confirm a file than the rings of the other
+/// fingers last.
+fn write(recording: Recording, folder: PathBuf) -> Option<JoinHandle<()>> {
+    let shared = Arc::new((recording, folder));
+    let given = shared.clone();
+    match spawn("sun2xp writer", Priority::default(), move |_| keep(&given.0, &given.1)) {
+        Ok(thread) => Some(thread),
+        Err(_) => {
+            keep(&shared.0, &shared.1);
+            None
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::board::LinkError;
 use crate::control::OutOfReach;
 use crate::control::calibration::Obstacle;
+use crate::files::errno;
 use crate::finger::{Fault, FaultKind};
 use crate::hand::missing::Missing;
 use crate::model::configuration::Unusable;
@@ -294,7 +295,7 @@ impl HandError {
             Self::Calibration { .. } => libc::ECANCELED,
             Self::NotReconnected(_) => libc::ENODEV,
             Self::Busy(_) | Self::PortInUse(_) => libc::EBUSY,
-            Self::Store { source, .. } | Self::BlackBox { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
+            Self::Store { source, .. } | Self::BlackBox { source, .. } => errno(source),
             Self::NoRecord { .. } => libc::ENOENT,
             Self::NotSimulated(_) => libc::ENOTSUP,
         }

@@ -1,0 +1,283 @@
+//! Writes files whole: beside their place first, and into it in one step.
+
+use super::regular::check_kind;
+use std::collections::hash_map::RandomState;
+use std::fs::{self, File, Metadata, OpenOptions, Permissions};
+use std::hash::{BuildHasher, Hasher};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt, fchown};
+use std::path::{Path, PathBuf};
+
+/// How many names are tried. Two names of 64 random bits are never the same by accident.
+const ATTEMPTS: u32 = 16;
+
+/// The bits of a mode that a new file inherits: neither set-user-ID nor set-group-ID nor sticky.
+const PERMISSIONS: u32 = 0o777;
+
+/// Puts a file with what `write` writes in the place of the one at `path`, or where there was none.
+///
+/// Readers see the old file or the new one, whole, and so does whoever looks after a power cut. If anything fails, the
+/// old file stays as it was. The new file has the permissions of the old one, and its owner and group where this
+/// process may give them away.
+///
+/// # Errors
+/// What the system reports; [`io::ErrorKind::InvalidInput`] where `path` is something other than a regular file.
+/// Symbolic links are not followed: who wants the file behind a link resolves it first.
+pub fn replace_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let old = match fs::symlink_metadata(path) {
+        Ok(old) => Some(old),
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
+        Err(error) => return Err(error),
+    };
+    old.as_ref().map_or(Ok(()), |old| check_kind(old.file_type()))?;
+    let mut new = NewFile::beside(path, old.as_ref())?;
+    write(&mut new.output)?;
+    new.flush()?;
+    new.replace(path)
+}
+
+/// Writes a file under the first of `names` that no file in `folder` has yet, and returns its path. Nobody sees a part
+/// of it, and no file is written over.
+///
+/// # Errors
+/// What the system reports; [`io::ErrorKind::AlreadyExists`] where every name is taken.
+pub fn create_file(
+    folder: &Path,
+    names: impl IntoIterator<Item = String>,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<PathBuf> {
+    let mut new = NewFile::inside(folder, None)?;
+    write(&mut new.output)?;
+    new.flush()?;
+    for name in names {
+        let path = folder.join(name);
+        match new.place_at_free(&path) {
+            Ok(()) => return flush_folder(folder).map(|()| path),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Err(ErrorKind::AlreadyExists.into())
+}
+
+/// A file under a temporary name. Dropping it removes it, unless it was placed. One that a killed process leaves behind
+/// is never read.
+struct NewFile {
+    folder: PathBuf,
+    path: PathBuf,
+    output: BufWriter<File>,
+    placed: bool,
+}
+
+impl NewFile {
+    /// In the folder of `target`, to replace a file with the metadata `old`.
+    fn beside(target: &Path, old: Option<&Metadata>) -> io::Result<Self> {
+        let folder = match target.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        Self::inside(folder, old)
+    }
+
+    fn inside(folder: &Path, old: Option<&Metadata>) -> io::Result<Self> {
+        // Until it has the owner of the old file, nobody else may read what may be secret. Otherwise the umask decides,
+        // as usual.
+        let mode = if old.is_some() { 0o600 } else { 0o666 };
+        let (path, file) = create_unpredictable(folder, mode)?;
+        let new = Self { folder: folder.into(), path, output: BufWriter::new(file), placed: false };
+        if let Some(old) = old {
+            inherit(new.output.get_ref(), old)?;
+        }
+        Ok(new)
+    }
+
+    /// Takes the place of the file at `path`, or of none.
+    fn replace(mut self, path: &Path) -> io::Result<()> {
+        fs::rename(&self.path, path)?;
+        self.placed = true;
+        flush_folder(&self.folder)
+    }
+
+    /// Everything written is on the disk.
+    fn flush(&mut self) -> io::Result<()> {
+        self.output.flush()?;
+        self.output.get_ref().sync_all()
+    }
+
+    /// Gives the file its name, if no file has it.
+    fn place_at_free(&mut self, path: &Path) -> io::Result<()> {
+        match fs::hard_link(&self.path, path) {
+            // The temporary name goes when this value does.
+            Ok(()) => Ok(()),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(error),
+            // A file system without hard links, such as FAT. Between the two steps a file of another process can be
+            // lost there.
+            Err(_) if fs::symlink_metadata(path).is_err() => {
+                fs::rename(&self.path, path)?;
+                self.placed = true;
+                Ok(())
+            }
+            Err(_) => Err(ErrorKind::AlreadyExists.into()),
+        }
+    }
+}
+
+impl Drop for NewFile {
+    fn drop(&mut self) {
+        if !self.placed {
+            // Nothing more can be done about a file that cannot be removed.
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// A new file under a name that nobody can prepare a trap for.
+fn create_unpredictable(folder: &Path, mode: u32) -> io::Result<(PathBuf, File)> {
+    let mut last = io::Error::from(ErrorKind::AlreadyExists);
+    for _ in 0..ATTEMPTS {
+        // The keys of a RandomState come from the system's random numbers.
+        let path = folder.join(format!(".sun2xp-{:016x}.new", RandomState::new().build_hasher().finish()));
+        // O_EXCL, so that neither a file nor a link under this name is opened.
+        let opened =
+            OpenOptions::new().write(true).create_new(true).mode(mode).custom_flags(libc::O_NOFOLLOW).open(&path);
+        match opened {
+            Ok(file) => return Ok((path, file)),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => last = error,
+            Err(error) => return Err(error),
+        }
+    }
+    Err(last)
+}
+
+/// Owner, group and permissions of the old file, as far as this process may set them.
+fn inherit(file: &File, old: &Metadata) -> io::Result<()> {
+    let new = file.metadata()?;
+    let mut mode = old.mode() & PERMISSIONS;
+    if new.uid() != old.uid() {
+        // Only root may give a file away. Somebody else's file that this user may replace becomes this user's.
+        let _ = fchown(file, Some(old.uid()), None);
+    }
+    if new.gid() != old.gid() && fchown(file, None, Some(old.gid())).is_err() {
+        // The group is another one: it gets no more than everybody.
+        mode &= 0o707 | (mode & 0o007) << 3;
+    }
+    // A file system without permissions of its own refuses to set any.
+    if file.metadata()?.mode() & PERMISSIONS == mode {
+        return Ok(());
+    }
+    file.set_permissions(Permissions::from_mode(mode))
+}
+
+/// A name is on the disk when its folder is.
+fn flush_folder(folder: &Path) -> io::Result<()> {
+    // The file has its place already: a folder that cannot be opened for reading only means that a power cut may undo
+    // that.
+    let Ok(folder) = File::open(folder) else { return Ok(()) };
+    match folder.sync_all() {
+        // A file system that does not flush folders.
+        Err(error) if error.kind() == ErrorKind::InvalidInput => Ok(()),
+        flushed => flushed,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+    use tempfile::{TempDir, tempdir};
+
+    fn write(text: &'static str) -> impl FnOnce(&mut dyn Write) -> io::Result<()> {
+        move |output| output.write_all(text.as_bytes())
+    }
+
+    fn folder() -> (TempDir, PathBuf) {
+        let folder = tempdir().expect("a folder");
+        let file = folder.path().join("file");
+        (folder, file)
+    }
+
+    fn names(folder: &TempDir) -> Vec<String> {
+        let entries = fs::read_dir(folder.path()).expect("a folder");
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    fn mode(file: &Path) -> u32 {
+        fs::metadata(file).expect("there").mode() & 0o7777
+    }
+
+    #[test]
+    fn a_file_is_made_or_replaced() {
+        let (folder, file) = folder();
+        for text in ["one", "another"] {
+            replace_file(&file, write(text)).expect("written");
+            assert_eq!(fs::read_to_string(&file).expect("read"), text);
+            assert_eq!(names(&folder), ["file"]);
+        }
+    }
+
+    #[test]
+    fn what_fails_changes_nothing_and_leaves_nothing() {
+        let (folder, file) = folder();
+        let fail = |output: &mut dyn Write| {
+            output.write_all(b"the first half")?;
+            Err(io::Error::from_raw_os_error(libc::ENOSPC))
+        };
+        assert_eq!(replace_file(&file, fail).expect_err("failed").raw_os_error(), Some(libc::ENOSPC));
+        assert!(names(&folder).is_empty());
+        fs::write(&file, "old").expect("written");
+        assert_eq!(replace_file(&file, fail).expect_err("failed").raw_os_error(), Some(libc::ENOSPC));
+        assert_eq!(fs::read_to_string(&file).expect("read"), "old");
+        assert_eq!(names(&folder), ["file"]);
+        create_file(folder.path(), ["file".into(), "other".into()], fail).expect_err("failed");
+        assert_eq!(names(&folder), ["file"]);
+    }
+
+    #[test]
+    fn links_and_devices_are_refused() {
+        let (folder, file) = folder();
+        fs::write(folder.path().join("victim"), "precious").expect("written");
+        symlink("victim", &file).expect("made");
+        assert_eq!(replace_file(&file, write("new")).expect_err("refused").kind(), ErrorKind::InvalidInput);
+        assert_eq!(fs::read_to_string(&file).expect("read"), "precious");
+        for path in [Path::new("/dev/null"), folder.path()] {
+            assert_eq!(replace_file(path, write("new")).expect_err("refused").kind(), ErrorKind::InvalidInput);
+        }
+        assert_eq!(names(&folder), ["file", "victim"]);
+    }
+
+    #[test]
+    fn permissions_of_the_old_file_stay_but_for_special_bits() {
+        let (_folder, file) = folder();
+        fs::write(&file, "old").expect("written");
+        for (before, after) in [(0o600, 0o600), (0o664, 0o664), (0o4750, 0o750)] {
+            fs::set_permissions(&file, Permissions::from_mode(before)).expect("set");
+            replace_file(&file, write("new")).expect("written");
+            assert_eq!(mode(&file), after);
+        }
+    }
+
+    #[test]
+    fn a_taken_name_is_left_to_its_file() {
+        let (folder, file) = folder();
+        fs::write(&file, "old").expect("written");
+        symlink("nowhere", folder.path().join("link")).expect("made");
+        let candidates = ["file", "link", "third"].map(String::from);
+        let path = create_file(folder.path(), candidates.clone(), write("new")).expect("written");
+        assert_eq!(path, folder.path().join("third"));
+        assert_eq!(fs::read_to_string(&file).expect("read"), "old");
+        let error = create_file(folder.path(), candidates, write("new")).expect_err("every name is taken");
+        assert_eq!(error.kind(), ErrorKind::AlreadyExists);
+        assert_eq!(names(&folder), ["file", "link", "third"]);
+    }
+
+    #[test]
+    fn temporary_names_cannot_be_foretold() {
+        let (folder, _) = folder();
+        let made: std::collections::BTreeSet<PathBuf> =
+            (0..100).map(|_| create_unpredictable(folder.path(), 0o600).expect("made").0).collect();
+        assert_eq!(made.len(), 100);
+    }
+}
