@@ -88,10 +88,11 @@
 
    4. FLOAT AND DOUBLE
 
-   SendPos, SendKx and GetPos take arrays of float and arrays of double. Which one is
-   meant is seen at compile time: in C from the type of the argument (Pos[3], Kx[3][3]
-   and Kx[9], const or not), in C++ by overloading. Other element types do not compile.
-   A null pointer compiles, and is refused with EFAULT.
+   SendPos, SendKx and GetPos take arrays of float and arrays of double. The compiler
+   chooses by the type of the argument (Pos[3], Kx[3][3] or Kx[9], const or not), in C
+   with macros and in C++ with templates. Other types do not compile: cast a void *
+   pointer to the type of its elements. NULL and 0 compile, and are refused with EFAULT.
+   C arrays of variable length compile, but nothing checks their lengths.
 
    In C this is done by function-like macros. They do not serve a planner that declares
    the functions itself or takes their addresses. For those compile with
@@ -104,8 +105,8 @@
    differ from those below, add -DSUN2XP_H: it leaves this header out.
 
    In the library the plain symbols take float, those ending in D take double.
-   Compilers before C11 and without _Generic (gcc before 4.9) choose by the size of the
-   element: there an array of int passes for float, and NULL needs a cast.
+   Compilers without _Generic (gcc before 4.9) choose by the size of an element: there
+   an array of int is taken for one of float, and NULL needs a cast.
 
 
    5. PLANNERS OF 1990
@@ -117,6 +118,18 @@
                                   with -DSendPos=SendPosD -DSendKx=SendKxD
                                   -DGetPos=GetPosD
        no look at results         see the line on standard error (chapter 2)
+       own functions named        #define SUN2XP_FIVE_CALLS before the include: the
+       GetTip, StopHand ...       header declares only OpenHand, SendPos, SendKx,
+                                  GetPos, CloseHand and HandError
+
+   The shared library never calls a function of the planner in the place of its own. For
+   the static library, name the planner's files first and link with
+   -Wl,--allow-multiple-definition.
+
+   The planner's macros may have any name, such as i, K, Pos, or Status of X11: gcc and
+   clang set them aside while they read this header. The exceptions are SendPos, SendKx,
+   GetPos, and names that begin with FAULT_, FINGER_, TIMING_ or SUN2XP_. For other
+   compilers undefine macros that have the name of a struct, a member or a call here.
 
 
    6. THREADS, SIGNALS, FORK, EXIT
@@ -202,6 +215,294 @@
 #endif
 #endif
 
+/* Macros of the planner that are named like something below are set aside until the end of this file. */
+#if defined(__clang__) || (defined(__GNUC__) && (__GNUC__ > 4 || (__GNUC__ == 4 && __GNUC_MINOR__ >= 6)))
+#define SUN2XP_SETS_MACROS_ASIDE
+#endif
+
+#ifdef SUN2XP_SETS_MACROS_ASIDE
+_Pragma("push_macro(\"AdjustFinger\")") _Pragma("push_macro(\"Answered\")") _Pragma("push_macro(\"Calibration\")")
+_Pragma("push_macro(\"CloseHand\")") _Pragma("push_macro(\"Computed\")") _Pragma("push_macro(\"CorruptReplies\")")
+_Pragma("push_macro(\"Count\")") _Pragma("push_macro(\"Cycle\")") _Pragma("push_macro(\"Cycles\")")
+_Pragma("push_macro(\"DamagedFrames\")") _Pragma("push_macro(\"DuplicateReplies\")") _Pragma("push_macro(\"Fault\")")
+_Pragma("push_macro(\"FaultText\")") _Pragma("push_macro(\"Felt\")") _Pragma("push_macro(\"FingerRecord\")")
+_Pragma("push_macro(\"FingerStatus\")") _Pragma("push_macro(\"FingerTiming\")") _Pragma("push_macro(\"FingerTip\")")
+_Pragma("push_macro(\"Follows\")") _Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")")
+_Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetPosD\")") _Pragma("push_macro(\"GetRecord\")")
+_Pragma("push_macro(\"GetStatus\")") _Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")")
+_Pragma("push_macro(\"HandError\")") _Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"LateCycles\")")
+_Pragma("push_macro(\"LateReplies\")") _Pragma("push_macro(\"LostReplies\")") _Pragma("push_macro(\"Maximum\")")
+_Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")")
+_Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"Number\")")
+_Pragma("push_macro(\"Oldest\")") _Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OpenHand\")")
+_Pragma("push_macro(\"Overruns\")") _Pragma("push_macro(\"P99\")") _Pragma("push_macro(\"P999\")")
+_Pragma("push_macro(\"Part\")") _Pragma("push_macro(\"Pos\")") _Pragma("push_macro(\"PosSent\")")
+_Pragma("push_macro(\"PushFinger\")") _Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")")
+_Pragma("push_macro(\"RecoverHand\")") _Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"SendContact\")")
+_Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendKxD\")") _Pragma("push_macro(\"SendPosD\")")
+_Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")")
+_Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")")
+_Pragma("push_macro(\"StiffnessScale\")") _Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"Tension\")")
+_Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")")
+_Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")")
+_Pragma("push_macro(\"Value\")") _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")")
+_Pragma("push_macro(\"WakeUpMedian\")") _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")")
+_Pragma("push_macro(\"WarningValue\")") _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")")
+_Pragma("push_macro(\"ZeroFinger\")")
+#undef AdjustFinger
+#undef Answered
+#undef Calibration
+#undef CloseHand
+#undef Computed
+#undef CorruptReplies
+#undef Count
+#undef Cycle
+#undef Cycles
+#undef DamagedFrames
+#undef DuplicateReplies
+#undef Fault
+#undef FaultText
+#undef Felt
+#undef FingerRecord
+#undef FingerStatus
+#undef FingerTiming
+#undef FingerTip
+#undef Follows
+#undef Force
+#undef ForeignFrames
+#undef GetFault
+#undef GetPosD
+#undef GetRecord
+#undef GetStatus
+#undef GetTiming
+#undef GetTip
+#undef HandError
+#undef IdentifyFinger
+#undef LateCycles
+#undef LateReplies
+#undef LostReplies
+#undef Maximum
+#undef MeasuredRate
+#undef Median
+#undef MemoryLocked
+#undef Minimum
+#undef Newest
+#undef Number
+#undef Oldest
+#undef OnCore
+#undef OpenHand
+#undef Overruns
+#undef P99
+#undef P999
+#undef Part
+#undef Pos
+#undef PosSent
+#undef PushFinger
+#undef Rate
+#undef Realtime
+#undef RecoverHand
+#undef ResetTiming
+#undef SendContact
+#undef SendDamping
+#undef SendKxD
+#undef SendPosD
+#undef SendTip
+#undef Size
+#undef SkippedPeriods
+#undef Stage
+#undef State
+#undef StatusBits
+#undef StiffnessScale
+#undef StopHand
+#undef Tension
+#undef TensionSent
+#undef Tensions
+#undef Time
+#undef Tip
+#undef Torque
+#undef TorqueScale
+#undef Value
+#undef WakeUp99
+#undef WakeUpMaximum
+#undef WakeUpMedian
+#undef Warning
+#undef WarningPart
+#undef WarningValue
+#undef Warnings
+#undef WriteBlackBox
+#undef ZeroFinger
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ OpenHand - start the hand
+
+     int OpenHand(void);
+
+ Reads the configuration (chapter 8), opens the ports, starts the servos, brings the
+ tendons under tension and returns when every finger has answered and holds the pose
+ it is in, at the configured initial stiffness. So GetPos is valid from then on, and
+ nothing moves until SendPos. Takes about a second at most for the simulated hand.
+
+ Returns 0, or -1 with
+   EBUSY    a hand is open (it goes on), or another thread is just opening or closing one
+   EINVAL   the configuration cannot be used; HandError names file, line and reason
+   ENOENT, EACCES, EBUSY ...  the configuration file or a port cannot be opened; the
+            errno is the system's
+   ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
+   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory
+            or the configured core cannot be had; HandError says what to change
+   EPERM    forked child
+
+ Threads: any; one hand a process.
+
+     if (OpenHand() != 0) { fprintf(stderr, "%s\n", HandError()); exit(1); }
+ */
+int OpenHand(void);
+
+/*
+ CloseHand - stop the hand
+
+     int CloseHand(void);
+
+ Brings every finger to the configured end state - release: the torque ramps to zero;
+ hold: the board keeps the last torque, bounded, for a bounded time - and ends the
+ servos. With no hand open it does nothing and returns 0. After it OpenHand may be
+ called again. A planner that exits without it has it called for it.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+
+ Threads: any. Waits for an OpenHand or CloseHand that another thread is in, then
+ closes.
+ */
+int CloseHand(void);
+
+/*
+ SendPos - send desired joint angles to a finger
+
+     int SendPos(int i, const float *Pos);      also takes const double *Pos (chapter 4)
+
+   i     finger, 1 to 3
+   Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3). Read during the call only
+
+ The fingertip's spring is anchored there from the next cycle on, with the stiffness
+ sent last. All three angles take effect together. Does not wait for the finger to
+ arrive: ask GetPos. Limits are the configured joint limits; by default joint 0:
+ -1.0472 to 1.0472, joint 1: -0.5236 to 1.7453, joint 2: 0.0873 to 2.0944.
+
+ Returns 0, or -1 with
+   EFAULT   Pos is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an angle is NaN or infinite
+   ERANGE   an angle is outside the joint limits (or it is clamped: hand.out_of_range)
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; about 100 ns.
+
+     float Pos[3] = {0.0, 0.5, 0.8};
+     SendPos(1, Pos);
+ */
+int SendPos(int, const float *);
+
+/*
+ SendPosD - SendPos for an array of double
+
+     int SendPosD(int i, const double *Pos);
+ */
+int SendPosD(int, const double *);
+
+/*
+ SendKx - set the stiffness of a fingertip
+
+     int SendKx(int i, const float *Kx);        also takes const double *Kx (chapter 4)
+
+   i     finger, 1 to 3
+   Kx    Kx[3][3] or Kx[9], row by row: entry [row][column] is the force along axis
+         row (x, y, z of the finger's frame, chapter 3) for a displacement of 1 cm
+         along axis column, N/cm. Read during the call only
+
+ Taken over whole, from the next cycle on and without a jump in torque: 95 % of the
+ change is there after 50 ms. Kx must be symmetric: a difference of up
+ to 1e-3 of the largest entry is averaged away. No eigenvalue may be below -1e-3 of
+ the largest one. Kx of lower rank is fine, and so is zero: the finger is limp along
+ those directions, still damped. The largest eigenvalue may be up to the configured
+ bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
+
+ Returns 0, or -1 with
+   EFAULT   Kx is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an entry is NaN or infinite
+   EDOM     Kx is not symmetric, or has a negative eigenvalue
+   ERANGE   Kx is stiffer than the bound (or it is clamped: hand.out_of_range)
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; about 1 us.
+
+     double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 1}};    soft along z
+     SendKx(1, Kx);
+ */
+int SendKx(int, const float *);
+
+/*
+ SendKxD - SendKx for an array of double
+
+     int SendKxD(int i, const double *Kx);
+ */
+int SendKxD(int, const double *);
+
+/*
+ GetPos - read the joint angles of a finger
+
+     int GetPos(int i, float *Pos);             also takes double *Pos (chapter 4)
+
+   i     finger, 1 to 3
+   Pos   Pos[3]: measured angles of joints 0, 1, 2, rad, from the servo's last cycle.
+         Written only if the call returns 0
+
+ Returns 0, or -1 with
+   EFAULT   Pos is null
+   ENODEV   no hand is open
+   EINVAL   no such finger
+   EIO      the finger is faulted
+   EPERM    forked child
+
+ Threads: any. Never waits for a servo; about 100 ns.
+
+     double Pos[3];
+     if (GetPos(2, Pos) == 0) printf("%g %g %g\n", Pos[0], Pos[1], Pos[2]);
+ */
+int GetPos(int, float *);
+
+/*
+ GetPosD - GetPos for an array of double
+
+     int GetPosD(int i, double *Pos);
+ */
+int GetPosD(int, double *);
+
+/*
+ HandError - why a call was refused, and what to do about it
+
+     const char *HandError(void);
+
+ The text of the calling thread's last refused call; an empty string if none was. A
+ call that succeeds leaves it, like errno, as it is: look at it after a call has
+ returned -1. Never null. It is the library's: do not free it. It is valid until the
+ next refused call of the same thread.
+
+ Threads: any; each has its own text. Works in a forked child too.
+ */
+const char *HandError(void);
+
+
+#ifndef SUN2XP_FIVE_CALLS
+
 /* The faults (chapter 10). Numbers never change. */
 #define FAULT_SLACK_TENDON            1 /* slack tendon */
 #define FAULT_BROKEN_TENDON           2 /* broken tendon */
@@ -249,10 +550,6 @@
 #define FAULT_CALIBRATION_FAILED     44 /* calibration failed */
 #define FAULT_WARM_MOTOR             45 /* warm motor */
 #define FAULT_COMPANION              46 /* stopped with another */
-
-#ifdef __cplusplus
-extern "C" {
-#endif
 
 
 /*
@@ -620,172 +917,6 @@ struct Fault {
 };
 
 /*
- OpenHand - start the hand
-
-     int OpenHand(void);
-
- Reads the configuration (chapter 8), opens the ports, starts the servos, brings the
- tendons under tension and returns when every finger has answered and holds the pose
- it is in, at the configured initial stiffness. So GetPos is valid from then on, and
- nothing moves until SendPos. Takes about a second at most for the simulated hand.
-
- Returns 0, or -1 with
-   EBUSY    a hand is open (it goes on), or another thread is just opening or closing one
-   EINVAL   the configuration cannot be used; HandError names file, line and reason
-   ENOENT, EACCES, EBUSY ...  the configuration file or a port cannot be opened; the
-            errno is the system's
-   ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
-   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory
-            or the configured core cannot be had; HandError says what to change
-   EPERM    forked child
-
- Threads: any; one hand a process.
-
-     if (OpenHand() != 0) { fprintf(stderr, "%s\n", HandError()); exit(1); }
- */
-int OpenHand(void);
-
-/*
- CloseHand - stop the hand
-
-     int CloseHand(void);
-
- Brings every finger to the configured end state - release: the torque ramps to zero;
- hold: the board keeps the last torque, bounded, for a bounded time - and ends the
- servos. With no hand open it does nothing and returns 0. After it OpenHand may be
- called again. A planner that exits without it has it called for it.
-
- Returns 0, or -1 with
-   EPERM    forked child
-
- Threads: any. Waits for an OpenHand or CloseHand that another thread is in, then
- closes.
- */
-int CloseHand(void);
-
-/*
- SendPos - send desired joint angles to a finger
-
-     int SendPos(int i, const float *Pos);      also takes const double *Pos (chapter 4)
-
-   i     finger, 1 to 3
-   Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3). Read during the call only
-
- The fingertip's spring is anchored there from the next cycle on, with the stiffness
- sent last. All three angles take effect together. Does not wait for the finger to
- arrive: ask GetPos. Limits are the configured joint limits; by default joint 0:
- -1.0472 to 1.0472, joint 1: -0.5236 to 1.7453, joint 2: 0.0873 to 2.0944.
-
- Returns 0, or -1 with
-   EFAULT   Pos is null
-   ENODEV   no hand is open
-   EINVAL   no such finger; an angle is NaN or infinite
-   ERANGE   an angle is outside the joint limits (or it is clamped: hand.out_of_range)
-   EIO      the finger is faulted
-   EPERM    forked child
-
- Threads: any. Never waits for a servo; about 100 ns.
-
-     float Pos[3] = {0.0, 0.5, 0.8};
-     SendPos(1, Pos);
- */
-int SendPos(int i,
-            const float *Pos);
-
-/*
- SendPosD - SendPos for an array of double
-
-     int SendPosD(int i, const double *Pos);
- */
-int SendPosD(int i, const double *Pos);
-
-/*
- SendKx - set the stiffness of a fingertip
-
-     int SendKx(int i, const float *Kx);        also takes const double *Kx (chapter 4)
-
-   i     finger, 1 to 3
-   Kx    Kx[3][3] or Kx[9], row by row: entry [row][column] is the force along axis
-         row (x, y, z of the finger's frame, chapter 3) for a displacement of 1 cm
-         along axis column, N/cm. Read during the call only
-
- Taken over whole, from the next cycle on and without a jump in torque: 95 % of the
- change is there after 50 ms. Kx must be symmetric: a difference of up
- to 1e-3 of the largest entry is averaged away. No eigenvalue may be below -1e-3 of
- the largest one. Kx of lower rank is fine, and so is zero: the finger is limp along
- those directions, still damped. The largest eigenvalue may be up to the configured
- bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
-
- Returns 0, or -1 with
-   EFAULT   Kx is null
-   ENODEV   no hand is open
-   EINVAL   no such finger; an entry is NaN or infinite
-   EDOM     Kx is not symmetric, or has a negative eigenvalue
-   ERANGE   Kx is stiffer than the bound (or it is clamped: hand.out_of_range)
-   EIO      the finger is faulted
-   EPERM    forked child
-
- Threads: any. Never waits for a servo; about 1 us.
-
-     double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 1}};    soft along z
-     SendKx(1, Kx);
- */
-int SendKx(int i,
-           const float *Kx);
-
-/*
- SendKxD - SendKx for an array of double
-
-     int SendKxD(int i, const double *Kx);
- */
-int SendKxD(int i, const double *Kx);
-
-/*
- GetPos - read the joint angles of a finger
-
-     int GetPos(int i, float *Pos);             also takes double *Pos (chapter 4)
-
-   i     finger, 1 to 3
-   Pos   Pos[3]: measured angles of joints 0, 1, 2, rad, from the servo's last cycle.
-         Written only if the call returns 0
-
- Returns 0, or -1 with
-   EFAULT   Pos is null
-   ENODEV   no hand is open
-   EINVAL   no such finger
-   EIO      the finger is faulted
-   EPERM    forked child
-
- Threads: any. Never waits for a servo; about 100 ns.
-
-     double Pos[3];
-     if (GetPos(2, Pos) == 0) printf("%g %g %g\n", Pos[0], Pos[1], Pos[2]);
- */
-int GetPos(int i,
-           float *Pos);
-
-/*
- GetPosD - GetPos for an array of double
-
-     int GetPosD(int i, double *Pos);
- */
-int GetPosD(int i, double *Pos);
-
-/*
- HandError - why a call was refused, and what to do about it
-
-     const char *HandError(void);
-
- The text of the calling thread's last refused call; an empty string if none was. A
- call that succeeds leaves it, like errno, as it is: look at it after a call has
- returned -1. Never null. It is the library's: do not free it. It is valid until the
- next refused call of the same thread.
-
- Threads: any; each has its own text. Works in a forked child too.
- */
-const char *HandError(void);
-
-/*
  GetStatus - rate, jitter and losses of a finger's servo
 
      int GetStatus(int i, struct FingerStatus *Status);
@@ -808,8 +939,7 @@ const char *HandError(void);
      Status.Size = sizeof Status;
      if (GetStatus(1, &Status) == 0) printf("%.1f Hz\n", Status.MeasuredRate);
  */
-int GetStatus(int i,
-              struct FingerStatus *Status);
+int GetStatus(int, struct FingerStatus *);
 
 /*
  GetTiming - where the time of a finger's cycles goes
@@ -835,9 +965,7 @@ int GetStatus(int i,
      Timing.Size = sizeof Timing;
      if (GetTiming(1, TIMING_WIRE, &Timing) == 0) printf("%lu ns\n", Timing.P99);
  */
-int GetTiming(int i,
-              int Stage,
-              struct FingerTiming *Timing);
+int GetTiming(int, int, struct FingerTiming *);
 
 /*
  ResetTiming - begin to count anew what GetTiming tells
@@ -856,7 +984,7 @@ int GetTiming(int i,
 
  Threads: any. Never waits for a servo.
  */
-int ResetTiming(int i);
+int ResetTiming(int);
 
 /*
  SendTip - send a desired fingertip position to a finger
@@ -886,8 +1014,7 @@ int ResetTiming(int i);
      double Tip[3] = {0.0, -6.0, 8.0};
      SendTip(1, Tip);
  */
-int SendTip(int i,
-            const double *Tip);
+int SendTip(int, const double *);
 
 /*
  GetTip - read position and force of a fingertip, and the tendon tensions
@@ -911,7 +1038,7 @@ int SendTip(int i,
      Tip.Size = sizeof Tip;
      if (GetTip(1, &Tip) == 0) printf("%g N along z\n", Tip.Force[2]);
  */
-int GetTip(int i, struct FingerTip *Tip);
+int GetTip(int, struct FingerTip *);
 
 /*
  SendContact - make a fingertip the spring of a contact type
@@ -952,10 +1079,7 @@ int GetTip(int i, struct FingerTip *Tip);
      double Normal[3] = {0, -1, 0};
      SendContact(1, 4, &K[0][0], Normal);
  */
-int SendContact(int i,
-                int D,
-                const double *K,
-                const double *Normal);
+int SendContact(int, int, const double *, const double *);
 
 /*
  SendDamping - set the damping of a fingertip
@@ -978,8 +1102,7 @@ int SendContact(int i,
 
  Threads: any. Never waits for a servo; about 100 ns.
  */
-int SendDamping(int i,
-                double Ratio);
+int SendDamping(int, double);
 
 /*
  AdjustFinger - change the configuration of a finger while it runs
@@ -1015,8 +1138,7 @@ int SendDamping(int i,
 
      AdjustFinger(1, "tendon.minimum = 6\ncontroller.tension_gain = 3");
  */
-int AdjustFinger(int i,
-                 const char *Keys);
+int AdjustFinger(int, const char *);
 
 /*
  PushFinger - push the fingertip of a simulated finger
@@ -1038,7 +1160,7 @@ int AdjustFinger(int i,
 
  Threads: any.
  */
-int PushFinger(int i, const double *Force);
+int PushFinger(int, const double *);
 
 /*
  GetRecord - one cycle of the last two seconds of a finger
@@ -1070,9 +1192,7 @@ int PushFinger(int i, const double *Force);
          for (Cycle = Record.Oldest; GetRecord(1, Cycle, &Record) == 0; Cycle++)
              printf("%f %f\n", Record.Time, Record.Tension[0]);
  */
-int GetRecord(int i,
-              unsigned long Cycle,
-              struct FingerRecord *Record);
+int GetRecord(int, unsigned long, struct FingerRecord *);
 
 /*
  WriteBlackBox - write the last seconds of a finger into a file
@@ -1105,8 +1225,7 @@ int GetRecord(int i,
 
      WriteBlackBox(1, "/tmp/finger-1.jsonl");
  */
-int WriteBlackBox(int i,
-                  const char *Path);
+int WriteBlackBox(int, const char *);
 
 /*
  ZeroFinger - find the zeros of a finger's gauges and encoders
@@ -1145,7 +1264,7 @@ int WriteBlackBox(int i,
 
      if (ZeroFinger(1) != 0) fprintf(stderr, "%s\n", HandError());
  */
-int ZeroFinger(int i);
+int ZeroFinger(int);
 
 /*
  IdentifyFinger - measure gauge gains, friction and tendon stiffness of a finger
@@ -1165,7 +1284,7 @@ int ZeroFinger(int i);
 
  Threads: any.
  */
-int IdentifyFinger(int i);
+int IdentifyFinger(int);
 
 /*
  GetFault - what is wrong with a finger
@@ -1189,7 +1308,7 @@ int IdentifyFinger(int i);
      if (GetFault(1, &Fault) == 0 && Fault.Number != 0)
          fprintf(stderr, "finger 1: %s\n", FaultText(Fault.Number));
  */
-int GetFault(int i, struct Fault *Fault);
+int GetFault(int, struct Fault *);
 
 /*
  FaultText - a fault in words
@@ -1204,7 +1323,7 @@ int GetFault(int i, struct Fault *Fault);
 
  Threads: any.
  */
-const char *FaultText(int Number);
+const char *FaultText(int);
 
 /*
  StopHand - emergency stop
@@ -1258,7 +1377,10 @@ int StopHand(void);
 
      while (RecoverHand(1) != 0) { fprintf(stderr, "%s\n", HandError()); sleep(1); }
  */
-int RecoverHand(int i);
+int RecoverHand(int);
+
+
+#endif /* SUN2XP_FIVE_CALLS */
 
 #ifdef __cplusplus
 }
@@ -1277,37 +1399,36 @@ int RecoverHand(int i);
 
 #elif defined(__cplusplus)
 
-/* Templates, and not overloads of a pointer: NULL and 0 fit none, and so take the plain function, which refuses them.
-   extern "C++", because a planner may include this header inside its own extern "C". */
+/* These are templates and not overloads for pointers, because NULL and 0 would fit two overloads. They fit no template,
+   so they go to the plain function, which refuses them. The block says extern "C++", because a planner may include this
+   header inside its own extern "C". */
 extern "C++" {
 
-namespace Sun2Xp {
-inline int SendPosOf(int i, const float *Pos) { return ::SendPos(i, Pos); }
-inline int SendPosOf(int i, const double *Pos) { return ::SendPosD(i, Pos); }
-inline int SendKxOf(int i, const float *Kx) { return ::SendKx(i, Kx); }
-inline int SendKxOf(int i, const double *Kx) { return ::SendKxD(i, Kx); }
-inline int GetPosOf(int i, float *Pos) { return ::GetPos(i, Pos); }
-inline int GetPosOf(int i, double *Pos) { return ::GetPosD(i, Pos); }
+inline int Sun2XpSendPos(int Sun2XpFinger, const float *Sun2XpArray) { return ::SendPos(Sun2XpFinger, Sun2XpArray); }
+inline int Sun2XpSendPos(int Sun2XpFinger, const double *Sun2XpArray) { return ::SendPosD(Sun2XpFinger, Sun2XpArray); }
+inline int Sun2XpSendKx(int Sun2XpFinger, const float *Sun2XpArray) { return ::SendKx(Sun2XpFinger, Sun2XpArray); }
+inline int Sun2XpSendKx(int Sun2XpFinger, const double *Sun2XpArray) { return ::SendKxD(Sun2XpFinger, Sun2XpArray); }
+inline int Sun2XpGetPos(int Sun2XpFinger, float *Sun2XpArray) { return ::GetPos(Sun2XpFinger, Sun2XpArray); }
+inline int Sun2XpGetPos(int Sun2XpFinger, double *Sun2XpArray) { return ::GetPosD(Sun2XpFinger, Sun2XpArray); }
+
+template <class Sun2XpElement> inline int SendPos(int Sun2XpFinger, Sun2XpElement *Sun2XpArray)
+{
+    return Sun2XpSendPos(Sun2XpFinger, Sun2XpArray);
 }
 
-template <class Element> inline int SendPos(int i, Element *Pos)
+template <class Sun2XpElement> inline int SendKx(int Sun2XpFinger, Sun2XpElement *Sun2XpArray)
 {
-    return Sun2Xp::SendPosOf(i, Pos);
+    return Sun2XpSendKx(Sun2XpFinger, Sun2XpArray);
 }
 
-template <class Element> inline int SendKx(int i, Element *Kx)
+template <class Sun2XpElement> inline int SendKx(int Sun2XpFinger, Sun2XpElement (*Sun2XpArray)[3])
 {
-    return Sun2Xp::SendKxOf(i, Kx);
+    return Sun2XpSendKx(Sun2XpFinger, reinterpret_cast<Sun2XpElement *>(Sun2XpArray));
 }
 
-template <class Element> inline int SendKx(int i, Element (*Kx)[3])
+template <class Sun2XpElement> inline int GetPos(int Sun2XpFinger, Sun2XpElement *Sun2XpArray)
 {
-    return Sun2Xp::SendKxOf(i, reinterpret_cast<Element *>(Kx));
-}
-
-template <class Element> inline int GetPos(int i, Element *Pos)
-{
-    return Sun2Xp::GetPosOf(i, Pos);
+    return Sun2XpGetPos(Sun2XpFinger, Sun2XpArray);
 }
 
 }
@@ -1331,39 +1452,87 @@ template <class Element> inline int GetPos(int i, Element *Pos)
 #endif
 
 #ifdef SUN2XP_GENERIC
-#define SUN2XP_POINTERS(Element, Call) Element *: Call, Element (*)[3]: Call, Element (*)[9]: Call, Element (*)[3][3]: Call
-/* NULL and 0 compile, and are refused at run time. */
-#define SUN2XP_SEND(Single, Double, i, Array) \
-    (SUN2XP_GENERIC(Array, \
+/* The type of NULL and 0 below, which are refused at run time. It is incomplete, so no planner has an object of it. */
+struct Sun2XpNull;
+/* A conditional expression has this type only if its other branch is a null pointer constant. So void * pointers and
+   integers other than 0 become void *, which fits no association of SUN2XP_CHOOSE. */
+#define SUN2XP_NULL_POINTER(Array) \
+    (1 ? _Generic(Array, void *: Array, default: (void *)0) : (struct Sun2XpNull *)0)
+#define SUN2XP_NULL_NUMBER(Array) \
+    (1 ? (void *)(long)_Generic(Array, int: Array, long: Array, default: 0) : (struct Sun2XpNull *)0)
+/* An array of variable length fits both Element (*)[3] and Element (*)[9], so they may not stand in one list. */
+#define SUN2XP_ROWS_OF_9(Element) \
+    Element (*)[9]: (Element *)0, const Element (*)[9]: (const Element *)0, \
+    volatile Element (*)[9]: (volatile Element *)0, const volatile Element (*)[9]: (const volatile Element *)0
+#define SUN2XP_TYPED(Array) \
+    _Generic(Array, SUN2XP_ROWS_OF_9(float), SUN2XP_ROWS_OF_9(double), void *: SUN2XP_NULL_POINTER(Array), \
+        int: SUN2XP_NULL_NUMBER(Array), long: SUN2XP_NULL_NUMBER(Array), default: Array)
+#define SUN2XP_POINTERS(Element, Call) Element *: Call, Element (*)[3]: Call, Element (*)[3][3]: Call
+#define SUN2XP_SEND(Single, Double, Finger, Array) \
+    (SUN2XP_GENERIC(SUN2XP_TYPED(Array), \
         SUN2XP_POINTERS(float, Single), SUN2XP_POINTERS(const float, Single), \
         SUN2XP_POINTERS(volatile float, Single), SUN2XP_POINTERS(const volatile float, Single), \
         SUN2XP_POINTERS(double, Double), SUN2XP_POINTERS(const double, Double), \
         SUN2XP_POINTERS(volatile double, Double), SUN2XP_POINTERS(const volatile double, Double), \
-        void *: Single, const void *: Single, int: Single)((i), (const void *)Array))
-#define SUN2XP_GET(Single, Double, i, Array) \
-    (SUN2XP_GENERIC(Array, \
+        struct Sun2XpNull *: Single)((Finger), (const void *)Array))
+#define SUN2XP_GET(Single, Double, Finger, Array) \
+    (SUN2XP_GENERIC(SUN2XP_TYPED(Array), \
         SUN2XP_POINTERS(float, Single), SUN2XP_POINTERS(volatile float, Single), \
         SUN2XP_POINTERS(double, Double), SUN2XP_POINTERS(volatile double, Double), \
-        void *: Single, int: Single)((i), (void *)Array))
+        struct Sun2XpNull *: Single)((Finger), (void *)Array))
 #else
-/* float, float[3], float[9] have 4, 12, 36 bytes; double, double[3], double[9] have 8, 24, 72. */
-#define SUN2XP_SEND(Single, Double, i, Array) \
-    (sizeof *Array % sizeof(double) ? Single((i), (const void *)Array) : Double((i), (const void *)Array))
-#define SUN2XP_GET(Single, Double, i, Array) \
-    (sizeof *Array % sizeof(double) ? Single((i), (void *)Array) : Double((i), (void *)Array))
+/* float, float[3], float[9] have 4, 12, 36 bytes; double, double[3], double[9] have 8, 24, 72. Where the size is no
+   multiple of a float's, as that of void is for some compilers, the type char[-1] stops the compiler. */
+#define SUN2XP_IS_FLOAT(Array) \
+    (sizeof *Array % sizeof(double) + 0 * sizeof(char[sizeof *Array % sizeof(float) ? -1 : 1]))
+#define SUN2XP_SEND(Single, Double, Finger, Array) \
+    (SUN2XP_IS_FLOAT(Array) ? Single((Finger), (const void *)Array) : Double((Finger), (const void *)Array))
+#define SUN2XP_GET(Single, Double, Finger, Array) \
+    (SUN2XP_IS_FLOAT(Array) ? Single((Finger), (void *)Array) : Double((Finger), (void *)Array))
 #endif
 
 /* From C99 on the array may be a compound literal, whose commas a macro takes for its own. */
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
-#define SendPos(i, ...) SUN2XP_SEND(SendPos, SendPosD, i, (__VA_ARGS__))
-#define SendKx(i, ...) SUN2XP_SEND(SendKx, SendKxD, i, (__VA_ARGS__))
-#define GetPos(i, ...) SUN2XP_GET(GetPos, GetPosD, i, (__VA_ARGS__))
+#define SendPos(Finger, ...) SUN2XP_SEND(SendPos, SendPosD, Finger, (__VA_ARGS__))
+#define SendKx(Finger, ...) SUN2XP_SEND(SendKx, SendKxD, Finger, (__VA_ARGS__))
+#define GetPos(Finger, ...) SUN2XP_GET(GetPos, GetPosD, Finger, (__VA_ARGS__))
 #else
-#define SendPos(i, Pos) SUN2XP_SEND(SendPos, SendPosD, i, (Pos))
-#define SendKx(i, Kx) SUN2XP_SEND(SendKx, SendKxD, i, (Kx))
-#define GetPos(i, Pos) SUN2XP_GET(GetPos, GetPosD, i, (Pos))
+#define SendPos(Finger, Pos) SUN2XP_SEND(SendPos, SendPosD, Finger, (Pos))
+#define SendKx(Finger, Kx) SUN2XP_SEND(SendKx, SendKxD, Finger, (Kx))
+#define GetPos(Finger, Pos) SUN2XP_GET(GetPos, GetPosD, Finger, (Pos))
 #endif
 
+#endif
+
+#ifdef SUN2XP_SETS_MACROS_ASIDE
+_Pragma("pop_macro(\"AdjustFinger\")") _Pragma("pop_macro(\"Answered\")") _Pragma("pop_macro(\"Calibration\")")
+_Pragma("pop_macro(\"CloseHand\")") _Pragma("pop_macro(\"Computed\")") _Pragma("pop_macro(\"CorruptReplies\")")
+_Pragma("pop_macro(\"Count\")") _Pragma("pop_macro(\"Cycle\")") _Pragma("pop_macro(\"Cycles\")")
+_Pragma("pop_macro(\"DamagedFrames\")") _Pragma("pop_macro(\"DuplicateReplies\")") _Pragma("pop_macro(\"Fault\")")
+_Pragma("pop_macro(\"FaultText\")") _Pragma("pop_macro(\"Felt\")") _Pragma("pop_macro(\"FingerRecord\")")
+_Pragma("pop_macro(\"FingerStatus\")") _Pragma("pop_macro(\"FingerTiming\")") _Pragma("pop_macro(\"FingerTip\")")
+_Pragma("pop_macro(\"Follows\")") _Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")")
+_Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetPosD\")") _Pragma("pop_macro(\"GetRecord\")")
+_Pragma("pop_macro(\"GetStatus\")") _Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")")
+_Pragma("pop_macro(\"HandError\")") _Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"LateCycles\")")
+_Pragma("pop_macro(\"LateReplies\")") _Pragma("pop_macro(\"LostReplies\")") _Pragma("pop_macro(\"Maximum\")")
+_Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")")
+_Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"Number\")")
+_Pragma("pop_macro(\"Oldest\")") _Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OpenHand\")")
+_Pragma("pop_macro(\"Overruns\")") _Pragma("pop_macro(\"P99\")") _Pragma("pop_macro(\"P999\")")
+_Pragma("pop_macro(\"Part\")") _Pragma("pop_macro(\"Pos\")") _Pragma("pop_macro(\"PosSent\")")
+_Pragma("pop_macro(\"PushFinger\")") _Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")")
+_Pragma("pop_macro(\"RecoverHand\")") _Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"SendContact\")")
+_Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendKxD\")") _Pragma("pop_macro(\"SendPosD\")")
+_Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")")
+_Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")")
+_Pragma("pop_macro(\"StiffnessScale\")") _Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"Tension\")")
+_Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")")
+_Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")")
+_Pragma("pop_macro(\"Value\")") _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")")
+_Pragma("pop_macro(\"WakeUpMedian\")") _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")")
+_Pragma("pop_macro(\"WarningValue\")") _Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")")
+_Pragma("pop_macro(\"ZeroFinger\")")
 #endif
 
 #endif

@@ -3,10 +3,7 @@
 #[allow(dead_code)]
 mod c;
 
-use c::{Bench, STRICT, c_compiler, c_compilers, cpp_compiler, cpp_compilers};
-
-const C: &[&str] = &["-ansi", "-std=c89", "-std=gnu89", "-std=c99", "-std=gnu99", "-std=c11", "-std=c17", "-std=c2x"];
-const CPP: &[&str] = &["-std=c++98", "-std=c++11", "-std=c++14", "-std=c++17", "-std=c++20"];
+use c::{Bench, C_STANDARDS as C, CPP_STANDARDS as CPP, STRICT, c_compiler, c_compilers, cpp_compiler, cpp_compilers};
 
 /// Every way of telling the header what the arrays are.
 const CHOICES: &[&[&str]] = &[
@@ -88,17 +85,80 @@ fn own_declarations_compile_with_the_type_named() {
     }
 }
 
+/// Statements in C89 whose last one must not compile: the argument is no array of float or double, or its rows have another length.
+/// A C++ compiler complains only once about a template and a type, so none comes twice.
+const WRONG: &[&str] = &[
+    "static int Wrong[3]; SendPos(1, Wrong);",
+    "static void *Wrong; SendPos(1, Wrong);",
+    "static const void *Wrong; SendPos(1, Wrong);",
+    "SendKx(1, (void *)5);",
+    "static void *Wrong; GetPos(1, Wrong);",
+    "static char Wrong[36]; SendPos(1, Wrong);",
+    "static long double Wrong[3]; SendPos(1, Wrong);",
+    "static float Wrong[4][4]; SendKx(1, Wrong);",
+    "static double Wrong[4][4]; SendKx(1, Wrong);",
+    "static float *Wrong[3]; SendKx(1, Wrong);",
+    "static double **Wrong; SendKx(1, Wrong);",
+    "static float Wrong; SendPos(1, Wrong);",
+    "static int Wrong; SendPos(1, Wrong);",
+    "static long Wrong; SendPos(1, Wrong);",
+    "static const float Wrong[3] = {0, 0, 0}; GetPos(1, Wrong);",
+    "SendPos(1, 5);",
+    "SendPos(1, 5L);",
+    "SendPos(1, 0.5);",
+    "GetPos(1, -1);",
+];
+
+/// Those that the size of an element gives away, where the compiler has no `_Generic`.
+const WRONG_BY_SIZE: &[&str] = &[
+    "SendPos(1, (void *)5);",
+    "static void *Wrong; GetPos(1, Wrong);",
+    "static char Wrong[36]; SendPos(1, Wrong);",
+    "static int Wrong; SendPos(1, Wrong);",
+    "SendPos(1, 5);",
+    "SendPos(1, 0.5);",
+];
+
 #[test]
-fn other_element_types_do_not_compile() {
+fn other_arguments_do_not_compile() {
     let bench = Bench::new();
-    for (compilers, standards, source) in [(c_compilers(), C, "wrong_type.c"), (cpp_compilers(), CPP, "wrong_type.cpp")]
-    {
-        for compiler in compilers {
-            for standard in standards {
-                let refused = bench.check(compiler, &[standard], source);
-                assert!(refused.is_err(), "{compiler} {standard} takes an array of int");
+    let refuses = |mode: &[&str], wrong: &[&str]| {
+        let statements: Vec<_> = wrong.iter().map(|statements| format!("{{ {statements} }}\n")).collect();
+        let planner = format!("#include \"Sun2Xp.h\"\nvoid planner(void) {{\n{}}}\n", statements.concat());
+        for (compilers, standards, name) in [(c_compilers(), C, "wrong.c"), (cpp_compilers(), CPP, "wrong.cpp")] {
+            let source = bench.write(name, &planner);
+            for compiler in compilers {
+                // Else it stops at the twentieth error.
+                let all: &[&str] = if compiler.starts_with("clang") { &["-ferror-limit=0"] } else { &[] };
+                for standard in standards {
+                    let flags = with(&[mode, all, &[standard, "-w", "-fsyntax-only"]]);
+                    let messages = bench.check(compiler, &flags, &source).err().unwrap_or_default();
+                    for (index, statements) in wrong.iter().enumerate() {
+                        let refused = messages.contains(&format!("{name}:{}:", index + 3));
+                        assert!(refused, "{compiler} {flags:?} takes: {statements}\n{messages}");
+                    }
+                }
             }
         }
+    };
+    refuses(&[], WRONG);
+    refuses(&["-DSUN2XP_NO_GENERIC"], WRONG_BY_SIZE);
+}
+
+#[test]
+fn arrays_of_variable_length_compile() {
+    let bench = Bench::new();
+    for compiler in c_compilers() {
+        for standard in C.iter().filter(|standard| !standard.contains("89") && **standard != "-ansi") {
+            for choice in [&[][..], &["-DSUN2XP_NO_GENERIC"]] {
+                bench
+                    .check(compiler, &with(&[STRICT, choice, &[standard]]), "variable_length.c")
+                    .unwrap_or_else(|e| panic!("{e}"));
+            }
+        }
+        bench
+            .check(compiler, &["-Wall", "-Werror", "-std=gnu89"], "variable_length.c")
+            .unwrap_or_else(|e| panic!("{e}"));
     }
 }
 

@@ -70,6 +70,12 @@ fn arguments_are_evaluated_once() {
 }
 
 #[test]
+fn arrays_of_variable_length_are_what_their_elements_are() {
+    succeed(&strict(&["-std=c99"]), &["variable_length.c"]);
+    succeed(&strict(&["-std=c99", "-DSUN2XP_NO_GENERIC"]), &["variable_length.c"]);
+}
+
+#[test]
 fn null_pointers_are_refused() {
     succeed(&strict(&["-ansi"]), &["null.c"]);
 }

@@ -1,9 +1,31 @@
 //! The committed header is what cbindgen makes of the exports. A build script must not write into the source, so a test
 //! compares, and writes when asked to.
 
+use std::collections::BTreeSet;
+use std::fmt::Write;
 use std::path::Path;
 use std::{env, fs};
 use sun2xp::finger::FaultKind;
+
+/// The five calls of 1990 and HandError.
+const CALLS_OF_1990: &[&str] = &["calls.rs"];
+
+/// Everything else, in the order of the manual.
+const OTHER_CALLS: &[&str] = &[
+    "status_calls.rs",
+    "timing_calls.rs",
+    "fingertip_calls.rs",
+    "black_box_calls.rs",
+    "calibration_calls.rs",
+    "fault_calls.rs",
+    "recovery_calls.rs",
+];
+
+/// Words of C in declarations.
+const KEYWORDS: &[&str] = &["char", "const", "double", "float", "int", "long", "struct", "unsigned", "void"];
+
+/// The header makes macros of these calls itself, so it cannot give back a planner's macro of the same name.
+const MACROS: &[&str] = &["GetPos", "SendKx", "SendPos"];
 
 /// A constant for each fault.
 fn faults() -> String {
@@ -14,25 +36,91 @@ fn faults() -> String {
     FaultKind::ALL.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
+/// What cbindgen makes of some files of src/capi, without header and trailer.
+fn declarations(mut config: cbindgen::Config, files: &[&str]) -> String {
+    (config.header, config.trailer) = (None, None);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/capi");
+    let builder = cbindgen::Builder::new().with_config(config);
+    let builder = files.iter().fold(builder, |builder, file| builder.with_src(folder.join(file)));
+    let mut made = Vec::new();
+    builder.generate().expect("the exports can be parsed").write(&mut made);
+    let made = String::from_utf8(made).expect("declarations are text");
+    made.lines().map(|line| without_parameter_names(line) + "\n").collect()
+}
+
+/// A planner may have macros named like parameters. The synopsis above each declaration names them.
+fn without_parameter_names(line: &str) -> String {
+    let call = line.starts_with("int ") || line.starts_with("const char *");
+    let Some((call, parameters)) = line.strip_suffix(");").filter(|_| call).and_then(|line| line.split_once('('))
+    else {
+        return line.to_string();
+    };
+    let kind = |parameter: &str| {
+        let kind = parameter.trim_end_matches(|letter: char| letter.is_alphanumeric() || letter == '_');
+        if parameter == "void" { parameter.to_string() } else { kind.trim_end().to_string() }
+    };
+    format!("{call}({});", parameters.split(", ").map(kind).collect::<Vec<_>>().join(", "))
+}
+
+/// Every name that the declarations use.
+fn names(declarations: &str) -> BTreeSet<&str> {
+    let mut code = Vec::new();
+    let mut rest = declarations;
+    while let Some((before, comment)) = rest.split_once("/*") {
+        code.push(before);
+        rest = comment.split_once("*/").expect("every comment ends").1;
+    }
+    code.push(rest);
+    let lines = code.iter().flat_map(|code| code.lines()).filter(|line| !line.starts_with('#'));
+    let words = lines.flat_map(|line| line.split(|letter: char| !letter.is_alphanumeric() && letter != '_'));
+    let names = words.filter(|word| word.starts_with(|letter: char| letter.is_alphabetic()));
+    names.filter(|name| !KEYWORDS.contains(name) && !MACROS.contains(name)).collect()
+}
+
+/// Sets the planner's macros aside, and takes them up again.
+fn shields(names: &BTreeSet<&str>) -> (String, String) {
+    let pragmas = |pragma: &str| {
+        let mut lines = vec![String::new()];
+        for name in names {
+            let next = format!("_Pragma(\"{pragma}_macro(\\\"{name}\\\")\")");
+            let last = lines.last_mut().expect("there is one");
+            match last.len() + next.len() {
+                0..120 if !last.is_empty() => write!(last, " {next}").expect("a String grows"),
+                _ if last.is_empty() => *last = next,
+                _ => lines.push(next),
+            }
+        }
+        lines.join("\n")
+    };
+    let undefine: String = names.iter().map(|name| format!("#undef {name}\n")).collect();
+    let shield = format!(
+        "/* Macros of the planner that are named like something below are set aside until the end of this file. */\n\
+         #if defined(__clang__) || (defined(__GNUC__) && (__GNUC__ > 4 || (__GNUC__ == 4 && __GNUC_MINOR__ >= 6)))\n\
+         #define SUN2XP_SETS_MACROS_ASIDE\n#endif\n\n\
+         #ifdef SUN2XP_SETS_MACROS_ASIDE\n{}\n{undefine}#endif\n",
+        pragmas("push")
+    );
+    (shield, format!("#ifdef SUN2XP_SETS_MACROS_ASIDE\n{}\n#endif\n", pragmas("pop")))
+}
+
 #[test]
 fn the_committed_header_is_the_one_of_the_exports() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml can be used");
-    let mut made = Vec::new();
-    cbindgen::Builder::new()
-        .with_config(config)
-        .with_src(root.join("src/capi/calls.rs"))
-        .with_src(root.join("src/capi/status_calls.rs"))
-        .with_src(root.join("src/capi/timing_calls.rs"))
-        .with_src(root.join("src/capi/fingertip_calls.rs"))
-        .with_src(root.join("src/capi/black_box_calls.rs"))
-        .with_src(root.join("src/capi/calibration_calls.rs"))
-        .with_src(root.join("src/capi/fault_calls.rs"))
-        .with_src(root.join("src/capi/recovery_calls.rs"))
-        .generate()
-        .expect("the exports can be parsed")
-        .write(&mut made);
-    let made = String::from_utf8(made).expect("the header is text").replace("@FAULTS@", &faults());
+    let part = |part: &Option<String>| part.clone().expect("cbindgen.toml has header and trailer");
+    let (header, trailer) = (part(&config.header), part(&config.trailer));
+    let calls_of_1990 = declarations(config.clone(), CALLS_OF_1990);
+    let others = declarations(config, OTHER_CALLS);
+    let body = format!(
+        "{calls_of_1990}\n\n\
+         #ifndef SUN2XP_FIVE_CALLS\n\n\
+         /* The faults (chapter 10). Numbers never change. */\n{}\n\n\n{others}\n\n\
+         #endif /* SUN2XP_FIVE_CALLS */\n",
+        faults()
+    );
+    let (shield, unshield) = shields(&names(&body));
+    let (header, trailer) = (header.replace("@SHIELD@", &shield), trailer.replace("@UNSHIELD@", &unshield));
+    let made = format!("{header}\n{body}\n{trailer}");
 
     let committed = root.join("include/Sun2Xp.h");
     if env::var_os("SUN2XP_WRITE_HEADER").is_some() {

@@ -5,6 +5,7 @@
 mod tools;
 
 use std::env;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -12,6 +13,14 @@ use tempfile::TempDir;
 
 /// Flags that every C program must pass without a warning.
 pub const STRICT: &[&str] = &["-pedantic", "-Wall", "-Wextra", "-Werror"];
+
+/// The dialects of C that planners are written in.
+pub const C_STANDARDS: &[&str] =
+    &["-ansi", "-std=c89", "-std=gnu89", "-std=c99", "-std=gnu99", "-std=c11", "-std=c17", "-std=c2x", "-std=gnu2x"];
+
+/// The dialects of C++ that planners are written in.
+pub const CPP_STANDARDS: &[&str] =
+    &["-std=c++98", "-std=c++11", "-std=c++14", "-std=c++17", "-std=c++20", "-std=c++2b", "-std=gnu++2b"];
 
 /// The compiler of C programs where one is enough: gcc, or else the one that Rust links with.
 pub fn c_compiler() -> &'static str {
@@ -57,6 +66,13 @@ impl Bench {
         self.folder.path()
     }
 
+    /// Writes a source file into the scratch folder. The path serves as a source of the functions below.
+    pub fn write(&self, name: &str, text: &str) -> String {
+        let path = self.path().join(name);
+        fs::write(&path, text).expect("a source file");
+        path.to_str().expect("the path is text").to_string()
+    }
+
     /// Compiles without linking; the compiler's messages where it refuses.
     pub fn check(&self, compiler: &str, flags: &[&str], source: &str) -> Result<(), String> {
         let mut command = self.compiler(compiler, flags);
@@ -65,7 +81,8 @@ impl Bench {
 
     /// Compiles and links; the path of the program.
     pub fn build(&self, compiler: &str, flags: &[&str], sources: &[&str]) -> PathBuf {
-        let program = self.path().join(sources[0].replace('.', "_"));
+        let name = source_file(sources[0]).file_name().expect("a file").to_string_lossy().replace('.', "_");
+        let program = self.path().join(name);
         let mut command = self.compiler(compiler, flags);
         command.args(sources.iter().map(|source| source_file(source))).arg("-o").arg(&program);
         command.arg("-L").arg(self.path()).arg(format!("-Wl,-rpath,{}", self.path().display()));
@@ -120,6 +137,7 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// A path of its own stays what it is.
 fn source_file(source: &str) -> PathBuf {
     root().join("tests/c").join(source)
 }

@@ -21,7 +21,6 @@ int main(void)
     REFUSED(SendPos(1, 0));
     REFUSED(SendPos(1, (float *)NULL));
     REFUSED(SendPos(1, (double *)NULL));
-    REFUSED(SendPos(1, (void *)NULL));
     REFUSED(SendKx(1, NULL));
     REFUSED(SendKx(1, 0));
     REFUSED(SendKx(1, (double (*)[3])NULL));

@@ -1,0 +1,65 @@
+/* A planner that has functions, types and numbers of its own named like the library's later calls. It knows the five calls
+   of 1990 and HandError. Where the library took one of these functions for its own, the planner would end here. */
+#define SUN2XP_FIVE_CALLS
+#include "Sun2Xp.h"
+#include "check.h"
+
+#define FAULT_WATCHDOG "a guard dog"
+
+enum { FINGER_RUNNING = 77, TIMING_AGE = 78 };
+
+struct Fault { const char *Text; };
+struct FingerStatus { short Size; };
+struct FingerTiming { short Size; };
+struct FingerTip { short Tip; };
+struct FingerRecord { short Pos; };
+
+/* Objects in the place of functions do most damage: they cannot be called. */
+int GetRecord = 1, ResetTiming = 2;
+
+#define OWN(Name) \
+    double Name(double Number) \
+    { \
+        fprintf(stderr, "%s of the planner was called with %g\n", #Name, Number); \
+        abort(); \
+    }
+
+double AdjustFinger(double), FaultText(double), GetFault(double), GetStatus(double), GetTiming(double), GetTip(double);
+double IdentifyFinger(double), PushFinger(double), RecoverHand(double), SendContact(double), SendDamping(double);
+double SendTip(double), StopHand(double), WriteBlackBox(double), ZeroFinger(double);
+
+OWN(AdjustFinger)
+OWN(FaultText)
+OWN(GetFault)
+OWN(GetStatus)
+OWN(GetTiming)
+OWN(GetTip)
+OWN(IdentifyFinger)
+OWN(PushFinger)
+OWN(RecoverHand)
+OWN(SendContact)
+OWN(SendDamping)
+OWN(SendTip)
+OWN(StopHand)
+OWN(WriteBlackBox)
+OWN(ZeroFinger)
+
+int main(void)
+{
+    double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
+    float Sent[3] = {0.1f, 0.5f, 0.9f}, Pos[3];
+    int tries = 0;
+
+    CHECK(OpenHand() == 0);
+    CHECK(SendKx(1, Kx) == 0);
+    CHECK(SendPos(1, Sent) == 0);
+    do {
+        PAUSE_MS(100);
+        CHECK(GetPos(1, Pos) == 0);
+    } while (APART(Pos[0], Sent[0]) > 0.02f && ++tries < 100);
+    CHECK(tries < 100);
+    Sent[0] = 9;
+    CHECK(SendPos(1, Sent) == -1 && HandError()[0] != '\0');
+    CHECK(FINGER_RUNNING + TIMING_AGE + GetRecord + ResetTiming == 158 && FAULT_WATCHDOG[0] == 'a');
+    return CloseHand();
+}

@@ -1,0 +1,71 @@
+//! A planner that knows only the calls of 1990, and has functions, types and constants of its own under all later names.
+
+#[allow(dead_code)]
+mod c;
+
+use c::{Bench, C_STANDARDS, STRICT, c_compiler, c_compilers, library, root, said};
+use std::fs;
+use std::process::Command;
+
+/// The symbols of the library that such a planner knows.
+const KNOWN: &[&str] =
+    &["CloseHand", "GetPos", "GetPosD", "HandError", "OpenHand", "SendKx", "SendKxD", "SendPos", "SendPosD"];
+
+/// The library's symbols that such a planner may have itself.
+fn later_symbols() -> Vec<String> {
+    let run = Command::new("nm").args(["-D", "--defined-only"]).arg(library()).output().expect("nm can be started");
+    let listing = said(&run);
+    let exported = listing.lines().filter_map(|line| line.split_whitespace().nth(2));
+    exported.filter(|name| !KNOWN.contains(name)).map(str::to_string).collect()
+}
+
+fn uses(text: &str, name: &str) -> bool {
+    text.split(|letter: char| !letter.is_alphanumeric() && letter != '_').any(|word| word == name)
+}
+
+#[test]
+fn the_planner_has_all_the_later_names() {
+    let planner = fs::read_to_string(root().join("tests/c/five_calls.c")).expect("the planner");
+    let later = later_symbols();
+    assert!(later.iter().any(|name| name == "StopHand"), "{later:?}");
+    for name in &later {
+        assert!(uses(&planner, name), "tests/c/five_calls.c should have its own {name}");
+    }
+}
+
+#[test]
+fn its_own_names_compile_in_every_dialect() {
+    let bench = Bench::new();
+    for compiler in c_compilers() {
+        for standard in C_STANDARDS {
+            bench.check(compiler, &[STRICT, &[standard]].concat(), "five_calls.c").unwrap_or_else(|e| panic!("{e}"));
+        }
+    }
+}
+
+#[test]
+fn the_shared_library_does_not_take_them_for_its_own() {
+    Bench::new().succeed(STRICT, &["five_calls.c"]);
+    // What the library called by an exported name, the dynamic linker would bind to the planner's.
+    let run = Command::new("readelf").args(["-r", "-W"]).arg(library()).output().expect("readelf can be started");
+    let relocations = said(&run);
+    assert!(run.status.success() && uses(&relocations, "pthread_create"), "{relocations}");
+    for name in later_symbols() {
+        assert!(!uses(&relocations, &name), "the library refers to its own {name} by name");
+    }
+}
+
+/// As the manual says in chapter 5.
+#[test]
+fn the_static_library_gives_way_to_them() {
+    let bench = Bench::new();
+    let program = bench.path().join("static");
+    let mut compiler = Command::new(c_compiler());
+    compiler.arg("-I").arg(root().join("include")).args(["-D_DEFAULT_SOURCE", "-o"]).arg(&program);
+    compiler.arg(root().join("tests/c/five_calls.c")).arg(library().with_extension("a"));
+    let built = compiler.args(["-Wl,--allow-multiple-definition", "-lpthread", "-ldl", "-lm"]).output();
+    let built = built.expect("the compiler can be started");
+    assert!(built.status.success(), "{}", said(&built));
+    let run = bench.run(Command::new(&program));
+    assert!(run.status.success(), "{}", said(&run));
+}

@@ -1,0 +1,98 @@
+//! The header in a planner that has macros of its own: it compiles whatever they are named, and they are left as they were.
+
+#[allow(dead_code)]
+mod c;
+
+use c::{Bench, C_STANDARDS, CPP_STANDARDS, STRICT, c_compilers, cpp_compilers, root};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::fs;
+
+/// Words of C in the declarations.
+const KEYWORDS: &[&str] =
+    &["char", "class", "const", "double", "extern", "float", "inline", "int", "long", "return", "struct", "template"];
+const MORE_KEYWORDS: &[&str] = &["reinterpret_cast", "unsigned", "void", "C"];
+
+/// Macros of the header itself. A planner that defines one too sees a compiler's complaint.
+const MACROS_OF_THE_HEADER: &[&str] = &["SendPos", "SendKx", "GetPos"];
+
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    let within = |letter: char| letter.is_alphanumeric() || letter == '_';
+    text.split(move |letter| !within(letter)).filter(|word| word.starts_with(|letter: char| letter.is_alphabetic()))
+}
+
+/// Every name that stands in a declaration of the header, or in the declaration that heads an entry of its manual.
+fn names() -> BTreeSet<String> {
+    let header = fs::read_to_string(root().join("include/Sun2Xp.h")).expect("the header");
+    let mut names = BTreeSet::new();
+    let (mut manual, mut continued) = (false, false);
+    for line in header.lines() {
+        let begins = line.trim_start().starts_with("/*");
+        manual |= begins;
+        let entry = line.starts_with("     int ") || line.starts_with("     const char *");
+        let directive = continued || line.starts_with('#');
+        if (manual && entry) || (!manual && !directive) {
+            let declaration = line.split_once(';').map_or(line, |(declaration, _)| declaration);
+            names.extend(words(declaration).map(str::to_string));
+        }
+        continued = directive && line.ends_with('\\');
+        manual &= !line.contains("*/");
+    }
+    let own = |name: &String| {
+        let name = name.as_str();
+        KEYWORDS.contains(&name)
+            || MORE_KEYWORDS.contains(&name)
+            || MACROS_OF_THE_HEADER.contains(&name)
+            || name.to_uppercase().starts_with("SUN2XP")
+    };
+    names.retain(|name| !own(name));
+    names
+}
+
+#[test]
+fn every_name_of_the_header_may_be_a_macro() {
+    let names = names();
+    assert!(
+        ["Pos", "Kx", "K", "D", "Tip", "Status", "Size", "Fault", "GetTip", "i"].iter().all(|n| names.contains(*n))
+    );
+    let mut planner = String::new();
+    for name in &names {
+        writeln!(planner, "#define {name} )this macro is in the way(").expect("a String grows");
+    }
+    planner.push_str("#include \"Sun2Xp.h\"\n");
+    for name in &names {
+        writeln!(planner, "#ifndef {name}\n#error \"{name} is no macro any more\"\n#endif\n#undef {name}")
+            .expect("a String grows");
+    }
+    planner.push_str("int planner(void);\nint planner(void)\n{\n    float Pos[3];\n");
+    planner.push_str("    return OpenHand() + SendPos(1, Pos) + SendKx(1, Pos) + GetPos(1, Pos) + CloseHand();\n}\n");
+
+    let bench = Bench::new();
+    let sources = [bench.write("every.c", &planner), bench.write("every.cpp", &planner)];
+    for mode in [&[][..], &["-DSUN2XP_REAL=float"], &["-DSUN2XP_NO_GENERIC"], &["-DSUN2XP_FIVE_CALLS"]] {
+        in_every_dialect(&bench, mode, &sources);
+    }
+}
+
+#[test]
+fn a_planner_with_a_window_compiles() {
+    let bench = Bench::new();
+    let text = fs::read_to_string(root().join("tests/c/x11.c")).expect("the planner");
+    let folder = format!("-I{}", root().join("tests/c").display());
+    let sources = [bench.write("x11.c", &text), bench.write("x11.cpp", &text)];
+    in_every_dialect(&bench, &[&folder], &sources);
+    in_every_dialect(&bench, &[&folder, "-DWINDOW_LAST"], &sources);
+}
+
+/// `sources`: the same in C and in C++.
+fn in_every_dialect(bench: &Bench, flags: &[&str], sources: &[String; 2]) {
+    let languages = [(c_compilers(), C_STANDARDS), (cpp_compilers(), CPP_STANDARDS)];
+    for ((compilers, standards), source) in languages.into_iter().zip(sources) {
+        for compiler in compilers {
+            for standard in standards {
+                let flags = [STRICT, flags, &[standard]].concat();
+                bench.check(compiler, &flags, source).unwrap_or_else(|messages| panic!("{messages}"));
+            }
+        }
+    }
+}
