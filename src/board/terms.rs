@@ -5,6 +5,12 @@ use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState};
 use nalgebra::Vector4;
 use thiserror::Error;
 
+/// A board's torque unit is this part of a motor's torque limit at most: rounding takes as much off the limit.
+const COARSEST_UNIT: f64 = 0.01;
+
+/// uN m in one N cm.
+const MICRO_PER_CENTI: f64 = 1e4;
+
 /// The terms in physical units; a board's [`Identity`] turns them into a [`Configure`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terms {
@@ -52,6 +58,19 @@ pub enum TermsError {
     /// The board's torque unit is zero.
     #[error("it names 0 as its torque unit: its firmware is wrong")]
     TorqueUnit,
+    /// The board's torque unit is too coarse for the configured limits.
+    #[error(
+        "its torque unit is {unit:.3} N cm, more than 1 % of the torque limit of motor {motor}, {limit:.3} N cm: update its firmware to \
+         a finer unit, or connect the board that the motor is meant for"
+    )]
+    CoarseUnit {
+        /// The board's unit, N cm.
+        unit: f64,
+        /// Which motor, 1 to 4.
+        motor: usize,
+        /// Its configured limit, N cm.
+        limit: f64,
+    },
 }
 
 impl Terms {
@@ -78,13 +97,16 @@ impl Terms {
         if self.end_state == EndState::Hold && !board.capabilities.has(Capabilities::HOLD) {
             return Err(TermsError::Hold);
         }
-        // Never negative: a limit below zero reads as zero.
-        let count = |torque: f64| board.torque_count(torque).max(0) as u16;
+        let unit = board.torque(1);
         let strongest = board.torque(board.torque_limit.min(i16::MAX as u16) as i16);
         for (index, &wanted) in self.torque_limits.iter().enumerate() {
-            // Compared in N cm, because counts saturate; half a unit for rounding.
-            if wanted > strongest + 0.5 * board.torque(1) {
-                return Err(TermsError::TorqueLimit { strongest, motor: index + 1, wanted });
+            let motor = index + 1;
+            // Compared in N cm, because counts saturate. What is left of a unit is rounded away.
+            if wanted >= strongest + unit || count(board, wanted) > board.torque_limit {
+                return Err(TermsError::TorqueLimit { strongest, motor, wanted });
+            }
+            if unit > COARSEST_UNIT * wanted {
+                return Err(TermsError::CoarseUnit { unit, motor, limit: wanted });
             }
         }
         Ok(Configure {
@@ -92,10 +114,21 @@ impl Terms {
             watchdog_ms: self.watchdog_ms,
             end_state: self.end_state,
             hold_time_ms: self.hold_time_ms,
-            hold_torque_limit: count(self.hold_torque_limit),
-            torque_limits: self.torque_limits.map(count).into(),
-            // 1 N cm = 10 000 uN m.
-            torque_constants: self.torque_constants.map(|constant| (constant * 1e4).round() as u32).into(),
+            hold_torque_limit: count(board, self.hold_torque_limit),
+            torque_limits: self.torque_limits.map(|limit| count(board, limit)).into(),
+            torque_constants: self.torque_constants.map(micro).into(),
         })
     }
+}
+
+/// A torque limit in the board's unit, rounded down. Never negative: a limit below zero reads as zero.
+fn count(board: &Identity, limit: f64) -> u16 {
+    board.torque_count(limit).max(0) as u16
+}
+
+/// A torque constant, N cm/A, in uN m/A, rounded up: the board divides a torque by it, and a larger one makes the current smaller.
+fn micro(constant: f64) -> u32 {
+    let nearest = (constant * MICRO_PER_CENTI).round();
+    let up = if nearest / MICRO_PER_CENTI < constant { nearest + 1.0 } else { nearest };
+    up as u32
 }

@@ -10,8 +10,8 @@ use sun2xp::board::protocol::Status;
 const HOLD: &str = "end_state = 'hold'\nhold_time_ms = 1500\nhold_torque_limit = 0.3\n";
 const HOLD_TIME: Duration = Duration::from_millis(1500);
 
-/// A little more than the limit, for its rounding to the board's unit.
-const MOST_HELD: f64 = 0.301;
+/// N cm, as in [`HOLD`].
+const MOST_HELD: f64 = 0.3;
 
 /// A C planner that has sent every finger somewhere; then it does what `ending` says.
 struct Planner {

@@ -127,15 +127,24 @@ impl Identity {
         fields.u32(self.capabilities.0);
     }
 
-    /// A torque in N cm as the board counts it: the nearest count, and the nearest that exists for one out of range. NaN
-    /// becomes 0.
+    /// A torque in N cm as the board counts it, rounded toward zero: what is within a limit stays within it. The nearest
+    /// count that exists for one out of range. NaN becomes 0.
     pub fn torque_count(&self, newton_centimetres: f64) -> i16 {
-        // 1 N cm = 1e7 nN m. `as` saturates, and turns NaN into 0.
-        (newton_centimetres * 1e7 / f64::from(self.torque_unit)).round() as i16
+        let exact = newton_centimetres * NANO_PER_CENTI / f64::from(self.torque_unit);
+        // `as` turns NaN into 0. -32 768 is no torque that a board has, and has no positive counterpart.
+        let nearest = exact.round().clamp(-f64::from(i16::MAX), f64::from(i16::MAX)) as i16;
+        match self.torque(nearest).abs() > newton_centimetres.abs() {
+            true => nearest - nearest.signum(),
+            false => nearest,
+        }
     }
 
     /// A torque count in N cm.
     pub fn torque(&self, count: i16) -> f64 {
-        f64::from(count) * f64::from(self.torque_unit) * 1e-7
+        // The product is exact; so the quotient is the number that a configuration with as many decimals means.
+        f64::from(count) * f64::from(self.torque_unit) / NANO_PER_CENTI
     }
 }
+
+/// nN m in one N cm.
+const NANO_PER_CENTI: f64 = 1e7;

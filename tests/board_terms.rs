@@ -1,0 +1,120 @@
+//! What a board is told in its own units: no limit is ever exceeded by rounding.
+
+use nalgebra::Vector4;
+use proptest::prelude::*;
+use sun2xp::board::protocol::{Capabilities, Configure, FirmwareVersion, Identity, VERSION};
+use sun2xp::board::{LinkError, Terms, TermsError};
+use sun2xp::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState};
+
+/// A board with this torque unit, nN m, and the largest torque that a Command can carry.
+fn board(torque_unit: u32) -> Identity {
+    Identity {
+        version: VERSION,
+        addresses: 2,
+        board_kind: 0x8000,
+        unique_number: [1; 12],
+        firmware: FirmwareVersion([1, 0, 0]),
+        counts_per_revolution: 2000,
+        gauge_bits: 12,
+        torque_unit,
+        torque_limit: 32_767,
+        shortest_watchdog_ms: 2,
+        capabilities: Capabilities::HOLD,
+    }
+}
+
+fn terms(torque_limit: f64, hold_torque_limit: f64, torque_constant: f64) -> Terms {
+    let hand = ConfiguredHand { end_state: EndState::Hold, hold_torque_limit, ..Default::default() };
+    Terms {
+        torque_limits: Vector4::repeat(torque_limit),
+        torque_constants: Vector4::repeat(torque_constant),
+        ..Terms::new(&hand, &ConfiguredFinger::default())
+    }
+}
+
+/// N cm. Done in whole nN m, so that it says what the board does and not how the library computes it.
+fn newton_centimetres(count: i64, unit: u32) -> f64 {
+    (count * i64::from(unit)) as f64 / 1e7
+}
+
+#[test]
+fn a_unit_of_which_the_limit_is_half_is_refused() {
+    // 0.54 units would be one unit if they were rounded to the nearest: 1.85 times the limit.
+    let unit = (4.75e7f64 / 0.54) as u32;
+    let error = terms(4.75, 1.0, 2.34).configure(&board(unit)).expect_err("too coarse");
+    assert!(matches!(error, TermsError::CoarseUnit { motor: 1, .. }), "{error}");
+    let text = LinkError::from(error).to_string();
+    for part in ["8.796 N cm", "1 % of the torque limit", "motor 1", "4.750 N cm", "firmware"] {
+        assert!(text.contains(part), "{part:?} is not in: {text}");
+    }
+}
+
+#[test]
+fn the_coarsest_unit_that_is_taken_is_a_hundredth_of_the_smallest_limit() {
+    let mut terms = terms(4.75, 1.0, 2.34);
+    terms.torque_limits[2] = 2.0;
+    assert!(terms.configure(&board(200_000)).is_ok());
+    let error = terms.configure(&board(200_001)).expect_err("too coarse");
+    assert!(matches!(error, TermsError::CoarseUnit { motor: 3, .. }), "{error}");
+}
+
+/// What is a whole number of units is not rounded at all.
+#[test]
+fn whole_numbers_of_units_are_kept() {
+    let told = terms(4.75, 0.5, 2.34).configure(&board(2000)).expect("good terms");
+    assert_eq!((told.torque_limits, told.hold_torque_limit, told.torque_constants), ([23_750; 4], 2500, [23_400; 4]));
+    for count in -32_767..=32_767 {
+        for unit in [1, 3, 158, 1584, 2000, 475_000] {
+            assert_eq!(board(unit).torque_count(newton_centimetres(count.into(), unit)), count, "{unit} nN m");
+        }
+    }
+}
+
+#[test]
+fn a_limit_beyond_the_boards_is_refused() {
+    let weak = Identity { torque_limit: 23_749, ..board(2000) };
+    let error = terms(4.75, 1.0, 2.34).configure(&weak).expect_err("too strong");
+    assert!(matches!(error, TermsError::TorqueLimit { motor: 1, .. }), "{error}");
+    // Far beyond, where counts saturate.
+    let error = terms(5000.0, 1.0, 2.34).configure(&board(2000)).expect_err("too strong");
+    assert!(matches!(error, TermsError::TorqueLimit { motor: 1, .. }), "{error}");
+    // Less than one unit beyond: the board is told what it can.
+    let told = terms(4.7501, 1.0, 2.34).configure(&Identity { torque_limit: 23_750, ..board(2000) });
+    assert_eq!(told.expect("good terms").torque_limits, [23_750; 4]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn no_torque_is_larger_for_being_rounded(torque in -6000.0..6000.0f64, unit in 1u32..100_000_000) {
+        let count = i64::from(board(unit).torque_count(torque));
+        let told = newton_centimetres(count, unit);
+        prop_assert!(told.abs() <= torque.abs() && told * torque >= 0.0, "{torque} N cm became {told}");
+        let saturated = count.abs() == 32_767;
+        let next = newton_centimetres(count.abs() + 1, unit);
+        prop_assert!(saturated || torque.abs() < next, "{torque} N cm became {told}, though {next} is not too much");
+    }
+
+    #[test]
+    fn no_limit_is_exceeded(
+        limit in 0.001..6000.0f64, hold in 0.0..1000.0f64, constant in 0.001..10_000.0f64, parts in 100.0..30_000.0f64,
+    ) {
+        // At least 1 nN m; and a limit of up to so many units.
+        let unit = ((limit * 1e7 / parts) as u32).max(1);
+        match terms(limit, hold, constant).configure(&board(unit)) {
+            Ok(Configure { torque_limits: [told, ..], hold_torque_limit, torque_constants: [constant_told, ..], .. }) => {
+                let told = newton_centimetres(told.into(), unit);
+                prop_assert!(told <= limit && told >= 0.99 * limit, "{limit} N cm became {told}");
+                prop_assert!(newton_centimetres(hold_torque_limit.into(), unit) <= hold);
+                // The board divides by it to get a current: a larger one makes the torque smaller.
+                let constant_told = f64::from(constant_told) / 1e4;
+                prop_assert!(constant_told >= constant && constant_told < constant + 1.001e-4);
+            }
+            Err(error) => {
+                let coarse = f64::from(unit) > 0.01 * limit * 1e7;
+                prop_assert!(coarse && matches!(error, TermsError::CoarseUnit { .. }), "{error}");
+            }
+        }
+    }
+}
