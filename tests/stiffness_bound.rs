@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::process::Command;
+use sun2xp::control::AdmissibleDamping;
 use sun2xp::hand;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 use sun2xp::stability::{Limit, OneCycleMap, Rest, Search};
@@ -36,7 +37,7 @@ const RATES: usize = 40;
 /// At each rate, beside the pose that carries least: tips 3 cm and more from the axis of joint 0, which holds nothing.
 const POSES: usize = 4;
 
-/// At the Kx that a finger begins with and at its default bound.
+/// At the Kx that a finger begins with and at its default bound, with the least, the controller's own and the most damping.
 fn stable_at_every_rate(scheme: Scheme) {
     let finger = finger(scheme);
     let links = finger.links();
@@ -52,13 +53,16 @@ fn stable_at_every_rate(scheme: Scheme) {
         for joints in poses.into_iter().chain([stretched]) {
             for stiffness in [3.0, finger.stiffness_bound(rate)] {
                 let deflection = Vector3::from_fn(|_, _| 0.01 * (part() + 0.5));
-                let rest = Rest { joints, deflection, stiffness: Matrix3::identity() * stiffness };
-                let largest = map.largest_eigenvalue(&rest);
-                assert!(
-                    largest.is_some_and(|modulus| modulus < 1.0),
-                    "{scheme:?} at {rate:.1} Hz, {stiffness} N/cm, {:.1?} degrees: {largest:?}",
-                    joints.map(f64::to_degrees).as_slice()
-                );
+                let (least, most) = AdmissibleDamping::new(&finger, rate).range(stiffness);
+                for damping in [least, 1.0, most] {
+                    let rest = Rest { joints, deflection, stiffness: Matrix3::identity() * stiffness, damping };
+                    let largest = map.largest_eigenvalue(&rest);
+                    assert!(
+                        largest.is_some_and(|modulus| modulus < 1.0),
+                        "{scheme:?} at {rate:.1} Hz, {stiffness} N/cm, damping {damping}, {:.1?} degrees: {largest:?}",
+                        joints.map(f64::to_degrees).as_slice()
+                    );
+                }
             }
         }
     }
@@ -91,6 +95,7 @@ fn the_map_is_that_of_the_rate_that_was_asked_for() {
         joints: Vector3::new(0.1, 0.5, 1.0),
         deflection: Vector3::new(0.01, 0.01, 0.01),
         stiffness: Matrix3::identity() * 3.0,
+        damping: 1.0,
     };
     let largest = |rate| OneCycleMap::new(&finger(Scheme::Figure10), rate).unwrap().largest_eigenvalue(&rest).unwrap();
     let [lower, asked, higher] = [10_000.0 / 14.0, 740.0, 10_000.0 / 13.0].map(largest);

@@ -3,6 +3,7 @@
 //!
 //! One file is one box of Figure 9 (or of Figures 10 and 11), or one part of the state feedback that can stand in their place; [`Controller::cycle`] connects them.
 
+mod admissible_damping;
 mod admissible_stiffness;
 pub mod calibration;
 mod cycle;
@@ -41,6 +42,7 @@ mod tension_integral;
 mod transition;
 mod usable;
 
+pub use admissible_damping::AdmissibleDamping;
 pub use cycle::{Controller, State};
 pub use inverse_kinematics::{InverseKinematics, OutOfReach};
 pub use joint_stiffness::JointStiffness;

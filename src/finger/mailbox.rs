@@ -10,6 +10,7 @@ use crate::finger::{Fault, Losses, Warnings};
 use crate::realtime::Memory;
 use nalgebra::Vector3;
 use parking_lot::Mutex;
+use std::convert::Infallible;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -210,15 +211,29 @@ impl Mailbox {
     /// # Errors
     /// The fault; nothing is sent then.
     pub fn send(&self, change: impl FnOnce(&mut SetPoint)) -> Result<(), Fault> {
+        let sent = self.try_send(|set_point| {
+            change(set_point);
+            Ok::<_, Infallible>(())
+        });
+        sent.map(|Ok(())| ())
+    }
+
+    /// The same with a change that may refuse the set point that it starts from.
+    ///
+    /// # Errors
+    /// The fault, or inside it what the change refuses; nothing is sent then.
+    pub fn try_send<E>(&self, change: impl FnOnce(&mut SetPoint) -> Result<(), E>) -> Result<Result<(), E>, Fault> {
         let mut planners = self.planners.lock();
         if let Stage::Faulted(fault) = planners.reports.read().stage {
             return Err(fault);
         }
         let mut sent = planners.sent();
-        change(&mut sent.set_point);
+        if let Err(refusal) = change(&mut sent.set_point) {
+            return Ok(Err(refusal));
+        }
         planners.sent = sent;
         planners.set_points.write(sent);
-        Ok(())
+        Ok(Ok(()))
     }
 
     /// The set point that was sent last; where none was since the finger became a spring, the one it holds.

@@ -70,13 +70,15 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     let joints = changed.joints(sent.joints.into())?;
     let contact = Contact::general(&sent.stiffness, &Matrix6::identity());
     let stiffness = changed.contact(&contact.map_err(|source| HandError::Contact { finger, source })?)?;
+    let mut admitted = SetPoint { joints, stiffness, ..sent };
+    changed.damping.admit(&mut admitted)?;
     let faulted = |fault| HandError::Faulted { finger, fault };
     member.mailbox.adjust(adjustable).map_err(faulted)?;
-    if joints != sent.joints || stiffness != sent.stiffness {
+    if admitted != sent {
         let clamp = |set_point: &mut SetPoint| {
             // Else the finger has begun anew meanwhile, and holds the pose it was found in.
             if *set_point == sent {
-                (set_point.joints, set_point.stiffness) = (joints, stiffness);
+                *set_point = admitted;
             }
         };
         member.mailbox.send(clamp).map_err(faulted)?;

@@ -2,12 +2,10 @@
 
 use crate::control::InverseKinematics;
 use crate::hand::HandError;
+use crate::hand::damping_admission::DampingAdmission;
 use crate::model::configuration::{Law, OutOfRange};
 use crate::model::{Contact, ContactError, Links, spring};
 use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};
-
-/// Damping that a planner may ask for, relative to the chosen one.
-const DAMPING: (f64, f64) = (0.2, 3.0);
 
 /// The limits of one finger, and what its tip is computed with.
 #[derive(Clone, Debug)]
@@ -23,6 +21,8 @@ pub(super) struct Admission {
     pub links: Links,
     /// R of eq. 14, cm.
     pub r: Matrix3x4<f64>,
+    /// The damping that goes with a stiffness.
+    pub damping: DampingAdmission,
     /// What SendPos makes of deflections.
     pub law: Law,
     /// Refuse or clamp.
@@ -103,16 +103,6 @@ impl Admission {
         }
     }
 
-    /// Damping relative to the chosen one.
-    pub fn damping(&self, ratio: f64) -> Result<f64, HandError> {
-        self.finite("Ratio", &[ratio])?;
-        let (low, high) = DAMPING;
-        if (ratio < low || ratio > high) && self.out_of_range == OutOfRange::Refuse {
-            return Err(HandError::Damping { finger: self.finger, ratio, low, high });
-        }
-        Ok(ratio.clamp(low, high))
-    }
-
     /// Refuses NaN and infinity: they must never reach the servo.
     pub fn finite(&self, what: &'static str, values: &[f64]) -> Result<(), HandError> {
         match values.iter().find(|value| !value.is_finite()) {
@@ -125,6 +115,8 @@ impl Admission {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::control::AdmissibleDamping;
+    use crate::model::configuration::ConfiguredFinger;
     use proptest::prelude::*;
 
     fn admission(out_of_range: OutOfRange) -> Admission {
@@ -137,6 +129,12 @@ mod tests {
             links,
             r: Matrix3x4::zeros(),
             stiffness_bound: 6.0,
+            damping: DampingAdmission {
+                finger: 2,
+                admissible: AdmissibleDamping::new(&ConfiguredFinger::default(), 1000.0),
+                lever: 4.0,
+                out_of_range,
+            },
             law: Law::Report,
             out_of_range,
         }
@@ -210,15 +208,6 @@ mod tests {
         assert!(matches!(refuse.contact(&contact(97.0)), Err(HandError::TooStiff { .. })));
         let clamped = clamp.contact(&contact(970.0)).expect("clamped");
         assert!((clamped - contact(96.0).stiffness()).amax() < 1e-10, "{clamped}");
-    }
-
-    #[test]
-    fn damping_has_its_range() {
-        let (refuse, clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
-        assert_eq!([0.2, 1.0, 3.0].map(|ratio| refuse.damping(ratio).expect("admissible")), [0.2, 1.0, 3.0]);
-        assert!(matches!(refuse.damping(0.19), Err(HandError::Damping { .. })));
-        assert!(matches!(clamp.damping(f64::NAN), Err(HandError::NotFinite { .. })));
-        assert_eq!((clamp.damping(0.0).expect("clamped"), clamp.damping(9.0).expect("clamped")), (0.2, 3.0));
     }
 
     #[test]

@@ -87,20 +87,27 @@ impl Dispatcher {
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
         self.send(finger, |admission| {
             let (joints, law) = (admission.joints(joints)?, admission.law);
-            Ok(move |set_point: &mut SetPoint| (set_point.joints, set_point.law) = (joints, law))
+            Ok(move |set_point: &mut SetPoint| {
+                (set_point.joints, set_point.law) = (joints, law);
+                Ok(())
+            })
         })
     }
 
     /// Kx, N/cm, row by row.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         self.send(finger, |admission| {
-            let stiffness = spatial(&admission.stiffness(rows)?);
-            Ok(move |set_point: &mut SetPoint| set_point.stiffness = stiffness)
+            let (stiffness, damping) = (spatial(&admission.stiffness(rows)?), admission.damping);
+            Ok(move |set_point: &mut SetPoint| {
+                set_point.stiffness = stiffness;
+                damping.admit(set_point)
+            })
         })
     }
 
-    /// Sends the change that `admit` lets through. Both are one step: limits do not change between them.
-    pub fn send<C: FnOnce(&mut SetPoint)>(
+    /// Sends the change that `admit` lets through. Both are one step: limits do not change between them. The change itself may still
+    /// refuse the set point that it starts from.
+    pub fn send<C: FnOnce(&mut SetPoint) -> Result<(), HandError>>(
         &self,
         finger: i32,
         admit: impl FnOnce(&Admission) -> Result<C, HandError>,
@@ -108,7 +115,7 @@ impl Dispatcher {
         let member = self.member(finger)?;
         let admission = member.admission.read();
         let change = admit(&admission)?;
-        member.mailbox.send(change).map_err(|fault| HandError::Faulted { finger, fault })
+        member.mailbox.try_send(change).map_err(|fault| HandError::Faulted { finger, fault })?
     }
 
     /// The newest report of a finger that is not faulted.

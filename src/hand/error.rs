@@ -111,18 +111,20 @@ pub enum HandError {
     NoSuchContact(i32),
     /// A damping ratio outside its range.
     #[error(
-        "the damping {ratio} of finger {finger} is outside {low} to {high}, relative to the damping that the controller \
-         chooses: stay inside, or set `hand.out_of_range = \"clamp\"`"
+        "the damping {ratio} of finger {finger} is outside {least:.2} to {most:.2}, the range in which a spring of {stiffness:.4} N/cm \
+         comes to rest: send a ratio inside the range or a softer Kx first, or set `hand.out_of_range = \"clamp\"`"
     )]
     Damping {
         /// 1 to 3.
         finger: i32,
-        /// What was asked.
+        /// Relative to the damping that the controller chooses.
         ratio: f64,
+        /// Largest eigenvalue of the stiffness that goes with it, N/cm.
+        stiffness: f64,
         /// Least.
-        low: f64,
+        least: f64,
         /// Most.
-        high: f64,
+        most: f64,
     },
     /// Keys to adjust that cannot be read.
     #[error("finger {finger}, line {line} of the keys to adjust: {reason}")]

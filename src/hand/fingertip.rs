@@ -37,7 +37,10 @@ impl Hand {
         let present = self.dispatcher.last_report(finger)?.cycle.joints;
         self.dispatcher.send(finger, |admission| {
             let joints = admission.tip(tip, &present)?;
-            Ok(move |set_point: &mut SetPoint| (set_point.joints, set_point.law) = (joints, Law::Exact))
+            Ok(move |set_point: &mut SetPoint| {
+                (set_point.joints, set_point.law) = (joints, Law::Exact);
+                Ok(())
+            })
         })
     }
 
@@ -45,23 +48,31 @@ impl Hand {
     /// the place of the Kx sent last, as a Kx takes its.
     ///
     /// # Errors
-    /// No such finger, stiffer than the bound, finger faulted. A rotation counts for the bound by how far it moves the last
+    /// No such finger, stiffer than the bound, too stiff for the damping sent last, finger faulted. A rotation counts for the bound by how far it moves the last
     /// joint: k N cm/rad as k / l2^2 N/cm.
     pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
         self.dispatcher.send(finger, |admission| {
-            let stiffness = admission.contact(&contact)?;
-            Ok(move |set_point: &mut SetPoint| set_point.stiffness = stiffness)
+            let (stiffness, damping) = (admission.contact(&contact)?, admission.damping);
+            Ok(move |set_point: &mut SetPoint| {
+                set_point.stiffness = stiffness;
+                damping.admit(set_point)
+            })
         })
     }
 
-    /// Damping of finger 1, 2 or 3 relative to what the controller chooses from the stiffness: 0.2 to 3, and 1 after open.
+    /// Damping of finger 1, 2 or 3 relative to what the controller chooses from the stiffness: 1 is that, and is in force after open.
+    /// The range depends on controller, rate and stiffness ([`AdmissibleDamping`](crate::control::AdmissibleDamping)).
     ///
     /// # Errors
-    /// No such finger, NaN or infinity, outside the range, finger faulted.
+    /// No such finger, NaN or infinity, outside the range of the stiffness sent last, finger faulted.
     pub fn send_damping(&self, finger: i32, ratio: f64) -> Result<(), HandError> {
         self.dispatcher.send(finger, |admission| {
-            let ratio = admission.damping(ratio)?;
-            Ok(move |set_point: &mut SetPoint| set_point.damping = ratio)
+            admission.finite("Ratio", &[ratio])?;
+            let damping = admission.damping;
+            Ok(move |set_point: &mut SetPoint| {
+                set_point.damping = ratio;
+                damping.admit(set_point)
+            })
         })
     }
 

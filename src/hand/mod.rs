@@ -8,6 +8,7 @@ mod black_box;
 mod calibrating;
 mod calibration_file;
 mod configuration_file;
+mod damping_admission;
 mod dispatcher;
 mod doctor;
 mod error;

@@ -2,11 +2,12 @@
 
 use crate::board::protocol::Status;
 use crate::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms, capacity};
-use crate::control::InverseKinematics;
+use crate::control::{AdmissibleDamping, InverseKinematics};
 use crate::finger::{Alarm, BlackBox, FingerServo, Mailbox, ServedPort, lending, stop_calls};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::announcement::say;
+use crate::hand::damping_admission::DampingAdmission;
 use crate::hand::recovery::{KnownBoard, Workshop};
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
 use crate::model::{Refusal, Shown};
@@ -189,15 +190,23 @@ fn shake_hands(
 pub(super) fn admission(configuration: &Configuration, index: usize) -> Admission {
     let finger = &configuration.fingers[index];
     let joint_limits = finger.joint_limits();
+    let (rate, out_of_range) = (configuration.hand.rate, configuration.hand.out_of_range);
+    let number = index as i32 + 1; // 1 to 3
     Admission {
-        finger: index as i32 + 1, // 1 to 3
+        finger: number,
         joint_limits,
         inverse_kinematics: InverseKinematics::new(finger.links(), joint_limits),
         links: finger.links(),
         r: finger.r(),
-        stiffness_bound: finger.stiffness_bound(configuration.hand.rate),
+        stiffness_bound: finger.stiffness_bound(rate),
+        damping: DampingAdmission {
+            finger: number,
+            admissible: AdmissibleDamping::new(finger, rate),
+            lever: finger.links().0[2],
+            out_of_range,
+        },
         law: finger.controller.law,
-        out_of_range: configuration.hand.out_of_range,
+        out_of_range,
     }
 }
 

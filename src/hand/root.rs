@@ -152,7 +152,8 @@ impl Hand {
     /// jump in torque: 95 % of the change is there after 50 ms.
     ///
     /// # Errors
-    /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, finger faulted.
+    /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, too stiff for the damping sent last,
+    /// finger faulted.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         self.dispatcher.send_stiffness(finger, rows)
     }

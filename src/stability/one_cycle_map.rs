@@ -39,6 +39,8 @@ pub struct Rest {
     pub deflection: Vector3<f64>,
     /// N/cm.
     pub stiffness: Matrix3<f64>,
+    /// Damping relative to what the controller chooses from the stiffness: 1 is that.
+    pub damping: f64,
 }
 
 /// A finger without Coulomb friction, exactly measured, that is what its controller believes it to be.
@@ -150,7 +152,7 @@ impl OneCycleMap {
             torques: tensions.component_mul(&self.tendons.radius),
             plant,
             state: self.controller.start(&Feedback { motor_counts, gauge_counts }),
-            activity: Activity::Follow(SetPoint { law: finger.controller.law, ..hard_finger }),
+            activity: Activity::Follow(SetPoint { law: finger.controller.law, damping: rest.damping, ..hard_finger }),
             report: Report::default(),
         }
     }

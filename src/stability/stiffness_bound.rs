@@ -1,6 +1,7 @@
 //! The largest Kx for which a finger is stable wherever it may be.
 
 use super::{OneCycleMap, Rest};
+use crate::control::AdmissibleDamping;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use rand_distr::{Distribution, UnitSphere};
@@ -64,20 +65,22 @@ pub enum Limit {
 
 impl Search {
     /// The bound of `finger` with its scheme and gains at `rate`, Hz: every sample of poses within the joint limits, of Kx with
-    /// random axes and eigenvalues from 1 N/cm to the bound, and of loads that deflect the tip by up to 1 mm, is stable at it. The servo
+    /// random axes and eigenvalues from 1 N/cm to the bound, of loads that deflect the tip by up to 1 mm, and of the least, the
+    /// controller's own and the most damping that such a Kx admits, is stable at it. The servo
     /// scales Kx down where the tendons of a pose carry less, and so it does here.
     ///
     /// # Errors
     /// The key that makes no controller, or `controller` where a pose is unstable with next to no stiffness.
     pub fn bound(&self, finger: &ConfiguredFinger, rate: f64) -> Result<StiffnessBound, Unusable> {
         let map = OneCycleMap::new(finger, rate)?;
+        let admissible = AdmissibleDamping::new(finger, rate);
         let links = finger.links();
         let (clear, near): (Vec<Rest>, Vec<Rest>) =
             self.rests(finger).into_iter().partition(|rest| links.reach(&rest.joints).abs() >= CLEAR_OF_AXIS);
 
         // What each pose carries, N/cm: beyond it, as much as is asked is scaled away.
         const BEYOND: f64 = 1e3;
-        let isotropic = |rest: &Rest| Rest { stiffness: Matrix3::identity() * BEYOND, ..*rest };
+        let isotropic = |rest: &Rest| Rest { stiffness: Matrix3::identity() * BEYOND, damping: 1.0, ..*rest };
         let carried = in_parallel(&clear, |rest| BEYOND * map.scale(&isotropic(rest)));
         let Some(softest) = (0..clear.len()).min_by(|&one, &other| carried[one].total_cmp(&carried[other])) else {
             let reason = "leave no pose with the tip off the axis of joint 0".into();
@@ -89,7 +92,9 @@ impl Search {
         let stable = |rest: &Rest, bound: f64| {
             let (stiffest, softest) = (bound * GRID, SOFTEST.min(bound * GRID));
             let stiffness = Matrix3::identity() * softest + rest.stiffness * (stiffest - softest);
-            let rest = Rest { stiffness, ..*rest };
+            // Samples below, at and above a ratio of 1 take turns: see `rests`.
+            let (least, most) = admissible.range(stiffness.symmetric_eigenvalues().max());
+            let rest = Rest { stiffness, damping: rest.damping.clamp(least, most), ..*rest };
             map.largest_eigenvalue(&rest).is_some_and(|modulus| modulus < 1.0 + ROUNDING)
         };
         loop {
@@ -134,7 +139,8 @@ impl Search {
     }
 
     /// Rests anywhere within the joint limits. Where Kx is between softest and stiffest: its eigenvalues are 0 to 1, the largest
-    /// is 1 in three of four, one of them isotropic, and anything in the fourth.
+    /// is 1 in three of four, one of them isotropic, and anything in the fourth. The relative damping is none, 1 or without limit in turn,
+    /// to be clamped to what the stiffness admits.
     fn rests(&self, finger: &ConfiguredFinger) -> Vec<Rest> {
         let mut random = Pcg64::seed_from_u64(self.seed);
         let (low, high) = finger.joint_limits();
@@ -154,7 +160,8 @@ impl Search {
                 let tip_way = (links.jacobian(&joints) * way).norm();
                 let size = (uniform(&mut random, 0.01, 0.1) / tip_way).min(0.03);
                 let stiffness = turn * Matrix3::from_diagonal(&principal) * turn.inverse();
-                Rest { joints, deflection: way * size, stiffness }
+                let damping = [1.0, 0.0, f64::INFINITY][number % 3];
+                Rest { joints, deflection: way * size, stiffness, damping }
             })
             .collect()
     }

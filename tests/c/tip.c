@@ -32,6 +32,7 @@ int main(void)
     struct { struct FingerTip Known; unsigned char Later[64]; } Larger;
     struct FingerTip *Tip = &Larger.Known, Untouched;
     double Wanted[3] = {1.0, -6.0, 8.0};
+    double Stiff[3][3] = {{6, 0, 0}, {0, 6, 0}, {0, 0, 6}};
     double Far[3] = {0.0, 0.0, 14.0}, Near[3] = {0.0, 0.0, 4.0}, Behind[3] = {9.0, -2.0, -6.0};
     double Soft[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
     double Hard[9] = {3, 0.5, 0, 0.5, 3, 0, 0, 0, 3}, Skewed[9] = {3, 0.5, 0, 0, 3, 0, 0, 0, 3};
@@ -89,10 +90,15 @@ int main(void)
     Soft[3][3] = 1000;
     REFUSED(SendContact(1, 4, &Soft[0][0], Normal), ERANGE, "bound");
 
-    CHECK(SendDamping(1, 0.5) == 0);
+    CHECK(SendDamping(1, 0.8) == 0);
+    CHECK(SendDamping(1, 1.5) == 0);
+    REFUSED(SendKx(1, Stiff), ERANGE, "0.94 to 1.18");
     CHECK(SendDamping(1, 1.0) == 0);
+    CHECK(SendKx(1, Stiff) == 0);
+    REFUSED(SendDamping(1, 1.5), ERANGE, "0.94 to 1.18");
+    CHECK(SendKx(1, Hard) == 0);
     REFUSED(SendDamping(4, 1.0), EINVAL, "1, 2 and 3");
-    REFUSED(SendDamping(1, 0.1), ERANGE, "0.2 to 3");
+    REFUSED(SendDamping(1, 0.1), ERANGE, "0.72 to 1.73");
     REFUSED(SendDamping(1, Nan[1]), EINVAL, "Ratio");
 
     REFUSED(AdjustFinger(4, "tendon.minimum = 6"), EINVAL, "1, 2 and 3");

@@ -2,6 +2,7 @@
 
 mod adjustment;
 mod behaviour;
+mod damping;
 mod figure11;
 mod limits;
 mod rig;
