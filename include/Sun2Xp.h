@@ -438,7 +438,8 @@ int SendPosD(int, const double *);
    ENODEV   no hand is open
    EINVAL   no such finger; an entry is NaN or infinite
    EDOM     Kx is not symmetric, or has a negative eigenvalue
-   ERANGE   Kx is stiffer than the bound (or it is clamped: hand.out_of_range)
+   ERANGE   Kx is stiffer than the bound, or too stiff for the ratio that SendDamping set
+            (or both are clamped: hand.out_of_range)
    EIO      the finger is faulted
    EPERM    forked child
 
@@ -1087,16 +1088,27 @@ int SendContact(int, int, const double *, const double *);
      int SendDamping(int i, double Ratio);
 
    i       finger, 1 to 3
-   Ratio   damping relative to what the controller chooses from the stiffness: 0.2 to
-           3; 1 is that, and is so after OpenHand
+   Ratio   damping relative to what the controller chooses from the stiffness. After
+           OpenHand it is 1
 
- Taken over without a jump in torque. Stays until it is sent again, whatever the
- stiffness.
+ The ratio changes without a jump in torque and stays until it is sent again. The range
+ depends on controller, rate and the largest eigenvalue k of the stiffness, N/cm, because
+ a finger with much less or much more damping does not come to rest:
+
+                          1000 Hz and more            below 1000 Hz
+   state feedback         0.40 + 0.09 k to            0.70 + 0.07 k to
+                          2.50 - 0.22 k               2.00 - 0.20 k
+   figures 9, 10, 11      1 to 2.50 - 0.22 k          1 to 2.00 - 0.20 k
+
+ On a finger with other links or tendons k is scaled by what its tendons carry. So the
+ range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm by default. 1 is always in
+ it. SendKx and SendContact refuse a stiffness that the ratio sent last does not go with.
 
  Returns 0, or -1 with
    ENODEV   no hand is open
    EINVAL   no such finger; Ratio is NaN or infinite
-   ERANGE   Ratio is outside its range (or it is clamped: hand.out_of_range)
+   ERANGE   Ratio is outside its range; HandError says which (or it is clamped:
+            hand.out_of_range)
    EIO      the finger is faulted
    EPERM    forked child
 

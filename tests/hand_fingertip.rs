@@ -101,6 +101,12 @@ fn an_adjustment_is_taken_over_whole_or_not_at_all() {
     taken_in(&hand, 1);
     assert_eq!(hand.report(1).expect("report").set_point, before.set_point);
     assert!(hand.report(1).expect("report").cycle.desired_tensions.min() > 9.0 - 1e-9);
+    // Softer tendons carry the stiffness sent last with less damping only.
+    hand.adjust(1, "controller.scheme = 'state feedback'").expect("adjusted");
+    hand.send_damping(1, 1.8).expect("sent");
+    let damped = hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]");
+    assert!(matches!(damped, Err(HandError::Damping { .. })), "{damped:?}");
+    hand.send_damping(1, 1.0).expect("sent");
     // New limits are in force at once; the other fingers keep theirs.
     hand.adjust(1, "joints.maximum_degrees = [60, 40, 120]").expect("adjusted");
     assert!(matches!(hand.send_position(1, [0.0, 0.8, 1.0]), Err(HandError::BeyondJointLimit { .. })));

@@ -171,7 +171,8 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 ///                          2.50 - 0.22 k               2.00 - 0.20 k
 ///   figures 9, 10, 11      1 to 2.50 - 0.22 k          1 to 2.00 - 0.20 k
 ///
-/// So it is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm by default. 1 is always in
+/// On a finger with other links or tendons k is scaled by what its tendons carry. So the
+/// range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm by default. 1 is always in
 /// it. SendKx and SendContact refuse a stiffness that the ratio sent last does not go with.
 ///
 /// Returns 0, or -1 with
