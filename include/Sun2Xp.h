@@ -177,6 +177,14 @@
        4. sun2xp/sun2xp.toml in the folders of $XDG_CONFIG_DIRS, or /etc/xdg
        5. no file: the simulated hand, announced in one line on standard error
 
+   A finger whose port the file does not name is simulated, and announced too; with
+   port = "simulated" it is not announced. The file must be a regular file of at most
+   1 MiB.
+
+   A program that is setuid or setgid, or whose file has capabilities, does not trust
+   its environment or its working directory, which belong to its caller. It reads only
+   /etc/xdg/sun2xp/sun2xp.toml; where SUN2XP_CONFIG is set, OpenHand fails with EACCES.
+
    The file is TOML: [hand], [finger] for all fingers, [finger.1] to [finger.3] for
    one. All has defaults; an unknown key is refused, with file, line and reason:
 

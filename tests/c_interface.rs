@@ -366,6 +366,26 @@ fn the_simulated_hand_is_announced_in_one_line() {
 }
 
 #[test]
+fn fingers_that_no_file_gives_a_port_are_announced_in_one_line() {
+    for (configuration, announced) in [
+        ("", Some("for any finger: the whole hand is simulated")),
+        ("[finger.1]\nport = \"simulated\"\n", Some("for fingers 2 and 3: they are simulated")),
+        ("[finger]\nport = \"simulated\"\n", None),
+    ] {
+        let (status, _, printed) = opened_with(configuration);
+        assert_eq!(status, Some(0), "{printed}");
+        let lines: Vec<&str> = printed.lines().filter(|line| line.contains("simulated")).collect();
+        assert_eq!(lines.len(), usize::from(announced.is_some()), "{configuration}: {printed}");
+        for line in lines {
+            assert!(
+                line.contains("named.toml names no port ") && line.contains(announced.unwrap_or_default()),
+                "{line}"
+            );
+        }
+    }
+}
+
+#[test]
 fn the_library_exports_the_calls_and_nothing_else() {
     let run = Command::new("nm").args(["-D", "--defined-only"]).arg(library()).output().expect("nm can be started");
     let listing = said(&run);

@@ -28,7 +28,7 @@ pub(super) fn open() -> Result<(), Refusal> {
     }
     process::watch();
     let configured = hand::configured()?;
-    refusal::set_printing(configured.0.hand.print_refusals);
+    refusal::set_printing(configured.configuration.hand.print_refusals);
     let hand = Hand::open_as(configured)?;
     *HAND.write() = Some(hand);
     Ok(())

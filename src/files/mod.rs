@@ -1,9 +1,11 @@
 //! Files on disk, handled so that no path that a person or a program names can hang the library or exhaust its memory,
 //! and so that no failure and no other process destroys what is in a file.
 
+mod privileges;
 mod regular;
 mod replace;
 
+pub use privileges::raised_privileges;
 pub use regular::{open_regular_file, read_regular_file};
 pub use replace::{create_file, replace_file};
 

@@ -192,7 +192,7 @@ mod tests {
         for (keys, place, word) in [
             ("tendon.minimum = 6\ntendon.minimun = 5", 2, "minimun"),
             ("\n\ntendon.minimum = ", 3, ""),
-            ("controller.tension_gain = 'much'", 1, "controller.tension_gain: must be a number, not a text"),
+            ("controller.tension_gain = 'much'", 1, "controller.tension_gain: must be a number, not the text \"much\""),
             ("\"tendon\\n\" = 1", 1, "unknown key `tendon\\n`"),
             ("\ntendon.stiffness = [300, 300, 300, 300, 300]", 2, "tendon.stiffness: has 5 entries, and must have 4"),
         ] {

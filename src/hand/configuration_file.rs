@@ -1,14 +1,14 @@
 //! Finds the configuration file and turns it into a [`Configuration`], naming file, line and reason where it cannot.
 
+mod place;
 mod text;
 mod values;
 mod wrong;
 
-use crate::files::read_regular_file;
+use crate::files::{raised_privileges, read_regular_file};
 use crate::hand::HandError;
-use crate::model::configuration::Configuration;
-use etcetera::BaseStrategy;
-use std::env;
+use crate::hand::announcement::say;
+use crate::model::configuration::{Configuration, FINGERS};
 use std::path::{Path, PathBuf};
 pub(super) use text::overlay;
 pub(super) use values::deserialize;
@@ -17,17 +17,31 @@ pub(super) use wrong::Wrong;
 /// The largest configuration file that is read, bytes: more than sixty times docs/sun2xp.toml, which names every key.
 const LARGEST: u64 = 1 << 20;
 
-/// The file that `SUN2XP_CONFIG` names, else `sun2xp.toml` in the working directory, else `sun2xp/sun2xp.toml` in the
-/// user's configuration folder, else in the system's (`XDG_CONFIG_DIRS`, or `/etc/xdg`); none of them: no path, and the
-/// simulated hand. An empty `SUN2XP_CONFIG` counts as unset.
+/// A configuration, and where it comes from.
+#[derive(Clone, Debug)]
+pub struct Configured {
+    /// The hand.
+    pub configuration: Configuration,
+    /// The file; none where no file was found.
+    pub file: Option<PathBuf>,
+    /// Whether the file names the port of each finger.
+    ports_named: [bool; FINGERS],
+}
+
+/// Finds and reads the configuration file: the one that `SUN2XP_CONFIG` names, else `sun2xp.toml` in the working directory, else
+/// `sun2xp/sun2xp.toml` in the user's configuration folder, else in the system's (`XDG_CONFIG_DIRS`, or `/etc/xdg`). Where there is none
+/// of them, the hand is the simulated one. An empty `SUN2XP_CONFIG` counts as unset.
+///
+/// A program that is setuid or setgid, or whose file has capabilities, reads only `/etc/xdg/sun2xp/sun2xp.toml`: the environment and the
+/// working directory belong to whoever starts it.
 ///
 /// # Errors
-/// A file that is named or found and cannot be read or used. A missing file that `SUN2XP_CONFIG` names is an error too:
-/// a planner that believes it moves a real hand must never get the simulation instead.
-pub fn configured() -> Result<(Configuration, Option<PathBuf>), HandError> {
-    match locate() {
-        Some(path) => read(&path).map(|configuration| (configuration, Some(path))),
-        None => Ok((Configuration::default(), None)),
+/// A file that is named or found and cannot be read or used. A missing file that `SUN2XP_CONFIG` names is an error too, and so is
+/// `SUN2XP_CONFIG` where it is not trusted: a planner that believes it moves a real hand must never get the simulation instead.
+pub fn configured() -> Result<Configured, HandError> {
+    match place::locate()? {
+        Some(path) => Configured::read(&path),
+        None => Ok(Configured { configuration: Configuration::default(), file: None, ports_named: [false; FINGERS] }),
     }
 }
 
@@ -37,25 +51,86 @@ pub fn configured() -> Result<(Configuration, Option<PathBuf>), HandError> {
 /// [`HandError::Configuration`] with file, line and reason; [`HandError::ConfigurationFile`] where it cannot be read, is no regular file
 /// or is larger than 1 MiB.
 pub fn read(path: &Path) -> Result<Configuration, HandError> {
-    let text = read_regular_file(path, LARGEST)
-        .map_err(|source| HandError::ConfigurationFile { path: path.to_path_buf(), source })?;
-    text::parse(&text).map_err(|wrong| HandError::Configuration {
-        file: path.to_path_buf(),
-        line: wrong.line(&text),
-        reason: wrong.to_string(),
-    })
+    Configured::read(path).map(|configured| configured.configuration)
 }
 
-fn locate() -> Option<PathBuf> {
-    if let Some(named) = env::var_os("SUN2XP_CONFIG").filter(|name| !name.is_empty()) {
-        return Some(named.into());
+impl Configured {
+    /// Reads and checks one configuration file.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn read(path: &Path) -> Result<Self, HandError> {
+        let file = path.to_path_buf();
+        let text = read_regular_file(path, LARGEST)
+            .map_err(|source| HandError::ConfigurationFile { path: file.clone(), source })?;
+        match text::parse(&text) {
+            Ok((configuration, ports_named)) => Ok(Self { configuration, file: Some(file), ports_named }),
+            Err(wrong) => Err(HandError::Configuration { file, line: wrong.line(&text), reason: wrong.to_string() }),
+        }
     }
-    let user = etcetera::choose_base_strategy().ok().map(|strategy| strategy.config_dir());
-    let system = env::var_os("XDG_CONFIG_DIRS").filter(|folders| !folders.is_empty()).unwrap_or("/etc/xdg".into());
-    // The standard of these folders: relative ones are to be ignored.
-    let system = env::split_paths(&system).filter(|folder| folder.is_absolute()).collect::<Vec<_>>();
-    let folders = user.into_iter().chain(system);
-    let candidates = [PathBuf::from("sun2xp.toml")].into_iter().chain(folders.map(|f| f.join("sun2xp/sun2xp.toml")));
-    // A file that is there but unreadable is found, and refused: symlink_metadata needs no permission on the file itself.
-    candidates.into_iter().find(|path| path.symlink_metadata().is_ok())
+
+    /// Says in one line on standard error which fingers are simulated although nobody has asked for that.
+    pub fn announce(&self) {
+        if let Some(line) = self.announcement() {
+            say(&line);
+        }
+    }
+
+    fn announcement(&self) -> Option<String> {
+        let Some(file) = &self.file else {
+            return Some(match raised_privileges() {
+                false => {
+                    "no configuration file: this is the simulated hand (SUN2XP_CONFIG or sun2xp.toml names a real one)"
+                        .into()
+                }
+                true => format!(
+                    "no {}: this is the simulated hand (a program that is setuid or setgid, or has capabilities, reads no other \
+                     configuration file)",
+                    place::SYSTEM_FILE
+                ),
+            });
+        };
+        let unnamed: Vec<String> =
+            (1..=FINGERS).filter(|number| !self.ports_named[number - 1]).map(|number| number.to_string()).collect();
+        let fingers = match unnamed.len() {
+            0 => return None,
+            1 => format!("for finger {}: it is", unnamed[0]),
+            FINGERS => "for any finger: the whole hand is".into(),
+            _ => format!("for fingers {}: they are", unnamed.join(" and ")),
+        };
+        let file = file.display();
+        Some(format!("{file} names no port {fingers} simulated (port = \"simulated\" says so without this line)"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fingers_without_a_port_are_announced_by_their_numbers() {
+        for (text, expected) in [
+            ("", Some("for any finger: the whole hand is simulated")),
+            (
+                "[hand]\nrate = 500\n[finger.2.tendon]\nminimum = 6\n",
+                Some("for any finger: the whole hand is simulated"),
+            ),
+            ("[finger.1]\nport = '/dev/a'\n", Some("for fingers 2 and 3: they are simulated")),
+            ("[finger]\n1.port = '/dev/a'\n3.port = '/dev/b'\n", Some("for finger 2: it is simulated")),
+            ("[finger]\nport = 'simulated'\n", None),
+            ("[finger]\nport = 'simulated'\n[finger.1]\nport = '/dev/a'\n", None),
+            ("finger = { 1 = { port = 'simulated' }, 2.port = '/dev/b', 3.port = '/dev/c' }\n", None),
+        ] {
+            let (configuration, ports_named) = text::parse(text).expect("usable");
+            let configured = Configured { configuration, file: Some("the/file".into()), ports_named };
+            let announcement = configured.announcement();
+            match expected {
+                None => assert_eq!(announcement, None),
+                Some(expected) => {
+                    let said = announcement.unwrap_or_else(|| panic!("nothing of {text:?}"));
+                    assert!(said.starts_with(&format!("the/file names no port {expected} (")), "{said}");
+                }
+            }
+        }
+    }
 }

@@ -161,6 +161,17 @@ pub enum HandError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A configuration file that the environment names, in a program with raised privileges.
+    #[error(
+        "SUN2XP_CONFIG names {}, but this program is setuid or setgid, or has capabilities, and does not trust its environment: unset \
+         SUN2XP_CONFIG, and describe the hand in {system}", path.display()
+    )]
+    UntrustedEnvironment {
+        /// What the environment names.
+        path: PathBuf,
+        /// The file that is read instead.
+        system: &'static str,
+    },
     /// A configuration that cannot be used.
     #[error("{}{}: {reason}", file.display(), line.map(|line| format!(":{line}")).unwrap_or_default())]
     Configuration {
@@ -290,6 +301,7 @@ impl HandError {
             Self::Faulted { .. } | Self::ServoEnded(_) => libc::EIO,
             // Without an errno of the system's the file was read, but is no text.
             Self::ConfigurationFile { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
+            Self::UntrustedEnvironment { .. } => libc::EACCES,
             Self::System { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
             Self::NotRealTime { missing } => missing.errno(),
             Self::Link { source, .. } => source.errno(),

@@ -25,7 +25,7 @@ pub use crate::finger::stop_all;
 pub use black_box::save;
 pub use calibrating::{Calibrating, Standing};
 pub use calibration_file::store;
-pub use configuration_file::{configured, read};
+pub use configuration_file::{Configured, configured, read};
 pub use doctor::{Finding, Verdict, examine};
 pub use error::HandError;
 pub use faults::FingerFault;

@@ -3,12 +3,11 @@
 use crate::board::{SimulatedFinger, SimulatedPort};
 use crate::control::calibration::Verdict;
 use crate::finger::{FingerReport, Losses, Stage};
-use crate::hand::announcement::say;
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::opening::{Connected, check, check_folder, reach, simulate};
 use crate::hand::recovery::Recovery;
 use crate::hand::servo_threads::{Given, PortServo, start};
-use crate::hand::{HandError, configured};
+use crate::hand::{Configured, HandError, configured};
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{self, Distribution, now};
 use nalgebra::Vector3;
@@ -77,8 +76,8 @@ pub struct FingerStatus {
 }
 
 impl Hand {
-    /// Opens the hand that the configuration file describes; where there is no such file the simulated one, and says so in
-    /// one line on standard error.
+    /// Opens the hand that the configuration file describes; where there is no such file the simulated one. One line on standard error
+    /// says which fingers are simulated because no file names their ports.
     ///
     /// # Errors
     /// As [`Hand::open`], and a configuration file that cannot be read or used.
@@ -90,11 +89,9 @@ impl Hand {
     ///
     /// # Errors
     /// As [`Hand::open`].
-    pub fn open_as((configuration, file): (Configuration, Option<PathBuf>)) -> Result<Self, HandError> {
-        if file.is_none() {
-            say("no configuration file: this is the simulated hand (SUN2XP_CONFIG or sun2xp.toml names a real one)");
-        }
-        Self::open_from(configuration, file, false)
+    pub fn open_as(configured: Configured) -> Result<Self, HandError> {
+        configured.announce();
+        Self::open_from(configured.configuration, configured.file, false)
     }
 
     /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons and returns when every finger holds the

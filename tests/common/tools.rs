@@ -38,10 +38,16 @@ pub fn available(name: &str, part: &str) -> bool {
         env::var("CI").as_deref() != Ok("true"),
         "{name} is missing. Nothing may be left out with CI=true. Run tests/run, or as root: {remedy}"
     );
+    leave_out(part, &format!("{name} is missing ({remedy})"));
+    false
+}
+
+/// Notes that `part` of the current test is left out, and why. With CI=true the test fails.
+pub fn leave_out(part: &str, reason: &str) {
+    assert!(env::var("CI").as_deref() != Ok("true"), "{part}: {reason}. Nothing may be left out with CI=true");
     let thread = std::thread::current();
     let test = thread.name().filter(|&name| name != "main").unwrap_or("tests");
-    note(&format!("{}, {test}, {part}: {name} is missing ({remedy})", env!("CARGO_CRATE_NAME")));
-    false
+    note(&format!("{}, {test}, {part}: {reason}", env!("CARGO_CRATE_NAME")));
 }
 
 /// Prints a line, also where the test's output is captured, and keeps it for the list at the end.

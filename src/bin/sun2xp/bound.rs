@@ -54,7 +54,7 @@ fn rate(text: &str) -> Result<f64, String> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut configuration = match &arguments.config {
         Some(path) => hand::read(path)?,
-        None => hand::configured()?.0,
+        None => hand::configured()?.configuration,
     };
     if let Some(scheme) = arguments.scheme {
         configuration.fingers.iter_mut().for_each(|finger| finger.controller.scheme = Some(scheme));

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use sun2xp::control::calibration::{Findings, Progress, Step};
-use sun2xp::hand::{self, Hand};
+use sun2xp::hand::{Configured, Hand};
 use sun2xp::model::configuration::{ConfiguredFinger, FINGERS};
 
 /// Finds signs, zeros, friction and stiffness of the fingers and writes them into the configuration file.
@@ -37,10 +37,11 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let configuration = hand::read(&arguments.config)?;
+    let configured = Configured::read(&arguments.config)?;
+    configured.announce();
     let everything = !(arguments.signs || arguments.zero || arguments.identify);
     let fingers = if arguments.fingers.is_empty() { vec![1, 2, 3] } else { arguments.fingers.clone() };
-    let hand = Hand::open_limp(configuration, Some(arguments.config.clone()))?;
+    let hand = Hand::open_limp(configured.configuration, Some(arguments.config.clone()))?;
     for finger in fingers {
         let before = hand.calibrated(finger)?;
         if everything || arguments.signs {

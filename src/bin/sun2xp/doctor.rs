@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
-use sun2xp::hand::{self, Finding, Verdict};
+use sun2xp::hand::{self, Configured, Finding, Verdict};
 
 /// Looks at kernel, limits, cores and ports, measures wake-ups and round trips, and says what to change. Motors stay off.
 ///
@@ -32,11 +32,13 @@ struct Examination<'a> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let configuration = match &arguments.config {
-        Some(path) => hand::read(path)?,
-        None => hand::configured()?.0,
+    let configured = match &arguments.config {
+        Some(path) => Configured::read(path)?,
+        None => hand::configured()?,
     };
-    let findings = hand::examine(&configuration, Path::new("/"), Duration::from_secs_f64(arguments.seconds))?;
+    configured.announce();
+    let findings =
+        hand::examine(&configured.configuration, Path::new("/"), Duration::from_secs_f64(arguments.seconds))?;
     let pass = findings.iter().all(|finding| finding.verdict < Verdict::Failure);
     let mut output = io::stdout().lock();
     if arguments.json {

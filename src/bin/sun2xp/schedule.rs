@@ -52,7 +52,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let configuration = match &arguments.config {
         Some(file) => hand::read(file)?,
-        None => hand::configured()?.0,
+        None => hand::configured()?.configuration,
     };
     let costs = match &arguments.costs {
         Some(file) => read(file)?,

@@ -8,8 +8,8 @@ use crate::model::{Refusal, Shown};
 use std::ops::Range;
 use toml_edit::{Document, Item, Table, Value};
 
-/// Reads and checks the text of a configuration file.
-pub(super) fn parse(text: &str) -> Result<Configuration, Wrong> {
+/// Reads and checks the text of a configuration file. Also says of each finger whether the text names its port.
+pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wrong> {
     let document = Document::parse(text).map_err(Wrong::in_syntax)?;
     let root = document.as_table();
     if let Some((key, _)) = root.iter().find(|(key, _)| !matches!(*key, "hand" | "finger")) {
@@ -28,17 +28,19 @@ pub(super) fn parse(text: &str) -> Result<Configuration, Wrong> {
         common.remove(&number);
     }
     let mut fingers: [ConfiguredFinger; FINGERS] = Default::default();
-    for (number, finger) in numbers().zip(&mut fingers) {
+    let mut ports_named = [false; FINGERS];
+    for ((number, finger), port_named) in numbers().zip(&mut fingers).zip(&mut ports_named) {
         let section = format!("finger.{number}");
         let own = table(&all, &number).map_err(|wrong| wrong.in_key("finger"))?;
         let mut merged = common.clone();
         overlay(&mut merged, &own);
+        *port_named = merged.contains_key("port");
         *finger = deserialize(&merged).map_err(|wrong| wrong.in_key(&section))?;
     }
 
     let configuration = Configuration { hand, fingers };
     check(&configuration).map_err(|refusal| unusable(root, &refusal))?;
-    Ok(configuration)
+    Ok((configuration, ports_named))
 }
 
 /// A value that the checks refuse, with the place in the file that it comes from.
@@ -132,14 +134,14 @@ mod tests {
 
     #[test]
     fn an_empty_file_is_the_default_hand() {
-        assert_eq!(parse("").expect("usable"), Configuration::default());
+        assert_eq!(parse("").expect("usable").0, Configuration::default());
     }
 
     #[test]
     fn a_finger_overrides_what_all_fingers_share() {
         let text = "[finger]\nbaud = 2000000\n[finger.tendon]\nminimum = 4\nmaximum = 50\n\
                     [finger.2]\nport = '/dev/ttyUSB1'\n[finger.2.tendon]\nminimum = 6\n";
-        let hand = parse(text).expect("usable");
+        let (hand, _) = parse(text).expect("usable");
         assert_eq!(hand.fingers.each_ref().map(|f| f.baud), [2_000_000; 3]);
         assert_eq!(hand.fingers.each_ref().map(|f| f.tendon.minimum), [4.0, 6.0, 4.0]);
         assert_eq!(hand.fingers.each_ref().map(|f| f.tendon.maximum), [50.0; 3]);

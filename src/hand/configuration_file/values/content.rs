@@ -1,5 +1,6 @@
 //! What a value of a TOML file is, whether it stands in a table, in an array or in a line.
 
+use crate::model::Shown;
 use toml_edit::{Array, Item, TableLike, Value};
 
 /// A value by its kind.
@@ -36,10 +37,10 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// The kind, for a person.
-    pub(super) fn kind(&self) -> &'static str {
-        match self {
-            Self::Text(_) => "a text",
+    /// The kind, for a person; of a text what it says.
+    pub(super) fn kind(&self) -> String {
+        let kind = match self {
+            Self::Text(text) => return format!("the text \"{}\"", Shown(text)),
             Self::Integer(_) => "a whole number",
             Self::Float(_) => "a number with a decimal point or exponent",
             Self::Boolean(_) => "true or false",
@@ -47,6 +48,7 @@ impl<'a> Content<'a> {
             Self::Array(_) => "an array",
             Self::Table(_) => "a table",
             Self::Tables => "an array of tables",
-        }
+        };
+        kind.into()
     }
 }

@@ -1,0 +1,94 @@
+//! Where the configuration file is.
+
+use crate::files::raised_privileges;
+use crate::hand::HandError;
+use etcetera::BaseStrategy;
+use std::env;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+/// The one place that no user decides.
+pub(super) const SYSTEM_FILE: &str = "/etc/xdg/sun2xp/sun2xp.toml";
+
+/// What decides where the file is.
+struct Environment {
+    /// Whether the process has rights that its caller has not.
+    raised_privileges: bool,
+    /// `SUN2XP_CONFIG`
+    named: Option<OsString>,
+    /// The user's configuration folder.
+    user: Option<PathBuf>,
+    /// `XDG_CONFIG_DIRS`
+    system: Option<OsString>,
+}
+
+/// The configuration file, if there is one. An empty `SUN2XP_CONFIG` counts as unset.
+///
+/// # Errors
+/// `SUN2XP_CONFIG` in a program with raised privileges: the planner would get another hand than the one that was named.
+pub(super) fn locate() -> Result<Option<PathBuf>, HandError> {
+    let environment = Environment {
+        raised_privileges: raised_privileges(),
+        named: env::var_os("SUN2XP_CONFIG"),
+        user: etcetera::choose_base_strategy().ok().map(|strategy| strategy.config_dir()),
+        system: env::var_os("XDG_CONFIG_DIRS"),
+    };
+    // A file that is there but unreadable is found, and refused: symlink_metadata needs no permission on the file itself.
+    environment.file(|path| path.symlink_metadata().is_ok())
+}
+
+impl Environment {
+    fn file(self, there: impl Fn(&Path) -> bool) -> Result<Option<PathBuf>, HandError> {
+        let named = self.named.filter(|name| !name.is_empty()).map(PathBuf::from);
+        match (named, self.raised_privileges) {
+            (Some(path), false) => return Ok(Some(path)),
+            (Some(path), true) => return Err(HandError::UntrustedEnvironment { path, system: SYSTEM_FILE }),
+            (None, true) => return Ok(Some(PathBuf::from(SYSTEM_FILE)).filter(|path| there(path))),
+            (None, false) => {}
+        }
+        let system = self.system.filter(|folders| !folders.is_empty()).unwrap_or("/etc/xdg".into());
+        // The standard of these folders: relative ones are to be ignored.
+        let system = env::split_paths(&system).filter(|folder| folder.is_absolute()).collect::<Vec<_>>();
+        let folders = self.user.into_iter().chain(system);
+        let candidates =
+            [PathBuf::from("sun2xp.toml")].into_iter().chain(folders.map(|f| f.join("sun2xp/sun2xp.toml")));
+        Ok(candidates.into_iter().find(|path| there(path)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(raised_privileges: bool, named: &str, files: &[&str]) -> Result<Option<String>, HandError> {
+        let environment = Environment {
+            raised_privileges,
+            named: Some(named.into()),
+            user: Some("/home/me/.config".into()),
+            system: Some("relative:/opt/xdg:/etc/xdg".into()),
+        };
+        let file = environment.file(|path| files.iter().any(|file| path == Path::new(file)))?;
+        Ok(file.map(|path| path.display().to_string()))
+    }
+
+    const FILES: [&str; 4] =
+        ["sun2xp.toml", "/home/me/.config/sun2xp/sun2xp.toml", "/opt/xdg/sun2xp/sun2xp.toml", SYSTEM_FILE];
+
+    #[test]
+    fn the_first_that_is_there() {
+        assert_eq!(found(false, "named", &FILES).expect("trusted").as_deref(), Some("named"));
+        for first in 0..FILES.len() {
+            assert_eq!(found(false, "", &FILES[first..]).expect("trusted").as_deref(), Some(FILES[first]));
+        }
+        assert_eq!(found(false, "", &["relative/sun2xp/sun2xp.toml"]).expect("trusted"), None);
+    }
+
+    #[test]
+    fn what_a_user_decides_does_not_count_with_raised_privileges() {
+        assert_eq!(found(true, "", &FILES).expect("nothing named").as_deref(), Some(SYSTEM_FILE));
+        assert_eq!(found(true, "", &FILES[..3]).expect("nothing named"), None);
+        let refusal = found(true, "named", &FILES).expect_err("named");
+        assert_eq!(refusal.errno(), libc::EACCES);
+        assert!(refusal.to_string().contains("named") && refusal.to_string().contains(SYSTEM_FILE), "{refusal}");
+    }
+}
