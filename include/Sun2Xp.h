@@ -147,6 +147,13 @@
    in a child forked from it is refused with EPERM; the parent is undisturbed. A
    child that calls exec starts afresh.
 
+   Descriptors: become a daemon first, then call OpenHand. The library's descriptors
+   close at exec. They have numbers from 512 on where the limit (ulimit -n) permits it,
+   so a planner that closes those up to 255 keeps its hand. One that closes all of them
+   loses it: the fingers fault with FAULT_PORT_CLOSED or FAULT_PORT_VANISHED. Files that
+   the planner then opens under these numbers are not touched. CloseHand and OpenHand
+   start again.
+
    Exit: a planner that exits without CloseHand has it called. One that is killed, or
    calls _exit, leaves the motors to the boards, which hear no more commands and go
    to the configured end state. dlclose leaves library and hand as they are.
@@ -559,6 +566,7 @@ const char *HandError(void);
 #define FAULT_CALIBRATION_FAILED     44 /* calibration failed */
 #define FAULT_WARM_MOTOR             45 /* warm motor */
 #define FAULT_COMPANION              46 /* stopped with another */
+#define FAULT_PORT_CLOSED            47 /* port closed */
 
 
 /*

@@ -152,6 +152,15 @@ fn opening_what_cannot_be_opened_says_why() {
     assert_eq!(errno("/dev/null"), libc::ENOTTY);
     let file = tempfile::NamedTempFile::new().unwrap();
     assert_eq!(errno(&file.path().to_string_lossy()), libc::ENOTTY);
+    assert_eq!(errno(&std::env::temp_dir().to_string_lossy()), libc::ENOTTY);
+    // The system's own errno: no device is behind it.
+    let folder = tempfile::tempdir().unwrap();
+    let socket = folder.path().join("socket");
+    let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+    assert_eq!(errno(&socket.to_string_lossy()), libc::ENXIO);
+    assert_eq!(errno(&"x".repeat(5000)), libc::ENAMETOOLONG);
+    let error = Port::open(Path::new("/dev/null\0hidden"), 1_000_000).unwrap_err();
+    assert!(error.to_string().contains(r"/dev/null\0hidden"), "{error}");
 }
 
 #[test]

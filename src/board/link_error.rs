@@ -1,6 +1,6 @@
 //! What can be wrong with a board, in words for the person at the bench.
 
-use super::port::PortError;
+use super::port_error::PortError;
 use super::protocol::{HIGHEST_ADDRESS, Kind, Reason, Refused, VERSION};
 use super::terms::TermsError;
 use thiserror::Error;

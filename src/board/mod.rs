@@ -2,10 +2,13 @@
 //! simulated board that answers.
 
 mod capacity;
+mod descriptor;
 mod link;
 mod link_error;
 mod port;
+mod port_error;
 pub mod protocol;
+mod pseudo_terminal;
 mod simulated_board;
 mod simulated_cable;
 mod simulated_defects;
@@ -19,7 +22,8 @@ mod transport;
 pub use capacity::{TooFast, USABLE_SHARE, capacity, exchange_microseconds};
 pub use link::{Allowance, Link, LinkCounters, OutgoingCommand, Received};
 pub use link_error::LinkError;
-pub use port::{Port, PortError};
+pub use port::Port;
+pub use port_error::PortError;
 pub use simulated_board::{SimulatedBoard, SimulatedBoardError};
 pub use simulated_cable::SimulatedCable;
 pub use simulated_defects::Defect;

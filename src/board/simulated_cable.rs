@@ -1,6 +1,6 @@
 //! A simulated board on simulated time, in memory: for experiments and tests that need no port and wait for nothing.
 
-use super::port::PortError;
+use super::port_error::PortError;
 use super::simulated_board::SimulatedBoard;
 use super::simulated_line::{LineFault, SimulatedLine};
 use super::transport::Transport;

@@ -3,25 +3,23 @@
 //! The time of the simulated board does not pass while the machine does not let its thread run: each wake-up counts as 2 ms
 //! at most. Otherwise a virtual machine that is paused for 50 ms, which stops the host's servo just the same, would trip a
 //! watchdog that no real board would trip, and the finger would fall on for 50 ms without its controller.
-#![allow(unsafe_code, reason = "a pseudo-terminal")]
 
+use super::pseudo_terminal::{Closed, PseudoTerminal};
 use super::simulated_board::SimulatedBoard;
 use super::simulated_finger::SimulatedFinger;
 use super::simulated_line::{LineFault, SimulatedLine};
 use super::simulated_pace::{Pace, PacedTime};
 use crate::realtime::{self, Priority, spawn};
 use parking_lot::Mutex;
-use std::ffi::CStr;
 use std::io;
-use std::os::fd::{AsRawFd, FromRawFd, OwnedFd, RawFd};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, sleep};
 use std::time::Duration;
 
 /// How often the physics moves on while no bytes come.
-const TICK_MS: i32 = 1;
+const TICK: Duration = Duration::from_millis(1);
 
 /// After such a silence nobody is taken to be at the other end, ns. A host that is there all the same loses its mark of
 /// exclusive use, but not its lock.
@@ -45,7 +43,7 @@ struct Shared {
     line: SimulatedLine,
     /// From the host to the board.
     line_to_board: SimulatedLine,
-    /// None while the cable is out.
+    /// None while the cable is out, and after another part of the program has closed its descriptors.
     terminal: Option<Arc<PseudoTerminal>>,
     /// The board's clock, ns.
     time: u64,
@@ -68,7 +66,7 @@ impl SimulatedPort {
 
     /// The port to open; empty while the cable is out. Another one after it was out.
     pub fn path(&self) -> PathBuf {
-        self.shared.lock().terminal.as_ref().map(|terminal| terminal.path.clone()).unwrap_or_default()
+        self.shared.lock().terminal.as_deref().map(PseudoTerminal::path).map(Path::to_owned).unwrap_or_default()
     }
 
     /// Pulls the cable out: for the host the port vanishes, and what was on its way is lost. The board goes on.
@@ -136,17 +134,18 @@ fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
     let mut forgotten = false;
     while !ended.load(Ordering::Relaxed) {
         let terminal = shared.lock().terminal.clone();
-        let taken = match &terminal {
-            Some(terminal) => terminal.read(&mut input, TICK_MS),
+        let heard = match &terminal {
+            Some(terminal) => terminal.read(&mut input, TICK),
             None => {
-                sleep(Duration::from_millis(TICK_MS as u64));
-                0
+                sleep(TICK);
+                Ok(0)
             }
         };
+        let taken = heard.unwrap_or(0);
         let board_time = clock.wake(realtime::now(), taken > 0);
 
         let mut shared = shared.lock();
-        let Shared { board, line, line_to_board, time, .. } = &mut *shared;
+        let Shared { board, line, line_to_board, terminal: current, time } = &mut *shared;
         *time = board_time;
         if taken > 0 {
             forgotten = false;
@@ -155,6 +154,10 @@ fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
             board.advance(board_time);
             continue;
         };
+        if heard == Err(Closed) {
+            current.take_if(|current| Arc::ptr_eq(current, &terminal));
+            continue;
+        }
         let mut send = |frame: &[u8]| terminal.write(frame);
         line.arrive(board_time, &mut send);
         board.advance(board_time);
@@ -172,88 +175,4 @@ fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
             terminal.forget_last_host();
         }
     }
-}
-
-/// Both ends of a pseudo-terminal. The host's end stays open here too: with it closed, every hang-up of a host would end in
-/// read errors at the board's end.
-#[derive(Debug)]
-struct PseudoTerminal {
-    board_end: OwnedFd,
-    host_end: OwnedFd,
-    path: PathBuf,
-}
-
-impl PseudoTerminal {
-    fn open() -> io::Result<Self> {
-        // SAFETY: only an integer is passed.
-        let board_end = owned(unsafe { libc::posix_openpt(libc::O_RDWR | libc::O_NOCTTY | libc::O_CLOEXEC) })?;
-        // SAFETY: the descriptor is open; both calls take nothing else.
-        check(unsafe { libc::grantpt(board_end.as_raw_fd()) })?;
-        // SAFETY: as above.
-        check(unsafe { libc::unlockpt(board_end.as_raw_fd()) })?;
-        let mut name = [0u8; 64];
-        // SAFETY: `name` is writable for the length that is passed.
-        match unsafe { libc::ptsname_r(board_end.as_raw_fd(), name.as_mut_ptr().cast(), name.len()) } {
-            0 => {}
-            error => return Err(io::Error::from_raw_os_error(error)),
-        }
-        let name = CStr::from_bytes_until_nul(&name).map_err(io::Error::other)?;
-        // SAFETY: `name` is a C string.
-        let host_end = owned(unsafe { libc::open(name.as_ptr(), libc::O_RDWR | libc::O_NOCTTY | libc::O_CLOEXEC) })?;
-        // Raw before anyone learns the path: until then the terminal echoes, and eats some byte values.
-        make_raw(host_end.as_raw_fd())?;
-        // SAFETY: the descriptor is open; the command takes an integer.
-        check(unsafe { libc::fcntl(board_end.as_raw_fd(), libc::F_SETFL, libc::O_RDWR | libc::O_NONBLOCK) })?;
-        let path = PathBuf::from(name.to_string_lossy().into_owned());
-        Ok(Self { board_end, host_end, path })
-    }
-
-    /// Waits for bytes, `timeout` ms at most, and takes what is there.
-    fn read(&self, buffer: &mut [u8], timeout: i32) -> usize {
-        let mut poll = libc::pollfd { fd: self.board_end.as_raw_fd(), events: libc::POLLIN, revents: 0 };
-        // SAFETY: one pollfd, alive during the call.
-        if unsafe { libc::poll(&mut poll, 1, timeout) } != 1 {
-            return 0;
-        }
-        // SAFETY: the descriptor is open and `buffer` is writable for its length.
-        let taken = unsafe { libc::read(self.board_end.as_raw_fd(), buffer.as_mut_ptr().cast(), buffer.len()) };
-        usize::try_from(taken).unwrap_or(0)
-    }
-
-    /// As a UART does, this does not wait: bytes that nobody fetches are lost.
-    fn write(&self, bytes: &[u8]) {
-        // SAFETY: the descriptor is open and `bytes` is readable for its length.
-        unsafe { libc::write(self.board_end.as_raw_fd(), bytes.as_ptr().cast(), bytes.len()) };
-    }
-
-    /// A host that died leaves the port marked as exclusive, and answers that it did not fetch: both outlive it, because the
-    /// host's end is open here too.
-    fn forget_last_host(&self) {
-        // SAFETY: the descriptor is open; neither request takes a pointer.
-        unsafe {
-            libc::ioctl(self.host_end.as_raw_fd(), libc::TIOCNXCL);
-            libc::tcflush(self.host_end.as_raw_fd(), libc::TCIFLUSH);
-        }
-    }
-}
-
-fn make_raw(descriptor: RawFd) -> io::Result<()> {
-    // SAFETY: all zeros is a valid termios; tcgetattr fills it in before it is used.
-    let mut settings: libc::termios = unsafe { std::mem::zeroed() };
-    // SAFETY: the descriptor is open, and `settings` is a termios.
-    check(unsafe { libc::tcgetattr(descriptor, &mut settings) })?;
-    // SAFETY: as above.
-    unsafe { libc::cfmakeraw(&mut settings) };
-    // SAFETY: as above.
-    check(unsafe { libc::tcsetattr(descriptor, libc::TCSANOW, &settings) })
-}
-
-fn owned(descriptor: RawFd) -> io::Result<OwnedFd> {
-    check(descriptor)?;
-    // SAFETY: the call that made the descriptor succeeded, and nobody else has it.
-    Ok(unsafe { OwnedFd::from_raw_fd(descriptor) })
-}
-
-fn check(result: libc::c_int) -> io::Result<()> {
-    if result < 0 { Err(io::Error::last_os_error()) } else { Ok(()) }
 }

@@ -1,4 +1,4 @@
-use super::port::PortError;
+use super::port_error::PortError;
 
 /// What carries bytes to a board and back, on a clock. A serial port is one; tests have others, on simulated time.
 pub trait Transport {

@@ -8,6 +8,7 @@ use crate::finger::{Fault, FaultKind};
 use crate::hand::missing::Missing;
 use crate::model::configuration::Unusable;
 use crate::model::{ContactError, Refusal};
+use crate::realtime::with_remedy;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -199,7 +200,7 @@ pub enum HandError {
         source: LinkError,
     },
     /// The system refuses a thread or a pseudo terminal.
-    #[error("cannot {doing}: {source}")]
+    #[error("cannot {doing}: {}", with_remedy(source))]
     System {
         /// What was being done.
         doing: &'static str,
@@ -247,7 +248,8 @@ pub enum HandError {
     ServoEnded(i32),
     /// A port that has failed, and is not to be opened again.
     #[error(
-        "the port of finger {0} has failed: set `finger.reconnect = true` to have it opened again, or CloseHand, OpenHand"
+        "the port of finger {0} has failed and is not opened again: CloseHand, OpenHand. With `finger.reconnect = true` a real port is \
+         opened again"
     )]
     NotReconnected(i32),
     /// A black box that cannot be written.

@@ -126,7 +126,9 @@ pub(super) fn reach(
             port: ServedPort::new(link, fingers).lent_through(lender),
         });
         let baud = configuration.fingers[first].baud;
-        let reconnect = sharing.iter().any(|&index| configuration.fingers[index].reconnect);
+        // The path of a built-in board's port may mean a pseudo-terminal of the planner's once that port is gone.
+        let reconnects = |&index: &usize| configuration.fingers[index].reconnect && simulated[index].is_none();
+        let reconnect = sharing.iter().any(reconnects);
         workshops.push(Workshop::new(path, baud, reconnect, boards, borrower));
     }
     reached.sort_by_key(|finger| finger.index);

@@ -16,7 +16,7 @@ pub use contact::{Contact, ContactError, spring};
 pub use kinematics::Links;
 pub use link_dynamics::LinkDynamics;
 pub use mechanics::{ConfiguredFriction, ConfiguredLinks};
-pub use shown::Shown;
+pub use shown::{Shown, ShownPath, one_line};
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use tendons::{Tendons, TendonsError};
 pub use validation::Refusal;

@@ -1,9 +1,15 @@
 //! Text from a file in a message for a person: short, and without characters that change what a terminal shows.
 
 use std::fmt::{Display, Formatter, Result, Write};
+use std::path::Path;
 
 /// How many characters of a text are shown.
 const MOST: usize = 60;
+
+/// How many characters of a path are shown whole; of a longer one the beginning and the end are.
+const MOST_OF_PATH: usize = 240;
+const BEGINNING_OF_PATH: usize = 120;
+const END_OF_PATH: usize = 60;
 
 /// Shows a text that somebody else has written: control characters and other characters that cannot be seen are escaped, and what goes
 /// beyond 60 characters is left out.
@@ -13,11 +19,7 @@ pub struct Shown<'a>(pub &'a str);
 impl Display for Shown<'_> {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> Result {
         for character in self.0.chars().take(MOST) {
-            match character {
-                // Of these, escape_debug would also escape what is plain to see.
-                '\'' | '"' => formatter.write_char(character)?,
-                _ => write!(formatter, "{}", character.escape_debug())?,
-            }
+            write_visible(character, formatter)?;
         }
         match self.0.chars().nth(MOST) {
             Some(_) => formatter.write_str("..."),
@@ -26,9 +28,56 @@ impl Display for Shown<'_> {
     }
 }
 
+/// Shows a path in the same way, with its beginning and its end where it is long: cause and remedy follow it.
+#[derive(Clone, Copy, Debug)]
+pub struct ShownPath<'a>(pub &'a Path);
+
+impl Display for ShownPath<'_> {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> Result {
+        let path = self.0.to_string_lossy();
+        let length = path.chars().count();
+        let left_out = match length {
+            0..=MOST_OF_PATH => 0..0,
+            _ => BEGINNING_OF_PATH..length - END_OF_PATH,
+        };
+        for (place, character) in path.chars().enumerate() {
+            if place == left_out.start && !left_out.is_empty() {
+                write!(formatter, "[... {} characters ...]", left_out.len())?;
+            }
+            if !left_out.contains(&place) {
+                write_visible(character, formatter)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A message on one line and without characters that cannot be seen, whatever it is made of. Else it stays as it is.
+pub fn one_line(message: &str) -> String {
+    let mut line = String::with_capacity(message.len());
+    for character in message.chars() {
+        // It is written to a string, which takes everything.
+        let _ = match character {
+            '\\' => line.write_char(character),
+            _ => write_visible(character, &mut line),
+        };
+    }
+    line
+}
+
+fn write_visible(character: char, to: &mut impl Write) -> Result {
+    match character {
+        // Of these, escape_debug would also escape what is plain to see.
+        '\'' | '"' => to.write_char(character),
+        _ => write!(to, "{}", character.escape_debug()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
 
     #[test]
     fn what_can_be_seen_stays_and_the_rest_is_escaped() {
@@ -49,5 +98,24 @@ mod tests {
         assert_eq!(Shown(&"x".repeat(60)).to_string(), "x".repeat(60));
         assert_eq!(Shown(&"x".repeat(1_000_000)).to_string(), "x".repeat(60) + "...");
         assert!(Shown(&"\0".repeat(100)).to_string().len() <= 60 * 10 + 3);
+    }
+
+    #[test]
+    fn a_path_has_its_beginning_and_its_end() {
+        let shown = |path: &str| ShownPath(Path::new(path)).to_string();
+        let usual = "/dev/serial/by-id/usb-FTDI_TTL232R-3V3_FTAAAAAA-if00-port0";
+        assert_eq!(shown(usual), usual);
+        assert_eq!(shown(&"x".repeat(MOST_OF_PATH)), "x".repeat(MOST_OF_PATH));
+        let long = shown(&format!("/begin/{}/end", "x".repeat(10_000)));
+        assert!(long.starts_with("/begin/xxx") && long.ends_with("xxx/end") && long.len() < 250, "{long}");
+        assert!(long.contains("[... 9831 characters ...]"), "{long}");
+        assert!(shown(&"\n".repeat(100_000)).len() < 1000);
+        assert_eq!(shown("a\nb\u{1b}[2J\u{202e}"), r"a\nb\u{1b}[2J\u{202e}");
+        assert_eq!(ShownPath(Path::new(OsStr::from_bytes(b"a\xffb\n"))).to_string(), "a\u{fffd}b\\n");
+    }
+
+    #[test]
+    fn a_message_is_one_line() {
+        assert_eq!(one_line("SendPos: \"ü\" \\ '\n\t\0\u{1b}[31m"), r#"SendPos: "ü" \ '\n\t\0\u{1b}[31m"#);
     }
 }

@@ -2,6 +2,7 @@
 
 mod clock;
 mod follower;
+mod limits;
 mod memory;
 mod period;
 mod response_time;
@@ -11,6 +12,7 @@ mod wake_up;
 
 pub use clock::{Clock, MonotonicClock, now};
 pub use follower::Follower;
+pub use limits::{remedy, with_remedy};
 pub use memory::Memory;
 pub use period::Schedule;
 pub use response_time::{PeriodicThread, Response, response_times};

@@ -26,7 +26,9 @@ impl From<&PortError> for Fault {
             PortError::Forbidden(_) => FaultKind::PortPermission,
             PortError::Busy(_) => FaultKind::PortBusy,
             PortError::Vanished => FaultKind::PortVanished,
-            PortError::NotASerialPort(_) | PortError::Baud { .. } | PortError::SetUp { .. } => FaultKind::PortUnusable,
+            PortError::Closed => FaultKind::PortClosed,
+            PortError::NotASerialPort(_) | PortError::Baud { .. } => FaultKind::PortUnusable,
+            PortError::Opening { .. } | PortError::SetUp { .. } => FaultKind::PortUnusable,
             PortError::Failed(_) => FaultKind::PortFailed,
         };
         let value = if kind == FaultKind::PortFailed { f64::from(error.errno()) } else { 0.0 };

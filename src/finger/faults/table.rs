@@ -136,7 +136,7 @@ faults! {
         "End the other program, RecoverHand; or CloseHand and update the firmware";
     25 PortVanished "PORT_VANISHED" Fault Finger Nothing "port vanished",
         "the serial port is gone",
-        "the cable was unplugged, or the adapter or board lost its power",
+        "the cable was unplugged, or the adapter or board lost its power; of a simulated finger: the planner closed descriptors of the library",
         "Plug it in, RecoverHand; without finger.reconnect CloseHand, OpenHand";
     26 PortFailed "PORT_FAILED" Fault Finger Errno "port failed",
         "reading or writing the serial port failed",
@@ -222,6 +222,10 @@ faults! {
         "another finger of the hand has faulted, and hand.on_fault is \"hand\"",
         "what the fault of that finger says",
         "Mend that, then RecoverHand for every finger";
+    47 PortClosed "PORT_CLOSED" Fault Finger Nothing "port closed",
+        "another part of the program has closed the descriptor of the port",
+        "the planner closes descriptors that it has not opened, as a program does that makes itself a daemon",
+        "CloseHand, OpenHand; make the planner a daemon before it calls OpenHand";
 }
 
 #[cfg(test)]

@@ -1,0 +1,116 @@
+//! Opens, locks and configures a serial port.
+
+use super::Port;
+use crate::board::descriptor::{Descriptor, check};
+use crate::board::port_error::PortError;
+use std::ffi::CString;
+use std::io;
+use std::os::unix::ffi::OsStrExt;
+use std::path::Path;
+
+impl Port {
+    /// Opens, locks and configures the port at `path` for `baud` bits a second, and throws away what had come in.
+    ///
+    /// # Errors
+    /// A path without a serial port that this user may open and nobody else has, a port that cannot run at this rate.
+    pub fn open(path: &Path, baud: u32) -> Result<Self, PortError> {
+        let port = Self { descriptor: open(path)?, path: path.to_owned(), ready_at: 0 };
+        port.lock()?;
+        let set_up = |source| PortError::SetUp { path: path.to_owned(), source };
+        let offered = port.configure(baud).map_err(set_up)?;
+        // A UART tolerates 3 %; a driver that cannot do the rate at all offers something quite different.
+        if offered.abs_diff(baud) > baud / 33 {
+            return Err(PortError::Baud { path: path.to_owned(), wanted: baud, offered });
+        }
+        port.ask_for_low_latency();
+        // SAFETY: the descriptor was opened above.
+        check(unsafe { libc::tcflush(port.descriptor.number(), libc::TCIFLUSH) }).map_err(set_up)?;
+        Ok(port)
+    }
+
+    /// Keeps other programs out, by the mark of exclusive use and by a lock: root passes the first, but not the second.
+    fn lock(&self) -> Result<(), PortError> {
+        let failed = |source| PortError::at_opening(&self.path, source);
+        // SAFETY: the descriptor is open; neither call takes a pointer.
+        check(unsafe { libc::ioctl(self.descriptor.number(), libc::TIOCEXCL) }).map_err(failed)?;
+        // SAFETY: as above.
+        match check(unsafe { libc::flock(self.descriptor.number(), libc::LOCK_EX | libc::LOCK_NB) }) {
+            Ok(_) => Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => Err(PortError::Busy(self.path.clone())),
+            Err(error) => Err(failed(error)),
+        }
+    }
+
+    /// Raw, eight data bits, no parity, one stop bit, no flow control: the rate that the driver offers for `baud`, bits a second.
+    fn configure(&self, baud: u32) -> io::Result<u32> {
+        let mut settings = self.settings()?;
+        settings.c_iflag &= !(libc::IGNBRK | libc::BRKINT | libc::PARMRK | libc::ISTRIP | libc::INPCK);
+        settings.c_iflag &= !(libc::INLCR | libc::IGNCR | libc::ICRNL | libc::IXON | libc::IXOFF | libc::IXANY);
+        settings.c_iflag |= libc::IGNPAR;
+        settings.c_oflag &= !libc::OPOST;
+        settings.c_lflag &= !(libc::ECHO | libc::ECHONL | libc::ICANON | libc::ISIG | libc::IEXTEN);
+        // Without HUPCL: with it, closing the port drops DTR, which resets many boards before they reach their end state.
+        settings.c_cflag &= !(libc::CSIZE | libc::PARENB | libc::PARODD | libc::CSTOPB | libc::CRTSCTS | libc::HUPCL);
+        settings.c_cflag &= !(libc::CBAUD | libc::CIBAUD);
+        settings.c_cflag |= libc::CS8 | libc::CREAD | libc::CLOCAL | libc::BOTHER;
+        (settings.c_cc[libc::VMIN], settings.c_cc[libc::VTIME]) = (1, 0);
+        (settings.c_ispeed, settings.c_ospeed) = (baud, baud);
+        // SAFETY: the descriptor is open and `settings` is a termios2.
+        check(unsafe { libc::ioctl(self.descriptor.number(), libc::TCSETS2, &settings) })?;
+        let found = self.settings()?;
+        let modes = |all: &libc::termios2| {
+            let rates = libc::CBAUD | libc::CIBAUD;
+            (all.c_iflag, all.c_oflag, all.c_lflag, all.c_cflag & !rates)
+        };
+        if modes(&found) != modes(&settings) || found.c_ispeed != found.c_ospeed {
+            return Err(io::Error::other(
+                "its driver does not take 8 data bits, no parity, 1 stop bit, no flow control",
+            ));
+        }
+        Ok(found.c_ospeed)
+    }
+
+    /// By TCGETS2 and TCSETS2, because tcgetattr and tcsetattr know no unusual baud rate.
+    fn settings(&self) -> io::Result<libc::termios2> {
+        // SAFETY: all zeros is a valid termios2.
+        let mut settings: libc::termios2 = unsafe { std::mem::zeroed() };
+        // SAFETY: the descriptor is open and `settings` is a termios2.
+        check(unsafe { libc::ioctl(self.descriptor.number(), libc::TCGETS2, &mut settings) })?;
+        Ok(settings)
+    }
+
+    /// FTDI bridges keep bytes back for 16 ms unless asked not to. Drivers that do not know the request refuse it, and need
+    /// not know it; so failure is no error here, and [`Port::latency_timer_ms`] tells what became of it.
+    fn ask_for_low_latency(&self) {
+        let mut serial = SerialStruct([0; SERIAL_STRUCT_WORDS]);
+        // SAFETY: the descriptor is open, and `serial` is at least as large and as aligned as the kernel's serial_struct.
+        let known = unsafe { libc::ioctl(self.descriptor.number(), libc::TIOCGSERIAL, &mut serial) } == 0;
+        if known {
+            serial.0[SERIAL_STRUCT_FLAGS] |= ASYNC_LOW_LATENCY;
+            // SAFETY: as above.
+            unsafe { libc::ioctl(self.descriptor.number(), libc::TIOCSSERIAL, &serial) };
+        }
+    }
+}
+
+/// The kernel's `struct serial_struct`, of which only `flags` matters here: the fifth int (after type, line, port and irq).
+/// 72 bytes on 64-bit machines; the rest is room.
+#[repr(C, align(8))]
+struct SerialStruct([libc::c_int; SERIAL_STRUCT_WORDS]);
+
+const SERIAL_STRUCT_WORDS: usize = 32;
+const SERIAL_STRUCT_FLAGS: usize = 4;
+const ASYNC_LOW_LATENCY: libc::c_int = 1 << 13;
+
+fn open(path: &Path) -> Result<Descriptor, PortError> {
+    let failed = |source| PortError::at_opening(path, source);
+    let name = CString::new(path.as_os_str().as_bytes()).map_err(|_| failed(io::ErrorKind::InvalidFilename.into()))?;
+    let flags = libc::O_RDWR | libc::O_NOCTTY | libc::O_NONBLOCK | libc::O_CLOEXEC;
+    // SAFETY: `name` is a C string.
+    let descriptor = Descriptor::opened(unsafe { libc::open(name.as_ptr(), flags) }).map_err(failed)?;
+    // SAFETY: the descriptor is open.
+    match unsafe { libc::isatty(descriptor.number()) } {
+        1 => Ok(descriptor),
+        _ => Err(PortError::NotASerialPort(path.to_owned())),
+    }
+}

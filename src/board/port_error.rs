@@ -1,0 +1,144 @@
+//! What can be wrong with a serial port.
+
+use crate::model::ShownPath;
+use crate::realtime::with_remedy;
+use std::io;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// What is wrong with a port.
+#[derive(Debug, Error)]
+pub enum PortError {
+    /// ENOENT.
+    #[error("{} does not exist: check the cable, the board's power and finger.port (ls -l /dev/serial/by-id)", ShownPath(.0))]
+    Missing(PathBuf),
+    /// EACCES.
+    #[error("no permission to open {}: add the user to the port's group (usually dialout) and log in again", ShownPath(.0))]
+    Forbidden(PathBuf),
+    /// EBUSY.
+    #[error("{path} is in use by another program: close it (fuser -v {path} names it), or configure another port", path = ShownPath(.0))]
+    Busy(PathBuf),
+    /// ENOTTY.
+    #[error("{} is not a serial port: check finger.port", ShownPath(.0))]
+    NotASerialPort(PathBuf),
+    /// EINVAL.
+    #[error(
+        "{} cannot run at {wanted} baud, it offers {offered}: set finger.baud to a rate that the adapter has",
+        ShownPath(path)
+    )]
+    Baud {
+        /// The port.
+        path: PathBuf,
+        /// As configured, bits a second.
+        wanted: u32,
+        /// What the driver chose, bits a second.
+        offered: u32,
+    },
+    /// Another reason why it cannot be opened.
+    #[error("cannot open {}: {}", ShownPath(path), opening(source))]
+    Opening {
+        /// The port.
+        path: PathBuf,
+        /// What the system reports.
+        source: io::Error,
+    },
+    /// It is open, but cannot be set up.
+    #[error(
+        "cannot set up {}: {}. Check finger.port and finger.baud, and the adapter's driver (dmesg)",
+        ShownPath(path),
+        with_remedy(source)
+    )]
+    SetUp {
+        /// The port.
+        path: PathBuf,
+        /// What the system reports.
+        source: io::Error,
+    },
+    /// EIO: hang-up.
+    #[error("the port has vanished: the cable was pulled, the adapter lost its power, or the simulated board ended")]
+    Vanished,
+    /// EBADF: its descriptor is closed, or means another file by now.
+    #[error("another part of this program has closed the descriptor of the port")]
+    Closed,
+    /// A read or write failed.
+    #[error("reading or writing the port failed: {0}")]
+    Failed(io::Error),
+}
+
+impl PortError {
+    /// The errno of the system; where it reported none, the nearest.
+    pub fn errno(&self) -> i32 {
+        match self {
+            PortError::Missing(_) => libc::ENOENT,
+            PortError::Forbidden(_) => libc::EACCES,
+            PortError::Busy(_) => libc::EBUSY,
+            PortError::NotASerialPort(_) => libc::ENOTTY,
+            PortError::Baud { .. } => libc::EINVAL,
+            PortError::Vanished => libc::EIO,
+            PortError::Closed => libc::EBADF,
+            PortError::Opening { source, .. } | PortError::SetUp { source, .. } | PortError::Failed(source) => {
+                source.raw_os_error().unwrap_or(libc::EIO)
+            }
+        }
+    }
+
+    /// Why the file at `path` could not be opened.
+    pub(super) fn at_opening(path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        match source.raw_os_error() {
+            Some(libc::ENOENT) => Self::Missing(path),
+            Some(libc::EACCES) => Self::Forbidden(path),
+            // Whoever has it has marked it for exclusive use.
+            Some(libc::EBUSY) => Self::Busy(path),
+            Some(libc::ENOTTY | libc::EISDIR) => Self::NotASerialPort(path),
+            _ => Self::Opening { path, source },
+        }
+    }
+}
+
+/// Why a read or a write failed.
+impl From<io::Error> for PortError {
+    fn from(source: io::Error) -> Self {
+        match source.raw_os_error() {
+            // What a vanished adapter answers, according to its driver.
+            Some(libc::EIO | libc::ENXIO | libc::ENODEV) => Self::Vanished,
+            Some(libc::EBADF) => Self::Closed,
+            _ => Self::Failed(source),
+        }
+    }
+}
+
+fn opening(source: &io::Error) -> String {
+    match source.raw_os_error() {
+        Some(libc::ENXIO | libc::ENODEV) => {
+            format!("{source}: no device is behind it. Check the cable, the adapter's driver (dmesg) and finger.port")
+        }
+        Some(libc::EIO) => format!("{source}: the adapter does not respond. Unplug it and plug it in again"),
+        _ => with_remedy(source),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_errno_of_the_system_is_kept_and_has_a_remedy() {
+        for (errno, word) in [
+            (libc::ENOENT, "check the cable"),
+            (libc::EACCES, "dialout"),
+            (libc::EBUSY, "fuser"),
+            (libc::ENOTTY, "finger.port"),
+            (libc::EMFILE, "ulimit -n"),
+            (libc::ENFILE, "fs.file-max"),
+            (libc::ENXIO, "no device"),
+            (libc::ENODEV, "no device"),
+            (libc::EIO, "plug it in again"),
+            (libc::ENOMEM, "memory"),
+        ] {
+            let error = PortError::at_opening(Path::new("/dev/port"), io::Error::from_raw_os_error(errno));
+            assert_eq!(error.errno(), errno, "{error}");
+            assert!(error.to_string().contains("/dev/port") && error.to_string().contains(word), "{error}");
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What to do when the system refuses a thread, a descriptor or a pseudo-terminal because a limit has been reached.
+
+use std::io;
+
+/// The remedy for an error of a call that makes a thread, a descriptor or a pseudo-terminal; none where no limit is behind it.
+pub fn remedy(error: &io::Error) -> Option<&'static str> {
+    match error.raw_os_error()? {
+        libc::EMFILE => Some("this process may not open more files: close some, or raise its limit (ulimit -n)"),
+        libc::ENFILE => Some("the system may not open more files: end other programs, or raise fs.file-max (sysctl)"),
+        libc::EAGAIN => Some(
+            "this user may not start more threads: end other programs, or raise the limit of the user (ulimit -u), of the service or container \
+             (TasksMax, pids.max) or of the system (kernel.threads-max); after mlockall raise the memlock limit (ulimit -l)",
+        ),
+        libc::ENOMEM => Some("memory is short: end other programs, or raise the limit of this process (ulimit -v)"),
+        libc::ENOSPC => Some(
+            "no pseudo-terminal is free: end programs that hold one, such as terminal windows, or raise kernel.pty.max (sysctl)",
+        ),
+        _ => None,
+    }
+}
+
+/// An error of the system with its remedy, where [`remedy`] knows one.
+pub fn with_remedy(error: &io::Error) -> String {
+    match remedy(error) {
+        Some(remedy) => format!("{error}: {remedy}"),
+        None => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_have_a_remedy_and_other_errors_have_none() {
+        let told = |errno| with_remedy(&io::Error::from_raw_os_error(errno));
+        for (errno, word) in [
+            (libc::EMFILE, "ulimit -n"),
+            (libc::ENFILE, "fs.file-max"),
+            (libc::EAGAIN, "ulimit -u"),
+            (libc::ENOMEM, "ulimit -v"),
+            (libc::ENOSPC, "kernel.pty.max"),
+        ] {
+            assert!(told(errno).contains(word), "{}", told(errno));
+        }
+        assert_eq!(told(libc::EACCES), "Permission denied (os error 13)");
+        assert_eq!(with_remedy(&io::Error::other("no number")), "no number");
+    }
+}

@@ -1,0 +1,138 @@
+/* A planner that closes descriptors it has not opened, as old daemons do, and opens files of its own at once, which get the numbers of
+   those that it has closed. Its files stay as they are, no thread spins, a fault says what happened, and CloseHand leaves its files
+   open. The arguments: how many descriptors the process may have, and the highest one that is closed. */
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+#define MOST 4096
+#define OWN 4 /* bytes of every file */
+
+#define TERMINALS 8
+
+static int own[MOST], owned, terminals[TERMINALS];
+static char folder[] = "/tmp/sun2xp-descriptors-XXXXXX";
+
+/* Opens one more file, and as the number `wanted` if that is not negative. */
+static void open_one(int wanted)
+{
+    char name[64];
+    int file;
+
+    sprintf(name, "%s/%d", folder, owned);
+    file = open(name, O_RDWR | O_CREAT | O_EXCL, 0600);
+    CHECK(file >= 0);
+    CHECK(write(file, "mine", OWN) == OWN && lseek(file, 0, SEEK_SET) == 0);
+    if (wanted >= 0 && file != wanted) {
+        CHECK(dup2(file, wanted) == wanted);
+        close(file);
+        file = wanted;
+    }
+    CHECK(unlink(name) == 0);
+    own[owned++] = file;
+}
+
+/* Opens pseudo-terminals, which get the names of those that are gone. */
+static void open_terminals(void)
+{
+    int number;
+
+    for (number = 0; number < TERMINALS; number++) {
+        terminals[number] = posix_openpt(O_RDWR | O_NOCTTY);
+        CHECK(terminals[number] >= 0 && unlockpt(terminals[number]) == 0);
+    }
+}
+
+static void check_files(void)
+{
+    char content[2 * OWN];
+    struct pollfd sent;
+    int number;
+
+    for (number = 0; number < TERMINALS; number++) {
+        sent.fd = terminals[number];
+        sent.events = POLLIN;
+        CHECK(poll(&sent, 1, 0) >= 0 && (sent.revents & POLLIN) == 0);
+    }
+
+    for (number = 0; number < owned; number++) {
+        CHECK(lseek(own[number], 0, SEEK_CUR) == 0);
+        CHECK(pread(own[number], content, sizeof content, 0) == OWN && memcmp(content, "mine", OWN) == 0);
+    }
+}
+
+static double cpu_seconds(void)
+{
+    struct timespec used;
+
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return used.tv_sec + 1e-9 * used.tv_nsec;
+}
+
+int main(int count, char **arguments)
+{
+    struct rlimit limit;
+    struct Fault Fault;
+    float Pos[3];
+    double used;
+    int all, highest, descriptor, taken[MOST], takes = 0, round, finger;
+
+    CHECK(count == 3);
+    alarm(60);
+    CHECK(mkdtemp(folder) != NULL);
+    for (descriptor = 3; descriptor < MOST; descriptor++)
+        close(descriptor); /* inherited ones */
+    CHECK(getrlimit(RLIMIT_NOFILE, &limit) == 0);
+    limit.rlim_cur = atoi(arguments[1]);
+    CHECK(setrlimit(RLIMIT_NOFILE, &limit) == 0);
+    highest = atoi(arguments[2]);
+    all = highest + 1 >= (int)limit.rlim_cur;
+    for (round = 0; round < 3; round++) {
+        owned = takes = 0;
+        CHECK(OpenHand() == 0);
+        for (descriptor = 3; descriptor <= highest; descriptor++)
+            if (close(descriptor) == 0)
+                taken[takes++] = descriptor;
+        /* The lowest numbers first, as open gives them; then those that were the library's. */
+        for (descriptor = 0; descriptor < 30; descriptor++)
+            open_one(-1);
+        for (descriptor = 0; descriptor < takes; descriptor++)
+            if (fcntl(taken[descriptor], F_GETFD) < 0)
+                open_one(taken[descriptor]);
+        open_terminals();
+        PAUSE_MS(300);
+        used = cpu_seconds();
+        PAUSE_MS(500);
+        used = cpu_seconds() - used;
+        check_files();
+        for (finger = 1; finger <= 3; finger++) {
+            Fault.Size = sizeof Fault;
+            CHECK(GetFault(finger, &Fault) == 0);
+            printf("round %d: %d were open, finger %d: fault %d, %.3f s of processor time\n", round, takes, finger,
+                   Fault.Number, used);
+            if (!all) {
+                CHECK(Fault.Number == 0 && GetPos(finger, Pos) == 0);
+                continue;
+            }
+            /* A simulated board whose descriptors are closed first ends, and its port with it. */
+            CHECK(Fault.Number == FAULT_PORT_CLOSED || Fault.Number == FAULT_PORT_VANISHED);
+            CHECK(GetPos(finger, Pos) == -1 && errno == EIO);
+            CHECK(strstr(HandError(), "CloseHand, OpenHand") != NULL);
+        }
+        CHECK(all == (takes > 0));
+        CHECK(!all || used < 0.1);
+        CHECK(CloseHand() == 0);
+        check_files();
+        for (descriptor = 0; descriptor < owned; descriptor++)
+            CHECK(close(own[descriptor]) == 0);
+        for (descriptor = 0; descriptor < TERMINALS; descriptor++)
+            CHECK(close(terminals[descriptor]) == 0);
+    }
+    CHECK(rmdir(folder) == 0);
+    return 0;
+}

@@ -1,0 +1,113 @@
+/* The system refuses descriptors, threads and pseudo-terminals, one after the other: OpenHand tells the system's errno and the remedy, leaves
+   nothing behind, and succeeds when the limit is gone. The calls that are refused are the planner's own, in front of the system's. */
+#define _GNU_SOURCE
+#include <dirent.h>
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include "Sun2Xp.h"
+#include "check.h"
+#include "refused.h"
+
+/* The thread and the pseudo-terminal that is refused, counted from 1; 0: none. */
+static int refused_thread, refused_terminal, threads, terminals;
+
+typedef int thread_maker(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
+typedef int terminal_maker(int);
+
+int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *argument)
+{
+    thread_maker *next;
+
+    *(void **)&next = dlsym(RTLD_NEXT, "pthread_create");
+    return ++threads == refused_thread ? EAGAIN : next(thread, attributes, start, argument);
+}
+
+int posix_openpt(int flags)
+{
+    terminal_maker *next;
+
+    *(void **)&next = dlsym(RTLD_NEXT, "posix_openpt");
+    if (++terminals != refused_terminal)
+        return next(flags);
+    errno = ENOSPC;
+    return -1;
+}
+
+/* How many entries a folder has. */
+static int entries(const char *folder)
+{
+    DIR *open = opendir(folder);
+    int number = 0;
+
+    CHECK(open != NULL);
+    while (readdir(open) != NULL)
+        number++;
+    closedir(open);
+    return number;
+}
+
+static void open_and_close(void)
+{
+    CHECK(OpenHand() == 0);
+    CHECK(CloseHand() == 0);
+}
+
+int main(void)
+{
+    struct rlimit limit, before;
+    int descriptors, tasks, refused, number;
+
+    alarm(100);
+    for (number = 3; number < 1024; number++)
+        close(number);
+    open_and_close();
+    descriptors = entries("/proc/self/fd");
+    tasks = entries("/proc/self/task");
+
+    /* The highest number that is possible rises by one each time. */
+    CHECK(getrlimit(RLIMIT_NOFILE, &before) == 0);
+    limit = before;
+    refused = 0;
+    for (limit.rlim_cur = 3;; limit.rlim_cur++) {
+        int result;
+
+        CHECK(setrlimit(RLIMIT_NOFILE, &limit) == 0);
+        result = OpenHand();
+        number = errno;
+        CHECK(setrlimit(RLIMIT_NOFILE, &before) == 0);
+        if (result == 0)
+            break;
+        CHECK(number == EMFILE && strstr(HandError(), "ulimit -n") != NULL);
+        CHECK(entries("/proc/self/fd") == descriptors && entries("/proc/self/task") == tasks);
+        refused++;
+    }
+    CHECK(CloseHand() == 0);
+    printf("%d times too few descriptors\n", refused);
+    CHECK(refused >= 9);
+
+    for (refused_terminal = 1; refused_terminal <= 3; refused_terminal++) {
+        terminals = 0;
+        REFUSED(OpenHand(), ENOSPC, "kernel.pty.max");
+        CHECK(entries("/proc/self/fd") == descriptors && entries("/proc/self/task") == tasks);
+    }
+    refused_terminal = 0;
+
+    threads = 0;
+    open_and_close();
+    number = threads;
+    CHECK(number >= 7);
+    for (refused_thread = 1; refused_thread <= number; refused_thread++) {
+        threads = 0;
+        REFUSED(OpenHand(), EAGAIN, "ulimit -u");
+        CHECK(entries("/proc/self/fd") == descriptors && entries("/proc/self/task") == tasks);
+    }
+    refused_thread = 0;
+    printf("each of %d threads was refused\n", number);
+    open_and_close();
+    return 0;
+}
