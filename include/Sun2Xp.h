@@ -43,9 +43,9 @@
 
    2. RETURN VALUES, ERRNO
 
-   Every call but HandError returns an int: 0 is done; -1 is refused. A refused call
-   has changed nothing and has written no output. errno tells the kind, HandError()
-   the cause and the remedy:
+   Every call but HandError and FaultText returns an int: 0 if it was done, and -1 if it
+   was refused. A refused call has written no output, and has changed nothing unless its
+   entry says so. errno tells the kind, HandError() the cause and the remedy:
 
        EPERM    the process is a forked child (chapter 6)
        EFAULT   an argument is a null pointer
@@ -61,9 +61,8 @@
        others   a configuration file, a port, or enforced real time: what the system
                 said, or the nearest
 
-   Where several hold, the call tells the first of: EPERM, EFAULT, ENODEV, then the
-   others in the order of the entry. A call that succeeds leaves errno and HandError()
-   as they are.
+   Where several hold, a call reports the first in the order of its entry. A call that
+   succeeds leaves errno and HandError() as they are.
 
    Planners of 1990 never look at results. So the first refusal of each kind in a
    process also prints one line on standard error (off: hand.print_refusals = false).
@@ -139,13 +138,13 @@
    that command one finger the later call wins; each command takes effect whole.
 
    Signals: the servo threads block all signals, so the planner's alarms and handlers
-   are served by the planner's own threads. Do not make these calls from a signal
-   handler. One that calls exit, which C does not promise to work, ends the program;
+   are served by the planner's own threads. A signal handler may call StopHand, and no
+   other call. One that calls exit, which C does not promise to work, ends the program;
    where it broke into a call the boards end the motion instead of CloseHand.
 
    Fork: a child has no servo threads. Once a process has called OpenHand, every call
-   in a child forked from it is refused with EPERM; the parent is undisturbed. A
-   child that calls exec starts afresh.
+   in a child forked from it is refused with EPERM, except HandError, FaultText and
+   StopHand; the parent is undisturbed. A child that calls exec starts afresh.
 
    Descriptors: become a daemon first, then call OpenHand. The library's descriptors
    close at exec. They have numbers from 512 on where the limit (ulimit -n) permits it,
@@ -245,25 +244,24 @@ _Pragma("push_macro(\"FingerStatus\")") _Pragma("push_macro(\"FingerTiming\")") 
 _Pragma("push_macro(\"Follows\")") _Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")")
 _Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetPosD\")") _Pragma("push_macro(\"GetRecord\")")
 _Pragma("push_macro(\"GetStatus\")") _Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")")
-_Pragma("push_macro(\"HandError\")") _Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"LateCycles\")")
-_Pragma("push_macro(\"LateReplies\")") _Pragma("push_macro(\"LostReplies\")") _Pragma("push_macro(\"Maximum\")")
-_Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")")
-_Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"Number\")")
-_Pragma("push_macro(\"Oldest\")") _Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OpenHand\")")
-_Pragma("push_macro(\"Overruns\")") _Pragma("push_macro(\"P99\")") _Pragma("push_macro(\"P999\")")
-_Pragma("push_macro(\"Part\")") _Pragma("push_macro(\"Pos\")") _Pragma("push_macro(\"PosSent\")")
-_Pragma("push_macro(\"PushFinger\")") _Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")")
-_Pragma("push_macro(\"RecoverHand\")") _Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"SendContact\")")
-_Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendKxD\")") _Pragma("push_macro(\"SendPosD\")")
-_Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")")
-_Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")")
-_Pragma("push_macro(\"StiffnessScale\")") _Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"Tension\")")
-_Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")")
-_Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")")
-_Pragma("push_macro(\"Value\")") _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")")
-_Pragma("push_macro(\"WakeUpMedian\")") _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")")
-_Pragma("push_macro(\"WarningValue\")") _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")")
-_Pragma("push_macro(\"ZeroFinger\")")
+_Pragma("push_macro(\"HandError\")") _Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"LateReplies\")")
+_Pragma("push_macro(\"LostReplies\")") _Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"MeasuredRate\")")
+_Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")") _Pragma("push_macro(\"Minimum\")")
+_Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"Oldest\")")
+_Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OpenHand\")") _Pragma("push_macro(\"Overruns\")")
+_Pragma("push_macro(\"P99\")") _Pragma("push_macro(\"P999\")") _Pragma("push_macro(\"Part\")")
+_Pragma("push_macro(\"Pos\")") _Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"PushFinger\")")
+_Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")")
+_Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"SendContact\")") _Pragma("push_macro(\"SendDamping\")")
+_Pragma("push_macro(\"SendKxD\")") _Pragma("push_macro(\"SendPosD\")") _Pragma("push_macro(\"SendTip\")")
+_Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Stage\")")
+_Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"StiffnessScale\")")
+_Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")")
+_Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")") _Pragma("push_macro(\"Tip\")")
+_Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Value\")")
+_Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")") _Pragma("push_macro(\"WakeUpMedian\")")
+_Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")") _Pragma("push_macro(\"WarningValue\")")
+_Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pragma("push_macro(\"ZeroFinger\")")
 #undef AdjustFinger
 #undef Answered
 #undef Calibration
@@ -293,7 +291,6 @@ _Pragma("push_macro(\"ZeroFinger\")")
 #undef GetTip
 #undef HandError
 #undef IdentifyFinger
-#undef LateCycles
 #undef LateReplies
 #undef LostReplies
 #undef Maximum
@@ -363,14 +360,14 @@ extern "C" {
  nothing moves until SendPos. Takes about a second at most for the simulated hand.
 
  Returns 0, or -1 with
+   EPERM    forked child
    EBUSY    a hand is open (it goes on), or another thread is just opening or closing one
+   ENOENT, EACCES ...  the configuration file cannot be read; the errno is the system's
    EINVAL   the configuration cannot be used; HandError names file, line and reason
-   ENOENT, EACCES, EBUSY ...  the configuration file or a port cannot be opened; the
-            errno is the system's
+   ENOENT, EACCES, EBUSY ...  a port cannot be opened; the errno is the system's
    ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
    EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory
             or the configured core cannot be had; HandError says what to change
-   EPERM    forked child
 
  Threads: any; one hand a process.
 
@@ -410,12 +407,12 @@ int CloseHand(void);
  -1.0472 to 1.0472, joint 1: -0.5236 to 1.7453, joint 2: 0.0873 to 2.0944.
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Pos is null
    ENODEV   no hand is open
    EINVAL   no such finger; an angle is NaN or infinite
    ERANGE   an angle is outside the joint limits (or it is clamped: hand.out_of_range)
    EIO      the finger is faulted
-   EPERM    forked child
 
  Threads: any. Never waits for a servo; about 100 ns.
 
@@ -449,6 +446,7 @@ int SendPosD(int, const double *);
  bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Kx is null
    ENODEV   no hand is open
    EINVAL   no such finger; an entry is NaN or infinite
@@ -456,7 +454,6 @@ int SendPosD(int, const double *);
    ERANGE   Kx is stiffer than the bound, or too stiff for the ratio that SendDamping set
             (or both are clamped: hand.out_of_range)
    EIO      the finger is faulted
-   EPERM    forked child
 
  Threads: any. Never waits for a servo; about 1 us.
 
@@ -482,11 +479,11 @@ int SendKxD(int, const double *);
          Written only if the call returns 0
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Pos is null
    ENODEV   no hand is open
    EINVAL   no such finger
    EIO      the finger is faulted
-   EPERM    forked child
 
  Threads: any. Never waits for a servo; about 100 ns.
 
@@ -589,10 +586,23 @@ const char *HandError(void);
 #define FINGER_LIMP 3
 
 /*
- FingerStatus.State: ZeroFinger or IdentifyFinger moves the finger, or its tendons are
- brought under tension. Set points have no effect.
+ FingerStatus.State: ZeroFinger or IdentifyFinger moves the finger. Set points have no
+ effect.
  */
 #define FINGER_CALIBRATING 4
+
+/*
+ FingerStatus.State: the tendons are being brought under tension, by RecoverHand or at
+ the end of a calibration. Set points have no effect.
+ */
+#define FINGER_TENSIONING 5
+
+/*
+ FingerStatus.State: the finger goes to its configured end state, or is there, because
+ the planner has called exit or returned from main without CloseHand. Only exit handlers
+ and threads that are left see it.
+ */
+#define FINGER_CLOSED 6
 
 /*
  Stage for GetTiming: from the scheduled beginning of a cycle to the thread's first
@@ -649,7 +659,8 @@ struct FingerStatus {
      */
     unsigned int Size;
     /*
-     FINGER_RUNNING, FINGER_FAULTED, FINGER_LIMP or FINGER_CALIBRATING.
+     FINGER_RUNNING, FINGER_FAULTED, FINGER_LIMP, FINGER_CALIBRATING, FINGER_TENSIONING or
+     FINGER_CLOSED.
      */
     int State;
     /*
@@ -688,15 +699,17 @@ struct FingerStatus {
      */
     unsigned long Cycles;
     /*
-     Periods that were skipped because the servo was late.
+     Whole periods that were skipped because the cycle before was not over. One such cycle
+     may skip many.
      */
-    unsigned long LateCycles;
+    unsigned long SkippedPeriods;
     /*
-     Cycles without a valid reply from the board.
+     Cycles without a valid reply in time.
      */
     unsigned long LostReplies;
     /*
-     Damaged or foreign frames on the finger's port.
+     Pieces of bytes on the finger's port that were no frame: damaged, cut short, noise.
+     FingerTiming.ForeignFrames counts whole frames that nobody waited for.
      */
     unsigned long DamagedFrames;
     /*
@@ -769,7 +782,8 @@ struct FingerTiming {
      */
     unsigned long Overruns;
     /*
-     Whole periods that were skipped because of that.
+     Whole periods that were skipped because the cycle before was not over. One such cycle
+     may skip many.
      */
     unsigned long SkippedPeriods;
     /*
@@ -945,10 +959,10 @@ struct Fault {
  Works on a faulted finger too.
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Status is null
    ENODEV   no hand is open
    EINVAL   Size is too small; no such finger
-   EPERM    forked child
 
  Threads: any.
 
@@ -971,10 +985,10 @@ int GetStatus(int, struct FingerStatus *);
  Works while the servo runs, and on a faulted finger too.
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Timing is null
    ENODEV   no hand is open
    EINVAL   Size is too small; no such finger; no such Stage
-   EPERM    forked child
 
  Threads: any. Never waits for a servo; some us.
 
@@ -995,9 +1009,9 @@ int GetTiming(int, int, struct FingerTiming *);
  those of GetTiming.
 
  Returns 0, or -1 with
+   EPERM    forked child
    ENODEV   no hand is open
    EINVAL   no such finger
-   EPERM    forked child
 
  Threads: any. Never waits for a servo.
  */
@@ -1019,12 +1033,12 @@ int ResetTiming(int);
  anchor goes there straight in the joints, at a bounded speed.
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Tip is null
    ENODEV   no hand is open
    EINVAL   no such finger; an entry is NaN or infinite
    ERANGE   too far, too near, or outside the joint limits; never clamped
    EIO      the finger is faulted
-   EPERM    forked child
 
  Threads: any. Never waits for a servo; less than 1 us.
 
@@ -1043,11 +1057,11 @@ int SendTip(int, const double *);
          cycle. Written only if the call returns 0
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Tip is null
    ENODEV   no hand is open
    EINVAL   Size is too small; no such finger
    EIO      the finger is faulted
-   EPERM    forked child
 
  Threads: any. Never waits for a servo; about 1 us.
 
@@ -1082,13 +1096,13 @@ int GetTip(int, struct FingerTip *);
  counts as it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   K is null, or Normal for D = 1 or 4
    ENODEV   no hand is open
    EINVAL   no such finger; no such D; an entry is NaN or infinite
    EDOM     K is not symmetric, or has a negative eigenvalue; Normal is zero
    ERANGE   K is stiffer than the bound (or it is clamped: hand.out_of_range)
    EIO      the finger is faulted
-   EPERM    forked child
 
  Threads: any. Never waits for a servo; a few us.
 
@@ -1121,12 +1135,12 @@ int SendContact(int, int, const double *, const double *);
  it. SendKx and SendContact refuse a stiffness that the ratio sent last does not go with.
 
  Returns 0, or -1 with
+   EPERM    forked child
    ENODEV   no hand is open
    EINVAL   no such finger; Ratio is NaN or infinite
    ERANGE   Ratio is outside its range; HandError says which (or it is clamped:
             hand.out_of_range)
    EIO      the finger is faulted
-   EPERM    forked child
 
  Threads: any. Never waits for a servo; about 100 ns.
  */
@@ -1152,15 +1166,15 @@ int SendDamping(int, double);
  names it too.
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Keys is null
    ENODEV   no hand is open
-   EINVAL   no such finger; Keys cannot be read; the configuration with them cannot be
-            used
+   EINVAL   no such finger; Keys are no TOML
    EBUSY    a key cannot change while the hand is open
+   EINVAL   an unknown key; a configuration that cannot be used
    ERANGE   the position or stiffness sent last is outside the new limits (or it is
             clamped: hand.out_of_range)
    EIO      the finger is faulted
-   EPERM    forked child
 
  Threads: any. Never waits for a servo; about 100 us, and allocates.
 
@@ -1179,12 +1193,12 @@ int AdjustFinger(int, const char *);
            the call only
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Force is null
    ENODEV   no hand is open
    EINVAL   no such finger; an entry is NaN or infinite
-   ERANGE   a component is beyond 1000 N
    ENOTSUP  the finger is on a real port
-   EPERM    forked child
+   ERANGE   a component is beyond 1000 N
 
  Threads: any.
  */
@@ -1205,11 +1219,11 @@ int PushFinger(int, const double *);
  it was at the fault.
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Record is null
    ENODEV   no hand is open
    EINVAL   Size is too small; no such finger
    ENOENT   the cycle is not kept any more, or has not been yet
-   EPERM    forked child
 
  Threads: any. Never waits for a servo.
 
@@ -1242,11 +1256,11 @@ int GetRecord(int, unsigned long, struct FingerRecord *);
  Takes about 50 ms, and as long as the disk needs for some MB. The servos go on.
 
  Returns 0, or -1 with
+   EPERM    forked child
    EFAULT   Path is null
+   ENODEV   no hand is open
    EINVAL   no such finger; Path names something other than a regular file, such as a
             symbolic link, a device or a folder
-   ENODEV   no hand is open
-   EPERM    forked child
    ENOENT, EACCES, ENOSPC ...  the file cannot be written
 
  Threads: any. Of two calls with the same Path the last one leaves its file.
@@ -1276,15 +1290,15 @@ int WriteBlackBox(int, const char *);
  this finger have no effect.
 
  Returns 0, or -1 with
+   EPERM      forked child
+   ENODEV     no hand is open, or it was closed meanwhile
+   EINVAL     no such finger
+   EIO        the finger is faulted
+   EBUSY      the finger is being calibrated or recovered already
    ECANCELED  something stood in the way (a tendon is slack, a gauge dead, a joint meets
               no stop or meets it early ...): the finger is limp, nothing was changed,
               and HandError says what to do
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
-   EBUSY      the finger is being calibrated already
-   ENODEV     no hand is open, or it was closed meanwhile
-   EINVAL     no such finger
-   EIO        the finger is faulted
-   EPERM      forked child
    EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
               until CloseHand
 
@@ -1324,10 +1338,10 @@ int IdentifyFinger(int);
             the call returns 0
 
  Returns 0, whether something is wrong or not, or -1 with
+   EPERM    forked child
    EFAULT   Fault is null
    ENODEV   no hand is open
    EINVAL   Size is too small; no such finger
-   EPERM    forked child
 
  Threads: any. Never waits for a servo.
 
@@ -1349,7 +1363,7 @@ int GetFault(int, struct Fault *);
  string for a number that is no fault. Never null, valid for ever. HandError tells the
  same of a fault that refused a call, with part and figures.
 
- Threads: any.
+ Threads: any. Works in a forked child too.
  */
 const char *FaultText(int);
 
@@ -1390,16 +1404,16 @@ int StopHand(void);
  go on meanwhile. CloseHand too, and this call is refused then.
 
  Returns 0, or -1 with
+   EPERM    forked child
+   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and
+            finger.reconnect is false
+   EINVAL   no such finger
    EIO      the finger faults again, or its board is another one than at OpenHand or has
             lost its zero, or its servo thread has failed (FAULT_SERVO_PANIC), which only
             CloseHand and OpenHand mend; HandError says which
    EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
-   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and
-            finger.reconnect is false
    ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: it is not there yet, or
             the board does not answer. Call again
-   EINVAL   no such finger
-   EPERM    forked child
 
  Threads: any.
 
@@ -1483,7 +1497,7 @@ template <class Sun2XpElement> inline int GetPos(int Sun2XpFinger, Sun2XpElement
 /* The type of NULL and 0 below, which are refused at run time. It is incomplete, so no planner has an object of it. */
 struct Sun2XpNull;
 /* A conditional expression has this type only if its other branch is a null pointer constant. So void * pointers and
-   integers other than 0 become void *, which fits no association of SUN2XP_CHOOSE. */
+   integers other than 0 become void *, which fits no association of SUN2XP_SEND and SUN2XP_GET. */
 #define SUN2XP_NULL_POINTER(Array) \
     (1 ? _Generic(Array, void *: Array, default: (void *)0) : (struct Sun2XpNull *)0)
 #define SUN2XP_NULL_NUMBER(Array) \
@@ -1542,25 +1556,24 @@ _Pragma("pop_macro(\"FingerStatus\")") _Pragma("pop_macro(\"FingerTiming\")") _P
 _Pragma("pop_macro(\"Follows\")") _Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")")
 _Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetPosD\")") _Pragma("pop_macro(\"GetRecord\")")
 _Pragma("pop_macro(\"GetStatus\")") _Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")")
-_Pragma("pop_macro(\"HandError\")") _Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"LateCycles\")")
-_Pragma("pop_macro(\"LateReplies\")") _Pragma("pop_macro(\"LostReplies\")") _Pragma("pop_macro(\"Maximum\")")
-_Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")")
-_Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"Number\")")
-_Pragma("pop_macro(\"Oldest\")") _Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OpenHand\")")
-_Pragma("pop_macro(\"Overruns\")") _Pragma("pop_macro(\"P99\")") _Pragma("pop_macro(\"P999\")")
-_Pragma("pop_macro(\"Part\")") _Pragma("pop_macro(\"Pos\")") _Pragma("pop_macro(\"PosSent\")")
-_Pragma("pop_macro(\"PushFinger\")") _Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")")
-_Pragma("pop_macro(\"RecoverHand\")") _Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"SendContact\")")
-_Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendKxD\")") _Pragma("pop_macro(\"SendPosD\")")
-_Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")")
-_Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")")
-_Pragma("pop_macro(\"StiffnessScale\")") _Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"Tension\")")
-_Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")")
-_Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")")
-_Pragma("pop_macro(\"Value\")") _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")")
-_Pragma("pop_macro(\"WakeUpMedian\")") _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")")
-_Pragma("pop_macro(\"WarningValue\")") _Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")")
-_Pragma("pop_macro(\"ZeroFinger\")")
+_Pragma("pop_macro(\"HandError\")") _Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"LateReplies\")")
+_Pragma("pop_macro(\"LostReplies\")") _Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"MeasuredRate\")")
+_Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")") _Pragma("pop_macro(\"Minimum\")")
+_Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"Oldest\")")
+_Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OpenHand\")") _Pragma("pop_macro(\"Overruns\")")
+_Pragma("pop_macro(\"P99\")") _Pragma("pop_macro(\"P999\")") _Pragma("pop_macro(\"Part\")")
+_Pragma("pop_macro(\"Pos\")") _Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"PushFinger\")")
+_Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")")
+_Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"SendContact\")") _Pragma("pop_macro(\"SendDamping\")")
+_Pragma("pop_macro(\"SendKxD\")") _Pragma("pop_macro(\"SendPosD\")") _Pragma("pop_macro(\"SendTip\")")
+_Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Stage\")")
+_Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"StiffnessScale\")")
+_Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"Tension\")") _Pragma("pop_macro(\"TensionSent\")")
+_Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")") _Pragma("pop_macro(\"Tip\")")
+_Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Value\")")
+_Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")") _Pragma("pop_macro(\"WakeUpMedian\")")
+_Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")") _Pragma("pop_macro(\"WarningValue\")")
+_Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")") _Pragma("pop_macro(\"ZeroFinger\")")
 #endif
 
 #endif

@@ -3,10 +3,10 @@
 #[allow(dead_code)]
 mod c;
 
+use c::board::Board;
 use c::{Bench, STRICT, c_compiler, library, root, said};
 use std::fs;
-use std::io::{BufRead, BufReader, Write};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 fn succeed(flags: &[&str], sources: &[&str]) {
@@ -154,6 +154,11 @@ fn a_finger_is_zeroed() {
 }
 
 #[test]
+fn a_finger_reads_what_it_does() {
+    succeed(&strict(&[]), &["states.c"]);
+}
+
+#[test]
 fn a_signal_handler_stops_the_hand_and_the_planner_recovers_it() {
     succeed(&strict(&[]), &["stopped.c"]);
 }
@@ -186,50 +191,6 @@ fn a_fingertip_is_sent_read_and_made_a_contact() {
     succeed(&strict(&["-ansi"]), &["tip.c"]);
 }
 
-/// The `sun2xp board` program behind a port of its own, ended when dropped.
-struct Board {
-    process: Child,
-    orders: ChildStdin,
-    answers: BufReader<ChildStdout>,
-}
-
-impl Board {
-    /// Starts a board that carries finger 1, and configures the bench for it. Both sides forgive a busy machine.
-    fn start(bench: &Bench) -> Self {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
-        command.args(["board", "--finger", "1", "--patient", "1000"]).stdin(Stdio::piped()).stdout(Stdio::piped());
-        let mut process = command.spawn().expect("the board can be started");
-        let orders = process.stdin.take().expect("standard input is a pipe");
-        let answers = BufReader::new(process.stdout.take().expect("standard output is a pipe"));
-        let mut board = Self { process, orders, answers };
-        let configuration = format!("[hand]\nwatchdog_ms = 500\n[finger.1]\nport = \"{}\"\n", board.answer());
-        fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
-        board
-    }
-
-    fn answer(&mut self) -> String {
-        let mut line = String::new();
-        self.answers.read_line(&mut line).expect("the board answers");
-        line.trim().to_string()
-    }
-
-    /// The largest true tension, N.
-    fn tension(&mut self) -> f64 {
-        writeln!(self.orders, "state 1").expect("the board listens");
-        let state = self.answer();
-        let (_, tensions) = state.split_once("tensions ").unwrap_or_else(|| panic!("{state}"));
-        tensions.split(' ').take(4).map(|tension| tension.parse::<f64>().expect("a number")).fold(0.0, f64::max)
-    }
-}
-
-impl Drop for Board {
-    fn drop(&mut self) {
-        // It may have been ended by the test.
-        let _ = self.process.kill();
-        let _ = self.process.wait();
-    }
-}
-
 #[test]
 fn a_finger_whose_board_dies_is_faulted() {
     succeed_while_the_board_dies("faulted.c");
@@ -245,7 +206,7 @@ fn succeed_while_the_board_dies(source: &str) {
     let program = bench.build(c_compiler(), &strict(&["-std=c99"]), &[source]);
     let board = Board::start(&bench);
     let mut command = Command::new(&program);
-    command.arg(board.process.id().to_string());
+    command.arg(board.id().to_string());
     let run = bench.run(command);
     assert!(run.status.success(), "{}", said(&run));
 }

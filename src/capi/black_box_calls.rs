@@ -66,11 +66,11 @@ pub struct FingerRecord {
 /// it was at the fault.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Record is null
 ///   ENODEV   no hand is open
 ///   EINVAL   Size is too small; no such finger
 ///   ENOENT   the cycle is not kept any more, or has not been yet
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo.
 ///
@@ -110,11 +110,11 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 /// Takes about 50 ms, and as long as the disk needs for some MB. The servos go on.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Path is null
+///   ENODEV   no hand is open
 ///   EINVAL   no such finger; Path names something other than a regular file, such as a
 ///            symbolic link, a device or a folder
-///   ENODEV   no hand is open
-///   EPERM    forked child
 ///   ENOENT, EACCES, ENOSPC ...  the file cannot be written
 ///
 /// Threads: any. Of two calls with the same Path the last one leaves its file.

@@ -28,15 +28,15 @@ use std::ffi::c_int;
 /// this finger have no effect.
 ///
 /// Returns 0, or -1 with
+///   EPERM      forked child
+///   ENODEV     no hand is open, or it was closed meanwhile
+///   EINVAL     no such finger
+///   EIO        the finger is faulted
+///   EBUSY      the finger is being calibrated or recovered already
 ///   ECANCELED  something stood in the way (a tendon is slack, a gauge dead, a joint meets
 ///              no stop or meets it early ...): the finger is limp, nothing was changed,
 ///              and HandError says what to do
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
-///   EBUSY      the finger is being calibrated already
-///   ENODEV     no hand is open, or it was closed meanwhile
-///   EINVAL     no such finger
-///   EIO        the finger is faulted
-///   EPERM      forked child
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
 ///              until CloseHand
 ///

@@ -20,14 +20,14 @@ use std::ffi::{c_char, c_int};
 /// nothing moves until SendPos. Takes about a second at most for the simulated hand.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EBUSY    a hand is open (it goes on), or another thread is just opening or closing one
+///   ENOENT, EACCES ...  the configuration file cannot be read; the errno is the system's
 ///   EINVAL   the configuration cannot be used; HandError names file, line and reason
-///   ENOENT, EACCES, EBUSY ...  the configuration file or a port cannot be opened; the
-///            errno is the system's
+///   ENOENT, EACCES, EBUSY ...  a port cannot be opened; the errno is the system's
 ///   ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
 ///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory
 ///            or the configured core cannot be had; HandError says what to change
-///   EPERM    forked child
 ///
 /// Threads: any; one hand a process.
 ///
@@ -69,12 +69,12 @@ pub extern "C" fn CloseHand() -> c_int {
 /// -1.0472 to 1.0472, joint 1: -0.5236 to 1.7453, joint 2: 0.0873 to 2.0944.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Pos is null
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; an angle is NaN or infinite
 ///   ERANGE   an angle is outside the joint limits (or it is clamped: hand.out_of_range)
 ///   EIO      the finger is faulted
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo; about 100 ns.
 ///
@@ -118,6 +118,7 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 /// bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Kx is null
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; an entry is NaN or infinite
@@ -125,7 +126,6 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 ///   ERANGE   Kx is stiffer than the bound, or too stiff for the ratio that SendDamping set
 ///            (or both are clamped: hand.out_of_range)
 ///   EIO      the finger is faulted
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo; about 1 us.
 ///
@@ -161,11 +161,11 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
 ///         Written only if the call returns 0
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Pos is null
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger
 ///   EIO      the finger is faulted
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo; about 100 ns.
 ///

@@ -44,10 +44,10 @@ pub struct Fault {
 ///            the call returns 0
 ///
 /// Returns 0, whether something is wrong or not, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Fault is null
 ///   ENODEV   no hand is open
 ///   EINVAL   Size is too small; no such finger
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo.
 ///
@@ -74,20 +74,26 @@ pub unsafe extern "C" fn GetFault(i: c_int, Fault: *mut Fault) -> c_int {
 /// string for a number that is no fault. Never null, valid for ever. HandError tells the
 /// same of a fault that refused a call, with part and figures.
 ///
-/// Threads: any.
+/// Threads: any. Works in a forked child too.
 #[unsafe(no_mangle)]
 pub extern "C" fn FaultText(Number: c_int) -> *const c_char {
-    static TEXTS: LazyLock<Vec<CString>> = LazyLock::new(|| {
-        let text = |kind: &FaultKind| {
-            let told = kind.description();
-            let text = format!("{}: {}. Likely {}. {}", told.name, told.text, told.cause, told.remedy);
-            // The table has no zero byte; if it had, the text would be empty.
-            CString::new(text).unwrap_or_default()
-        };
-        FaultKind::ALL.iter().map(text).collect()
-    });
     let index = usize::try_from(Number).ok().and_then(|number| number.checked_sub(1));
     index.and_then(|index| TEXTS.get(index)).map_or(c"".as_ptr(), |text| text.as_ptr())
+}
+
+static TEXTS: LazyLock<Vec<CString>> = LazyLock::new(|| {
+    let text = |kind: &FaultKind| {
+        let told = kind.description();
+        let text = format!("{}: {}. Likely {}. {}", told.name, told.text, told.cause, told.remedy);
+        // The table has no zero byte; if it had, the text would be empty.
+        CString::new(text).unwrap_or_default()
+    };
+    FaultKind::ALL.iter().map(text).collect()
+});
+
+/// Composes the texts, before the process forks: a child may find the lock of a thread that composes them taken for ever.
+pub(super) fn compose_texts() {
+    LazyLock::force(&TEXTS);
 }
 
 fn told(told: &FingerFault) -> Fault {

@@ -47,12 +47,12 @@ pub struct FingerTip {
 /// anchor goes there straight in the joints, at a bounded speed.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Tip is null
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; an entry is NaN or infinite
 ///   ERANGE   too far, too near, or outside the joint limits; never clamped
 ///   EIO      the finger is faulted
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo; less than 1 us.
 ///
@@ -76,11 +76,11 @@ pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
 ///         cycle. Written only if the call returns 0
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Tip is null
 ///   ENODEV   no hand is open
 ///   EINVAL   Size is too small; no such finger
 ///   EIO      the finger is faulted
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo; about 1 us.
 ///
@@ -120,13 +120,13 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 /// counts as it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   K is null, or Normal for D = 1 or 4
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; no such D; an entry is NaN or infinite
 ///   EDOM     K is not symmetric, or has a negative eigenvalue; Normal is zero
 ///   ERANGE   K is stiffer than the bound (or it is clamped: hand.out_of_range)
 ///   EIO      the finger is faulted
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo; a few us.
 ///
@@ -176,12 +176,12 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 /// it. SendKx and SendContact refuse a stiffness that the ratio sent last does not go with.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; Ratio is NaN or infinite
 ///   ERANGE   Ratio is outside its range; HandError says which (or it is clamped:
 ///            hand.out_of_range)
 ///   EIO      the finger is faulted
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo; about 100 ns.
 #[unsafe(no_mangle)]
@@ -208,15 +208,15 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 /// names it too.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Keys is null
 ///   ENODEV   no hand is open
-///   EINVAL   no such finger; Keys cannot be read; the configuration with them cannot be
-///            used
+///   EINVAL   no such finger; Keys are no TOML
 ///   EBUSY    a key cannot change while the hand is open
+///   EINVAL   an unknown key; a configuration that cannot be used
 ///   ERANGE   the position or stiffness sent last is outside the new limits (or it is
 ///            clamped: hand.out_of_range)
 ///   EIO      the finger is faulted
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo; about 100 us, and allocates.
 ///
@@ -245,12 +245,12 @@ pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
 ///           the call only
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Force is null
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; an entry is NaN or infinite
-///   ERANGE   a component is beyond 1000 N
 ///   ENOTSUP  the finger is on a real port
-///   EPERM    forked child
+///   ERANGE   a component is beyond 1000 N
 ///
 /// Threads: any.
 #[unsafe(no_mangle)]

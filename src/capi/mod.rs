@@ -2,9 +2,9 @@
 //! and turns refusals into errno; every other check is the hand's. `include/Sun2Xp.h` is generated from the files
 //! named `calls`.
 //!
-//! Where several things are wrong with one call, the first of this order is told: forked child (EPERM), null pointer
-//! (EFAULT), no hand (ENODEV), a struct with too small a Size (EINVAL), then what the hand finds: finger number, numbers that are not finite, symmetry and
-//! eigenvalues, limits, a faulted finger.
+//! Where several things are wrong with one call, it reports the first of this order: forked child (EPERM), null pointer
+//! (EFAULT), no hand (ENODEV), a struct with too small a Size (EINVAL), then what the hand finds: finger number, numbers
+//! that are not finite, symmetry and eigenvalues, limits, a faulted finger. The lists in the manual have the same order.
 
 // The boundary to C cannot be written without raw pointers.
 #![allow(unsafe_code)]

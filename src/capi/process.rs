@@ -1,6 +1,7 @@
 //! What the process around the hand does: fork, exit, errno and standard error.
 
 use crate::capi::default_hand;
+use crate::capi::fault_calls::compose_texts;
 use std::ffi::c_int;
 use std::panic::catch_unwind;
 use std::sync::Once;
@@ -21,6 +22,7 @@ pub(super) fn watch() {
     // Neither handler can be taken back.
     static WATCH: Once = Once::new();
     WATCH.call_once(|| {
+        compose_texts();
         // SAFETY: both handlers are functions of this library, which stays loaded (`-z nodelete`), and no panic leaves
         // them. Out of memory is the only failure; then a planner's exit is what its death is: the boards' watchdogs act.
         unsafe {

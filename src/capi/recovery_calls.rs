@@ -46,16 +46,16 @@ pub extern "C" fn StopHand() -> c_int {
 /// go on meanwhile. CloseHand too, and this call is refused then.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
+///   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and
+///            finger.reconnect is false
+///   EINVAL   no such finger
 ///   EIO      the finger faults again, or its board is another one than at OpenHand or has
 ///            lost its zero, or its servo thread has failed (FAULT_SERVO_PANIC), which only
 ///            CloseHand and OpenHand mend; HandError says which
 ///   EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
-///   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and
-///            finger.reconnect is false
 ///   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: it is not there yet, or
 ///            the board does not answer. Call again
-///   EINVAL   no such finger
-///   EPERM    forked child
 ///
 /// Threads: any.
 ///

@@ -22,9 +22,18 @@ pub const FINGER_FAULTED: c_int = 2;
 /// make it a spring again.
 pub const FINGER_LIMP: c_int = 3;
 
-/// FingerStatus.State: ZeroFinger or IdentifyFinger moves the finger, or its tendons are
-/// brought under tension. Set points have no effect.
+/// FingerStatus.State: ZeroFinger or IdentifyFinger moves the finger. Set points have no
+/// effect.
 pub const FINGER_CALIBRATING: c_int = 4;
+
+/// FingerStatus.State: the tendons are being brought under tension, by RecoverHand or at
+/// the end of a calibration. Set points have no effect.
+pub const FINGER_TENSIONING: c_int = 5;
+
+/// FingerStatus.State: the finger goes to its configured end state, or is there, because
+/// the planner has called exit or returned from main without CloseHand. Only exit handlers
+/// and threads that are left see it.
+pub const FINGER_CLOSED: c_int = 6;
 
 /// What GetStatus tells of a finger. Set Size = sizeof (struct FingerStatus) before the
 /// call: later versions add members at the end, and a program never gets more than it
@@ -34,7 +43,8 @@ pub const FINGER_CALIBRATING: c_int = 4;
 pub struct FingerStatus {
     /// In: bytes of room, sizeof *Status. Out: bytes that were filled, never more.
     pub Size: c_uint,
-    /// FINGER_RUNNING, FINGER_FAULTED, FINGER_LIMP or FINGER_CALIBRATING.
+    /// FINGER_RUNNING, FINGER_FAULTED, FINGER_LIMP, FINGER_CALIBRATING, FINGER_TENSIONING or
+    /// FINGER_CLOSED.
     pub State: c_int,
     /// 1: the servo thread runs under SCHED_FIFO. 0: it does not, and shares its core with
     /// everybody.
@@ -55,11 +65,13 @@ pub struct FingerStatus {
     pub TorqueScale: f64,
     /// Cycles since OpenHand.
     pub Cycles: c_ulong,
-    /// Periods that were skipped because the servo was late.
-    pub LateCycles: c_ulong,
-    /// Cycles without a valid reply from the board.
+    /// Whole periods that were skipped because the cycle before was not over. One such cycle
+    /// may skip many.
+    pub SkippedPeriods: c_ulong,
+    /// Cycles without a valid reply in time.
     pub LostReplies: c_ulong,
-    /// Damaged or foreign frames on the finger's port.
+    /// Pieces of bytes on the finger's port that were no frame: damaged, cut short, noise.
+    /// FingerTiming.ForeignFrames counts whole frames that nobody waited for.
     pub DamagedFrames: c_ulong,
     /// The part of the calibration under way that is done, 0 to 1; 0 where there is none.
     pub Calibration: f64,
@@ -84,10 +96,10 @@ pub struct FingerStatus {
 /// Works on a faulted finger too.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Status is null
 ///   ENODEV   no hand is open
 ///   EINVAL   Size is too small; no such finger
-///   EPERM    forked child
 ///
 /// Threads: any.
 ///
@@ -115,7 +127,7 @@ fn told(status: &hand::FingerStatus) -> FingerStatus {
         WakeUpMaximum: status.wake_up.maximum,
         TorqueScale: status.torque_scale,
         Cycles: count(status.losses.cycles),
-        LateCycles: count(status.losses.skipped_periods),
+        SkippedPeriods: count(status.losses.skipped_periods),
         LostReplies: count(status.losses.lost_replies),
         DamagedFrames: count(status.losses.damaged_frames),
         Calibration: status.calibration,
@@ -130,12 +142,58 @@ pub(super) fn state(stage: &Stage) -> c_int {
     match stage {
         Stage::Faulted(_) => FINGER_FAULTED,
         Stage::Limp => FINGER_LIMP,
-        Stage::Calibrating | Stage::Opening => FINGER_CALIBRATING,
-        Stage::Running | Stage::Closing | Stage::Closed => FINGER_RUNNING,
+        Stage::Calibrating => FINGER_CALIBRATING,
+        Stage::Opening => FINGER_TENSIONING,
+        Stage::Running => FINGER_RUNNING,
+        Stage::Closing | Stage::Closed => FINGER_CLOSED,
     }
 }
 
 /// Where `unsigned long` has 32 bits a count stops at its largest value.
 pub(super) fn count(count: u64) -> c_ulong {
     c_ulong::try_from(count).unwrap_or(c_ulong::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finger::{Fault, FaultKind, Losses};
+    use crate::realtime::Distribution;
+
+    #[test]
+    fn only_a_spring_reads_running_and_only_a_calibration_reads_calibrating() {
+        let faulted = Stage::Faulted(Fault::new(FaultKind::Watchdog));
+        for (stage, constant) in [
+            (Stage::Opening, FINGER_TENSIONING),
+            (Stage::Limp, FINGER_LIMP),
+            (Stage::Calibrating, FINGER_CALIBRATING),
+            (Stage::Running, FINGER_RUNNING),
+            (Stage::Closing, FINGER_CLOSED),
+            (Stage::Closed, FINGER_CLOSED),
+            (faulted, FINGER_FAULTED),
+        ] {
+            assert_eq!(state(&stage), constant, "{stage}");
+        }
+    }
+
+    #[test]
+    fn foreign_frames_are_no_damaged_ones_and_periods_no_cycles() {
+        let losses =
+            Losses { overruns: 1, skipped_periods: 20, damaged_frames: 300, foreign_frames: 4000, ..Losses::default() };
+        let status = hand::FingerStatus {
+            stage: Stage::Running,
+            realtime: true,
+            memory_locked: true,
+            on_core: true,
+            rate: 1000.0,
+            measured_rate: 1000.0,
+            wake_up: Distribution::default(),
+            losses,
+            torque_scale: 1.0,
+            stiffness_scale: 1.0,
+            calibration: 0.0,
+        };
+        let told = told(&status);
+        assert_eq!((told.SkippedPeriods, told.DamagedFrames), (20, 300));
+    }
 }

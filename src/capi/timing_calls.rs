@@ -70,7 +70,8 @@ pub struct FingerTiming {
     pub Cycles: c_ulong,
     /// Cycles that were not over when the next one should have begun.
     pub Overruns: c_ulong,
-    /// Whole periods that were skipped because of that.
+    /// Whole periods that were skipped because the cycle before was not over. One such cycle
+    /// may skip many.
     pub SkippedPeriods: c_ulong,
     /// Cycles without a valid reply in time.
     pub LostReplies: c_ulong,
@@ -96,10 +97,10 @@ pub struct FingerTiming {
 /// Works while the servo runs, and on a faulted finger too.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   EFAULT   Timing is null
 ///   ENODEV   no hand is open
 ///   EINVAL   Size is too small; no such finger; no such Stage
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo; some us.
 ///
@@ -111,6 +112,8 @@ pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTi
     guarded("GetTiming", || {
         let least = size_up_to!(FingerTiming, CorruptReplies: c_ulong);
         let tell = |hand: &Hand| {
+            // The finger's number is looked at first.
+            hand.report(i)?;
             // Times first: then there are no more of them than cycles.
             let times = hand.timing(i, stage(Stage).ok_or(HandError::NoSuchStage(Stage))?)?;
             let losses = hand.losses(i)?;
@@ -131,9 +134,9 @@ pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTi
 /// those of GetTiming.
 ///
 /// Returns 0, or -1 with
+///   EPERM    forked child
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger
-///   EPERM    forked child
 ///
 /// Threads: any. Never waits for a servo.
 #[unsafe(no_mangle)]

@@ -64,11 +64,11 @@ impl Contact {
     /// # Errors
     /// K is no spring, or the normal is zero.
     pub fn soft_finger(stiffness: Matrix4<f64>, normal: Vector3<f64>) -> Result<Self, ContactError> {
-        let normal = unit(normal)?;
+        let (stiffness, normal) = directed(&stiffness, normal)?;
         let mut selection = SMatrix::<f64, 4, 6>::zeros();
         selection.fixed_view_mut::<3, 6>(0, 0).copy_from(&translation());
         selection.fixed_view_mut::<1, 3>(3, 3).copy_from(&normal.transpose());
-        Self::general(&stiffness, &selection)
+        Self::felt(&stiffness, &selection)
     }
 
     /// Frictionless point: a force along the contact's normal. `stiffness`: N/cm. `normal` need not have unit length.
@@ -76,10 +76,10 @@ impl Contact {
     /// # Errors
     /// A negative stiffness, or the normal is zero.
     pub fn frictionless_point(stiffness: f64, normal: Vector3<f64>) -> Result<Self, ContactError> {
-        let normal = unit(normal)?;
+        let (stiffness, normal) = directed(&SMatrix::<f64, 1, 1>::new(stiffness), normal)?;
         let mut selection = SMatrix::<f64, 1, 6>::zeros();
         selection.fixed_view_mut::<1, 3>(0, 0).copy_from(&normal.transpose());
-        Self::general(&SMatrix::<f64, 1, 1>::new(stiffness), &selection)
+        Self::felt(&stiffness, &selection)
     }
 
     /// Any contact: `stiffness` K of D dimensions, `selection` S the part of the tip's translation (cm) and rotation (rad)
@@ -97,7 +97,15 @@ impl Contact {
     {
         finite(selection.as_slice())?;
         let (checked, _) = spring(stiffness)?;
-        let spatial = selection.transpose() * checked * selection;
+        Self::felt(&checked, selection)
+    }
+
+    /// S^T K S for a K that is a spring.
+    fn felt<const D: usize>(
+        stiffness: &SMatrix<f64, D, D>,
+        selection: &SMatrix<f64, D, 6>,
+    ) -> Result<Self, ContactError> {
+        let spatial = selection.transpose() * stiffness * selection;
         // Finite factors may have an infinite product.
         finite(spatial.as_slice())?;
         // Symmetric but for rounding; the servo takes symmetry for granted.
@@ -185,9 +193,19 @@ fn finite(values: &[f64]) -> Result<(), ContactError> {
     values.iter().find(|value| !value.is_finite()).map_or(Ok(()), |&value| Err(ContactError::NotFinite(value)))
 }
 
-fn unit(normal: Vector3<f64>) -> Result<Vector3<f64>, ContactError> {
+/// The spring and the unit normal of a contact that has a direction. Of several faults the first of this order is reported: a number
+/// that is not finite, a K that is no spring, a normal without length.
+fn directed<const D: usize>(
+    stiffness: &SMatrix<f64, D, D>,
+    normal: Vector3<f64>,
+) -> Result<(SMatrix<f64, D, D>, Vector3<f64>), ContactError>
+where
+    Const<D>: DimSub<U1>,
+    DefaultAllocator: Allocator<Const<D>, DimDiff<Const<D>, U1>> + Allocator<DimDiff<Const<D>, U1>>,
+{
     finite(normal.as_slice())?;
-    normal.try_normalize(SHORTEST_NORMAL).ok_or(ContactError::NoNormal(normal.norm()))
+    let (checked, _) = spring(stiffness)?;
+    Ok((checked, normal.try_normalize(SHORTEST_NORMAL).ok_or(ContactError::NoNormal(normal.norm()))?))
 }
 
 fn translation() -> SMatrix<f64, 3, 6> {

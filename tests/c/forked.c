@@ -1,4 +1,4 @@
-/* A forked child is refused everything, ends without touching the hand, and the parent's hand goes on. */
+/* A forked child is refused everything but three calls, ends without touching the hand, and the parent's hand goes on. */
 #include <errno.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -12,8 +12,33 @@ static void child(void)
 {
     double Pos[3] = {0.0, 0.5, 0.9};
     struct FingerStatus Status;
+    struct FingerTiming Timing;
+    struct FingerTip Tip;
+    struct FingerRecord Record;
+    struct Fault Fault;
 
     Status.Size = sizeof Status;
+    Timing.Size = sizeof Timing;
+    Tip.Size = sizeof Tip;
+    Record.Size = sizeof Record;
+    Fault.Size = sizeof Fault;
+    REFUSED(GetTiming(1, TIMING_CYCLE, &Timing));
+    REFUSED(GetTiming(9, 99, NULL));
+    REFUSED(ResetTiming(0));
+    REFUSED(SendTip(1, Pos));
+    REFUSED(GetTip(1, &Tip));
+    REFUSED(SendContact(9, 9, NULL, NULL));
+    REFUSED(SendDamping(1, 1));
+    REFUSED(AdjustFinger(1, ""));
+    REFUSED(GetRecord(1, 0, &Record));
+    REFUSED(WriteBlackBox(1, "child.jsonl"));
+    REFUSED(ZeroFinger(1));
+    REFUSED(IdentifyFinger(1));
+    REFUSED(GetFault(1, &Fault));
+    REFUSED(RecoverHand(1));
+    CHECK(strstr(FaultText(FAULT_WATCHDOG), "watchdog") != NULL);
+    errno = 0;
+    CHECK(StopHand() == 0 && errno == 0);
     REFUSED(SendPos(1, Pos));
     REFUSED(SendPos(1, (float *)NULL));
     REFUSED(SendKx(1, (float *)NULL));

@@ -1,6 +1,7 @@
 //! Compiles the C programs of this folder against the header and the library that the same `cargo test` has built, and runs
 //! them where no configuration of the machine can be found.
 
+pub mod board;
 #[path = "../common/tools.rs"]
 mod tools;
 

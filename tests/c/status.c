@@ -23,7 +23,7 @@ int main(void)
             CHECK(Larger.Later[byte] == 0x55);
         printf("finger %d: %.1f of %.1f Hz, wake-up %.1f %.1f %.1f us, %lu cycles, %lu late, %lu lost, %lu damaged, real-time %d\n",
                finger, Status->MeasuredRate, Status->Rate, Status->WakeUpMedian, Status->WakeUp99,
-               Status->WakeUpMaximum, Status->Cycles, Status->LateCycles, Status->LostReplies, Status->DamagedFrames,
+               Status->WakeUpMaximum, Status->Cycles, Status->SkippedPeriods, Status->LostReplies, Status->DamagedFrames,
                Status->Realtime);
         CHECK(Status->State == FINGER_RUNNING);
         CHECK(Status->Rate == 1000.0);

@@ -1,0 +1,55 @@
+//! A board in a process of its own.
+
+use super::Bench;
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+/// The `sun2xp board` program behind a port of its own, ended when dropped.
+pub struct Board {
+    process: Child,
+    orders: ChildStdin,
+    answers: BufReader<ChildStdout>,
+}
+
+impl Board {
+    /// Starts a board that carries finger 1, and configures the bench for it. Both sides forgive a busy machine.
+    pub fn start(bench: &Bench) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+        command.args(["board", "--finger", "1", "--patient", "1000"]).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut process = command.spawn().expect("the board can be started");
+        let orders = process.stdin.take().expect("standard input is a pipe");
+        let answers = BufReader::new(process.stdout.take().expect("standard output is a pipe"));
+        let mut board = Self { process, orders, answers };
+        let configuration = format!("[hand]\nwatchdog_ms = 500\n[finger.1]\nport = \"{}\"\n", board.answer());
+        fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
+        board
+    }
+
+    /// The number of its process.
+    pub fn id(&self) -> u32 {
+        self.process.id()
+    }
+
+    fn answer(&mut self) -> String {
+        let mut line = String::new();
+        self.answers.read_line(&mut line).expect("the board answers");
+        line.trim().to_string()
+    }
+
+    /// The largest true tension, N.
+    pub fn tension(&mut self) -> f64 {
+        writeln!(self.orders, "state 1").expect("the board listens");
+        let state = self.answer();
+        let (_, tensions) = state.split_once("tensions ").unwrap_or_else(|| panic!("{state}"));
+        tensions.split(' ').take(4).map(|tension| tension.parse::<f64>().expect("a number")).fold(0.0, f64::max)
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        // It may have been ended by the test.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}

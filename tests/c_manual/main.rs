@@ -1,0 +1,8 @@
+//! The C manual, which is the header, says the same in its chapters, in its entries and by what the library does.
+
+#[allow(dead_code)]
+#[path = "../c/mod.rs"]
+mod c;
+mod manual;
+mod order;
+mod sentences;

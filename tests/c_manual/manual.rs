@@ -1,0 +1,82 @@
+//! The manual, taken apart.
+
+use super::c::root;
+use std::fs;
+
+/// The comments of the header.
+pub struct Manual {
+    /// The opening comment.
+    chapters: String,
+    /// What is said of each call.
+    pub entries: Vec<Entry>,
+    header: String,
+}
+
+/// What is said of a call.
+pub struct Entry {
+    pub call: String,
+    /// The declaration below it.
+    pub declaration: String,
+    /// Without the blank that every line of a comment begins with.
+    pub text: String,
+}
+
+impl Manual {
+    pub fn read() -> Self {
+        let header = fs::read_to_string(root().join("include/Sun2Xp.h")).expect("the header");
+        let (opening, rest) = header.split_once("*/").expect("the header begins with a comment");
+        let mut entries = Vec::new();
+        for after in rest.split("\n/*\n").skip(1) {
+            let (text, after) = after.split_once("\n */\n").expect("every comment ends");
+            let declaration = after.lines().next().unwrap_or_default();
+            let callee = declaration.split_once('(').and_then(|(call, _)| call.rsplit([' ', '*']).next());
+            let Some(call) = callee.filter(|_| declaration.ends_with(");")) else { continue };
+            let text = text.lines().map(|line| line.strip_prefix(' ').unwrap_or(line)).collect::<Vec<_>>().join("\n");
+            entries.push(Entry { call: call.to_string(), declaration: declaration.to_string(), text });
+        }
+        Self { chapters: opening.to_string(), entries, header }
+    }
+
+    /// A chapter in one line.
+    pub fn chapter(&self, number: usize) -> String {
+        let heading = |number: usize| format!("\n\n\n   {number}. ");
+        let (_, text) = self.chapters.split_once(&heading(number)).expect("the manual has the chapter");
+        in_one_line(text.split_once(&heading(number + 1)).map_or(text, |(text, _)| text))
+    }
+
+    /// The comment above a member of a struct, in one line.
+    pub fn member(&self, structure: &str, member: &str) -> String {
+        let (_, rest) = self.header.split_once(&format!("\nstruct {structure} {{\n")).expect("the struct");
+        let (members, _) = rest.split_once("\n};\n").expect("every struct ends");
+        let (before, _) = members.split_once(&format!(" {member};\n")).expect("the member");
+        let (_, comment) = before.rsplit_once("/*\n").expect("every member has a comment");
+        in_one_line(comment.split_once("*/").expect("every comment ends").0)
+    }
+}
+
+impl Entry {
+    /// Kinds of refusals in the order in which they are reported. A line of the list begins with one or several.
+    pub fn errnos(&self) -> Vec<&str> {
+        let Some((_, list)) = self.text.split_once("or -1 with\n") else { return Vec::new() };
+        // Other lines of the list are indented further.
+        let lines = list.lines().take_while(|line| !line.is_empty());
+        let lines = lines.filter_map(|line| line.strip_prefix("  ").filter(|line| line.starts_with('E')));
+        let errno = |word: &&str| word.starts_with('E') && word.chars().all(|letter| letter.is_ascii_uppercase());
+        lines.flat_map(|line| line.split([' ', ',']).filter(|word| !word.is_empty()).take_while(errno)).collect()
+    }
+
+    /// The paragraph that begins with "Threads:", in one line.
+    pub fn threads(&self) -> String {
+        let (_, threads) = self.text.split_once("\nThreads: ").unwrap_or_default();
+        in_one_line(threads.split_once("\n\n").map_or(threads, |(threads, _)| threads))
+    }
+}
+
+pub fn in_one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Names of calls in a list such as "A, B and C".
+pub fn listed(text: &str) -> Vec<&str> {
+    text.split([' ', ',']).filter(|word| !word.is_empty() && *word != "and" && *word != "or").collect()
+}

@@ -1,0 +1,47 @@
+//! Where several things are wrong with a call, it reports the first in the order of its entry.
+
+use super::c::board::Board;
+use super::c::{Bench, STRICT, c_compiler, said};
+use super::manual::Manual;
+use std::collections::BTreeMap;
+use std::process::Command;
+
+/// Refusals that tests/c/order.c does not try, because they exclude the others: those of boards, of calibrations and
+/// recoveries under way, and some of the system's.
+const NOT_TRIED: &[(&str, &[&str])] = &[
+    ("OpenHand", &["EACCES", "ETIMEDOUT", "EPERM", "ENOMEM"]),
+    ("ZeroFinger", &["EBUSY", "ECANCELED", "ETIMEDOUT", "EACCES", "ENOSPC"]),
+    ("RecoverHand", &["EIO", "EBUSY", "ENOENT", "EACCES", "ETIMEDOUT"]),
+    ("WriteBlackBox", &["EACCES", "ENOSPC"]),
+];
+
+#[test]
+fn calls_report_the_first_refusal_of_their_entries() {
+    let manual = Manual::read();
+    let bench = Bench::new();
+    let _board = Board::start(&bench);
+    let program = bench.build(c_compiler(), &[STRICT, &["-std=c99"]].concat(), &["order.c"]);
+    let run = bench.run(Command::new(&program));
+    assert!(run.status.success(), "{}", said(&run));
+    let mut reported = BTreeMap::<&str, Vec<&str>>::new();
+    let lines = str::from_utf8(&run.stdout).expect("errnos");
+    for (call, errno) in lines.lines().filter_map(|line| line.split_once(' ')) {
+        reported.entry(call).or_default().push(errno);
+    }
+    for entry in manual.entries.iter().filter(|entry| !entry.errnos().is_empty()) {
+        let mut listed = entry.errnos().into_iter();
+        assert_eq!(listed.next(), Some("EPERM"), "{}: a forked child is told that first", entry.call);
+        let reported = reported.remove(entry.call.as_str()).unwrap_or_default();
+        for (index, errno) in reported.iter().enumerate() {
+            // Several wrong things may share a line of the list.
+            let again = index > 0 && reported[index - 1] == *errno;
+            let next = again || listed.any(|listed| listed == *errno);
+            assert!(next, "{} reported {reported:?}, against its entry:\n{}", entry.call, entry.text);
+        }
+        let untried = NOT_TRIED.iter().find(|(call, _)| *call == entry.call).map_or(&[][..], |(_, errnos)| errnos);
+        let forgotten =
+            entry.errnos().into_iter().skip(1).find(|errno| !reported.contains(errno) && !untried.contains(errno));
+        assert_eq!(forgotten, None, "tests/c/order.c should try this refusal of {}", entry.call);
+    }
+    assert!(reported.is_empty(), "calls without a list of refusals: {reported:?}");
+}

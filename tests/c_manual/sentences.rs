@@ -1,0 +1,59 @@
+//! What the chapters say of all calls, against what their entries say.
+
+use super::manual::{Manual, listed};
+
+/// The names between two parts of a sentence of a chapter.
+fn between<'a>(chapter: &'a str, before: &str, after: &str) -> Vec<&'a str> {
+    let rest = chapter.split_once(before).unwrap_or_else(|| panic!("no sentence with {before:?}: {chapter}")).1;
+    listed(rest.split_once(after).unwrap_or_else(|| panic!("no sentence with {after:?}: {chapter}")).0)
+}
+
+fn sorted(mut names: Vec<&str>) -> Vec<&str> {
+    names.sort_unstable();
+    names
+}
+
+#[test]
+fn the_calls_that_return_no_int_are_named() {
+    let manual = Manual::read();
+    let chapter = manual.chapter(2);
+    let others = manual.entries.iter().filter(|entry| !entry.declaration.starts_with("int "));
+    let others = others.map(|entry| entry.call.as_str()).collect();
+    assert_eq!(sorted(between(&chapter, "Every call but ", " returns an int")), sorted(others));
+}
+
+#[test]
+fn the_calls_that_signal_handlers_may_make_are_named() {
+    let manual = Manual::read();
+    let chapter = manual.chapter(6);
+    let safe = manual.entries.iter().filter(|entry| entry.threads().contains("signal handler"));
+    let safe = safe.map(|entry| entry.call.as_str()).collect();
+    assert_eq!(sorted(between(&chapter, "A signal handler may call ", ", and no other")), sorted(safe));
+}
+
+/// The entries of calls for double leave the list to the entries above them; that of IdentifyFinger refers to ZeroFinger's.
+#[test]
+fn the_calls_that_a_forked_child_may_make_are_named() {
+    let manual = Manual::read();
+    let chapter = manual.chapter(6);
+    let refers = ["SendPosD", "SendKxD", "GetPosD", "IdentifyFinger"];
+    let works = manual.entries.iter().filter(|entry| !entry.errnos().contains(&"EPERM"));
+    let works = works.map(|entry| entry.call.as_str()).filter(|call| !refers.contains(call)).collect();
+    assert_eq!(sorted(between(&chapter, "is refused with EPERM, except ", "; the parent")), sorted(works));
+}
+
+/// Members that count the same say the same.
+#[test]
+fn counts_of_the_status_are_those_of_the_timing() {
+    let manual = Manual::read();
+    for (status, timing) in
+        [("SkippedPeriods", "SkippedPeriods"), ("LostReplies", "LostReplies"), ("DamagedFrames", "CorruptReplies")]
+    {
+        let first = |text: String| text.split_once('.').expect("a sentence").0.to_string();
+        assert_eq!(
+            first(manual.member("FingerStatus", status)),
+            first(manual.member("FingerTiming", timing)),
+            "{status}"
+        );
+    }
+}
