@@ -366,6 +366,7 @@ extern "C" {
    EINVAL   the configuration cannot be used; HandError names file, line and reason
    ENOENT, EACCES, EBUSY ...  a port cannot be opened; the errno is the system's
    ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
+   EIO      a finger does not come under tension in time, or faults while it does
    EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory
             or the configured core cannot be had; HandError says what to change
 
@@ -564,6 +565,7 @@ const char *HandError(void);
 #define FAULT_WARM_MOTOR             45 /* warm motor */
 #define FAULT_COMPANION              46 /* stopped with another */
 #define FAULT_PORT_CLOSED            47 /* port closed */
+#define FAULT_OPENING_TIMED_OUT      48 /* opening timed out */
 
 
 /*

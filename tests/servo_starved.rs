@@ -132,8 +132,10 @@ struct Rig {
 }
 
 impl Rig {
-    fn new(seed: u64) -> Self {
-        let configuration = Configuration::default();
+    /// `open_timeout_ms`: how long the finger may take to come under tension, on the wall.
+    fn new(seed: u64, open_timeout_ms: u32) -> Self {
+        let mut configuration = Configuration::default();
+        configuration.hand.open_timeout_ms = open_timeout_ms;
         let finger = &configuration.fingers[0];
         let world = Rc::new(RefCell::new(World {
             now: 0,
@@ -194,7 +196,7 @@ fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
         Load { carrier: 2.0, board: 2.0, servo: 2.0 },
     ] {
         for seed in 0..3 {
-            let mut rig = Rig::new(seed);
+            let mut rig = Rig::new(seed, 60_000);
             let start = rig.world.borrow_mut().pose();
             rig.world.borrow_mut().load = load;
             // Its own time passes more slowly.
@@ -218,7 +220,7 @@ fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
 
 #[test]
 fn a_command_or_reply_that_was_thrown_away_is_made_good() {
-    let mut rig = Rig::new(0);
+    let mut rig = Rig::new(0, 60_000);
     rig.run_until(60.0, |report| report.stage != Stage::Opening);
     for _ in 0..3 {
         rig.run(0.01);
@@ -246,7 +248,7 @@ fn a_command_or_reply_that_was_thrown_away_is_made_good() {
 
 #[test]
 fn a_simulated_board_that_never_answers_again_faults_its_finger() {
-    let mut rig = Rig::new(0);
+    let mut rig = Rig::new(0, 60_000);
     rig.run_until(60.0, |report| report.stage != Stage::Opening);
     rig.world.borrow_mut().carrier_runs = u64::MAX;
     rig.run(4.9);
@@ -254,4 +256,20 @@ fn a_simulated_board_that_never_answers_again_faults_its_finger() {
     rig.run(0.2);
     let stage = rig.mailbox.report().stage;
     assert!(matches!(stage, Stage::Faulted(Fault { kind: FaultKind::LostReplies, .. })), "{stage:?}");
+}
+
+#[test]
+fn a_finger_that_a_machine_keeps_from_opening_faults_when_its_time_is_over() {
+    let mut rig = Rig::new(0, 1500);
+    // Nothing is carried, or every wake-up is late.
+    for load in [Load { carrier: 1e9, ..Load::default() }, Load { servo: 30.0, ..Load::default() }] {
+        rig.world.borrow_mut().load = load;
+        let begun = rig.world.borrow().now;
+        rig.run_until(60.0, |report| report.stage != Stage::Opening);
+        let stage = rig.mailbox.report().stage;
+        assert!(matches!(stage, Stage::Faulted(Fault { kind: FaultKind::OpeningTimedOut, .. })), "{stage:?}");
+        let lasted = (rig.world.borrow().now - begun) as f64 / MILLISECOND as f64;
+        assert!((1400.0..1900.0).contains(&lasted), "{lasted} ms");
+        rig = Rig::new(0, 1500);
+    }
 }

@@ -26,6 +26,7 @@ use std::ffi::{c_char, c_int};
 ///   EINVAL   the configuration cannot be used; HandError names file, line and reason
 ///   ENOENT, EACCES, EBUSY ...  a port cannot be opened; the errno is the system's
 ///   ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
+///   EIO      a finger does not come under tension in time, or faults while it does
 ///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory
 ///            or the configured core cannot be had; HandError says what to change
 ///

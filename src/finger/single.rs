@@ -59,6 +59,8 @@ pub struct FingerServo {
     settled_cycles: u32,
     /// Cycles since the stage began.
     stage_cycles: u32,
+    /// When the finger began to take up slack, ns; none: in the next cycle.
+    opening_since: Option<u64>,
     stops_left: u8,
     /// How the finger holds the pose that it finds at open.
     initial: SetPoint,
@@ -67,10 +69,11 @@ pub struct FingerServo {
     memory: Memory,
 }
 
-/// Times of the configuration, in cycles.
+/// Times of the configuration, in cycles where nothing else is said.
 struct Limits {
     period_ms: f64,
-    tension: u32,
+    /// How long the finger may take to become a spring, ms.
+    opening_ms: f64,
     settled: u32,
     ramp: u32,
     /// How long a warning stays.
@@ -149,6 +152,7 @@ impl FingerServo {
         if self.under_control() {
             self.black_box.keyframe(self.report.losses.cycles, &self.state, !self.recording);
         }
+        self.limit_opening(began);
         let controls = self.under_control() && (self.answered || !self.link.in_step());
         let control = controls.then(|| self.control(skipped));
         if recorded {

@@ -3,5 +3,6 @@
 mod commands;
 mod floods;
 mod kinds;
+mod opening;
 mod rig;
 mod set_points;

@@ -164,6 +164,7 @@ pub fn three_boards() -> [Board; 3] {
 pub fn on_ports(ports: [&str; 3]) -> Configuration {
     let mut configuration = Configuration::default();
     (configuration.hand.rate, configuration.hand.watchdog_ms) = (500.0, 1000);
+    configuration.hand.open_timeout_ms = 20_000;
     for (finger, port) in configuration.fingers.iter_mut().zip(ports) {
         finger.port = port.into();
         finger.controller.set_point_speed = Some(1.0);
@@ -234,8 +235,9 @@ pub fn close(hand: Hand) {
 
 /// Writes a configuration file with what [`on_ports`] configures, and more keys of `[hand]`.
 pub fn write_configuration(file: &Path, boards: &[Board; 3], hand: &str) {
-    let mut text =
-        format!("[hand]\nrate = 500\nwatchdog_ms = 1000\n{hand}[finger.controller]\nset_point_speed = 1.0\n");
+    let mut text = format!(
+        "[hand]\nrate = 500\nwatchdog_ms = 1000\nopen_timeout_ms = 20000\n{hand}[finger.controller]\nset_point_speed = 1.0\n"
+    );
     for (index, board) in boards.iter().enumerate() {
         text += &format!("[finger.{}]\nport = '{}'\n", index + 1, board.port);
     }

@@ -39,7 +39,7 @@ macro_rules! faults {
 
 faults! {
     1 SlackTendon "SLACK_TENDON" Fault Tendon Tension "slack tendon",
-        "a tendon does not come under tension, or does not keep it, though its motor pulls",
+        "a tendon does not come under tension within hand.open_timeout_ms, or does not keep it, though its motor pulls",
         "a knot or clamp slips, the tendon is off its pulley, or a sign or zero of motor or gauge is wrong",
         "Look after the tendon, RecoverHand; for wrong signs and zeros: CloseHand, sun2xp calibrate";
     2 BrokenTendon "BROKEN_TENDON" Fault Tendon Tension "broken tendon",
@@ -226,6 +226,10 @@ faults! {
         "another part of the program has closed the descriptor of the port",
         "the planner closes descriptors that it has not opened, as a program does that makes itself a daemon",
         "CloseHand, OpenHand; make the planner a daemon before it calls OpenHand";
+    48 OpeningTimedOut "OPENING_TIMED_OUT" Fault Finger Time "opening timed out",
+        "the tendons were not all under tension when hand.open_timeout_ms was over, because the servo ran too few of its cycles",
+        "the machine is overloaded, or the board's replies are lost",
+        "Free the machine or permit real time (README), or raise hand.open_timeout_ms; RecoverHand, or OpenHand";
 }
 
 #[cfg(test)]

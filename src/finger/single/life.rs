@@ -13,6 +13,9 @@ use nalgebra::Vector4;
 /// 6 N flung aside one seemed to be 0.55 rad beyond its limits, and came back.
 const FLUNG: f64 = 0.3;
 
+/// A machine that runs less than this part of the cycles of a finger while it opens explains why it takes long.
+const MOSTLY: f64 = 0.75;
+
 impl FingerServo {
     /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
     pub(super) fn take_commands(&mut self) -> Option<Adjustable> {
@@ -113,18 +116,33 @@ impl FingerServo {
                     self.enter(Stage::Running);
                 }
             }
-            Stage::Opening => {
-                self.settled_cycles = 0;
-                if self.stage_cycles >= self.limits.tension {
-                    let slackest = self.report.cycle.slackest;
-                    let value = self.report.cycle.tensions[slackest];
-                    self.fault(Fault { kind: FaultKind::SlackTendon, part: slackest as u8 + 1, value });
-                }
-            }
+            Stage::Opening => self.settled_cycles = 0,
             Stage::Running => self.check_pose(FLUNG),
             Stage::Closing if self.stage_cycles > self.limits.ramp => self.enter(Stage::Closed),
             _ => {}
         }
+    }
+
+    /// Stops a finger that has been opening for too long in the cycle that begins at `began`, ns. By the clock and not by cycles, because
+    /// a machine that runs few of them must not keep a planner waiting.
+    pub(super) fn limit_opening(&mut self, began: u64) {
+        if self.report.stage != Stage::Opening {
+            return;
+        }
+        let since = *self.opening_since.get_or_insert(began);
+        let waited_ms = began.saturating_sub(since) as f64 * 1e-6;
+        if waited_ms < self.limits.opening_ms {
+            return;
+        }
+        // A tendon is to blame where the motors had the time to wind it in.
+        let wound_ms = f64::from(self.stage_cycles) * self.limits.period_ms;
+        self.fault(if wound_ms >= MOSTLY * waited_ms {
+            let slackest = self.report.cycle.slackest;
+            let value = self.report.cycle.tensions[slackest];
+            Fault { kind: FaultKind::SlackTendon, part: slackest as u8 + 1, value }
+        } else {
+            Fault::of(FaultKind::OpeningTimedOut, waited_ms)
+        });
     }
 
     pub(super) fn enter(&mut self, stage: Stage) {
@@ -155,6 +173,7 @@ impl FingerServo {
     fn take_up_slack(&mut self) {
         self.activity = Activity::TakeUpSlack;
         self.settled_cycles = 0;
+        self.opening_since = None;
         self.enter(Stage::Opening);
     }
 

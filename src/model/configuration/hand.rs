@@ -80,7 +80,7 @@ pub struct ConfiguredHand {
     pub release_ramp_ms: u16,
     /// Silence after which the board goes to its end state, ms: 2 to 1000.
     pub watchdog_ms: u16,
-    /// How long a board may take to answer, and a finger to come under tension, at open, ms.
+    /// How long a board may take to answer, and a finger to come under tension, at open, ms by the clock.
     pub open_timeout_ms: u32,
     /// What stops when a finger faults.
     pub on_fault: OnFault,
