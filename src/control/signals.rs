@@ -84,6 +84,13 @@ pub struct Command {
     pub motor_torques: Vector4<f64>,
 }
 
+impl Command {
+    /// Whether every torque is a finite number.
+    pub fn is_finite(&self) -> bool {
+        self.motor_torques.iter().all(|torque| torque.is_finite())
+    }
+}
+
 /// What one cycle found and decided.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Report {

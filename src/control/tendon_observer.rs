@@ -162,7 +162,7 @@ impl TendonObserver {
         let error = Vector2::new(motor_travel - estimate.x[0], tension - self.tension(&estimate.x));
         let gain = self.recovery.get(estimate.since_loss).unwrap_or(&self.gain);
         estimate.x += gain * error;
-        estimate.since_loss = (estimate.since_loss + 1).min(RECOVERY);
+        estimate.since_loss = estimate.since_loss.saturating_add(1).min(RECOVERY);
     }
 
     /// Nothing was measured. An acceleration is too uncertain to be carried on.

@@ -37,6 +37,10 @@ impl ControlInput {
         };
         // Periods that will be skipped are periods without a reply: what differentiates and predicts must know of them.
         for _ in 0..self.skipped {
+            // From numbers that are not finite no finite ones follow, and limits made of them are none.
+            if !command.is_finite() {
+                break;
+            }
             (command, report) = controller.cycle(state, None, &self.activity);
         }
         if let Some(fading) = &self.fading {

@@ -34,6 +34,11 @@ pub struct Fading {
 }
 
 impl Fading {
+    /// Whether a finger of this hand can fade like this.
+    pub(super) fn possible(&self, hand: &ConfiguredHand) -> bool {
+        (0.0..=1.0).contains(&self.left) && (0.0..=hand.hold_torque_limit).contains(&self.rest)
+    }
+
     /// N cm.
     pub fn torques(&self, commanded: &Vector4<f64>) -> Vector4<f64> {
         commanded.map(|torque| {

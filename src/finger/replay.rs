@@ -1,8 +1,12 @@
 //! The pure controller over a recording: what it commanded once it must command again, to the last bit.
 
+mod soundness;
+
 use crate::control::Controller;
-use crate::finger::{ControlRecord, Recording};
+use crate::finger::{ControlRecord, Origin, Recording};
+use crate::model::configuration::Unusable;
 use nalgebra::Vector4;
+use std::collections::HashMap;
 use thiserror::Error;
 
 /// What came of a replay.
@@ -30,16 +34,16 @@ pub struct Difference {
 /// A recording that nothing can be computed from.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NotReplayable {
-    /// A cycle names a controller that is not described.
-    #[error("cycle {cycle} names controller {number}, which the recording does not describe")]
-    UnknownController {
-        /// The cycle.
-        cycle: u64,
-        /// The controller.
-        number: u32,
+    /// The hand's configuration, or a number of what all cycles start from.
+    #[error("line 1: {key} {reason}")]
+    Origin {
+        /// The key, with dots.
+        key: String,
+        /// What is wrong with it.
+        reason: String,
     },
     /// A configuration that makes no controller.
-    #[error("controller {number}: {key} {reason}")]
+    #[error("line 1: controller {number}: {key} {reason}")]
     Unusable {
         /// The controller.
         number: u32,
@@ -48,38 +52,54 @@ pub enum NotReplayable {
         /// Why.
         reason: String,
     },
+    /// A cycle names a controller that is not described.
+    #[error("cycle {cycle} names controller {number}, which the recording does not describe")]
+    UnknownController {
+        /// The cycle.
+        cycle: u64,
+        /// The controller.
+        number: u32,
+    },
+    /// A cycle that no servo has recorded.
+    #[error("cycle {cycle}, line {line}: {key} {reason}")]
+    Cycle {
+        /// The cycle.
+        cycle: u64,
+        /// Its line in a file, from 1.
+        line: usize,
+        /// The key, with dots.
+        key: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A controller that commands what is no number.
+    #[error(
+        "cycle {0}: the controller commands a torque that is not a finite number: a number of the recording was altered"
+    )]
+    NotFinite(u64),
 }
 
 impl Recording {
     /// Runs the controller over every cycle.
     ///
     /// # Errors
-    /// A recording whose controllers are not all there.
+    /// A recording whose configuration OpenHand would refuse, with numbers that no servo has recorded, or whose
+    /// controllers are not all there. The first wrong number is named; nothing is computed from it.
     pub fn replay(&self) -> Result<Replayed, NotReplayable> {
-        let mut controllers = Vec::new();
-        for source in &self.origin.controllers {
-            let made = Controller::in_gravity(&source.finger, &source.gravity, self.origin.hand.rate);
-            let unusable = |unusable: crate::model::configuration::Unusable| NotReplayable::Unusable {
-                number: source.number,
-                key: unusable.key,
-                reason: unusable.reason,
-            };
-            controllers.push((source.number, made.map_err(unusable)?));
-        }
-        let controller = |cycle, number| {
-            let found = controllers.iter().find(|(own, _)| *own == number);
-            found.map(|(_, controller)| controller).ok_or(NotReplayable::UnknownController { cycle, number })
-        };
+        self.check()?;
+        let mut controllers = Controllers { recording: self, made: HashMap::new() };
         let mut state = self.origin.state;
         let mut replayed = Replayed { cycles: 0, different: 0, first: None };
         for (index, record) in self.cycles.iter().enumerate() {
             let Some(recorded) = record.control else { continue };
-            let present = controller(record.cycle, recorded.controller)?;
-            let previous = match recorded.previous == recorded.controller {
-                true => None,
-                false => Some(controller(record.cycle, recorded.previous)?),
-            };
+            controllers.make(record.cycle, recorded.controller)?;
+            controllers.make(record.cycle, recorded.previous)?;
+            let present = &controllers.made[&recorded.controller];
+            let previous = (recorded.previous != recorded.controller).then(|| &controllers.made[&recorded.previous]);
             let (command, report) = recorded.input.run(present, previous, &mut state, record.feedback.as_ref());
+            if !command.is_finite() {
+                return Err(NotReplayable::NotFinite(record.cycle));
+            }
             replayed.cycles += 1;
             let same =
                 bits(&command.motor_torques) == bits(&recorded.command.motor_torques) && report == recorded.report;
@@ -90,6 +110,27 @@ impl Recording {
             }
         }
         Ok(replayed)
+    }
+}
+
+/// The controllers that are needed, made when the first cycle names them.
+struct Controllers<'a> {
+    recording: &'a Recording,
+    made: HashMap<u32, Controller>,
+}
+
+impl Controllers<'_> {
+    fn make(&mut self, cycle: u64, number: u32) -> Result<(), NotReplayable> {
+        if self.made.contains_key(&number) {
+            return Ok(());
+        }
+        let Origin { controllers, hand, .. } = &self.recording.origin;
+        let source = controllers.iter().find(|source| source.number == number);
+        let source = source.ok_or(NotReplayable::UnknownController { cycle, number })?;
+        let made = Controller::in_gravity(&source.finger, &source.gravity, hand.rate);
+        let unusable = |Unusable { key, reason }| NotReplayable::Unusable { number, key, reason };
+        self.made.insert(number, made.map_err(unusable)?);
+        Ok(())
     }
 }
 

@@ -43,7 +43,11 @@ impl Configuration {
 }
 
 impl ConfiguredHand {
-    fn check(&self) -> Result<(), Unusable> {
+    /// Checks every value of `[hand]`.
+    ///
+    /// # Errors
+    /// The first unusable value found.
+    pub fn check(&self) -> Result<(), Unusable> {
         let (least, most) = (*RATES.start(), *RATES.end());
         if self.rate < least {
             let reason = format!(
@@ -72,7 +76,11 @@ impl ConfiguredHand {
 }
 
 impl ConfiguredFinger {
-    fn check(&self) -> Result<(), Unusable> {
+    /// Checks every value of the finger and every relation between them.
+    ///
+    /// # Errors
+    /// The first unusable value found.
+    pub fn check(&self) -> Result<(), Unusable> {
         if self.port.is_empty() {
             return unusable("port", "is empty: the path of a serial port, or \"simulated\"".into());
         }

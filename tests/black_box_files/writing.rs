@@ -1,6 +1,6 @@
 //! A black box is written whole, beside its place, and takes the place in one step.
 
-use crate::recording;
+use crate::recorded::recorded;
 use std::fs;
 use std::io;
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -20,13 +20,13 @@ const FILE: &str = "SUN2XP_TEST_FILE";
 fn a_full_disk_leaves_the_old_file() {
     if let Some(file) = std::env::var_os(FILE) {
         // This is the second process, which can write 16 KiB into a file.
-        let error = recording().save(Path::new(&file)).expect_err("too large");
+        let error = recorded().opening.save(Path::new(&file)).expect_err("too large");
         assert_eq!(error.raw_os_error(), Some(libc::EFBIG), "{error}");
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("finger-1.jsonl");
-    recording().save(&file).expect("written");
+    recorded().opening.save(&file).expect("written");
     let before = fs::read(&file).expect("read");
     assert!(before.len() > 16 * 1024, "{}", before.len());
     // Without the signal, which would kill the process, a write beyond the limit fails as on a full disk. A block of a
@@ -52,7 +52,7 @@ fn a_link_in_the_place_of_the_file_is_not_followed() {
     let (victim, link) = (folder.path().join("victim"), folder.path().join("finger-1.jsonl"));
     fs::write(&victim, "precious").expect("written");
     symlink(&victim, &link).expect("made");
-    let error = recording().save(&link).expect_err("refused").to_string();
+    let error = recorded().opening.save(&link).expect_err("refused").to_string();
     assert!(error.contains("a symbolic link"), "{error}");
     assert_eq!(fs::read_to_string(&victim).expect("read"), "precious");
     assert_eq!(names(folder.path()).len(), 2);
@@ -65,9 +65,9 @@ fn an_old_file_is_replaced_with_its_permissions() {
     fs::write(&file, "old").expect("written");
     fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).expect("set");
     let reader = fs::File::open(&file).expect("open");
-    recording().save(&file).expect("written");
+    recorded().opening.save(&file).expect("written");
     assert_eq!(fs::metadata(&file).expect("there").permissions().mode() & 0o7777, 0o640);
-    assert_eq!(Recording::open(&file).expect("a recording").cycles.len(), recording().cycles.len());
+    assert_eq!(Recording::open(&file).expect("a recording").cycles.len(), recorded().opening.cycles.len());
     // Whoever reads the old file reads it to its end.
     assert!(io::read_to_string(reader).expect("read") == "old", "the old file was written over");
     assert_eq!(names(folder.path()), ["finger-1.jsonl"]);

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use sun2xp::control::Activity;
 use sun2xp::finger::{CycleRecord, Difference, Recording};
+use sun2xp::model::Shown;
 
 /// Runs the pure controller over a black box and compares what it commands with what was commanded, bit for bit.
 ///
@@ -23,7 +24,7 @@ const DIFFERENT: u8 = 2;
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let recording = Recording::open(&arguments.file)?;
-    let replayed = recording.replay()?;
+    let replayed = recording.replay().map_err(|error| format!("{}: {error}", arguments.file.display()))?;
     let mut output = io::stdout().lock();
     describe(&recording, &mut output)?;
     match &replayed.first {
@@ -53,7 +54,7 @@ fn describe(recording: &Recording, output: &mut impl Write) -> io::Result<()> {
         *stages.entry(cycle.stage.as_str()).or_insert(0u32) += 1;
     }
     for (stage, count) in stages {
-        writeln!(output, "stage        {count} {stage}")?;
+        writeln!(output, "stage        {count} {}", Shown(stage))?;
     }
     let lost = |cycle: &&CycleRecord<String>| cycle.feedback.is_none();
     let longest = cycles.split(|cycle| cycle.feedback.is_some()).map(<[_]>::len).max().unwrap_or(0);

@@ -1,0 +1,146 @@
+//! Reading the file of a black box, which anybody may have altered: nothing in it makes this program use much memory.
+
+use super::{Header, Recording, RecordingError, VERSION};
+use crate::files::open_regular_file;
+use crate::finger::{ControllerSource, CycleRecord};
+use crate::model::Shown;
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt;
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
+use std::path::Path;
+
+/// The largest file, bytes. Two seconds at the highest rate take 13 MB, and a thousand controllers 3 MB.
+const LARGEST: u64 = 1 << 26;
+
+/// The longest line of a cycle, bytes. The library writes some 1500.
+const LONGEST_LINE: u64 = 1 << 16;
+
+/// No black box has more cycles: five times those of two seconds at the highest rate.
+const MOST_CYCLES: usize = 50_000;
+
+/// No black box has more controllers: to make one takes a planner longer than half a millisecond.
+const MOST_CONTROLLERS: usize = 4096;
+
+/// The longest reason that is shown, characters.
+const LONGEST_REASON: usize = 200;
+
+/// What every version of the format begins with.
+#[derive(Deserialize)]
+struct Identity {
+    sun2xp_black_box: u32,
+    library: String,
+}
+
+impl Recording {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is no whole recording of this version.
+    pub fn open(path: &Path) -> Result<Self, RecordingError> {
+        let file = path.display().to_string();
+        match open_regular_file(path, LARGEST) {
+            Ok(input) => Self::read(BufReader::new(input), &file),
+            Err(error) => Err(RecordingError::Unreadable(file, error)),
+        }
+    }
+
+    /// Reads a recording from `input`, which errors call `file`.
+    ///
+    /// # Errors
+    /// As [`Recording::open`].
+    pub fn read(mut input: impl BufRead, file: &str) -> Result<Self, RecordingError> {
+        let file = file.to_string();
+        let unreadable = |error| RecordingError::Unreadable(file.clone(), error);
+        let first = next_line(&mut input, LARGEST).map_err(unreadable)?.unwrap_or_default();
+        let foreign = |reason: String| RecordingError::Foreign(file.clone(), reason);
+        let Identity { sun2xp_black_box: found, library } =
+            serde_json::from_slice(&first).map_err(|error| foreign(told(&error)))?;
+        let library = Shown(&library).to_string();
+        if found != VERSION {
+            return Err(RecordingError::Version { file, found, library });
+        }
+        let wrong = |line: usize, reason: String| RecordingError::Line {
+            file: file.clone(),
+            line,
+            reason,
+            library: library.clone(),
+        };
+        let header: Header = serde_json::from_slice(&first).map_err(|error| wrong(1, told(&error)))?;
+        if header.cycles > MOST_CYCLES {
+            return Err(RecordingError::Long { file, most: MOST_CYCLES });
+        }
+        let mut cycles: Vec<CycleRecord<String>> = Vec::new();
+        while let Some(line) = next_line(&mut input, LONGEST_LINE).map_err(unreadable)? {
+            let wrong = |reason| wrong(cycles.len() + 2, reason);
+            if cycles.len() == header.cycles {
+                return Err(RecordingError::Long { file, most: header.cycles });
+            }
+            let cycle: CycleRecord<String> = serde_json::from_slice(&line).map_err(|error| wrong(told(&error)))?;
+            if cycles.last().is_some_and(|last| last.cycle.checked_add(1) != Some(cycle.cycle)) {
+                return Err(wrong("its cycle does not follow the one before".into()));
+            }
+            cycles.push(cycle);
+        }
+        if cycles.len() != header.cycles {
+            return Err(RecordingError::Short { file, found: cycles.len(), expected: header.cycles });
+        }
+        Ok(Self { origin: header.origin, library, cycles })
+    }
+}
+
+/// A line of at most `longest` bytes without its end; none after the last one.
+fn next_line(input: &mut impl BufRead, longest: u64) -> io::Result<Option<Vec<u8>>> {
+    let mut line = Vec::new();
+    if input.take(longest + 1).read_until(b'\n', &mut line)? == 0 {
+        return Ok(None);
+    }
+    if line.last() == Some(&b'\n') {
+        line.pop();
+    }
+    if line.len() as u64 > longest {
+        return Err(io::Error::new(ErrorKind::InvalidData, format!("it has a line of more than {longest} bytes")));
+    }
+    Ok(Some(line))
+}
+
+/// What is wrong with a line. The parser sees one line, so of the place that it names only the column counts.
+fn told(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let reason = text.rsplit_once(" at line ").map_or(text.as_str(), |(reason, _)| reason);
+    // The reason may hold any text of the file.
+    let mut shown = String::new();
+    for character in reason.chars().take(LONGEST_REASON) {
+        match character {
+            '\'' | '"' => shown.push(character),
+            _ => shown.extend(character.escape_debug()),
+        }
+    }
+    format!("{shown} (column {})", error.column())
+}
+
+/// The controllers, of which there are not too many.
+pub(super) fn controllers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ControllerSource>, D::Error> {
+    struct Bounded;
+
+    impl<'de> Visitor<'de> for Bounded {
+        type Value = Vec<ControllerSource>;
+
+        fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+            write!(formatter, "at most {MOST_CONTROLLERS} controllers")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Self::Value, A::Error> {
+            let mut controllers = Vec::new();
+            while let Some(controller) = elements.next_element()? {
+                if controllers.len() == MOST_CONTROLLERS {
+                    return Err(A::Error::custom(format!("more than {MOST_CONTROLLERS} controllers")));
+                }
+                controllers.push(controller);
+            }
+            Ok(controllers)
+        }
+    }
+
+    deserializer.deserialize_seq(Bounded)
+}

@@ -1,0 +1,107 @@
+//! What a recording must satisfy before anything is computed from it: what a configuration must, and that a servo can
+//! have recorded the rest. A file can be altered, and a number that no servo writes makes a controller compute for
+//! ever, or panic.
+
+use super::NotReplayable;
+use crate::finger::link_watch::LinkWatch;
+use crate::finger::{ControlInput, Recording};
+use crate::model::configuration::Unusable;
+use serde::Serialize;
+use serde_json::Value;
+use std::ops::RangeInclusive;
+
+/// Cycles of controllers that are computed at most, with those for skipped periods: a hundred for every cycle of two
+/// seconds at the highest rate. They take some seconds.
+const MOST_COMPUTED: u64 = 1_000_000;
+
+/// Larger than every number that a finger can come to, in any unit, and so small that its powers are finite.
+const LARGEST: f64 = 1e30;
+
+/// Gravity in any direction, m/s^2: a configuration may have 100 in each of three.
+const GRAVITY: RangeInclusive<f64> = -200.0..=200.0;
+
+impl Recording {
+    /// Refuses what no servo has recorded.
+    pub(super) fn check(&self) -> Result<(), NotReplayable> {
+        let origin = &self.origin;
+        let wrong = |key: &str, reason: String| Err(NotReplayable::Origin { key: format!("origin.{key}"), reason });
+        if !(1..=3).contains(&origin.finger) {
+            return wrong("finger", format!("is {}: fingers are 1, 2 and 3", origin.finger));
+        }
+        if let Err(Unusable { key, reason }) = origin.hand.check() {
+            return wrong(&format!("hand.{key}"), reason);
+        }
+        for source in &origin.controllers {
+            let number = source.number;
+            let unusable = |Unusable { key, reason }| NotReplayable::Unusable { number, key, reason };
+            source.finger.check().map_err(unusable)?;
+            if let Some(part) = source.gravity.iter().find(|part| !GRAVITY.contains(part)) {
+                let reason = format!("of {part:?} m/s^2 is outside {} to {}", GRAVITY.start(), GRAVITY.end());
+                return Err(NotReplayable::Unusable { number, key: "gravity", reason });
+            }
+        }
+        let numbers = origin.controllers.iter().map(|source| source.number);
+        if !numbers.is_sorted_by(|one, next| one < next) {
+            return wrong("controllers", "are not in the order of their numbers".into());
+        }
+        if let Err((key, reason)) = within_bounds(&origin.state, "state") {
+            return wrong(&key, reason);
+        }
+        self.check_cycles()
+    }
+
+    fn check_cycles(&self) -> Result<(), NotReplayable> {
+        let hand = &self.origin.hand;
+        // A built-in finger waits for its servo, so it skips nothing.
+        let most_skipped = u64::from(LinkWatch::new(hand, false).most());
+        let mut computed: u64 = 0;
+        for (index, record) in self.cycles.iter().enumerate() {
+            let Some(control) = &record.control else { continue };
+            let wrong = |key: &str, reason: String| {
+                let key = format!("control.input.{key}");
+                Err(NotReplayable::Cycle { cycle: record.cycle, line: index + 2, key, reason })
+            };
+            let ControlInput { skipped, fading, .. } = control.input;
+            if skipped > most_skipped {
+                return wrong("skipped", format!("is {skipped}: with this watchdog it is {most_skipped} at most"));
+            }
+            computed = computed.saturating_add(skipped + 1);
+            if computed > MOST_COMPUTED {
+                return wrong("skipped", format!("makes more than {MOST_COMPUTED} cycles to compute in all"));
+            }
+            if fading.is_some_and(|fading| !fading.possible(hand)) {
+                let most = hand.hold_torque_limit;
+                return wrong("fading", format!("has a left outside 0 to 1, or a rest outside 0 to {most} N cm"));
+            }
+            if let Err((key, reason)) = within_bounds(&control.input, "") {
+                return wrong(key.trim_start_matches('.'), reason);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether every number is within bounds; else the key and the reason.
+fn within_bounds(value: &impl Serialize, key: &str) -> Result<(), (String, String)> {
+    match serde_json::to_value(value) {
+        Ok(value) => check_numbers(&value, key),
+        Err(error) => Err((key.into(), error.to_string())),
+    }
+}
+
+fn check_numbers(value: &Value, key: &str) -> Result<(), (String, String)> {
+    match value {
+        Value::Number(number) => match number.as_f64() {
+            Some(number) if number.abs() <= LARGEST => Ok(()),
+            _ => Err((key.into(), format!("is {number}: nothing of a finger is beyond {LARGEST:e}"))),
+        },
+        Value::Array(values) => {
+            let indexed = |(index, value)| check_numbers(value, &format!("{key}[{index}]"));
+            values.iter().enumerate().try_for_each(indexed)
+        }
+        Value::Object(values) => {
+            values.iter().try_for_each(|(name, value)| check_numbers(value, &format!("{key}.{name}")))
+        }
+        Value::Null | Value::Bool(_) | Value::String(_) => Ok(()),
+    }
+}

@@ -1,0 +1,117 @@
+//! Recordings that once made `sun2xp replay` hang or panic are refused in one line that names the place and the reason.
+
+use crate::recorded::{recorded, varied};
+use std::fs;
+use std::process::Command;
+use sun2xp::finger::{Fading, Recording};
+
+/// What the tool says of a recording that it refuses.
+fn refusal(recording: &Recording) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("altered.jsonl");
+    recording.save(&file).expect("written");
+    refusal_of(&fs::read(&file).expect("read"))
+}
+
+fn refusal_of(text: &[u8]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("altered.jsonl");
+    fs::write(&file, text).expect("written");
+    let run = Command::new(env!("CARGO_BIN_EXE_sun2xp")).arg("replay").arg(&file).output().expect("the tool runs");
+    let told = String::from_utf8(run.stderr).expect("text");
+    assert_eq!(run.status.code(), Some(1), "{told}");
+    assert!(told.lines().count() == 1 && told.len() < 600, "one short line: {told}");
+    assert!(told.contains("altered.jsonl"), "{told}");
+    told
+}
+
+fn altered(alter: impl FnOnce(&mut Recording)) -> Recording {
+    let mut recording = varied(&recorded().opening);
+    alter(&mut recording);
+    recording
+}
+
+#[test]
+fn skipped_periods_without_end_are_refused() {
+    let skipped = |index: usize, skipped: u64| {
+        move |recording: &mut Recording| {
+            recording.cycles[index].control.as_mut().expect("computed").input.skipped = skipped;
+        }
+    };
+    let told = refusal(&altered(skipped(7, 1_000_000_000_000)));
+    assert!(told.contains(", line 9: control.input.skipped is 1000000000000:"), "{told}");
+    // At most as many as the watchdog lets pass.
+    assert!(altered(skipped(7, 12)).replay().is_ok());
+    let told = refusal(&altered(skipped(7, 13)));
+    assert!(told.contains("with this watchdog it is 12 at most"), "{told}");
+    // Not in all either.
+    let slow = altered(|recording| {
+        recording.origin.hand.watchdog_ms = 1000;
+        let cycle = recording.cycles[11].clone();
+        recording.cycles.extend((0..2000).map(|later| {
+            let mut cycle = cycle.clone();
+            cycle.cycle += later + 1;
+            cycle.control.as_mut().expect("computed").input.skipped = 700;
+            cycle
+        }));
+    });
+    let told = refusal(&slow);
+    assert!(told.contains("more than 1000000 cycles to compute"), "{told}");
+}
+
+#[test]
+fn configurations_that_open_no_hand_make_no_controller() {
+    type Alter = fn(&mut Recording);
+    let alterations: [(Alter, &str); 8] = [
+        (|recording| recording.origin.controllers[0].finger.geometry.r[1][2] = 1e308, "geometry.r"),
+        (|recording| recording.origin.controllers[0].finger.motor.torque_limit[0] = 1e308, "motor.torque_limit"),
+        (|recording| recording.origin.controllers[1].finger.motor.continuous_torque[3] = 5e-324, "continuous_torque"),
+        (|recording| recording.origin.controllers[1].gravity[2] = 1e308, "gravity"),
+        (|recording| recording.origin.hand.rate = 1e308, "origin.hand.rate"),
+        (|recording| recording.origin.hand.watchdog_ms = 0, "origin.hand.watchdog_ms"),
+        (|recording| recording.origin.finger = -1, "origin.finger"),
+        (|recording| recording.origin.controllers.reverse(), "origin.controllers"),
+    ];
+    for (alter, key) in alterations {
+        let told = refusal(&altered(alter));
+        assert!(told.contains("line 1: ") && told.contains(key), "{told}");
+    }
+}
+
+#[test]
+fn a_command_fades_no_further_than_to_rest() {
+    for (left, rest) in [(0.4, -1.0), (0.4, 1.1), (-0.1, 0.5), (1.1, 0.5)] {
+        let told = refusal(&altered(|recording| {
+            recording.cycles[8].control.as_mut().expect("computed").input.fading = Some(Fading { left, rest });
+        }));
+        assert!(told.contains(", line 10: control.input.fading "), "{told}");
+    }
+}
+
+#[test]
+fn what_no_file_of_a_black_box_holds_is_refused() {
+    let text = {
+        let mut text = Vec::new();
+        varied(&recorded().opening).write(&mut text).expect("written");
+        String::from_utf8(text).expect("text")
+    };
+    let (header, cycles) = text.split_once('\n').expect("a header");
+    let (first, rest) = cycles.split_once('\n').expect("a cycle");
+    let endless = format!("{header}\n{first}{}\n{rest}", " ".repeat(100_000));
+    assert!(refusal_of(endless.as_bytes()).contains("a line of more than 65536 bytes"));
+    let more = format!("{text}{first}\n");
+    assert!(refusal_of(more.as_bytes()).contains("more than 12 cycles"));
+    let many = text.replacen("\"cycles\":12", "\"cycles\":1000000000000", 1);
+    assert!(refusal_of(many.as_bytes()).contains("more than 50000 cycles"));
+    let number = cycles.split_once(',').expect("a number").0;
+    let last = text.replacen(number, "{\"cycle\":18446744073709551615", 1);
+    assert!(refusal_of(last.as_bytes()).contains("line 3: its cycle does not follow"));
+    let controller = "{\"number\":0,\"gravity\":[0,0,0],\"finger\":{}},".repeat(5000);
+    let crowded = text.replacen("\"controllers\":[", &format!("\"controllers\":[{controller}"), 1);
+    assert!(refusal_of(crowded.as_bytes()).contains("line 1: more than 4096 controllers"));
+    let rude = text.replacen("\"report\"", &format!("\"{}\\u001b[31m\\n\"", "x".repeat(1000)), 1);
+    let told = refusal_of(rude.as_bytes());
+    assert!(told.contains("line 1: unknown variant `xxx"), "{told}");
+    let library = text.replacen("\"library\":\"", "\"library\":\"\\n\\n", 1).replacen("\"rate\"", "\"rat\"", 1);
+    assert!(refusal_of(library.as_bytes()).contains("Library \\n\\n0.1.0 wrote it"));
+}
