@@ -4,3 +4,4 @@ mod arrays;
 mod hostile;
 mod reading;
 mod reference;
+mod sharing;

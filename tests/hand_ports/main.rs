@@ -4,6 +4,7 @@
 #[path = "../c/mod.rs"]
 mod c;
 mod endings;
+mod examples;
 mod faults;
 mod floods;
 mod killed;

@@ -26,7 +26,7 @@ pub fn turn() -> MutexGuard<'static, ()> {
 }
 
 /// It stands still while a busy machine keeps its host's commands.
-const PATIENT: [&str; 2] = ["--patient", "500"];
+pub const PATIENT: [&str; 2] = ["--patient", "500"];
 
 /// `sun2xp board` with its orders.
 pub struct Board {

@@ -1,0 +1,50 @@
+//! Fingers on one port: each refusal on the way there names the key and a value that works.
+
+use crate::reading::{read, usable};
+
+fn refusal(text: &str) -> String {
+    match read(text) {
+        Ok(_) => panic!("accepted: {text}"),
+        Err((line, reason)) => {
+            assert!(line.is_some(), "{reason}");
+            reason
+        }
+    }
+}
+
+#[test]
+fn the_refusals_lead_to_three_fingers_on_one_port() {
+    let mut text = "[finger]\nport = '/dev/ttyUSB0'\n".to_owned();
+    for remedy in ["thread = 1", "baud = 2000000"] {
+        let reason = refusal(&text);
+        assert!(reason.contains(&format!("et {remedy} ")), "{remedy}: {reason}");
+        text += remedy;
+        text += "\n";
+    }
+    let hand = usable(&text);
+    assert!((0..3).all(|finger| (hand.thread(finger), hand.address(finger)) == (1, finger as u8 + 1)));
+}
+
+#[test]
+fn a_lower_rate_is_the_other_remedy() {
+    let fingers = "[finger]\nport = '/dev/ttyUSB0'\nthread = 2\n";
+    let reason = refusal(fingers);
+    let (_, rate) = reason.split_once("set hand.rate = ").unwrap_or_else(|| panic!("{reason}"));
+    let rate: f64 = rate.split(' ').next().unwrap_or_default().parse().expect("a number");
+    assert_eq!(usable(&format!("[hand]\nrate = {rate}\n{fingers}")).hand.rate, rate);
+}
+
+#[test]
+fn what_two_fingers_of_a_port_have_differently_is_named() {
+    let shared = "[finger]\nport = 'p'\nthread = 1\nbaud = 2000000\n";
+    for (own, remedy) in [
+        ("[finger.2]\nbaud = 3000000\n", "set baud in [finger]"),
+        ("[finger.3]\naddress = 1\n", "leave `address` out"),
+        ("[finger.2]\nthread = 2\n", "set thread = 1 for every finger of the port"),
+        ("[finger.2]\ncore = 1\n", "set core and priority in [finger]"),
+        ("[finger.3]\npriority = 10\n", "set core and priority in [finger]"),
+    ] {
+        let reason = refusal(&format!("{shared}{own}"));
+        assert!(reason.contains(remedy), "{own}: {reason}");
+    }
+}
