@@ -79,10 +79,14 @@ void mechanism_advance(struct mechanism *finger, uint32_t microseconds)
 
 void mechanism_sample(const struct mechanism *finger, struct sensors *sensors)
 {
+    /* The noise of a converter, one count up or down: the library takes a gauge that shows one count for ever for a dead one. */
+    static uint32_t random = 1;
     for (size_t i = 0; i < MOTORS; i++) {
         /* Zero is the straight finger under the tension of the start. */
         double angle = finger->motor[i] - home_tension[i] / stiffness / pulley;
-        double count = floor(tension(finger, i) * gauge_counts / gauge_range + 0.5);
+        random = random * 1664525u + 1013904223u;
+        double noise = (double)(random >> 16) * 3 / 65536 - 1;
+        double count = fmax(floor(tension(finger, i) * gauge_counts / gauge_range + 0.5 + noise), 0.0);
         sensors->encoders[i] = (int32_t)floor(angle * counts_a_revolution / (2 * pi));
         sensors->gauges[i] = (uint16_t)fmin(count, gauge_counts - 1);
     }

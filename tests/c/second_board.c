@@ -258,11 +258,14 @@ static int32_t encoder(const struct plant *plant, int i)
     return (int32_t)floor(angle * COUNTS_A_REVOLUTION / (2 * pi));
 }
 
+/* With the noise of a converter, one count up or down: the library takes a gauge that shows one count for ever for a dead one. */
 static unsigned gauge(const struct plant *plant, int i)
 {
+    static uint32_t random = 1;
     const double counts = 1 << GAUGE_BITS;
-    double count = floor(plant->tension[i] * counts / gauge_range + 0.5);
-    return (unsigned)(count < counts - 1 ? count : counts - 1);
+    random = random * 1664525u + 1013904223u;
+    double count = floor(plant->tension[i] * counts / gauge_range + 0.5) + (double)(random >> 16) * 3 / 65536 - 1;
+    return (unsigned)(count < 0 ? 0 : count < counts - 1 ? count : counts - 1);
 }
 
 /* The board */

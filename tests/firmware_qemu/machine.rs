@@ -5,12 +5,12 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::OpenOptionsExt;
-use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 
+use crate::priority::{run_first, runs_first};
 use nalgebra::Vector3;
 use sun2xp::board::protocol::Status;
 use sun2xp::model::configuration::Configuration;
@@ -49,14 +49,7 @@ impl Machine {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let [to_plant, from_plant] = ["plant_to", "plant_from"].map(|name| pipe(&folder.path().join(name)));
         let mut command = Command::new("qemu-system-arm");
-        // SAFETY: the call is safe between fork and exec.
-        unsafe {
-            command.pre_exec(|| {
-                go_first();
-                Ok(())
-            })
-        };
-        let mut process = command
+        let mut process = runs_first(&mut command)
             .args(["-M", "lm3s6965evb", "-display", "none", "-monitor", "none", "-serial", "pty"])
             .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
             .arg(image)
@@ -76,10 +69,12 @@ impl Machine {
         let plants = Arc::new(std::array::from_fn(|index| Mutex::new(Finger::new(index))));
         let thread = {
             let plants = plants.clone();
-            std::thread::spawn(move || {
-                go_first();
+            let serving = move || {
+                run_first();
                 serve(to_plant, from_plant, &plants);
-            })
+            };
+            // The name by which the watch over pauses knows boards.
+            std::thread::Builder::new().name("sun2xp board".into()).spawn(serving).expect("a thread")
         };
         Self {
             process,
@@ -90,6 +85,11 @@ impl Machine {
             plants,
             thread: Some(thread),
         }
+    }
+
+    /// The emulator.
+    pub fn process(&self) -> u32 {
+        self.process.id()
     }
 
     /// 0 to 2. The physics stands still meanwhile, so be brief.
@@ -105,14 +105,6 @@ impl Drop for Machine {
         let _ = self.requests.write_all(&[END; REQUEST_LENGTH]);
         let _ = self.thread.take().map(JoinHandle::join);
     }
-}
-
-/// The calling thread, and what it starts, before the rest of a busy machine where that is permitted: no microcontroller waits for a
-/// compiler.
-fn go_first() {
-    let parameters = libc::sched_param { sched_priority: 10 };
-    // SAFETY: the parameters outlive the call.
-    unsafe { libc::sched_setscheduler(0, libc::SCHED_RR, &parameters) };
 }
 
 /// What the firmware asked last, in its own time, us.
@@ -148,8 +140,8 @@ pub struct Finger {
     pub asked: Asked,
 }
 
-/// s.
-const LONGEST_MOTION: f64 = 0.004;
+/// A period at 500 Hz, s.
+const LONGEST_MOTION: f64 = 0.002;
 
 impl Finger {
     fn new(index: usize) -> Self {

@@ -1,5 +1,7 @@
 //! The library against `sun2xp board`, a program of its own, through configured ports.
 
+#[path = "../common/attempts.rs"]
+mod attempts;
 #[allow(dead_code)]
 #[path = "../c/mod.rs"]
 mod c;

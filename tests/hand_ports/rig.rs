@@ -77,6 +77,11 @@ impl Board {
         Self { process, orders, answers, port }
     }
 
+    /// Its number as a process.
+    pub fn process(&self) -> u32 {
+        self.process.id()
+    }
+
     pub fn order(&mut self, order: &str) {
         assert_eq!(self.ask(order), "ok", "{order}");
     }

@@ -1,0 +1,123 @@
+//! The watch that measures pauses of the machine, and what the tests excuse because of them.
+
+#[path = "common/attempts.rs"]
+mod attempts;
+
+use attempts::pauses::{Part, PauseWatch};
+use attempts::{Tally, Verdict, attempts};
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+use std::os::unix::process::CommandExt;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+const BEARS: Duration = Duration::from_millis(100);
+
+/// A process that ends with the test.
+struct Process(Child);
+
+impl Process {
+    /// A shell that runs this, on the first core.
+    fn start(script: &str) -> Self {
+        let mut command = Command::new("sh");
+        command.args(["-c", script]).stdin(Stdio::null());
+        let on_first_core = || {
+            // SAFETY: a set of cores is plain bits, of which zeros are none; the set outlives the call.
+            unsafe {
+                let mut cores: libc::cpu_set_t = std::mem::zeroed();
+                libc::CPU_SET(0, &mut cores);
+                libc::sched_setaffinity(0, size_of::<libc::cpu_set_t>(), &cores);
+            }
+            Ok(())
+        };
+        // SAFETY: only a system call between fork and exec.
+        unsafe { command.pre_exec(on_first_core) };
+        Self(command.spawn().expect("a shell"))
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// For how long a process waited for a core within any half second of two, while others of the same core ran this.
+fn waited(script: &str, beside: &[&str], meanwhile: impl Fn(u32)) -> (Duration, String) {
+    let process = Process::start(script);
+    let _others: Vec<_> = beside.iter().map(|script| Process::start(script)).collect();
+    let watch = PauseWatch::start();
+    watch.also(process.0.id(), Part::Board);
+    meanwhile(process.0.id());
+    std::thread::sleep(Duration::from_secs(2));
+    let waits = watch.end();
+    let span = Duration::from_millis(500);
+    (waits.of(Part::Board, span), waits.told(span))
+}
+
+const SPINS: &str = "while :; do :; done";
+
+#[test]
+fn a_process_that_shares_its_core_is_found_waiting_and_one_that_sleeps_or_is_stopped_is_not() {
+    // Three share a core: each waits for about two thirds of the time.
+    let (shared, told) = waited(SPINS, &[SPINS, SPINS], |_| {});
+    assert!(shared > Duration::from_millis(150), "{told}");
+    for (script, signal) in [("sleep 60", 0), (SPINS, libc::SIGSTOP)] {
+        let stop = |process: u32| {
+            // SAFETY: the process has not been waited for, so the number is still its own.
+            unsafe { libc::kill(process as libc::pid_t, signal) };
+        };
+        let (idle, told) = waited(script, &[SPINS, SPINS], stop);
+        assert!(idle < Duration::from_millis(150), "{script}: {told}");
+    }
+}
+
+#[test]
+fn a_failure_without_a_pause_is_not_excused() {
+    let made = std::panic::catch_unwind(|| {
+        let mut count = 0;
+        attempts("a defect", Duration::from_secs(3600), |_| {
+            count += 1;
+            // It shows in every second attempt.
+            if count % 2 == 1 { Err("it shows".to_string()) } else { Ok(()) }
+        })
+    });
+    let told = *made.expect_err("excused").downcast::<String>().expect("a text");
+    assert!(told.contains("0 excused; it shows. No pause of the machine explains it"), "{told}");
+}
+
+#[test]
+fn failures_are_excused_only_as_long_as_the_passed_attempts_outnumber_them() {
+    let long = 2 * BEARS;
+    let judged = |outcomes: &[bool]| {
+        let mut tally = Tally::default();
+        outcomes.iter().map(|&passed| tally.judge(passed, long, BEARS)).collect::<Vec<_>>()
+    };
+    use Verdict::{Again, Hopeless, Passed};
+    assert_eq!(judged(&[true]), [Passed]);
+    assert_eq!(judged(&[false, true, true]), [Again, Again, Passed]);
+    assert_eq!(judged(&[false, true, false, true, true]), [Again, Again, Again, Again, Passed]);
+    assert_eq!(judged(&[false, false, false, false]), [Again, Again, Again, Hopeless]);
+    assert_eq!(Tally::default().judge(false, BEARS / 2, BEARS), Verdict::Failed);
+}
+
+/// On a machine that never pauses a defect that shows in half of the attempts fails half of the runs. On one that always pauses for long
+/// enough it fails a quarter at least.
+#[test]
+fn a_defect_that_shows_in_half_of_the_attempts_does_not_stay_green() {
+    let mut random = Pcg64::seed_from_u64(1);
+    for (paused, least) in [(Duration::ZERO, 4_500), (2 * BEARS, 2_500)] {
+        let failed = (0..10_000).filter(|_| {
+            let mut tally = Tally::default();
+            loop {
+                match tally.judge(random.next_u32() % 2 == 0, paused, BEARS) {
+                    Verdict::Again => {}
+                    verdict => return verdict != Verdict::Passed,
+                }
+            }
+        });
+        let failed = failed.count();
+        assert!(failed > least, "{failed} of 10 000 runs fail on a machine that pauses for {paused:?}");
+    }
+}
