@@ -50,8 +50,8 @@ impl Drop for Planner {
     }
 }
 
-/// Kills the planner of three boards while all its fingers run. Of each finger: ms from its last command to its end state, and from the
-/// kill at most.
+/// Kills the planner of three boards while all its fingers run. Of each finger: ms from its last command to its end state, and at most so
+/// many from when the planner was gone.
 fn kill_planner(
     mut planner: Planner,
     boards: &mut [Board; 3],
@@ -106,7 +106,7 @@ fn a_killed_planners_motors_are_in_their_end_state_after_the_watchdogs_time() {
             .collect();
         let worst = |of: fn(&(f64, f64)) -> f64| figures.iter().map(of).fold(0.0, f64::max);
         println!(
-            "{name}, {} fingers: end state {:.1} ms after the last command at worst, {:.1} ms after the kill at most",
+            "{name}, {} fingers: end state {:.1} ms after the last command at worst, {:.1} ms at most after the planner was gone",
             figures.len(),
             worst(|figure| figure.0),
             worst(|figure| figure.1)
