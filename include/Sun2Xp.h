@@ -452,9 +452,10 @@ int SendPosD(int, const double *);
    ENODEV   no hand is open
    EINVAL   no such finger; an entry is NaN or infinite
    EDOM     Kx is not symmetric, or has a negative eigenvalue
-   ERANGE   Kx is stiffer than the bound, or too stiff for the ratio that SendDamping set
-            (or both are clamped: hand.out_of_range)
+   ERANGE   Kx is stiffer than the bound (or it is clamped: hand.out_of_range)
    EIO      the finger is faulted
+   ERANGE   Kx is too stiff for the ratio that SendDamping set (or the ratio is clamped:
+            hand.out_of_range)
 
  Threads: any. Never waits for a servo; about 1 us.
 
@@ -1105,6 +1106,8 @@ int GetTip(int, struct FingerTip *);
    EDOM     K is not symmetric, or has a negative eigenvalue; Normal is zero
    ERANGE   K is stiffer than the bound (or it is clamped: hand.out_of_range)
    EIO      the finger is faulted
+   ERANGE   K is too stiff for the ratio that SendDamping set (or the ratio is clamped:
+            hand.out_of_range)
 
  Threads: any. Never waits for a servo; a few us.
 
@@ -1140,9 +1143,9 @@ int SendContact(int, int, const double *, const double *);
    EPERM    forked child
    ENODEV   no hand is open
    EINVAL   no such finger; Ratio is NaN or infinite
+   EIO      the finger is faulted
    ERANGE   Ratio is outside its range; HandError says which (or it is clamped:
             hand.out_of_range)
-   EIO      the finger is faulted
 
  Threads: any. Never waits for a servo; about 100 ns.
  */

@@ -124,9 +124,10 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; an entry is NaN or infinite
 ///   EDOM     Kx is not symmetric, or has a negative eigenvalue
-///   ERANGE   Kx is stiffer than the bound, or too stiff for the ratio that SendDamping set
-///            (or both are clamped: hand.out_of_range)
+///   ERANGE   Kx is stiffer than the bound (or it is clamped: hand.out_of_range)
 ///   EIO      the finger is faulted
+///   ERANGE   Kx is too stiff for the ratio that SendDamping set (or the ratio is clamped:
+///            hand.out_of_range)
 ///
 /// Threads: any. Never waits for a servo; about 1 us.
 ///

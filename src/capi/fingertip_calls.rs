@@ -127,6 +127,8 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 ///   EDOM     K is not symmetric, or has a negative eigenvalue; Normal is zero
 ///   ERANGE   K is stiffer than the bound (or it is clamped: hand.out_of_range)
 ///   EIO      the finger is faulted
+///   ERANGE   K is too stiff for the ratio that SendDamping set (or the ratio is clamped:
+///            hand.out_of_range)
 ///
 /// Threads: any. Never waits for a servo; a few us.
 ///
@@ -179,9 +181,9 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 ///   EPERM    forked child
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; Ratio is NaN or infinite
+///   EIO      the finger is faulted
 ///   ERANGE   Ratio is outside its range; HandError says which (or it is clamped:
 ///            hand.out_of_range)
-///   EIO      the finger is faulted
 ///
 /// Threads: any. Never waits for a servo; about 100 ns.
 #[unsafe(no_mangle)]

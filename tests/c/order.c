@@ -163,8 +163,7 @@ static void wrong_values_on_a_faulted_finger(void)
     REFUSED("SendContact", SendContact(1, 4, Stiff[0], Normal), "bound");
     REFUSED("SendContact", SendContact(1, 4, Soft[0], Normal), "stop");
     REFUSED("SendDamping", SendDamping(1, NAN), "NaN");
-    REFUSED("SendDamping", SendDamping(1, 99), "99");
-    REFUSED("SendDamping", SendDamping(1, 1), "stop");
+    REFUSED("SendDamping", SendDamping(1, 99), "stop");
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\"\n="), "line 3");
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\""), "`port`");
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]"), "minimum_degrees");
@@ -223,7 +222,11 @@ int main(void)
     wrong_values_on_a_faulted_finger();
     CHECK(RecoverHand(1) == 0);
     CHECK(SendPos(1, Pos) == 0 && SendKx(1, three(Soft)) == 0 && GetPos(1, Pos) == 0 && SendTip(1, Tip) == 0);
-    CHECK(SendContact(1, 4, Soft[0], Normal) == 0 && SendDamping(1, 1) == 0 && PushFinger(2, Force) == 0);
+    CHECK(SendContact(1, 4, Soft[0], Normal) == 0 && SendDamping(1, 0.7) == 0 && PushFinger(2, Force) == 0);
+    REFUSED("SendDamping", SendDamping(1, 99), "99");
+    Soft[0][0] = 5.5;
+    REFUSED("SendKx", SendKx(1, three(Soft)), "damping");
+    REFUSED("SendContact", SendContact(1, 4, Soft[0], Normal), "damping");
     CHECK(GetTip(1, &Fingertip) == 0 && AdjustFinger(1, "tendon.minimum = 6") == 0);
     CHECK(CloseHand() == 0);
     configurations_of_a_closed_hand();

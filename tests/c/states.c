@@ -39,7 +39,7 @@ int main(void)
         CHECK(wait < 1000);
         PAUSE_MS(2);
     }
-    CHECK(RecoverHand(1) == 0);
+    CHECK(RecoverHand(1) == 0 && RecoverHand(2) == 0 && RecoverHand(3) == 0);
     CHECK(state_of(1) == FINGER_RUNNING);
     Record.Size = sizeof Record;
     CHECK(GetRecord(1, 0, &Record) == 0);
