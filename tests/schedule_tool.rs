@@ -56,9 +56,18 @@ fn a_hand_that_may_miss_one_and_costs_that_are_none() {
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stdout).contains("a cycle may not be done in time"), "{output:?}");
     assert!(String::from_utf8_lossy(&output.stderr).contains("lower hand.rate"), "{output:?}");
-    for (wrong, part) in [("compute = -1", "costs.toml"), ("compute = 1\nsleep = 2", "sleep"), ("", "compute")] {
+    for (wrong, part) in [
+        ("compute = -1", "costs.toml:4: compute: -1 is not"),
+        ("compute = nan", "costs.toml:4: compute: NaN is not"),
+        ("compute = [1, 2]", "costs.toml:4: compute: must be a number"),
+        ("compute = 1\nsleep = 2", "costs.toml:5: unknown key `sleep`"),
+        ("compute = 1\n\"a\\n\\u001b\" = 2", "costs.toml:5: unknown key `a\\n\\u{1b}`"),
+        ("compute = ", "costs.toml:4: "),
+        ("", "`compute` is missing"),
+    ] {
         let output = schedule("", &COSTS.replace("compute = 15", wrong));
         assert_eq!(output.status.code(), Some(1));
-        assert!(String::from_utf8_lossy(&output.stderr).contains(part), "{output:?}");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(said.contains(part) && said.lines().count() == 1, "{wrong}: {said}");
     }
 }

@@ -3,9 +3,11 @@
 
 use crate::board::{USABLE_SHARE, exchange_microseconds};
 use crate::finger::REPLY_WINDOW;
+use crate::hand::configuration_file::{Wrong, deserialize};
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{PeriodicThread, response_times};
 use serde::Deserialize;
+use toml_edit::Document;
 
 /// Worst cases of one machine, us.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
@@ -19,6 +21,29 @@ pub struct Costs {
     pub read: f64,
     /// The pure core of one finger, and its report.
     pub compute: f64,
+}
+
+impl Costs {
+    /// Reads the four worst cases from text in TOML: `wake_up`, `write`, `read` and `compute`.
+    ///
+    /// # Errors
+    /// The line and what is wrong with it.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let refused = |wrong: Wrong| match wrong.line(text) {
+            Some(line) => format!("{line}: {wrong}"),
+            None => format!(" {wrong}"),
+        };
+        let document = Document::parse(text).map_err(|error| refused(Wrong::in_syntax(error)))?;
+        let costs: Self = deserialize(document.as_table()).map_err(refused)?;
+        let Self { wake_up, write, read, compute } = costs;
+        for (key, cost) in [("wake_up", wake_up), ("write", write), ("read", read), ("compute", compute)] {
+            if !(cost.is_finite() && cost >= 0.0) {
+                let span = document.as_table().key(key).and_then(|key| key.span());
+                return Err(refused(Wrong::at(span, format!("{cost} is not a time of 0 us or more")).in_key(key)));
+            }
+        }
+        Ok(costs)
+    }
 }
 
 /// What another sensor would add to every finger.

@@ -83,13 +83,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn read(file: &Path) -> Result<Costs, Failure> {
-    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", file.display());
-    let text = read_regular_file(file, LARGEST_COSTS).map_err(|error| named(&error))?;
-    let costs: Costs = toml_edit::de::from_str(&text).map_err(|error| named(&error))?;
-    if [costs.wake_up, costs.write, costs.read, costs.compute].iter().any(|cost| !(cost.is_finite() && *cost >= 0.0)) {
-        return Err(named(&"a cost is not a number of 0 or more").into());
-    }
-    Ok(costs)
+    let text = read_regular_file(file, LARGEST_COSTS).map_err(|error| format!("{}: {error}", file.display()))?;
+    Ok(Costs::parse(&text).map_err(|reason| format!("{}:{reason}", file.display()))?)
 }
 
 fn measure(configuration: &Configuration, arguments: &Arguments) -> Result<Costs, Failure> {
