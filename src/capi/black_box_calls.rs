@@ -4,8 +4,8 @@
 #![allow(non_snake_case)]
 
 use crate::capi::default_hand;
-use crate::capi::memory::{fill, size_up_to};
-use crate::capi::refusal::{Refusal, guarded};
+use crate::capi::memory::{fill, non_null, size_up_to};
+use crate::capi::refusal::{Wanted, guarded};
 use crate::capi::status_calls::{count, state};
 use crate::control::Activity;
 use crate::finger::KeptRecord;
@@ -123,9 +123,7 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn WriteBlackBox(i: c_int, Path: *const c_char) -> c_int {
     guarded("WriteBlackBox", || {
-        if Path.is_null() {
-            return Err(Refusal::Null("Path"));
-        }
+        non_null(Path, "Path", Wanted::FileName)?;
         // SAFETY: not null, and a C string by the manual's contract.
         let path = unsafe { CStr::from_ptr(Path) };
         let recording = default_hand::with(|hand| hand.recording(i))?;

@@ -7,7 +7,7 @@
 
 use crate::capi::default_hand;
 use crate::capi::memory::{load, non_null};
-use crate::capi::refusal::{self, guarded};
+use crate::capi::refusal::{self, Wanted, guarded};
 use std::ffi::{c_char, c_int};
 
 /// OpenHand - start the hand
@@ -95,7 +95,8 @@ pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
 ///     int SendPosD(int i, const double *Pos);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
-    guarded("SendPosD", || {
+    // Named as the planner has written it: the header or a flag of the compiler has added the D.
+    guarded("SendPos", || {
         // SAFETY: the manual's contract: null, or the array of the synopsis.
         let joints = unsafe { load::<f64, 3>(Pos, "Pos") }?;
         default_hand::with(|hand| hand.send_position(i, joints))
@@ -147,7 +148,8 @@ pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
 ///     int SendKxD(int i, const double *Kx);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
-    guarded("SendKxD", || {
+    // Named as the planner has written it: the header or a flag of the compiler has added the D.
+    guarded("SendKx", || {
         // SAFETY: the manual's contract: null, or the array of the synopsis.
         let entries = unsafe { load::<f64, 9>(Kx, "Kx") }?;
         default_hand::with(|hand| hand.send_stiffness(i, rows(entries)))
@@ -176,7 +178,8 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetPos(i: c_int, Pos: *mut f32) -> c_int {
     guarded("GetPos", || {
-        let joints = non_null(Pos, "Pos").and_then(|_| default_hand::with(|hand| hand.position(i)))?;
+        let joints =
+            non_null(Pos, "Pos", Wanted::Array(3)).and_then(|_| default_hand::with(|hand| hand.position(i)))?;
         // SAFETY: not null, and room for three by the manual's contract.
         unsafe { Pos.cast::<[f32; 3]>().write_unaligned(joints.map(|joint| joint as f32)) };
         Ok(())
@@ -188,8 +191,10 @@ pub unsafe extern "C" fn GetPos(i: c_int, Pos: *mut f32) -> c_int {
 ///     int GetPosD(int i, double *Pos);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetPosD(i: c_int, Pos: *mut f64) -> c_int {
-    guarded("GetPosD", || {
-        let joints = non_null(Pos, "Pos").and_then(|_| default_hand::with(|hand| hand.position(i)))?;
+    // Named as the planner has written it: the header or a flag of the compiler has added the D.
+    guarded("GetPos", || {
+        let joints =
+            non_null(Pos, "Pos", Wanted::Array(3)).and_then(|_| default_hand::with(|hand| hand.position(i)))?;
         // SAFETY: not null, and room for three by the manual's contract.
         unsafe { Pos.cast::<[f64; 3]>().write_unaligned(joints) };
         Ok(())

@@ -6,7 +6,7 @@
 
 use crate::capi::default_hand;
 use crate::capi::memory::{fill, load, non_null, size_up_to};
-use crate::capi::refusal::guarded;
+use crate::capi::refusal::{Wanted, guarded};
 use crate::hand::{self, HandError};
 use crate::model::{Contact, ContactError};
 use nalgebra::{Matrix3, Matrix4, Vector3};
@@ -139,7 +139,7 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: *const f64) -> c_int {
     guarded("SendContact", || {
         // K has no size before D has a meaning.
-        non_null(K, "K")?;
+        non_null(K, "K", Wanted::Matrix)?;
         // SAFETY: the manual's contract, here and below: null, or the array of the synopsis for this D.
         let normal = || unsafe { load::<f64, 3>(Normal, "Normal") }.map(Vector3::from);
         let contact = match D {
@@ -226,7 +226,7 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
     guarded("AdjustFinger", || {
-        non_null(Keys, "Keys")?;
+        non_null(Keys, "Keys", Wanted::Text)?;
         // SAFETY: not null, and a string by the manual's contract.
         let keys = unsafe { CStr::from_ptr(Keys) }.to_str();
         default_hand::with(|hand| -> Result<(), HandError> {

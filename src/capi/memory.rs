@@ -1,12 +1,13 @@
 //! What a call reads from the caller's memory and writes there.
 
 use crate::capi::default_hand;
-use crate::capi::refusal::Refusal;
+use crate::capi::refusal::{Refusal, Wanted};
 use crate::hand::{Hand, HandError};
+use std::any::type_name;
 use std::ffi::c_uint;
 
-pub(super) fn non_null<T>(pointer: *const T, name: &'static str) -> Result<(), Refusal> {
-    if pointer.is_null() { Err(Refusal::Null(name)) } else { Ok(()) }
+pub(super) fn non_null<T>(pointer: *const T, name: &'static str, wanted: Wanted) -> Result<(), Refusal> {
+    if pointer.is_null() { Err(Refusal::Null { name, wanted }) } else { Ok(()) }
 }
 
 /// Copies an array of the caller's. Unaligned, because a planner may keep it in a
@@ -15,7 +16,7 @@ pub(super) fn non_null<T>(pointer: *const T, name: &'static str) -> Result<(), R
 /// # Safety
 /// `array` is null or points to `N` entries.
 pub(super) unsafe fn load<T, const N: usize>(array: *const T, name: &'static str) -> Result<[T; N], Refusal> {
-    non_null(array, name)?;
+    non_null(array, name, Wanted::Array(N))?;
     // SAFETY: not null, and `N` entries by the contract of this function.
     Ok(unsafe { array.cast::<[T; N]>().read_unaligned() })
 }
@@ -40,7 +41,9 @@ pub(super) unsafe fn fill<T>(
     least: usize,
     tell: impl FnOnce(&Hand) -> Result<T, HandError>,
 ) -> Result<(), Refusal> {
-    non_null(out, name)?;
+    // With the path of its module in front.
+    let of_type = type_name::<T>().rsplit("::").next().unwrap_or_default();
+    non_null(out, name, Wanted::Struct(of_type))?;
     // SAFETY: not null; the first member is there by the contract. Only it: a program may have less room.
     let size = unsafe { out.cast::<c_uint>().read_unaligned() } as usize;
     let mut whole = default_hand::with(|hand| match size < least {

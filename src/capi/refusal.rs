@@ -6,6 +6,7 @@ use crate::hand;
 use parking_lot::Mutex;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_int};
+use std::fmt::{self, Display, Formatter};
 use std::mem::{Discriminant, discriminant};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,8 +19,8 @@ pub(super) enum Refusal {
         "this process was forked from one that has called OpenHand: only that one has the servo threads. Call from there, or exec"
     )]
     Forked,
-    #[error("{0} is a null pointer: pass an array")]
-    Null(&'static str),
+    #[error("{name} is a null pointer: pass {wanted}")]
+    Null { name: &'static str, wanted: Wanted },
     #[error("{name}->Size is {size}: set it to sizeof *{name}, at least {least}, before the call")]
     SmallStruct { name: &'static str, size: usize, least: usize },
     #[error("no hand is open: call OpenHand first, and look at its result")]
@@ -34,13 +35,37 @@ pub(super) enum Refusal {
     Hand(#[from] hand::HandError),
 }
 
+/// What a pointer of a call leads to.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Wanted {
+    /// So many numbers.
+    Array(usize),
+    /// A struct of this name in the header.
+    Struct(&'static str),
+    Matrix,
+    Text,
+    FileName,
+}
+
+impl Display for Wanted {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Array(numbers) => write!(formatter, "an array of {numbers} numbers"),
+            Self::Struct(name) => write!(formatter, "the address of a struct {name}"),
+            Self::Matrix => formatter.write_str("the array of its matrix"),
+            Self::Text => formatter.write_str("a text"),
+            Self::FileName => formatter.write_str("the name of a file"),
+        }
+    }
+}
+
 type Kind = (Discriminant<Refusal>, Option<Discriminant<hand::HandError>>);
 
 impl Refusal {
     fn errno(&self) -> c_int {
         match self {
             Self::Forked => libc::EPERM,
-            Self::Null(_) => libc::EFAULT,
+            Self::Null { .. } => libc::EFAULT,
             Self::SmallStruct { .. } => libc::EINVAL,
             Self::NoHand => libc::ENODEV,
             Self::AlreadyOpen | Self::Busy => libc::EBUSY,

@@ -26,7 +26,7 @@ static void *call(void *own)
     for (round = 0; round < ROUNDS; round++) {
         if (finger == 0) {
             CHECK(SendPos(0, Pos) == -1 && errno == EINVAL);
-            CHECK(strstr(HandError(), "SendPosD") == HandError());
+            CHECK(strstr(HandError(), "SendPos: ") == HandError());
         } else {
             CHECK(SendPos(finger, Pos) == 0);
             CHECK(SendKx(finger, Kx) == 0);
