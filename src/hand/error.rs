@@ -237,9 +237,20 @@ pub enum HandError {
     },
     /// A faulted finger whose port another one uses.
     #[error(
-        "finger {0} shares its port with a finger that runs: they recover together, so stop that one first (StopHand, CloseHand)"
+        "finger {finger} shares its port with finger {other}, which runs: they recover together, so stop that one first (StopHand, \
+         CloseHand)"
     )]
-    PortInUse(i32),
+    PortInUse {
+        /// 1 to 3.
+        finger: i32,
+        /// The finger that runs.
+        other: i32,
+    },
+    /// A servo that does not run, so that it does not lend its port.
+    #[error(
+        "the servo thread of finger {0} does not run: free the machine, or permit real time (README), then RecoverHand again"
+    )]
+    ServoStalled(i32),
     /// A faulted finger whose servo thread has ended.
     #[error(
         "the servo thread of finger {0} has failed (fault {number}), and nothing is left that could run it: CloseHand, then OpenHand",
@@ -307,10 +318,11 @@ impl HandError {
             Self::System { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
             Self::NotRealTime { missing } => missing.errno(),
             Self::Link { source, .. } => source.errno(),
-            Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } | Self::NoAnswer(_) => libc::ETIMEDOUT,
+            Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } => libc::ETIMEDOUT,
+            Self::NoAnswer(_) | Self::ServoStalled(_) => libc::ETIMEDOUT,
             Self::Calibration { .. } => libc::ECANCELED,
             Self::NotReconnected(_) => libc::ENODEV,
-            Self::Busy(_) | Self::PortInUse(_) => libc::EBUSY,
+            Self::Busy(_) | Self::PortInUse { .. } => libc::EBUSY,
             Self::Store { source, .. } | Self::BlackBox { source, .. } => errno(source),
             Self::NoRecord { .. } => libc::ENOENT,
             Self::NotSimulated(_) => libc::ENOTSUP,

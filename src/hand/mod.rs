@@ -20,6 +20,7 @@ mod opening;
 mod recovery;
 mod root;
 mod servo_threads;
+mod workshop;
 
 pub use crate::finger::stop_all;
 pub use black_box::save;

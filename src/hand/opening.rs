@@ -8,7 +8,7 @@ use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::announcement::say;
 use crate::hand::damping_admission::DampingAdmission;
-use crate::hand::recovery::{KnownBoard, Workshop};
+use crate::hand::workshop::{KnownBoard, Workshop};
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
 use crate::model::{Refusal, Shown};
 use crate::realtime::{CycleTiming, Priority, now};

@@ -3,16 +3,13 @@
 //! The servo lends its link for that when every finger on it is at rest, because opening a port and shaking hands take long. They
 //! happen on the planner's thread, in a recover call, and before that on a thread of their own where `finger.reconnect` asks for it.
 
-use crate::board::protocol::{Configured, Identity, Status};
-use crate::board::{Link, LinkError, Port, Terms};
-use crate::finger::{Borrower, Fault, FaultKind, Mended, Stage, stop_calls};
+use crate::finger::{Stage, stop_calls};
+use crate::hand::workshop::Workshop;
 use crate::hand::{Hand, HandError};
-use crate::model::configuration::FINGERS;
-use crate::realtime::{Priority, now, spawn};
+use crate::realtime::{Priority, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use parking_lot::Mutex;
 use std::io;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::{JoinHandle, sleep};
@@ -21,129 +18,23 @@ use std::time::{Duration, Instant};
 /// How often a port that is gone is looked for.
 const LOOKING_FOR_PORTS: Duration = Duration::from_millis(100);
 
-/// How long a board may take to answer, ns, each time it is tried: short, because it is tried again.
-const ANSWER: u64 = 300_000_000;
-
-/// A servo lends its link so long after the last of its fingers faulted, at most.
+/// A servo lends its link so long after the last of its fingers faulted, at most. It may be about to fault too.
 const LENDING: Duration = Duration::from_millis(500);
 
 /// How often a recovery is looked at.
 const LOOKING: Duration = Duration::from_millis(2);
 
-/// A servo takes a link back within a cycle; one that has not after so long never will.
+/// A servo lends or takes back a link within some cycles. One that has not after so long does not run.
 const TAKING_BACK: Duration = Duration::from_secs(5);
 
 /// A port that may have to be mended. It outlives its hand where somebody is at work on it.
 struct Place {
     /// 1 to 3.
     fingers: Vec<i32>,
-    /// How often it was mended and given back.
+    /// How often it was mended and given back: its fingers have recovered as often, or will as soon as their servo takes it back.
     mended: AtomicU32,
     /// Locked while ports are opened and hands shaken, which takes long. None once the hand is closed.
     workshop: Mutex<Option<Workshop>>,
-}
-
-/// What a port is mended with.
-pub(super) struct Workshop {
-    path: PathBuf,
-    baud: u32,
-    /// Whether a port that has failed is opened again.
-    reconnect: bool,
-    /// In the order of the servo's.
-    boards: Vec<KnownBoard>,
-    borrower: Borrower<Port>,
-    /// The servo has lent its link, and not got it back.
-    lent: bool,
-    /// That link, or a new one; none where the port is gone.
-    link: Option<Link<Port>>,
-    /// Its boards have answered, and are those of open.
-    checked: bool,
-}
-
-/// What a board was at open.
-pub(super) struct KnownBoard {
-    /// 1 to 3.
-    pub finger: i32,
-    pub address: u8,
-    pub terms: Terms,
-    pub identity: Identity,
-    pub zero_valid: bool,
-}
-
-impl Workshop {
-    /// `path` and `baud`: how the port is opened. `reconnect`: whether it is, once it has failed. `boards` in the order of the
-    /// servo's fingers.
-    pub fn new(path: PathBuf, baud: u32, reconnect: bool, boards: Vec<KnownBoard>, borrower: Borrower<Port>) -> Self {
-        Self { path, baud, reconnect, boards, borrower, lent: false, link: None, checked: false }
-    }
-
-    /// Takes the link, if the servo has lent it.
-    fn fetch(&mut self) -> bool {
-        if let Ok(lent) = self.borrower.lent.pop() {
-            (self.lent, self.checked) = (true, false);
-            self.link = (!lent.failed).then_some(lent.link);
-        }
-        self.lent
-    }
-
-    /// Whether the servo has failed: it takes nothing back.
-    fn servo_ended(&self) -> bool {
-        self.borrower.lent.is_abandoned()
-    }
-
-    /// Opens the port where it is gone, and shakes hands with its boards: the same ones, with their zeros.
-    fn mend(&mut self) -> Result<[Option<Configured>; FINGERS], HandError> {
-        self.checked = false;
-        let first = self.boards.first().map_or(0, |board| board.finger);
-        let mut link = match self.link.take() {
-            Some(link) => link,
-            None if self.reconnect => Link::open(&self.path, self.baud)
-                .map_err(|source| HandError::Link { finger: first as usize, source })?, // 1 to 3
-            None => return Err(HandError::NotReconnected(first)),
-        };
-        let mut all = [None; FINGERS];
-        for (board, place) in self.boards.iter().zip(&mut all) {
-            let KnownBoard { finger, address, ref terms, .. } = *board;
-            // One whose port had failed was not told to stop; cable and power may be back before its watchdog's time is over.
-            let _ = link.stop(address, 0);
-            match link.shake_hands(address, terms, now() + ANSWER) {
-                Ok((identity, configured)) => {
-                    board.check(&identity, configured.status)?;
-                    *place = Some(configured);
-                }
-                Err(source) => {
-                    // A port that has failed is closed here; the next attempt opens it.
-                    if !matches!(source, LinkError::Port(_)) {
-                        self.link = Some(link);
-                    }
-                    return Err(HandError::Link { finger: finger as usize, source }); // 1 to 3
-                }
-            }
-        }
-        (self.link, self.checked) = (Some(link), true);
-        Ok(all)
-    }
-
-    fn give_back(&mut self, configured: [Option<Configured>; FINGERS], stop_calls: u32) {
-        if let Some(link) = self.link.take() {
-            self.lent = false;
-            // There is room: the servo has taken the last one, or it would not have lent this one.
-            let _ = self.borrower.mended.push(Mended { link, configured, stop_calls });
-        }
-    }
-}
-
-impl KnownBoard {
-    fn check(&self, identity: &Identity, status: Status) -> Result<(), HandError> {
-        let faulted = |fault| Err(HandError::Faulted { finger: self.finger, fault });
-        if *identity != self.identity {
-            return faulted(Fault::new(FaultKind::IdentityChanged));
-        }
-        if self.zero_valid && !status.has(Status::ZERO_VALID) {
-            return faulted(Fault::of(FaultKind::ZeroLost, f64::from(status.0)));
-        }
-        Ok(())
-    }
 }
 
 /// Every port of a hand, and the thread that looks for those that are gone.
@@ -216,10 +107,12 @@ pub struct Recovering {
 struct Task {
     finger: i32,
     place: Arc<Place>,
-    /// As it was.
-    mended: u32,
+    /// How often the finger had recovered.
+    recoveries: u32,
     /// Every finger of the port, with how often it had recovered before.
     fingers: Vec<(i32, u32)>,
+    /// One of them that was not faulted.
+    running: Option<i32>,
     stop_calls: u32,
 }
 
@@ -235,14 +128,18 @@ impl Recovering {
         let stop_calls = stop_calls();
         let place = hand.recovery.places.iter().find(|place| place.fingers.contains(&finger));
         let place = place.ok_or(HandError::NoSuchFinger(finger))?.clone();
-        // Before the finger is looked at: who mends the port from here on has done it for this call too.
-        let mended = place.mended.load(Ordering::Acquire);
-        if !matches!(hand.report(finger)?.stage, Stage::Faulted(_)) {
+        let report = hand.report(finger)?;
+        if !matches!(report.stage, Stage::Faulted(_)) {
             return Ok(Self { task: None, begun });
         }
-        let before = |&finger: &i32| Ok((finger, hand.report(finger)?.recoveries));
-        let fingers = place.fingers.iter().map(before).collect::<Result<_, HandError>>()?;
-        Ok(Self { task: Some(Task { finger, place, mended, fingers, stop_calls }), begun })
+        let (mut fingers, mut running) = (Vec::new(), None);
+        for &finger in &place.fingers {
+            let report = hand.report(finger)?;
+            fingers.push((finger, report.recoveries));
+            running = running.or((!matches!(report.stage, Stage::Faulted(_))).then_some(finger));
+        }
+        let recoveries = report.recoveries;
+        Ok(Self { task: Some(Task { finger, place, recoveries, fingers, running, stop_calls }), begun })
     }
 
     /// Mends what the finger is connected by and lets it take up slack, with every other finger of the port. Ports are opened and
@@ -250,13 +147,14 @@ impl Recovering {
     ///
     /// # Errors
     /// A finger that runs on the same port; a port or board that does not serve, or is another than at open; a servo that has
-    /// failed; a hand that was closed.
+    /// failed or does not run; a hand that was closed.
     pub fn mend(&self) -> Result<(), HandError> {
-        let Some(Task { finger, ref place, mended, stop_calls, .. }) = self.task else { return Ok(()) };
+        let Some(Task { finger, ref place, recoveries, running, stop_calls, .. }) = self.task else { return Ok(()) };
+        let waiting = Instant::now();
         loop {
             if let Some(workshop) = &mut *place.workshop.lock() {
-                if place.mended.load(Ordering::Acquire) != mended {
-                    // Somebody who recovers a finger of the same port was faster.
+                if place.mended.load(Ordering::Acquire) != recoveries {
+                    // Somebody who recovers a finger of the same port was faster. Perhaps the servo has not taken it back yet.
                     return Ok(());
                 }
                 if workshop.servo_ended() {
@@ -264,15 +162,16 @@ impl Recovering {
                 }
                 if workshop.fetch() {
                     let configured = workshop.mend()?;
-                    workshop.give_back(configured, stop_calls);
+                    // First, so that no finger has recovered more often than its port was mended.
                     place.mended.fetch_add(1, Ordering::Release);
+                    workshop.give_back(configured, stop_calls);
                     return Ok(());
                 }
             } else {
                 return Err(HandError::NoAnswer(finger));
             }
-            if self.begun.elapsed() > LENDING {
-                return Err(HandError::PortInUse(finger));
+            if let Some(refusal) = not_lent(finger, running, waiting.elapsed()) {
+                return Err(refusal);
             }
             sleep(LOOKING);
         }
@@ -301,6 +200,16 @@ impl Recovering {
     }
 }
 
+/// What is wrong where a servo has not lent the link of a finger for so long, if that is too long. `running`: another finger of the port,
+/// which was not faulted in the beginning.
+fn not_lent(finger: i32, running: Option<i32>, waited: Duration) -> Option<HandError> {
+    match running {
+        Some(other) if waited > LENDING => Some(HandError::PortInUse { finger, other }),
+        None if waited > TAKING_BACK => Some(HandError::ServoStalled(finger)),
+        _ => None,
+    }
+}
+
 impl Hand {
     /// Makes a faulted finger 1, 2 or 3 a spring again, that holds the pose it is in at its initial stiffness; and with it the
     /// other faulted fingers on its port. What made it fault must be mended. Does nothing for a finger that is not faulted.
@@ -314,5 +223,22 @@ impl Hand {
             sleep(LOOKING);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_finger_that_runs_is_said_to_use_the_port() {
+        for waited in [0, 100, 400].map(Duration::from_millis) {
+            assert!(not_lent(1, None, waited).is_none() && not_lent(1, Some(2), waited).is_none());
+        }
+        assert!(matches!(not_lent(1, Some(2), 2 * LENDING), Some(HandError::PortInUse { finger: 1, other: 2 })));
+        // A finger alone, whose servo is kept from running for a while.
+        assert!(not_lent(1, None, 2 * LENDING).is_none());
+        let text = not_lent(1, None, 2 * TAKING_BACK).expect("too long").to_string();
+        assert!(text.contains("does not run") && text.contains("free the machine"), "{text}");
     }
 }

@@ -142,8 +142,8 @@ fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found()
     assert!(again.expect_err("it faults again").to_string().contains("emergency stop, input"));
     wait_until("a spring", || hand.report(2).expect("a report").stage == Stage::Running);
     let found = hand.report(2).expect("a report").set_point.joints;
-    hand.send_damping(2, 2.0).expect("sent");
-    wait_until("taken", || hand.report(2).expect("a report").set_point.damping == 2.0);
+    hand.send_damping(2, 1.2).expect("sent");
+    wait_until("taken", || hand.report(2).expect("a report").set_point.damping == 1.2);
     assert_eq!(hand.report(2).expect("a report").set_point.joints, found, "it moves though nobody has sent it");
     close(hand);
 }
@@ -165,6 +165,43 @@ fn two_that_recover_fingers_of_one_port_at_once_both_succeed() {
         wait_until("recovered", || recovering.poll(&hand).unwrap_or_else(|error| panic!("{error}")));
     }
     assert_eq!(hand.report(1).expect("a report").recoveries, 1);
+    close(hand);
+}
+
+/// A finger shows its fault until its servo has taken the mended port back: who recovers it in this moment only waits.
+#[test]
+fn who_recovers_a_finger_that_was_just_mended_is_not_told_that_it_shares_its_port() {
+    let _turn = turn();
+    let boards = three_boards();
+    let hand = open(on_boards(&boards));
+    for round in 0..10 {
+        stop_all();
+        assert_eq!(faults(&hand, 2), FaultKind::EmergencyStopCall);
+        for _ in 0..2 {
+            let recovering = Recovering::begin(&hand, 2).expect("begun");
+            recovering.mend().unwrap_or_else(|error| panic!("round {round}: {error}"));
+        }
+        recovers(&hand, 2);
+        assert_eq!(hand.report(2).expect("a report").recoveries, round + 1);
+    }
+    close(hand);
+}
+
+/// The line stays with a finger whose board is not the right one yet.
+#[test]
+fn a_finger_that_was_refused_for_its_lost_zero_recovers_when_it_is_back() {
+    let _turn = turn();
+    let mut boards = three_boards();
+    let hand = open(on_boards(&boards));
+    boards[1].order("zero-lost 2");
+    assert_eq!(faults(&hand, 2), FaultKind::ZeroLost);
+    for _ in 0..2 {
+        let error = hand.recover(2).expect_err("without its zero");
+        assert!(matches!(error, HandError::Faulted { fault, .. } if fault.kind == FaultKind::ZeroLost), "{error}");
+    }
+    boards[1].order("mend 2");
+    recovers(&hand, 2);
+    goes(&hand, 2, TARGET);
     close(hand);
 }
 
