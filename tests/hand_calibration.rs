@@ -5,7 +5,7 @@ use sun2xp::control::calibration::{Findings, Obstacle, Step};
 use sun2xp::finger::Stage;
 use sun2xp::hand::{Calibrating, Hand, HandError, read};
 
-const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.encoder]\nzero = [700, -20, 30, 4000] # last year\n\
+const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.zeroing]\nspeed = 2.0\n[finger.encoder]\nzero = [700, -20, 30, 4000] # last year\n\
                     [finger.2.gauge]\nzero = [ 204.0, 200.0, 200.0,  # tendon 3 was exchanged\n 190.0 ]\n";
 
 #[test]
@@ -24,18 +24,17 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     assert!(steps.contains(&Step::TryingMotors));
     assert_eq!(stage(2), Stage::Limp);
 
-    // The simulated finger starts in the pose that is configured by default, and stays near there.
+    // Against its stops: a simulated finger has some, and no other method is configured. Its controller believes the true zeros.
     let zeros = hand.zero(2, |_| {}).expect("zeros");
     let Findings::Zeros(zeros) = zeros else { panic!("{zeros:?}") };
     for tendon in 0..4 {
         let (found, there) = (zeros.gauge[tendon], [204.0, 200.0, 200.0, 190.0][tendon]);
         assert!((found - there).abs() < 1.0, "{zeros:?}");
+        assert!((zeros.encoder[tendon] - [700, -20, 30, 4000][tendon]).abs() <= 8, "{zeros:?}");
     }
     assert_eq!(stage(2), Stage::Running);
     assert_eq!([stage(1), stage(3)], [Stage::Limp; 2]);
     let joints = hand.position(2).expect("position");
-    let pose = [0.0, 30f64.to_radians(), 60f64.to_radians()];
-    assert!(joints.iter().zip(pose).all(|(is, was)| (is - was).abs() < 0.3), "{joints:?}");
     hand.send_position(2, joints).expect("a finger that is zeroed takes set points");
 
     assert!(hand.store_calibration().expect("stored"));
@@ -51,7 +50,7 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
 #[test]
 fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
     let mut configuration = read_default();
-    configuration.fingers[0].zeroing.method = sun2xp::model::configuration::ZeroingMethod::Stops;
+    configuration.fingers[0].zeroing.method = Some(sun2xp::model::configuration::ZeroingMethod::Stops);
     configuration.fingers[0].zeroing.time_limit_s = 1.0;
     let hand = Hand::open(configuration.clone()).expect("open");
     let mut calibrating = Calibrating::begin(&hand, 1, sun2xp::control::calibration::Task::Zero).expect("begun");
@@ -63,7 +62,8 @@ fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
             Err(error) => break error,
         }
     };
-    let expected = matches!(refused, HandError::Calibration { finger: 1, obstacle: Obstacle::TimeLimit { .. } });
+    let expected =
+        matches!(refused, HandError::Calibration { finger: 1, limp: true, obstacle: Obstacle::TimeLimit { .. } });
     assert!(expected, "{refused}");
     assert_eq!(refused.errno(), libc::ETIMEDOUT);
     assert_eq!(hand.report(1).expect("a report").stage, Stage::Limp);
@@ -79,7 +79,7 @@ fn fingers_are_zeroed_against_their_stops_and_identified() {
     configuration.hand.rate = 500.0;
     for finger in &mut configuration.fingers {
         // Soon done: little way, little tension.
-        finger.zeroing.method = sun2xp::model::configuration::ZeroingMethod::Stops;
+        finger.zeroing.method = Some(sun2xp::model::configuration::ZeroingMethod::Stops);
         finger.zeroing.speed = 1.5;
         finger.joints.minimum_degrees = [-30.0, -10.0, 30.0];
         finger.joints.maximum_degrees = [30.0, 50.0, 90.0];

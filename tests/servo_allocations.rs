@@ -74,6 +74,7 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     assert!(cycles(2) > 500 && cycles(3) > 500, "all fingers ran");
 
     // Nor while a finger is calibrated and its controller replaced.
+    hand.adjust(2, "zeroing.method = \"pose\"").expect("adjusted");
     hand.zero(2, |_| {}).expect("zeroed");
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads, calibrating");
 }

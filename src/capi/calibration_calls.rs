@@ -14,11 +14,15 @@ use std::ffi::c_int;
 ///
 ///   i        finger, 1 to 3
 ///
-/// Lets the tendons out and reads the gauges, then finds the zero of the encoders as
-/// finger.zeroing.method says: "pose" - the finger stands in the configured pose when the
-/// call begins; "stops" - each joint is led slowly against both of its stops, for which
-/// the finger needs room; "kept" - the configured zero stays, if the board says that its
-/// counts are still good. What was found is in force at once, and is written into the
+/// Lets the tendons out and reads the gauges, and finds the zero of the encoders as
+/// finger.zeroing.method says. "pose": the finger stands in finger.zeroing.pose_degrees.
+/// It must stand still there from the call on until it has been read: a finger that is a
+/// spring for 0.3 s; a finger that is limp for some seconds, held by a jig or a hand. A
+/// finger that moves, or that nothing holds, is refused. "stops": each joint is led slowly
+/// against both of its stops, for which the finger needs room. "kept": the configured zero
+/// stays, if the board says that its counts are still good. Where no method is configured
+/// it is "stops" if the configuration says where the stops are, or if the finger is
+/// simulated, and else "pose". What was found is in force at once, and is written into the
 /// configuration file if OpenHand has read one: only the keys that changed, comments stay.
 /// Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
 /// free finger has moved, by up to some tenths of a radian.
@@ -33,9 +37,11 @@ use std::ffi::c_int;
 ///   EINVAL     no such finger
 ///   EIO        the finger is faulted
 ///   EBUSY      the finger is being calibrated or recovered already
-///   ECANCELED  something stood in the way (a tendon is slack, a gauge dead, a joint meets
-///              no stop or meets it early ...): the finger is limp, nothing was changed,
-///              and HandError says what to do
+///   ECANCELED  something stood in the way (the finger moved in its pose, a tendon is slack,
+///              a gauge dead, a joint meets no stop or meets it early ...). No zero was
+///              changed, and HandError says what to do. The finger is limp; but one that was
+///              refused before anything was done to it (it moved while it was read, or its
+///              counts were not kept) is what it was before
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
 ///              until CloseHand

@@ -105,6 +105,8 @@ pub struct BlackBox {
     finger: i32,
     hand: ConfiguredHand,
     controllers: Vec<ControllerSource>,
+    /// Number of a controller that waits for its calibration to take over, and until then is named by no record.
+    awaited: Option<u32>,
     /// A fault has come in that [`BlackBox::faulted`] has not told yet.
     faulted: bool,
 }
@@ -129,6 +131,7 @@ impl BlackBox {
             finger: index as i32 + 1, // 1 to 3
             hand: hand.clone(),
             controllers: vec![ControllerSource { number: 0, gravity: configuration.gravity(index), finger }],
+            awaited: None,
             faulted: false,
         };
         (recorder, black_box)
@@ -146,8 +149,17 @@ impl BlackBox {
         let controls = self.records.iter().filter_map(|record| record.control.as_ref());
         let named: BTreeSet<u32> = controls.flat_map(|control| [control.controller, control.previous]).collect();
         let number = self.next_number();
-        self.controllers.retain(|kept| kept.number >= taken || named.contains(&kept.number));
+        let awaited = self.awaited;
+        let kept = |number: u32| number >= taken || named.contains(&number) || awaited == Some(number);
+        self.controllers.retain(|controller| kept(controller.number));
         self.controllers.push(ControllerSource { number, gravity, finger });
+    }
+
+    /// The same for a controller that a calibration computes with once it takes over. Others may be announced before that.
+    pub fn announce_calibration(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
+        self.awaited = None;
+        self.announce(finger, gravity, taken);
+        self.awaited = self.controllers.last().map(|last| last.number);
     }
 
     /// Takes in what the servo has left, and forgets what is too old.
@@ -157,6 +169,9 @@ impl BlackBox {
             // A gap: nobody collected for too long, or the finger was faulted. What was before cannot be replayed across it.
             if self.records.back().is_some_and(|last| last.cycle + 1 != record.cycle) {
                 self.records.clear();
+            }
+            if self.awaited.is_some() && self.awaited == record.control.as_ref().map(|control| control.controller) {
+                self.awaited = None;
             }
             self.records.push_back(record);
         }
@@ -182,7 +197,8 @@ impl BlackBox {
         let controls = self.records.iter().filter_map(|record| record.control.as_ref());
         let needed = controls.map(|control| control.controller.min(control.previous)).min();
         if let Some(needed) = needed {
-            self.controllers.retain(|controller| controller.number >= needed);
+            let awaited = self.awaited;
+            self.controllers.retain(|controller| controller.number >= needed || awaited == Some(controller.number));
         }
     }
 

@@ -1,5 +1,6 @@
 //! One finger in its servo thread: from reply to command, and from open to close.
 
+mod calibrating;
 mod construction;
 mod exchange;
 mod life;
@@ -9,11 +10,12 @@ use crate::board::protocol::{Identity, Status};
 use crate::control::calibration::Verdict;
 use crate::control::{Activity, Command, Feedback, SetPoint, State};
 use crate::finger::link_watch::LinkWatch;
-use crate::finger::mailbox::{Adjustable, CalibrationRun, ServoEnd};
+use crate::finger::mailbox::{Adjustable, ServoEnd};
 use crate::finger::watching::Watching;
 use crate::finger::{Alarm, ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage};
 use crate::model::configuration::EndState;
 use crate::realtime::{self, CycleTiming, Memory};
+use calibrating::Calibrating;
 use rtrb::Producer;
 
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
@@ -24,7 +26,7 @@ pub struct FingerServo {
     adjustable: Adjustable,
     state: State,
     activity: Activity,
-    calibration: Option<CalibrationRun>,
+    calibration: Option<Calibrating>,
     /// Of the newest reply.
     status: Status,
     feedback: Feedback,
@@ -173,7 +175,7 @@ impl FingerServo {
     /// Computes the next command.
     fn control(&mut self, skipped: u64) -> ControlRecord {
         let previous = self.take_commands();
-        self.calibrate();
+        let previous = self.calibrate().or(previous);
         let input = ControlInput {
             anew_from: std::mem::take(&mut self.anew).then_some(self.feedback),
             activity: self.activity,
@@ -181,7 +183,7 @@ impl FingerServo {
             fading: self.link.fading(),
         };
         let Adjustable { controller, number, .. } = match &self.calibration {
-            Some(run) => &run.adjustable,
+            Some(calibration) => calibration.computes_with(),
             None => &self.adjustable,
         };
         let feedback = self.answered.then_some(&self.feedback);
@@ -231,9 +233,13 @@ impl FingerServo {
         if adjusted {
             self.watching.adjusted();
         }
-        if self.report.stage == Stage::Running {
+        let spring = match &self.calibration {
+            Some(calibration) => calibration.spring(),
+            None => (self.report.stage == Stage::Running).then_some(&self.adjustable),
+        };
+        if let Some(Adjustable { controller, .. }) = spring {
             let feedback = self.answered.then_some(&self.feedback);
-            if let Some(fault) = self.watching.spring(&self.adjustable.controller, &self.state, feedback) {
+            if let Some(fault) = self.watching.spring(controller, &self.state, feedback) {
                 self.fault(fault);
             }
         }

@@ -51,7 +51,7 @@ impl Calibrating {
         let calibration = Calibration::new(task, &configuration.fingers[index], rate).map_err(refused)?;
         configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index], rate);
         let adjustable = Adjustable::new(&configuration, index).map_err(refused)?;
-        hand.dispatcher.hand_over(finger, &configuration, adjustable, |adjustable| {
+        hand.dispatcher.hand_over_calibration(finger, &configuration, adjustable, |adjustable| {
             let run = CalibrationRun { calibration, adjustable };
             Self::ordered(finger, member.mailbox.order(Order::Calibrate(run)), None)
         })
@@ -87,7 +87,9 @@ impl Calibrating {
         match report.calibration {
             None => Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 0.0 })),
             Some(Verdict::Going(progress)) => Ok(Standing::Going(progress)),
-            Some(Verdict::Refused(obstacle)) => Err(HandError::Calibration { finger, obstacle }),
+            Some(Verdict::Refused(obstacle)) => {
+                Err(HandError::Calibration { finger, limp: report.stage == Stage::Limp, obstacle })
+            }
             Some(Verdict::Found(found)) => {
                 let index = finger as usize - 1; // 1 to 3: it has reported
                 // Held throughout: an adjustment meanwhile is not lost.

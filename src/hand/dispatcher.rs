@@ -6,9 +6,10 @@ use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::black_box::keep;
 use crate::hand::opening::Reached;
-use crate::model::configuration::Configuration;
+use crate::model::configuration::{Configuration, ConfiguredFinger};
 use crate::realtime::{CycleTiming, Distribution, Histograms, Priority, Stage, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+use nalgebra::Vector3;
 use parking_lot::{Mutex, MutexGuard, RwLock};
 use rtrb::Consumer;
 use std::io;
@@ -180,8 +181,30 @@ impl Dispatcher {
         &self,
         finger: i32,
         configuration: &Configuration,
+        adjustable: Adjustable,
+        give: impl FnOnce(Adjustable) -> Result<T, HandError>,
+    ) -> Result<T, HandError> {
+        self.announce(finger, configuration, adjustable, give, BlackBox::announce)
+    }
+
+    /// The same for what a calibration computes with once it takes over.
+    pub fn hand_over_calibration<T>(
+        &self,
+        finger: i32,
+        configuration: &Configuration,
+        adjustable: Adjustable,
+        give: impl FnOnce(Adjustable) -> Result<T, HandError>,
+    ) -> Result<T, HandError> {
+        self.announce(finger, configuration, adjustable, give, BlackBox::announce_calibration)
+    }
+
+    fn announce<T>(
+        &self,
+        finger: i32,
+        configuration: &Configuration,
         mut adjustable: Adjustable,
         give: impl FnOnce(Adjustable) -> Result<T, HandError>,
+        announce: impl FnOnce(&mut BlackBox, ConfiguredFinger, Vector3<f64>, u32),
     ) -> Result<T, HandError> {
         let index = self.index(finger)?;
         // Locked throughout: no record that names the controller is collected before the black box knows it.
@@ -191,7 +214,7 @@ impl Dispatcher {
         adjustable.number = collected.black_box.next_number();
         let given = give(adjustable)?;
         let (finger, gravity) = (configuration.fingers[index].clone(), configuration.gravity(index));
-        collected.black_box.announce(finger, gravity, taken);
+        announce(&mut collected.black_box, finger, gravity, taken);
         Ok(given)
     }
 

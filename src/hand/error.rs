@@ -214,10 +214,15 @@ pub enum HandError {
         missing: Missing,
     },
     /// A calibration gave up.
-    #[error("finger {finger} is limp, and its calibration as it was: {obstacle}")]
+    #[error(
+        "finger {finger} is not calibrated, {}, and nothing was changed: {obstacle}",
+        if *limp { "its motors are off" } else { "it holds its pose" }
+    )]
     Calibration {
         /// 1 to 3.
         finger: i32,
+        /// Whether the finger is limp now. Else it is the spring that it was before.
+        limp: bool,
         /// What stood in the way.
         obstacle: Obstacle,
     },

@@ -8,11 +8,10 @@ use serde::{Deserialize, Serialize};
 const STOP_MARGIN: f64 = 3.0;
 
 /// How the zero of the encoders is found.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum ZeroingMethod {
-    /// The finger stands in `zeroing.pose_degrees` when zeroing begins.
-    #[default]
+    /// The finger is held in `zeroing.pose_degrees`, by its own spring or by something else.
     Pose,
     /// Every joint is led against both of its mechanical stops.
     Stops,
@@ -24,8 +23,8 @@ pub enum ZeroingMethod {
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredZeroing {
-    /// Which way.
-    pub method: ZeroingMethod,
+    /// Which way; none: see [`ConfiguredFinger::zeroing_method`].
+    pub method: Option<ZeroingMethod>,
     /// Joint angles of the pose, degrees.
     pub pose_degrees: [f64; 3],
     /// Where the lower stops are, degrees; none: 3 degrees beyond the soft limits.
@@ -43,7 +42,7 @@ pub struct ConfiguredZeroing {
 impl Default for ConfiguredZeroing {
     fn default() -> Self {
         Self {
-            method: ZeroingMethod::Pose,
+            method: None,
             pose_degrees: [0.0, 30.0, 60.0],
             lower_stop_degrees: None,
             upper_stop_degrees: None,
@@ -55,6 +54,16 @@ impl Default for ConfiguredZeroing {
 }
 
 impl ConfiguredFinger {
+    /// How the zero of the encoders is found: as configured. Where nothing is configured, by the mechanical stops if it is known where
+    /// they are: both `zeroing.lower_stop_degrees` and `zeroing.upper_stop_degrees` are given, or the finger is simulated. Else by the pose.
+    pub fn zeroing_method(&self) -> ZeroingMethod {
+        let stops = self.zeroing.lower_stop_degrees.is_some() && self.zeroing.upper_stop_degrees.is_some();
+        self.zeroing.method.unwrap_or(match stops || self.simulated() {
+            true => ZeroingMethod::Stops,
+            false => ZeroingMethod::Pose,
+        })
+    }
+
     /// Angles of the mechanical stops, rad: lower, upper.
     pub fn stops(&self) -> (Vector3<f64>, Vector3<f64>) {
         let beyond = |limits: [f64; 3], margin: f64| limits.map(|limit| limit + margin);

@@ -1,6 +1,7 @@
 //! One finger as a physical system: joints, tendons, motors, and what the tip meets.
 
 use super::contact;
+use super::holding_hand::HoldingHand;
 use super::joint_friction::stop_by_friction;
 use super::joint_stops::JointStops;
 use super::motors::Motors;
@@ -36,6 +37,7 @@ pub struct Plant {
     braked: bool,
     jammed: [bool; 4],
     external_force: Vector3<f64>,
+    held: Option<HoldingHand>,
     surface: Option<Surface>,
 }
 
@@ -65,6 +67,7 @@ impl Plant {
             braked: true,
             jammed: [false; 4],
             external_force: Vector3::zeros(),
+            held: None,
             surface: simulation.surface,
             tendons,
         })
@@ -89,6 +92,7 @@ impl Plant {
             + jacobian.tr_mul(&force)
             + self.dynamics.gravity_torque(&self.theta)
             + self.stops.torque(&self.theta, &self.theta_dot)
+            + self.held.map_or_else(Vector3::zeros, |hand| hand.torque(&self.theta, &self.theta_dot))
             - self.joint_viscous.component_mul(&self.theta_dot)
             - self.dynamics.coriolis(&self.theta, &self.theta_dot);
         let inverse_inertia = inverse(&self.dynamics.inertia(&self.theta));
@@ -172,6 +176,16 @@ impl Plant {
         self.external_force = force;
     }
 
+    /// Holds the joints at these angles, rad, from now on, as a person's hand does.
+    pub fn hold(&mut self, pose: Vector3<f64>) {
+        self.held = Some(HoldingHand::new(pose));
+    }
+
+    /// Takes that hand away.
+    pub fn let_go(&mut self) {
+        self.held = None;
+    }
+
     /// Puts something in reach of the fingertip, or takes it away.
     pub fn set_surface(&mut self, surface: Option<Surface>) {
         self.surface = surface;
@@ -182,12 +196,13 @@ impl Plant {
         self.surface.map_or_else(Vector3::zeros, |surface| contact::force(&surface, &self.tip()))
     }
 
-    /// Energy in the moving parts, tendons, stops, surface and gravity, J.
+    /// Energy in the moving parts, tendons, stops, holding hand, surface and gravity, J.
     pub fn energy(&self) -> f64 {
         self.dynamics.energy(&self.theta, &self.theta_dot)
             + self.motors.energy(&self.motor_dot)
             + self.tendons.energy(&self.theta, &self.motor)
             + self.stops.energy(&self.theta)
+            + self.held.map_or(0.0, |hand| hand.energy(&self.theta))
             + self.surface.map_or(0.0, |surface| contact::energy(&surface, &self.tip()))
     }
 

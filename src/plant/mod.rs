@@ -3,6 +3,7 @@
 
 mod contact;
 mod finger_plant;
+mod holding_hand;
 mod joint_friction;
 mod joint_stops;
 mod motors;

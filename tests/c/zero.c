@@ -11,6 +11,7 @@ int main(void)
 
     CHECK(ZeroFinger(1) == -1 && errno == ENODEV);
     CHECK(OpenHand() == 0);
+    CHECK(AdjustFinger(2, "zeroing.method = 'pose'") == 0);
     CHECK(ZeroFinger(2) == 0);
     CHECK(GetPos(2, After) == 0);
     Status.Size = sizeof Status;

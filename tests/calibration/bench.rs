@@ -10,10 +10,13 @@ pub struct Bench {
     pub plant: Plant,
     pub belief: ConfiguredFinger,
     rate: f64,
+    gravity: Vector3<f64>,
     sensors: Sensors,
     controller: Controller,
     state: State,
     command: Command,
+    /// What the finger does where no routine decides it.
+    activity: Activity,
     pub report: Report,
     /// A gauge that shows always the same count.
     pub dead_gauge: Option<(usize, u16)>,
@@ -28,19 +31,26 @@ pub struct Bench {
 
 impl Bench {
     pub fn new(truth: &ConfiguredFinger, belief: &ConfiguredFinger, rate: f64) -> Self {
-        let mut plant = Plant::new(truth, Vector3::zeros()).unwrap();
+        Self::in_gravity(truth, belief, Vector3::zeros(), rate)
+    }
+
+    /// The same in gravity, m/s^2 in the finger's frame.
+    pub fn in_gravity(truth: &ConfiguredFinger, belief: &ConfiguredFinger, gravity: Vector3<f64>, rate: f64) -> Self {
+        let mut plant = Plant::new(truth, gravity).unwrap();
         let mut sensors = Sensors::new(truth);
-        let controller = Controller::new(belief, rate).unwrap();
+        let controller = Controller::in_gravity(belief, &gravity, rate).unwrap();
         let state = controller.start(&read(&mut sensors, &plant));
         plant.release_brake();
         Self {
             plant,
             belief: belief.clone(),
             rate,
+            gravity,
             sensors,
             controller,
             state,
             command: Command::default(),
+            activity: Activity::Turn(Vector4::zeros()),
             report: Report::default(),
             dead_gauge: None,
             gauge_at: [0, 1, 2, 3],
@@ -59,21 +69,32 @@ impl Bench {
         feedback
     }
 
-    fn advance(&mut self, feedback: &Feedback, activity: &Activity) {
+    /// `previous`: the controller before, where another one takes over in this cycle.
+    fn advance(&mut self, feedback: &Feedback, previous: Option<&Controller>) {
         let steps = (1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize;
         for _ in 0..steps {
             self.plant.step(self.motor_at.map(|motor| self.command.motor_torques[motor] * 0.01));
             self.largest_tension = self.largest_tension.max(self.plant.tensions().max());
         }
-        let (command, report) = self.controller.cycle(&mut self.state, Some(feedback), activity);
-        (self.command, self.report) = (command, report);
+        let (state, feedback, activity) = (&mut self.state, Some(feedback), &self.activity);
+        (self.command, self.report) = match previous {
+            None => self.controller.cycle(state, feedback, activity),
+            Some(previous) => self.controller.take_over(previous, state, feedback, activity),
+        };
     }
 
     pub fn run(&mut self, seconds: f64, activity: &Activity) {
+        self.activity = *activity;
         for _ in 0..(seconds * self.rate) as usize {
             let feedback = self.feedback();
-            self.advance(&feedback, activity);
+            self.advance(&feedback, None);
         }
+    }
+
+    /// The finger goes on with what it does.
+    pub fn go_on(&mut self, seconds: f64) {
+        let activity = self.activity;
+        self.run(seconds, &activity);
     }
 
     /// Slack is taken up and the pose held, as after OpenHand.
@@ -97,7 +118,8 @@ impl Bench {
         mut happen: impl FnMut(f64, &mut Plant),
     ) -> Result<Findings, Obstacle> {
         let mut calibration = Calibration::new(task, &self.belief, self.rate).unwrap();
-        self.controller = Controller::new(&Calibration::controlled(&self.belief, self.rate), self.rate).unwrap();
+        let controlled = Calibration::controlled(&self.belief, self.rate);
+        let mut own = Some(Controller::in_gravity(&controlled, &self.gravity, self.rate).unwrap());
         self.largest_tension = 0.0;
         let mut last = 0.0;
         for cycle in 0.. {
@@ -125,18 +147,25 @@ impl Bench {
                     return Ok(findings);
                 }
                 Verdict::Refused(obstacle) => {
-                    assert!(matches!(activity, Activity::Turn(torques) if torques == Vector4::zeros()));
+                    // A finger that the routine has taken over is limp now, another one is left to itself.
+                    let motors_off = Some(Activity::Turn(Vector4::zeros()));
+                    assert_eq!(activity, if own.is_none() { motors_off } else { None });
                     return Err(obstacle);
                 }
             }
-            self.advance(&feedback, &activity);
+            let mut previous = None;
+            if let Some(activity) = activity {
+                self.activity = activity;
+                previous = own.take().map(|own| std::mem::replace(&mut self.controller, own));
+            }
+            self.advance(&feedback, previous.as_ref());
         }
         unreachable!("a routine ends by its time limit at the latest")
     }
 
     /// A new controller with what has been found, and the finger a spring again.
     pub fn adopt(mut self) -> Self {
-        self.controller = Controller::new(&self.belief, self.rate).unwrap();
+        self.controller = Controller::in_gravity(&self.belief, &self.gravity, self.rate).unwrap();
         let feedback = self.feedback();
         self.state = self.controller.start(&feedback);
         self.open()

@@ -2,6 +2,7 @@
 
 mod bench;
 mod identifying;
+mod pose;
 mod refusing;
 mod signs;
 mod zeroing;

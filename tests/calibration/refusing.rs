@@ -7,7 +7,7 @@ use sun2xp::model::configuration::{ConfiguredFinger, ZeroingMethod};
 
 fn with_stops() -> ConfiguredFinger {
     let mut finger = ConfiguredFinger::default();
-    finger.zeroing.method = ZeroingMethod::Stops;
+    finger.zeroing.method = Some(ZeroingMethod::Stops);
     finger
 }
 
@@ -85,7 +85,7 @@ fn a_stop_that_is_not_where_it_is_configured() {
 #[test]
 fn a_board_that_lost_its_counts_keeps_no_zero() {
     let mut finger = ConfiguredFinger::default();
-    finger.zeroing.method = ZeroingMethod::Kept;
+    finger.zeroing.method = Some(ZeroingMethod::Kept);
     let mut bench = Bench::new(&finger, &finger, 1000.0).open();
     bench.zero_valid = false;
     assert_eq!(bench.calibrate(Task::Zero), Err(Obstacle::NotKept));

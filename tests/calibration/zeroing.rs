@@ -35,7 +35,7 @@ fn against_the_stops_from_anywhere() {
         let mut actual = truth.clone();
         actual.simulation.start_degrees = start;
         let mut belief = ConfiguredFinger::default();
-        belief.zeroing.method = ZeroingMethod::Stops;
+        belief.zeroing.method = Some(ZeroingMethod::Stops);
         belief.gauge.zero = [200.0; 4];
         belief.tendon.stiffness = [270.0; 4];
         let mut bench = Bench::new(&actual, &belief, rate);
@@ -75,7 +75,7 @@ fn at_the_configured_pose() {
 fn a_board_that_kept_its_counts_keeps_the_zero_but_not_that_of_the_gauges() {
     let truth = truth();
     let mut belief = truth.clone();
-    belief.zeroing.method = ZeroingMethod::Kept;
+    belief.zeroing.method = Some(ZeroingMethod::Kept);
     belief.gauge.zero = truth.gauge.zero.map(|zero| zero + 20.0);
     let mut bench = Bench::new(&truth, &belief, 1000.0);
     let found = zeroed(&mut bench);
@@ -92,7 +92,7 @@ fn a_calibrated_finger_is_the_spring_it_is_told_to_be() {
     truth.simulation.tendon_stiffness = [330.0; 4];
     truth.simulation.joint_coulomb_friction = [0.5e-3; 3];
     let mut belief = ConfiguredFinger::default();
-    belief.zeroing.method = ZeroingMethod::Stops;
+    belief.zeroing.method = Some(ZeroingMethod::Stops);
     belief.gauge.zero = [200.0; 4];
     let mut bench = Bench::new(&truth, &belief, 1000.0);
     zeroed(&mut bench);

@@ -4,7 +4,7 @@ use crate::rig::{Loop, SCHEMES, quiet};
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use sun2xp::control::{Activity, JointStiffness, Law, SetPoint, TensionDistribution};
 use sun2xp::model::Contact;
-use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
 const ANCHOR: Vector3<f64> = Vector3::new(0.2, 0.7, 1.2);
 
@@ -89,4 +89,18 @@ fn no_switch_of_the_spring_jumps() {
         }
     }
     assert!(seen > 10.0, "blind: at once would be {seen} N");
+}
+
+/// As a calibration does: it takes over with a push that lets the tendons out, and tightens them after a rest.
+#[test]
+fn a_push_in_the_cycle_of_a_take_over_does_not_come_back() {
+    let finger = quiet(Scheme::StateFeedback);
+    let mut servo = Loop::new(&finger, 1000.0);
+    servo.run(0.5, &Activity::Follow(isotropic(3.0)));
+    servo.adjust(&quiet(Scheme::Figure10));
+    servo.run(0.01, &Activity::Pull(Vector4::repeat(-4.0)));
+    servo.run(0.5, &Activity::Turn(Vector4::zeros()));
+    servo.forget();
+    servo.cycle(&Activity::TakeUpSlack);
+    assert!(servo.largest_jump < 1.0, "{} N", servo.largest_jump);
 }

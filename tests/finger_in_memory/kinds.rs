@@ -132,13 +132,15 @@ fn a_torque_that_the_tension_limits_do_not_let_through_is_told_of() {
 #[test]
 fn a_calibration_that_gives_up_leaves_its_warning() {
     let mut bench = Bench::new();
-    bench.with_finger(|finger| finger.suffer(&Defect::DeadGauge { gauge: 2, count: Some(2000) }));
     let mut configuration = Configuration::default();
     let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
     configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], configuration.hand.rate);
     let adjustable = Adjustable { number: 1, ..Adjustable::new(&configuration, 0).expect("a controller") };
     let order = Order::Calibrate(CalibrationRun { calibration, adjustable });
     assert_eq!(bench.mailbox.order(order), Ok(Some(1)));
+    // Until then it is a spring, whose monitors would find it.
+    bench.until("taken over", |bench| bench.report().cycle.desired_tensions.min() < 0.0);
+    bench.with_finger(|finger| finger.suffer(&Defect::DeadGauge { gauge: 2, count: Some(2000) }));
     bench.warns(FaultKind::CalibrationFailed);
     assert_eq!(bench.stage(), Stage::Limp);
     bench.cycles(3000);

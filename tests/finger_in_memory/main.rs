@@ -1,5 +1,6 @@
 //! One finger from planner to board in memory, on simulated time: what it holds, what it is stopped by and warned of.
 
+mod calibrating;
 mod commands;
 mod floods;
 mod kinds;

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use sun2xp::board::Defect;
 use sun2xp::control::calibration::{Calibration, Task, Verdict};
 use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
-use sun2xp::model::configuration::Configuration;
+use sun2xp::model::configuration::{Configuration, ZeroingMethod};
 
 /// What SendKx sends.
 fn soften(bench: &Bench) {
@@ -99,6 +99,7 @@ fn what_was_sent_during_a_calibration_is_gone() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
     let mut configuration = Configuration::default();
+    configuration.fingers[0].zeroing.method = Some(ZeroingMethod::Pose);
     let task = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
     configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], configuration.hand.rate);
     let adjustable = Adjustable { number: 1, ..Adjustable::new(&configuration, 0).expect("a controller") };

@@ -18,7 +18,8 @@ use sun2xp::realtime::Priority;
 ///     force FINGER X Y Z                     push the fingertip, N
 ///     wall FINGER PX PY PZ NX NY NZ K        a wall through P with normal N, stiffness K N/cm
 ///     ball FINGER X Y Z RADIUS K             a ball
-///     free FINGER                            no force, no wall, no ball
+///     hold FINGER                            a hand that holds the finger in the pose it is in
+///     free FINGER                            no force, no wall, no ball, no hand
 ///     state FINGER                           true joints (rad), tip (cm) and tensions (N), torques of the motors (N cm),
 ///                                            times by the board's clock (ms): now, of the last Command that was
 ///                                            obeyed, of the end state that followed; NaN: not since the last

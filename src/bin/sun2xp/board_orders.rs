@@ -18,6 +18,7 @@ pub enum Order {
 pub enum Action {
     Force([f64; 3]),
     Touch(Surface),
+    Hold,
     Free,
     State,
 }
@@ -67,12 +68,13 @@ impl Action {
             ("ball", &[x, y, z, radius, stiffness]) => {
                 Ok(Action::Touch(Surface::Ball { centre: [x, y, z], radius, stiffness }))
             }
+            ("hold", []) => Ok(Action::Hold),
             ("free", []) => Ok(Action::Free),
             ("state", []) => Ok(Action::State),
-            ("force" | "wall" | "ball" | "free" | "state", _) => {
+            ("force" | "wall" | "ball" | "hold" | "free" | "state", _) => {
                 Err(format!("{name} does not take {} numbers; see sun2xp board --help", numbers.len()))
             }
-            _ => Err(format!("no order {name}: force, wall, ball, free, state or quit")),
+            _ => Err(format!("no order {name}: force, wall, ball, hold, free, state or quit")),
         }
     }
 
@@ -84,7 +86,9 @@ impl Action {
         match *self {
             Action::Force(force) => plant.set_external_force(force.into()),
             Action::Touch(surface) => plant.set_surface(Some(surface)),
+            Action::Hold => plant.hold(plant.joints()),
             Action::Free => {
+                plant.let_go();
                 plant.set_external_force(Vector3::zeros());
                 plant.set_surface(None);
             }
@@ -116,6 +120,7 @@ mod tests {
         assert_eq!(Order::read("force 2 1 -0.5 0"), Ok(Some(force)));
         let ball = Surface::Ball { centre: [1.0, 2.0, 3.0], radius: 4.0, stiffness: 5.0 };
         assert_eq!(Order::read(" ball 1  1 2 3 4 5 "), Ok(Some(Order::For(1, Action::Touch(ball)))));
+        assert_eq!(Order::read("hold 3"), Ok(Some(Order::For(3, Action::Hold))));
         assert_eq!(Order::read(""), Ok(None));
         assert_eq!(Order::read("quit"), Ok(Some(Order::Quit)));
     }

@@ -75,6 +75,7 @@ fn show(finger: i32) -> impl FnMut(Progress) {
         let what = match progress.step {
             Step::TakingUpSlack => "taking up slack",
             Step::ZeroingGauges => "zeroing gauges, tendons let out",
+            Step::TryingPose => "pushing lightly against what holds the pose",
             Step::ReadingEncoders => "reading encoders",
             Step::SeekingStops => "seeking stops",
             Step::TryingMotors => "trying motors",

@@ -2,6 +2,8 @@
 
 use super::average::Average;
 use super::instruments::Instruments;
+use super::obstacle::Obstacle;
+use super::standstill::Standstill;
 use super::step::Sample;
 use nalgebra::{Vector3, Vector4};
 
@@ -14,15 +16,26 @@ pub(super) struct Reading {
     seconds: f64,
     travel: Average,
     tensions: Average,
+    standstill: Standstill,
 }
 
 impl Reading {
     /// Whether it is complete.
     pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> bool {
         self.seconds += instruments.period;
-        self.travel.add(instruments.travel(sample.feedback));
-        self.tensions.add(instruments.tensions(sample.feedback));
+        let (travel, tensions) = (instruments.travel(sample.feedback), instruments.tensions(sample.feedback));
+        self.travel.add(travel);
+        self.tensions.add(tensions);
+        self.standstill.note(&instruments.joints(&travel, &tensions), instruments.period);
         self.seconds >= READING
+    }
+
+    /// Refuses a finger that moved while it was read.
+    pub fn still(&self) -> Result<(), Obstacle> {
+        match self.standstill.moved() {
+            None => Ok(()),
+            Some((joint, distance)) => Err(Obstacle::Moved { joint: joint as u8, degrees: distance.to_degrees() }),
+        }
     }
 
     /// N, by the offsets known when it was read.

@@ -56,6 +56,28 @@ pub enum Obstacle {
         "zeroing.method is \"kept\", but the board does not say that its counts are still good: zero by \"pose\" or \"stops\""
     )]
     NotKept,
+    /// The finger moved while it was to stand in its pose.
+    #[error(
+        "joint {joint} moved by {degrees:.2} degrees while the pose was read. Keep the finger still in zeroing.pose_degrees (nothing \
+         may push it, no set point may be on its way) and zero it again, or set zeroing.method = \"stops\""
+    )]
+    Moved {
+        /// 0 to 2.
+        joint: u8,
+        /// How far, degrees.
+        degrees: f64,
+    },
+    /// A limp finger that stands in no pose, because nothing holds it.
+    #[error(
+        "nothing holds the finger in its pose: joint {joint} gave way by {degrees:.1} degrees to a light push. Hold the finger in \
+         zeroing.pose_degrees until it is zeroed, or set zeroing.method = \"stops\""
+    )]
+    NotHeld {
+        /// 0 to 2.
+        joint: u8,
+        /// How far, degrees.
+        degrees: f64,
+    },
     /// A joint went further than its stop should be.
     #[error(
         "joint {joint} went {degrees:.0} degrees and met no stop: is a tendon off, are zeroing's stop angles right?"

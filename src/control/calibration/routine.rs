@@ -34,13 +34,14 @@ pub enum Verdict {
     Refused(Obstacle),
 }
 
-/// A routine under way.
+/// A routine under way. In the beginning it may leave the finger to what controls it: it has taken over once a cycle yields an activity.
 #[derive(Clone, Debug)]
 pub struct Calibration {
     instruments: Instruments,
     routine: Routine,
     seconds: f64,
     time_limit: f64,
+    in_charge: bool,
 }
 
 // All of one size on purpose: no heap in the servo.
@@ -68,6 +69,7 @@ impl Calibration {
             routine,
             seconds: 0.0,
             time_limit: finger.zeroing.time_limit_s,
+            in_charge: false,
         })
     }
 
@@ -88,26 +90,36 @@ impl Calibration {
         }
     }
 
-    /// One cycle that has a measurement: what the motors shall do, and how it goes. Not to be called again after a verdict.
-    pub fn cycle(&mut self, sample: &Sample) -> (Activity, Verdict) {
+    /// One cycle that has a measurement: what the finger shall do, and how it goes. Without an activity the finger goes on with what it
+    /// did before the routine, under the controller that it had. Not to be called again after a verdict.
+    pub fn cycle(&mut self, sample: &Sample) -> (Option<Activity>, Verdict) {
+        let (activity, verdict) = self.step(sample);
+        self.in_charge |= activity.is_some();
+        (activity, verdict)
+    }
+
+    fn step(&mut self, sample: &Sample) -> (Option<Activity>, Verdict) {
+        // What stood in the way is not pulled at any longer. A finger that the routine left to itself is not touched.
+        let motors_off = Activity::Turn(Vector4::zeros());
+        let refused = |obstacle, in_charge: bool| (in_charge.then_some(motors_off), Verdict::Refused(obstacle));
         self.seconds += self.instruments.period;
         if self.seconds > self.time_limit {
-            return refused(Obstacle::TimeLimit { seconds: self.time_limit });
+            return refused(Obstacle::TimeLimit { seconds: self.time_limit }, self.in_charge);
         }
+        let taking_over = |(activity, progress)| (Some(activity), progress);
         let stepped = match &mut self.routine {
-            Routine::Signs(routine) => routine.step(&self.instruments, sample),
+            Routine::Signs(routine) => {
+                routine.step(&self.instruments, sample).map(|flow| flow.map_continue(taking_over))
+            }
             Routine::Zero(routine) => routine.step(&mut self.instruments, sample),
-            Routine::Identify(routine) => routine.step(&mut self.instruments, sample),
+            Routine::Identify(routine) => {
+                routine.step(&mut self.instruments, sample).map(|flow| flow.map_continue(taking_over))
+            }
         };
         match stepped {
             Ok(Continue((activity, progress))) => (activity, Verdict::Going(progress)),
-            Ok(Break(findings)) => (Activity::Turn(Vector4::zeros()), Verdict::Found(findings)),
-            Err(obstacle) => refused(obstacle),
+            Ok(Break(findings)) => (Some(motors_off), Verdict::Found(findings)),
+            Err(obstacle) => refused(obstacle, self.in_charge),
         }
     }
-}
-
-/// Motors off: whatever stood in the way is not pulled at any longer.
-fn refused(obstacle: Obstacle) -> (Activity, Verdict) {
-    (Activity::Turn(Vector4::zeros()), Verdict::Refused(obstacle))
 }

@@ -23,6 +23,8 @@ pub enum Step {
     TakingUpSlack,
     /// Gauges are read with the tendons let out.
     ZeroingGauges,
+    /// Joints are pushed lightly to find out whether something holds them in their pose.
+    TryingPose,
     /// Counts are read.
     ReadingEncoders,
     /// A joint is on its way to a stop.

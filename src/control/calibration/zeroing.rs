@@ -3,16 +3,17 @@
 use super::encoder_zero::Reading;
 use super::findings::{Findings, Zeros};
 use super::gauge_zero::GaugeZero;
+use super::grip::Grip;
 use super::instruments::Instruments;
 use super::joint_lead::JointLead;
 use super::obstacle::Obstacle;
-use super::step::{Progress, Sample, Step, Stepped};
+use super::step::{Progress, Sample, Step};
 use super::stop_search::StopSearch;
 use super::take_up::TakeUp;
 use crate::control::signals::Activity;
 use crate::model::configuration::{ConfiguredFinger, ZeroingMethod};
 use nalgebra::{Vector3, Vector4};
-use std::ops::ControlFlow::{Break, Continue};
+use std::ops::ControlFlow::{self, Break, Continue};
 
 /// A stop may be so far from where it is expected, rad, before it counts as something else in the way.
 const TOLERANCE: f64 = 0.035;
@@ -20,7 +21,7 @@ const TOLERANCE: f64 = 0.035;
 const BEYOND: f64 = 0.17;
 /// How near to the middle of its range a joint is brought back, rad.
 const NEAR: f64 = 0.05;
-/// Part of t_min that every motor pulls with where the finger is under control already.
+/// Part of t_min that every tendon is to be pulled with where the finger is under control already.
 const PULLED: f64 = 0.3;
 /// How long the finger comes to rest before its counts are read, s.
 const RESTING: f64 = 0.3;
@@ -44,12 +45,17 @@ pub(super) struct Zeroing {
 #[derive(Clone, Debug)]
 enum Phase {
     Start,
-    /// The motors keep their torque: friction holds the finger where it is while it is read.
+    /// The finger is held as it was before.
     Read,
     Gauges(GaugeZero),
     /// With the offsets known.
     Tighten(TakeUp),
-    ReadPose(Reading),
+    /// Limp until now: whether something holds it in its pose.
+    Try(Grip),
+    ReadPose {
+        grip: Grip,
+        reading: Reading,
+    },
     Seek {
         lead: JointLead,
         joint: usize,
@@ -70,11 +76,14 @@ enum Phase {
     },
 }
 
+/// What a step of zeroing yields. No activity: the finger goes on with what it did before.
+type Stepped = Result<ControlFlow<Findings, (Option<Activity>, Progress)>, Obstacle>;
+
 impl Zeroing {
     pub fn new(finger: &ConfiguredFinger) -> Self {
         let zeroing = &finger.zeroing;
         Self {
-            method: zeroing.method,
+            method: finger.zeroing_method(),
             pose: Vector3::from(zeroing.pose_degrees.map(f64::to_radians)),
             stops: finger.stops(),
             torque: zeroing.torque,
@@ -88,29 +97,31 @@ impl Zeroing {
     }
 
     pub fn step(&mut self, instruments: &mut Instruments, sample: &Sample) -> Stepped {
-        let going = |step, part, activity| Ok(Continue((activity, Progress { step, part })));
-        let keep = Activity::Turn(sample.report.motor_torques);
+        let going = |step, part, activity| Ok(Continue((Some(activity), Progress { step, part })));
+        let as_before = |part| Ok(Continue((None, Progress { step: Step::ReadingEncoders, part })));
         match &mut self.phase {
             Phase::Start => {
                 if self.method == ZeroingMethod::Kept && !sample.zero_valid {
                     return Err(Obstacle::NotKept);
                 }
-                let pulls = sample.report.motor_torques.component_div(&instruments.signed_radius);
-                self.phase = if pulls.min() > PULLED * instruments.minimum {
+                self.phase = if sample.report.desired_tensions.min() > PULLED * instruments.minimum {
                     Phase::Read
                 } else {
                     // Not to be tightened before the gauges are zeroed: wrong ones would pull the finger away.
                     Phase::Gauges(GaugeZero::new(None))
                 };
-                going(Step::ReadingEncoders, 0.0, keep)
+                as_before(0.0)
             }
             Phase::Read => {
                 let mut first = self.first.unwrap_or_default();
                 if first.step(instruments, sample) {
+                    if self.method == ZeroingMethod::Pose {
+                        first.still()?;
+                    }
                     self.phase = Phase::Gauges(GaugeZero::new(Some(first.tensions())));
                 }
                 self.first = Some(first);
-                going(Step::ReadingEncoders, 0.1, keep)
+                as_before(0.1)
             }
             Phase::Gauges(gauges) => match gauges.step(instruments, sample)? {
                 Continue(activity) => going(Step::ZeroingGauges, 0.2, activity),
@@ -132,8 +143,8 @@ impl Zeroing {
             Phase::Tighten(take_up) => match take_up.step(instruments, sample)? {
                 Some(activity) => going(Step::TakingUpSlack, 0.25, activity),
                 None if self.method == ZeroingMethod::Pose => {
-                    self.phase = Phase::ReadPose(Reading::default());
-                    going(Step::ReadingEncoders, 0.9, keep)
+                    self.phase = Phase::Try(Grip::new(instruments, sample, self.torque));
+                    going(Step::TryingPose, 0.3, Activity::Tighten(instruments.offset))
                 }
                 None => {
                     let lead = JointLead::new(instruments, sample, self.torque);
@@ -142,10 +153,20 @@ impl Zeroing {
                     going(Step::SeekingStops, 0.3, lead.activity(instruments, sample))
                 }
             },
-            Phase::ReadPose(reading) => {
-                if !reading.step(instruments, sample) {
-                    return going(Step::ReadingEncoders, 0.9, keep);
+            Phase::Try(grip) => {
+                let (activity, done) = grip.step(instruments, sample, self.speed)?;
+                if done {
+                    self.phase = Phase::ReadPose { grip: *grip, reading: Reading::default() };
                 }
+                going(Step::TryingPose, 0.6, activity)
+            }
+            Phase::ReadPose { grip, reading } => {
+                let (activity, _) = grip.step(instruments, sample, self.speed)?;
+                if !reading.step(instruments, sample) {
+                    return going(Step::ReadingEncoders, 0.9, activity);
+                }
+                reading.still()?;
+                grip.returned(&reading.joints(instruments, &Vector4::zeros()))?;
                 let reading = *reading;
                 Ok(Break(self.at_pose(instruments, &reading, &Vector4::zeros())))
             }

@@ -79,6 +79,7 @@ impl Controller {
 
 /// What such pulls leave behind: no tension controller decided them, and the next one begins anew.
 pub(super) fn open_loop(state: &mut State, pulls: Vector4<f64>) {
+    state.goes_on_from = None;
     state.tendons = TendonState::default();
     state.report.joint_torques = Vector3::zeros();
     state.report.desired_tensions = pulls;

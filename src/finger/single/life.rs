@@ -1,8 +1,7 @@
 //! The stages of a finger's life, from open to close, and what leads from one to the next.
 
 use super::{FingerServo, STOPS_AFTER_FAULT};
-use crate::board::protocol::{Configured, Status};
-use crate::control::calibration::{Sample, Verdict};
+use crate::board::protocol::Configured;
 use crate::control::{Activity, Command, Feedback, SetPoint};
 use crate::finger::mailbox::{Adjustable, Order};
 use crate::finger::{Fault, FaultKind, Stage};
@@ -19,6 +18,7 @@ const MOSTLY: f64 = 0.75;
 impl FingerServo {
     /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
     pub(super) fn take_commands(&mut self) -> Option<Adjustable> {
+        let running = self.report.stage == Stage::Running;
         let order = self.mailbox.new_order();
         // After the order: what was handed over with it is there.
         let new = self.mailbox.new_adjustable();
@@ -30,14 +30,14 @@ impl FingerServo {
         if let Some(order) = order {
             self.report.orders += 1;
             match order {
-                Order::Nothing => {}
-                Order::Calibrate(_) => previous = previous.or_else(|| Some(self.adjustable.clone())),
+                Order::Nothing | Order::Calibrate(_) => {}
                 Order::Restart { .. } => previous = None,
             }
             self.carry_out(order);
         }
+        // One that was sent before the order for a calibration counts: the finger moves to it, and the routine must see that.
         if let Some(set_point) = self.mailbox.new_set_point(self.report.springs)
-            && self.report.stage == Stage::Running
+            && running
         {
             self.report.set_point = set_point;
             self.activity = Activity::Follow(set_point);
@@ -59,9 +59,7 @@ impl FingerServo {
         match order {
             Order::Nothing => {}
             Order::Calibrate(run) => {
-                self.calibration = Some(run);
-                self.report.calibration = None;
-                self.enter(Stage::Calibrating);
+                self.begin_calibration(run);
             }
             Order::Restart { limp } => {
                 self.anew = true;
@@ -71,23 +69,6 @@ impl FingerServo {
                     self.take_up_slack();
                 }
             }
-        }
-    }
-
-    /// One step of the calibration, if there is one: it decides what the finger does.
-    pub(super) fn calibrate(&mut self) {
-        let Some(run) = &mut self.calibration else { return };
-        if !self.answered {
-            return;
-        }
-        let zero_valid = self.status.has(Status::ZERO_VALID);
-        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid };
-        let (activity, verdict) = run.calibration.cycle(&sample);
-        self.activity = activity;
-        self.report.calibration = Some(verdict);
-        if !matches!(verdict, Verdict::Going(_)) {
-            self.calibration = None;
-            self.go_limp();
         }
     }
 

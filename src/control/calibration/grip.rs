@@ -1,0 +1,75 @@
+//! Whether something holds a limp finger in its pose: each joint is pushed lightly both ways, as in a search for stops, and a joint
+//! that is held does not give way.
+
+use super::instruments::Instruments;
+use super::joint_lead::JointLead;
+use super::obstacle::Obstacle;
+use super::standstill::TOLERANCE;
+use super::step::Sample;
+use crate::control::signals::Activity;
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+
+/// How far a joint that is held may give way, rad. A hand is no vice.
+const GIVES_WAY: f64 = 0.02;
+/// How long a joint must bear the whole push, s.
+const PUSHING: f64 = 0.1;
+/// How long the finger comes to rest afterwards, s.
+const RESTING: f64 = 0.3;
+
+/// The pushes, one after the other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grip {
+    lead: JointLead,
+    /// Where the joints were in the beginning, rad.
+    start: Vector3<f64>,
+    /// 0 to 5: the joint and the direction; 6: none any more.
+    push: usize,
+    /// Of the whole push, or of rest, s.
+    seconds: f64,
+}
+
+impl Grip {
+    /// `torque`: the largest that pushes a joint, N cm.
+    pub fn new(instruments: &Instruments, sample: &Sample, torque: f64) -> Self {
+        let lead = JointLead::new(instruments, sample, torque);
+        Self { lead, start: lead.joints, push: 0, seconds: 0.0 }
+    }
+
+    /// What the finger does, and whether all joints were pushed and the finger is at rest again. `speed` of the pushes, rad/s.
+    pub fn step(
+        &mut self,
+        instruments: &Instruments,
+        sample: &Sample,
+        speed: f64,
+    ) -> Result<(Activity, bool), Obstacle> {
+        self.lead.measure(instruments, sample);
+        let (joint, distance) = (self.lead.joints - self.start).abs().argmax();
+        if distance > GIVES_WAY {
+            return Err(Obstacle::NotHeld { joint: joint as u8, degrees: distance.to_degrees() });
+        }
+        let step = speed * instruments.period;
+        let (joint, direction) = (self.push / 2, if self.push.is_multiple_of(2) { PI } else { -PI });
+        let target = |other: usize| if other == joint { self.start[other] + direction } else { self.start[other] };
+        for other in 0..3 {
+            let target = target(other);
+            self.lead.advance(other, target, step);
+        }
+        let pushed = joint > 2 || self.lead.strained(joint);
+        self.seconds = if pushed { self.seconds + instruments.period } else { 0.0 };
+        if joint < 3 && self.seconds >= PUSHING {
+            (self.push, self.seconds) = (self.push + 1, 0.0);
+        }
+        let done = joint > 2 && self.seconds >= RESTING;
+        Ok((self.lead.activity(instruments, sample), done))
+    }
+
+    /// Refuses a finger that was read at other joint angles, rad, than it had before the pushes.
+    pub fn returned(&self, joints: &Vector3<f64>) -> Result<(), Obstacle> {
+        let (joint, distance) = (joints - self.start).abs().argmax();
+        match distance > TOLERANCE {
+            true => Err(Obstacle::Moved { joint: joint as u8, degrees: distance.to_degrees() }),
+            false => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Whether the joints stay where they are while the encoders are read.
+
+use nalgebra::Vector3;
+
+/// A joint may be so far from where it is taken to be, rad. The zeros are wrong by at most as much.
+pub(super) const TOLERANCE: f64 = 0.004;
+
+/// Time constant of the low-pass on the joints, s. It removes the noise of the gauges and the shaking of state feedback.
+const SMOOTHING: f64 = 0.02;
+
+/// Mean and extremes of the joints over a stretch of time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Standstill {
+    samples: f64,
+    sum: Vector3<f64>,
+    smoothed: Vector3<f64>,
+    /// None until the low-pass has settled.
+    extremes: Option<(Vector3<f64>, Vector3<f64>)>,
+}
+
+impl Standstill {
+    /// Notes the joint angles of a cycle, rad, `period` seconds after the last ones.
+    pub fn note(&mut self, joints: &Vector3<f64>, period: f64) {
+        self.samples += 1.0;
+        self.sum += joints;
+        let settled = SMOOTHING / period;
+        // The mean of the first samples, which is as quiet as the low-pass after them.
+        self.smoothed += (joints - self.smoothed) / self.samples.min(settled);
+        if self.samples >= settled {
+            let (lowest, highest) = self.extremes.unwrap_or((self.smoothed, self.smoothed));
+            self.extremes = Some((lowest.inf(&self.smoothed), highest.sup(&self.smoothed)));
+        }
+    }
+
+    /// The joint that moved farthest from its mean, 0 to 2, and how far, rad; none if all stood still.
+    pub fn moved(&self) -> Option<(usize, f64)> {
+        let (lowest, highest) = self.extremes?;
+        let mean = self.sum / self.samples;
+        let (joint, distance) = (highest - mean).sup(&(mean - lowest)).argmax();
+        (distance > TOLERANCE).then_some((joint, distance))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is found of a joint 1 that moves like this over 0.3 s at 1000 Hz; argument: s.
+    fn moved(path: impl Fn(f64) -> f64) -> Option<(usize, f64)> {
+        let mut standstill = Standstill::default();
+        for cycle in 0..300 {
+            standstill.note(&Vector3::new(0.3, path(f64::from(cycle) * 1e-3), -0.2), 1e-3);
+        }
+        standstill.moved()
+    }
+
+    #[test]
+    fn noise_and_shaking_are_no_motion() {
+        assert_eq!(moved(|_| 0.5), None);
+        assert_eq!(moved(|seconds| 0.5 + 0.005 * (seconds * 600.0).sin()), None);
+        assert_eq!(moved(|seconds| 0.5 + 0.012 * seconds), None);
+    }
+
+    #[test]
+    fn a_step_a_drift_and_a_bump_are_motion() {
+        let step = |seconds: f64| if seconds > 0.25 { 0.51 } else { 0.5 };
+        assert!(matches!(moved(step), Some((1, distance)) if distance > 0.006), "{:?}", moved(step));
+        assert!(matches!(moved(|seconds| 0.5 + 0.05 * seconds), Some((1, _))));
+        let bump = |seconds: f64| if (0.1..0.13).contains(&seconds) { 0.49 } else { 0.5 };
+        assert!(matches!(moved(bump), Some((1, _))), "{:?}", moved(bump));
+    }
+}

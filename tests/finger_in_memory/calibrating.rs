@@ -1,0 +1,107 @@
+//! A finger that is zeroed at a pose: held as it was while it is read, and as it was afterwards where that is refused.
+
+use crate::rig::{Bench, TARGET};
+use nalgebra::Vector3;
+use sun2xp::control::calibration::{Calibration, Findings, Obstacle, Task, Verdict};
+use sun2xp::finger::{Adjustable, CalibrationRun, Order, Stage};
+use sun2xp::model::configuration::{Configuration, Scheme, ZeroingMethod};
+
+fn configuration(scheme: Scheme) -> Configuration {
+    let mut configuration = Configuration::default();
+    let finger = &mut configuration.fingers[0];
+    finger.port = "in memory".into();
+    finger.gauge.zero = [220.0; 4];
+    finger.controller.scheme = Some(scheme);
+    finger.zeroing.method = Some(ZeroingMethod::Pose);
+    finger.zeroing.pose_degrees = TARGET.map(f64::to_degrees).into();
+    configuration
+}
+
+/// A finger that stands at [`TARGET`].
+fn standing(scheme: Scheme) -> Bench {
+    let mut bench = Bench::with(|is| *is = configuration(scheme));
+    bench.goes(TARGET);
+    bench
+}
+
+fn order(bench: &Bench, scheme: Scheme) {
+    let mut configuration = configuration(scheme);
+    let rate = configuration.hand.rate;
+    let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], rate).expect("usable");
+    configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], rate);
+    let mut adjustable = Adjustable::new(&configuration, 0).expect("usable");
+    adjustable.number = 1;
+    let run = CalibrationRun { calibration, adjustable };
+    bench.mailbox.order(Order::Calibrate(run)).expect("not faulted").expect("idle");
+}
+
+fn verdict(bench: &mut Bench) -> Verdict {
+    bench.cycles(1);
+    bench.until("calibrated", |bench| bench.stage() != Stage::Calibrating);
+    bench.report().calibration.expect("a verdict")
+}
+
+#[test]
+fn a_finger_that_stands_still_is_zeroed() {
+    for scheme in [Scheme::StateFeedback, Scheme::Figure10] {
+        let mut bench = standing(scheme);
+        let off = bench.with_finger(|finger| finger.plant().joints()) - TARGET;
+        order(&bench, scheme);
+        let Verdict::Found(Findings::Zeros(zeros)) = verdict(&mut bench) else { panic!("{:?}", bench.report()) };
+        // What the finger was believed to be in was right, and it stood beside the pose by so much.
+        assert!((zeros.joint_error - off).amax() < 0.005, "{scheme:?}: {zeros:?}, {off}");
+        assert_eq!(bench.stage(), Stage::Limp);
+    }
+}
+
+#[test]
+fn a_push_is_refused_and_the_finger_stays_the_spring_that_it_was() {
+    for scheme in [Scheme::StateFeedback, Scheme::Figure10] {
+        let mut bench = standing(scheme);
+        let before = bench.report().set_point;
+        order(&bench, scheme);
+        bench.cycles(100);
+        let push = |force| move |finger: &mut sun2xp::board::SimulatedFinger| finger.plant().set_external_force(force);
+        bench.with_finger(push(Vector3::new(1.0, 0.0, 0.0)));
+        // Sent while it is calibrated: without effect, now and later.
+        bench.mailbox.send(|set_point| set_point.joints = Vector3::new(0.0, 0.5, 0.5)).expect("not faulted");
+        let refused = verdict(&mut bench);
+        assert!(matches!(refused, Verdict::Refused(Obstacle::Moved { .. })), "{scheme:?}: {refused:?}");
+        assert_eq!((bench.stage(), bench.report().set_point), (Stage::Running, before));
+        bench.mailbox.send(|set_point| set_point.damping = 1.1).expect("not faulted");
+        bench.with_finger(push(Vector3::zeros()));
+        bench.cycles(1000);
+        let report = bench.report();
+        assert_eq!((report.set_point.joints, report.set_point.damping), (TARGET, 1.1));
+        assert!((report.cycle.joints - TARGET).amax() < 0.03, "{report:?}");
+        // It takes orders.
+        order(&bench, scheme);
+        assert!(matches!(verdict(&mut bench), Verdict::Found(_)));
+    }
+}
+
+#[test]
+fn a_set_point_that_was_sent_in_the_cycle_before_is_on_its_way() {
+    let mut bench = standing(Scheme::StateFeedback);
+    bench.mailbox.send(|set_point| set_point.joints.x += 0.2).expect("not faulted");
+    order(&bench, Scheme::StateFeedback);
+    let refused = verdict(&mut bench);
+    assert!(matches!(refused, Verdict::Refused(Obstacle::Moved { joint: 0, .. })), "{refused:?}");
+}
+
+#[test]
+fn what_was_adjusted_while_the_finger_was_read_is_in_force_after_a_refusal() {
+    let mut bench = standing(Scheme::StateFeedback);
+    order(&bench, Scheme::StateFeedback);
+    bench.cycles(50);
+    let mut adjusted = Adjustable::new(&configuration(Scheme::Figure10), 0).expect("usable");
+    adjusted.number = 2;
+    bench.mailbox.adjust(adjusted).expect("not faulted");
+    bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(1.0, 0.0, 0.0)));
+    assert!(matches!(verdict(&mut bench), Verdict::Refused(Obstacle::Moved { .. })));
+    bench.with_finger(|finger| finger.plant().set_external_force(Vector3::zeros()));
+    bench.cycles(1000);
+    let report = bench.report();
+    assert_eq!((report.stage, report.controller), (Stage::Running, 2));
+    assert!((report.cycle.joints - TARGET).amax() < 0.03, "{report:?}");
+}
