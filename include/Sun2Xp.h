@@ -15,13 +15,16 @@
 
    1. QUICK START
 
+   Example, planner.c:
+
        #include <stdio.h>
+       #include <unistd.h>
        #include "Sun2Xp.h"
 
        int main(void)
        {
-           double Pos[3] = {0.0, 0.5, 0.8};                           rad
-           double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};       N/cm
+           double Pos[3] = {0.0, 0.5, 0.8};
+           double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
 
            if (OpenHand() != 0) {
                fprintf(stderr, "%s\n", HandError());
@@ -29,16 +32,21 @@
            }
            SendKx(1, Kx);
            SendPos(1, Pos);
-           ...
-           GetPos(1, Pos);
+           sleep(2);
+           if (GetPos(1, Pos) == 0)
+               printf("%.2f %.2f %.2f\n", Pos[0], Pos[1], Pos[2]);
            return CloseHand();
        }
 
-       cc planner.c -I include -L lib -lsun2xp -Wl,-rpath,lib
+   Example, how to compile and run it:
 
-   Without a configuration file this moves a simulated hand, and says so on standard
-   error. Each finger is a spring: its tip is pulled to where SendPos says with the
-   stiffness that SendKx says, until the next command.
+       cc planner.c -I include -L lib -lsun2xp -Wl,-rpath,lib
+       ./a.out
+
+   Angles are in rad, stiffness in N/cm. Without a configuration file this moves a
+   simulated hand, and says so on standard error. Each finger is a spring: its tip is
+   pulled to where SendPos says with the stiffness that SendKx says, until the next
+   command.
 
 
    2. RETURN VALUES, ERRNO
@@ -192,7 +200,9 @@
    /etc/xdg/sun2xp/sun2xp.toml; where SUN2XP_CONFIG is set, OpenHand fails with EACCES.
 
    The file is TOML: [hand], [finger] for all fingers, [finger.1] to [finger.3] for
-   one. All has defaults; an unknown key is refused, with file, line and reason:
+   one. All has defaults; an unknown key is refused, with file, line and reason.
+
+   Example, sun2xp.toml:
 
        [hand]
        rate = 1000.0
@@ -201,6 +211,9 @@
 
 
    9. THE CALLS: below, each with its manual
+
+   The examples there are statements of a function that has opened the hand, in a file
+   that includes errno.h, signal.h, stdio.h, stdlib.h and unistd.h.
 
 
    10. FAULTS
@@ -372,7 +385,12 @@ extern "C" {
 
  Threads: any; one hand a process.
 
-     if (OpenHand() != 0) { fprintf(stderr, "%s\n", HandError()); exit(1); }
+ Example:
+
+     if (OpenHand() != 0) {
+         fprintf(stderr, "%s\n", HandError());
+         exit(1);
+     }
  */
 int OpenHand(void);
 
@@ -417,6 +435,8 @@ int CloseHand(void);
 
  Threads: any. Never waits for a servo; about 100 ns.
 
+ Example:
+
      float Pos[3] = {0.0, 0.5, 0.8};
      SendPos(1, Pos);
  */
@@ -459,7 +479,9 @@ int SendPosD(int, const double *);
 
  Threads: any. Never waits for a servo; about 1 us.
 
-     double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 1}};    soft along z
+ Example, softer along z:
+
+     double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 1}};
      SendKx(1, Kx);
  */
 int SendKx(int, const float *);
@@ -489,8 +511,11 @@ int SendKxD(int, const double *);
 
  Threads: any. Never waits for a servo; about 100 ns.
 
+ Example:
+
      double Pos[3];
-     if (GetPos(2, Pos) == 0) printf("%g %g %g\n", Pos[0], Pos[1], Pos[2]);
+     if (GetPos(2, Pos) == 0)
+         printf("%g %g %g\n", Pos[0], Pos[1], Pos[2]);
  */
 int GetPos(int, float *);
 
@@ -969,9 +994,12 @@ struct Fault {
 
  Threads: any.
 
+ Example:
+
      struct FingerStatus Status;
      Status.Size = sizeof Status;
-     if (GetStatus(1, &Status) == 0) printf("%.1f Hz\n", Status.MeasuredRate);
+     if (GetStatus(1, &Status) == 0)
+         printf("%.1f Hz\n", Status.MeasuredRate);
  */
 int GetStatus(int, struct FingerStatus *);
 
@@ -995,9 +1023,12 @@ int GetStatus(int, struct FingerStatus *);
 
  Threads: any. Never waits for a servo; some us.
 
+ Example:
+
      struct FingerTiming Timing;
      Timing.Size = sizeof Timing;
-     if (GetTiming(1, TIMING_WIRE, &Timing) == 0) printf("%lu ns\n", Timing.P99);
+     if (GetTiming(1, TIMING_WIRE, &Timing) == 0)
+         printf("%lu ns\n", Timing.P99);
  */
 int GetTiming(int, int, struct FingerTiming *);
 
@@ -1045,6 +1076,8 @@ int ResetTiming(int);
 
  Threads: any. Never waits for a servo; less than 1 us.
 
+ Example:
+
      double Tip[3] = {0.0, -6.0, 8.0};
      SendTip(1, Tip);
  */
@@ -1068,9 +1101,12 @@ int SendTip(int, const double *);
 
  Threads: any. Never waits for a servo; about 1 us.
 
+ Example:
+
      struct FingerTip Tip;
      Tip.Size = sizeof Tip;
-     if (GetTip(1, &Tip) == 0) printf("%g N along z\n", Tip.Force[2]);
+     if (GetTip(1, &Tip) == 0)
+         printf("%g N along z\n", Tip.Force[2]);
  */
 int GetTip(int, struct FingerTip *);
 
@@ -1110,6 +1146,8 @@ int GetTip(int, struct FingerTip *);
             hand.out_of_range)
 
  Threads: any. Never waits for a servo; a few us.
+
+ Example, a soft finger:
 
      double K[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
      double Normal[3] = {0, -1, 0};
@@ -1183,6 +1221,8 @@ int SendDamping(int, double);
 
  Threads: any. Never waits for a servo; about 100 us, and allocates.
 
+ Example:
+
      AdjustFinger(1, "tendon.minimum = 6\ncontroller.tension_gain = 3");
  */
 int AdjustFinger(int, const char *);
@@ -1232,12 +1272,17 @@ int PushFinger(int, const double *);
 
  Threads: any. Never waits for a servo.
 
+ Example, with the younger half of what is kept:
+
      struct FingerRecord Record;
-     unsigned long Cycle;
+     unsigned long Cycle, Last;
      Record.Size = sizeof Record;
-     if (GetRecord(1, 0, &Record) == 0)
-         for (Cycle = Record.Oldest; GetRecord(1, Cycle, &Record) == 0; Cycle++)
-             printf("%f %f\n", Record.Time, Record.Tension[0]);
+     if (GetRecord(1, 0, &Record) == 0) {
+         Last = Record.Newest;
+         for (Cycle = (Record.Oldest + Last) / 2; Cycle <= Last; Cycle++)
+             if (GetRecord(1, Cycle, &Record) == 0)
+                 printf("%f %f\n", Record.Time, Record.Tension[0]);
+     }
  */
 int GetRecord(int, unsigned long, struct FingerRecord *);
 
@@ -1270,7 +1315,9 @@ int GetRecord(int, unsigned long, struct FingerRecord *);
 
  Threads: any. Of two calls with the same Path the last one leaves its file.
 
-     WriteBlackBox(1, "/tmp/finger-1.jsonl");
+ Example:
+
+     WriteBlackBox(1, "finger-1.jsonl");
  */
 int WriteBlackBox(int, const char *);
 
@@ -1315,7 +1362,10 @@ int WriteBlackBox(int, const char *);
 
  Threads: any.
 
-     if (ZeroFinger(1) != 0) fprintf(stderr, "%s\n", HandError());
+ Example:
+
+     if (ZeroFinger(1) != 0)
+         fprintf(stderr, "%s\n", HandError());
  */
 int ZeroFinger(int);
 
@@ -1356,6 +1406,8 @@ int IdentifyFinger(int);
 
  Threads: any. Never waits for a servo.
 
+ Example:
+
      struct Fault Fault;
      Fault.Size = sizeof Fault;
      if (GetFault(1, &Fault) == 0 && Fault.Number != 0)
@@ -1394,7 +1446,15 @@ const char *FaultText(int);
  Threads: any, and signal handlers: it is async-signal-safe, sets no errno and waits for
  nothing. In a forked child it does nothing.
 
-     signal(SIGINT, OnInterrupt);     with     void OnInterrupt(int s) { StopHand(); }
+ Example, for Control-C:
+
+     static void OnInterrupt(int Signal)
+     {
+         (void)Signal;
+         StopHand();
+     }
+
+     signal(SIGINT, OnInterrupt);
  */
 int StopHand(void);
 
@@ -1428,7 +1488,12 @@ int StopHand(void);
 
  Threads: any.
 
-     while (RecoverHand(1) != 0) { fprintf(stderr, "%s\n", HandError()); sleep(1); }
+ Example:
+
+     while (RecoverHand(1) != 0) {
+         fprintf(stderr, "%s\n", HandError());
+         sleep(1);
+     }
  */
 int RecoverHand(int);
 

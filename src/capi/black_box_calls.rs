@@ -74,12 +74,17 @@ pub struct FingerRecord {
 ///
 /// Threads: any. Never waits for a servo.
 ///
+/// Example, with the younger half of what is kept:
+///
 ///     struct FingerRecord Record;
-///     unsigned long Cycle;
+///     unsigned long Cycle, Last;
 ///     Record.Size = sizeof Record;
-///     if (GetRecord(1, 0, &Record) == 0)
-///         for (Cycle = Record.Oldest; GetRecord(1, Cycle, &Record) == 0; Cycle++)
-///             printf("%f %f\n", Record.Time, Record.Tension[0]);
+///     if (GetRecord(1, 0, &Record) == 0) {
+///         Last = Record.Newest;
+///         for (Cycle = (Record.Oldest + Last) / 2; Cycle <= Last; Cycle++)
+///             if (GetRecord(1, Cycle, &Record) == 0)
+///                 printf("%f %f\n", Record.Time, Record.Tension[0]);
+///     }
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut FingerRecord) -> c_int {
     guarded("GetRecord", || {
@@ -119,7 +124,9 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 ///
 /// Threads: any. Of two calls with the same Path the last one leaves its file.
 ///
-///     WriteBlackBox(1, "/tmp/finger-1.jsonl");
+/// Example:
+///
+///     WriteBlackBox(1, "finger-1.jsonl");
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn WriteBlackBox(i: c_int, Path: *const c_char) -> c_int {
     guarded("WriteBlackBox", || {

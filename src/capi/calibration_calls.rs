@@ -48,7 +48,10 @@ use std::ffi::c_int;
 ///
 /// Threads: any.
 ///
-///     if (ZeroFinger(1) != 0) fprintf(stderr, "%s\n", HandError());
+/// Example:
+///
+///     if (ZeroFinger(1) != 0)
+///         fprintf(stderr, "%s\n", HandError());
 #[unsafe(no_mangle)]
 pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
     guarded("ZeroFinger", || default_hand::calibrate(i, Task::Zero))

@@ -32,7 +32,12 @@ use std::ffi::{c_char, c_int};
 ///
 /// Threads: any; one hand a process.
 ///
-///     if (OpenHand() != 0) { fprintf(stderr, "%s\n", HandError()); exit(1); }
+/// Example:
+///
+///     if (OpenHand() != 0) {
+///         fprintf(stderr, "%s\n", HandError());
+///         exit(1);
+///     }
 #[unsafe(no_mangle)]
 pub extern "C" fn OpenHand() -> c_int {
     guarded("OpenHand", default_hand::open)
@@ -78,6 +83,8 @@ pub extern "C" fn CloseHand() -> c_int {
 ///   EIO      the finger is faulted
 ///
 /// Threads: any. Never waits for a servo; about 100 ns.
+///
+/// Example:
 ///
 ///     float Pos[3] = {0.0, 0.5, 0.8};
 ///     SendPos(1, Pos);
@@ -132,7 +139,9 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 ///
 /// Threads: any. Never waits for a servo; about 1 us.
 ///
-///     double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 1}};    soft along z
+/// Example, softer along z:
+///
+///     double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 1}};
 ///     SendKx(1, Kx);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
@@ -173,8 +182,11 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
 ///
 /// Threads: any. Never waits for a servo; about 100 ns.
 ///
+/// Example:
+///
 ///     double Pos[3];
-///     if (GetPos(2, Pos) == 0) printf("%g %g %g\n", Pos[0], Pos[1], Pos[2]);
+///     if (GetPos(2, Pos) == 0)
+///         printf("%g %g %g\n", Pos[0], Pos[1], Pos[2]);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetPos(i: c_int, Pos: *mut f32) -> c_int {
     guarded("GetPos", || {

@@ -51,6 +51,8 @@ pub struct Fault {
 ///
 /// Threads: any. Never waits for a servo.
 ///
+/// Example:
+///
 ///     struct Fault Fault;
 ///     Fault.Size = sizeof Fault;
 ///     if (GetFault(1, &Fault) == 0 && Fault.Number != 0)

@@ -56,6 +56,8 @@ pub struct FingerTip {
 ///
 /// Threads: any. Never waits for a servo; less than 1 us.
 ///
+/// Example:
+///
 ///     double Tip[3] = {0.0, -6.0, 8.0};
 ///     SendTip(1, Tip);
 #[unsafe(no_mangle)]
@@ -84,9 +86,12 @@ pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
 ///
 /// Threads: any. Never waits for a servo; about 1 us.
 ///
+/// Example:
+///
 ///     struct FingerTip Tip;
 ///     Tip.Size = sizeof Tip;
-///     if (GetTip(1, &Tip) == 0) printf("%g N along z\n", Tip.Force[2]);
+///     if (GetTip(1, &Tip) == 0)
+///         printf("%g N along z\n", Tip.Force[2]);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
     guarded("GetTip", || {
@@ -131,6 +136,8 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 ///            hand.out_of_range)
 ///
 /// Threads: any. Never waits for a servo; a few us.
+///
+/// Example, a soft finger:
 ///
 ///     double K[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
 ///     double Normal[3] = {0, -1, 0};
@@ -221,6 +228,8 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 ///   EIO      the finger is faulted
 ///
 /// Threads: any. Never waits for a servo; about 100 us, and allocates.
+///
+/// Example:
 ///
 ///     AdjustFinger(1, "tendon.minimum = 6\ncontroller.tension_gain = 3");
 #[unsafe(no_mangle)]

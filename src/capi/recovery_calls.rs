@@ -23,7 +23,15 @@ use std::ffi::c_int;
 /// Threads: any, and signal handlers: it is async-signal-safe, sets no errno and waits for
 /// nothing. In a forked child it does nothing.
 ///
-///     signal(SIGINT, OnInterrupt);     with     void OnInterrupt(int s) { StopHand(); }
+/// Example, for Control-C:
+///
+///     static void OnInterrupt(int Signal)
+///     {
+///         (void)Signal;
+///         StopHand();
+///     }
+///
+///     signal(SIGINT, OnInterrupt);
 #[unsafe(no_mangle)]
 pub extern "C" fn StopHand() -> c_int {
     hand::stop_all();
@@ -59,7 +67,12 @@ pub extern "C" fn StopHand() -> c_int {
 ///
 /// Threads: any.
 ///
-///     while (RecoverHand(1) != 0) { fprintf(stderr, "%s\n", HandError()); sleep(1); }
+/// Example:
+///
+///     while (RecoverHand(1) != 0) {
+///         fprintf(stderr, "%s\n", HandError());
+///         sleep(1);
+///     }
 #[unsafe(no_mangle)]
 pub extern "C" fn RecoverHand(i: c_int) -> c_int {
     guarded("RecoverHand", || default_hand::recover(i))

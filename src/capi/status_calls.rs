@@ -103,9 +103,12 @@ pub struct FingerStatus {
 ///
 /// Threads: any.
 ///
+/// Example:
+///
 ///     struct FingerStatus Status;
 ///     Status.Size = sizeof Status;
-///     if (GetStatus(1, &Status) == 0) printf("%.1f Hz\n", Status.MeasuredRate);
+///     if (GetStatus(1, &Status) == 0)
+///         printf("%.1f Hz\n", Status.MeasuredRate);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetStatus(i: c_int, Status: *mut FingerStatus) -> c_int {
     guarded("GetStatus", || {

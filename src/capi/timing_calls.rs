@@ -104,9 +104,12 @@ pub struct FingerTiming {
 ///
 /// Threads: any. Never waits for a servo; some us.
 ///
+/// Example:
+///
 ///     struct FingerTiming Timing;
 ///     Timing.Size = sizeof Timing;
-///     if (GetTiming(1, TIMING_WIRE, &Timing) == 0) printf("%lu ns\n", Timing.P99);
+///     if (GetTiming(1, TIMING_WIRE, &Timing) == 0)
+///         printf("%lu ns\n", Timing.P99);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTiming) -> c_int {
     guarded("GetTiming", || {

@@ -3,6 +3,7 @@
 #[allow(dead_code)]
 #[path = "../c/mod.rs"]
 mod c;
+mod examples;
 mod manual;
 mod order;
 mod sentences;

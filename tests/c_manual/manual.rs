@@ -12,6 +12,13 @@ pub struct Manual {
     header: String,
 }
 
+/// What stands below a line such as "Example, softer along z:", indented by four blanks.
+pub struct Example {
+    /// The number of the chapter, or the call.
+    pub place: String,
+    pub text: String,
+}
+
 /// What is said of a call.
 pub struct Entry {
     pub call: String,
@@ -44,6 +51,27 @@ impl Manual {
         in_one_line(text.split_once(&heading(number + 1)).map_or(text, |(text, _)| text))
     }
 
+    /// All examples.
+    pub fn examples(&self) -> Vec<Example> {
+        let chapters = self.chapters.split("\n\n\n").skip(1).flat_map(|chapter| {
+            let place = chapter.trim_start().split('.').next().unwrap_or_default();
+            examples(place, chapter)
+        });
+        chapters.chain(self.entries.iter().flat_map(|entry| examples(&entry.call, &entry.text))).collect()
+    }
+
+    /// Every line that looks like a part of a program and is in no example and no synopsis.
+    pub fn stray_code(&self) -> Vec<String> {
+        let mut stray = Vec::new();
+        for text in [&self.chapters].into_iter().chain(self.entries.iter().map(|entry| &entry.text)) {
+            let examples: String = examples("", text).into_iter().map(|example| example.text).collect();
+            let shown: Vec<_> = examples.lines().map(str::trim).collect();
+            let indented = text.lines().filter(|line| indentation(line) >= 4).map(str::trim);
+            stray.extend(indented.filter(|line| looks_like_code(line) && !shown.contains(line)).map(str::to_string));
+        }
+        stray
+    }
+
     /// The comment above a member of a struct, in one line.
     pub fn member(&self, structure: &str, member: &str) -> String {
         let (_, rest) = self.header.split_once(&format!("\nstruct {structure} {{\n")).expect("the struct");
@@ -70,6 +98,33 @@ impl Entry {
         let (_, threads) = self.text.split_once("\nThreads: ").unwrap_or_default();
         in_one_line(threads.split_once("\n\n").map_or(threads, |(threads, _)| threads))
     }
+}
+
+/// C, a command or TOML, but no synopsis.
+fn looks_like_code(line: &str) -> bool {
+    let calls = line.match_indices('(').any(|(at, _)| line[..at].ends_with(|letter: char| letter.is_alphanumeric()));
+    let code = (calls && line.contains(");")) || line.ends_with(['{', '}']);
+    let synopsis = line.starts_with("int ") || line.starts_with("const char *");
+    (code && !synopsis) || line.starts_with("cc ") || line.starts_with('[')
+}
+
+fn indentation(line: &str) -> usize {
+    line.len() - line.trim_start().len()
+}
+
+fn examples(place: &str, text: &str) -> Vec<Example> {
+    let lines: Vec<_> = text.lines().collect();
+    let mut examples = Vec::new();
+    for (index, line) in lines.iter().enumerate() {
+        if !(line.trim_start().starts_with("Example") && line.ends_with(':')) {
+            continue;
+        }
+        let margin = indentation(line) + 4;
+        let block = lines[index + 1..].iter().take_while(|line| line.is_empty() || indentation(line) >= margin);
+        let text = block.map(|line| line.get(margin..).unwrap_or_default()).collect::<Vec<_>>().join("\n");
+        examples.push(Example { place: place.to_string(), text: text.trim_matches('\n').to_string() + "\n" });
+    }
+    examples
 }
 
 pub fn in_one_line(text: &str) -> String {

@@ -1,0 +1,141 @@
+//! Every example of the manual is compiled and run as it stands.
+
+use super::c::{Bench, C_STANDARDS, CPP_STANDARDS, STRICT, c_compiler, c_compilers, cpp_compilers, root, said};
+use super::manual::{Example, Manual};
+use std::os::unix::fs::symlink;
+use std::process::Command;
+
+/// What chapter 9 promises to examples that are statements.
+const INCLUDED: &[&str] = &["errno.h", "signal.h", "stdio.h", "stdlib.h", "unistd.h"];
+
+/// What is done before an example, or shows afterwards that it has worked. The call whose example it is, and two statements.
+const AROUND: &[(&str, &str, &str)] = &[
+    (
+        "StopHand",
+        "",
+        "struct Fault Found; Found.Size = sizeof Found;
+        if (raise(SIGINT) != 0) return 4;
+        do if (GetFault(1, &Found) != 0) return 5; while (Found.Number != FAULT_EMERGENCY_STOP_CALL);",
+    ),
+    (
+        "RecoverHand",
+        "struct Fault Found; Found.Size = sizeof Found;
+        StopHand();
+        do if (GetFault(1, &Found) != 0) return 4; while (Found.Number != FAULT_EMERGENCY_STOP_CALL);",
+        "double At[3]; if (GetPos(1, At) != 0) return 5;",
+    ),
+    ("WriteBlackBox", "", "if (access(\"finger-1.jsonl\", R_OK) != 0) return 4;"),
+];
+
+impl Example {
+    fn is_program(&self) -> bool {
+        self.text.contains("int main(")
+    }
+
+    fn is_configuration(&self) -> bool {
+        self.text.starts_with('[')
+    }
+
+    fn is_command(&self) -> bool {
+        self.text.starts_with("cc ")
+    }
+
+    /// A whole program around statements. It fails if one of them is refused. The static functions
+    /// that it begins with stand before main.
+    fn program(&self) -> String {
+        if self.is_program() {
+            return self.text.clone();
+        }
+        let defines = self.text.starts_with("static ").then(|| self.text.rfind("\n}\n").expect("a function ends") + 3);
+        let (functions, statements) = self.text.split_at(defines.unwrap_or_default());
+        let (_, before, after) = AROUND.iter().find(|(call, ..)| *call == self.place).unwrap_or(&("", "", ""));
+        let open = if statements.contains("OpenHand()") { "" } else { "if (OpenHand() != 0) return 2;" };
+        let included: String = INCLUDED.iter().map(|name| format!("#include <{name}>\n")).collect();
+        format!(
+            "{included}#include \"Sun2Xp.h\"\n\n{functions}\nint main(void)\n{{\n    {open}\n    {{ {before} }}\n    {{\n\
+             {statements}    }}\n    {{ {after} }}\n    if (HandError()[0] != '\\0') return 3;\n    return CloseHand();\n}}\n"
+        )
+    }
+}
+
+fn programs() -> Vec<Example> {
+    let mut examples = Manual::read().examples();
+    examples.retain(|example| !example.is_configuration() && !example.is_command());
+    examples
+}
+
+fn only(kind: impl Fn(&Example) -> bool) -> Example {
+    let mut found: Vec<_> = Manual::read().examples().into_iter().filter(kind).collect();
+    assert_eq!(found.len(), 1);
+    found.remove(0)
+}
+
+#[test]
+fn all_code_stands_in_examples() {
+    let manual = Manual::read();
+    let examples = manual.examples();
+    assert!(examples.iter().all(|example| example.text.len() > 10), "an example without text");
+    let places: Vec<_> = examples.iter().map(|example| example.place.as_str()).collect();
+    for place in ["1", "8", "OpenHand", "SendKx", "GetPos", "GetRecord", "StopHand", "RecoverHand"] {
+        assert!(places.contains(&place), "no example in {place}: {places:?}");
+    }
+    assert_eq!(manual.stray_code(), Vec::<String>::new());
+}
+
+#[test]
+fn every_example_compiles_in_c_and_cpp() {
+    let bench = Bench::new();
+    for example in programs() {
+        let (c, cpp) = (C_STANDARDS, CPP_STANDARDS);
+        for (compilers, standards, end) in [(c_compilers(), c, "c"), (cpp_compilers(), cpp, "cpp")] {
+            let source = bench.write(&format!("example.{end}"), &example.program());
+            for compiler in compilers {
+                for standard in [standards[0], standards[standards.len() - 1]] {
+                    let checked = bench.check(compiler, &[STRICT, &[standard]].concat(), &source);
+                    checked.unwrap_or_else(|messages| panic!("{}:\n{messages}\n{}", example.place, example.program()));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_example_runs() {
+    let bench = Bench::new();
+    for example in programs() {
+        let source = bench.write("example.c", &example.program());
+        let program = bench.build(c_compiler(), &[STRICT, &["-std=c89"]].concat(), &[&source]);
+        let run = bench.run(Command::new(program));
+        assert!(run.status.success(), "{}: {}\n{}\n{}", example.place, run.status, said(&run), example.text);
+    }
+}
+
+/// The command, in a folder with `planner.c`, `include` and `lib`. The finger arrives.
+#[test]
+fn the_quick_start_is_compiled_and_run_by_its_command() {
+    let bench = Bench::new();
+    bench.write("planner.c", &only(Example::is_program).text);
+    symlink(root().join("include"), bench.path().join("include")).expect("a link to the header");
+    symlink(bench.path(), bench.path().join("lib")).expect("a link to the library");
+    let mut shell = Command::new("sh");
+    shell.args(["-e", "-c", &only(Example::is_command).text]);
+    let run = bench.run(shell);
+    assert!(run.status.success(), "{}", said(&run));
+    let arrived = str::from_utf8(&run.stdout).expect("angles").split_whitespace().map(|angle| angle.parse::<f64>());
+    let arrived: Vec<_> = arrived.map(|angle| angle.expect("an angle")).collect();
+    let near = arrived.iter().zip([0.0, 0.5, 0.8]).all(|(angle, sent)| (angle - sent).abs() < 0.02);
+    assert!(arrived.len() == 3 && near, "{}", said(&run));
+}
+
+/// The port is the reader's own: the file is refused for nothing but that.
+#[test]
+fn the_configuration_is_refused_only_for_its_port() {
+    let bench = Bench::new();
+    let configuration = only(Example::is_configuration).text;
+    assert!(configuration.contains("\"/dev/ttyUSB0\""), "{configuration}");
+    bench.write("named.toml", &configuration.replace("/dev/ttyUSB0", "/dev/no-such-port"));
+    let program = bench.build(c_compiler(), STRICT, &["opens.c"]);
+    let run = bench.run(Command::new(program));
+    assert_eq!(run.status.code(), Some(2), "{}", said(&run));
+    assert!(said(&run).contains("No such file or directory") && said(&run).contains("no-such-port"), "{}", said(&run));
+}
