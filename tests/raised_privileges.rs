@@ -16,7 +16,7 @@ const NOBODY: u32 = 65534;
 /// The file that such a program reads.
 const SYSTEM_FILE: &str = "/etc/xdg/sun2xp/sun2xp.toml";
 
-/// The tool in a folder of its own, where it runs in another group than its caller. None where this user cannot make that.
+/// The tool in a folder of its own, in another group than its caller. None where this user cannot do that.
 fn setgid_tool() -> Option<(TempDir, PathBuf)> {
     // Not in /tmp, which may be mounted nosuid.
     let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");

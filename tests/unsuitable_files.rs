@@ -1,4 +1,5 @@
-//! Paths that lead to something other than a file of a sensible size are refused at once, wherever the library or the tool reads one.
+//! Paths that lead to something other than a file of a sensible size are refused at once, wherever the library or the
+//! tool reads one.
 
 use std::fs::{File, write};
 use std::path::Path;

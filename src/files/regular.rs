@@ -5,21 +5,22 @@ use std::io::{self, Read, Take};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::Path;
 
-/// Opens a regular file for reading. The reader ends after `largest` + 1 bytes, so that a file that grows while it is read cannot fill the
-/// memory.
+/// Opens a regular file for reading. The reader ends after `largest` + 1 bytes, so that a file that grows while it is
+/// read cannot fill the memory.
 ///
 /// A path that leads to a FIFO, a device, a socket or a directory is refused without waiting for anything.
 ///
 /// # Errors
-/// What the system reports; [`io::ErrorKind::InvalidInput`] where the path leads to something other than a regular file;
-/// [`io::ErrorKind::FileTooLarge`] where the file has more than `largest` bytes.
+/// What the system reports; [`io::ErrorKind::InvalidInput`] where the path leads to something other than a regular
+/// file; [`io::ErrorKind::FileTooLarge`] where the file has more than `largest` bytes.
 pub fn open_regular_file(path: &Path, largest: u64) -> io::Result<Take<File>> {
     Ok(open(path, OpenOptions::new().read(true), largest)?.take(largest.saturating_add(1)))
 }
 
 /// Opens a regular file of at most `largest` bytes with these options.
 pub(super) fn open(path: &Path, options: &mut OpenOptions, largest: u64) -> io::Result<File> {
-    // Opening some devices has an effect: a modem line rises, a tape rewinds. So the kind is known before the path is opened.
+    // Opening some devices has an effect: a modem line rises, a tape rewinds. So the kind is known before the path is
+    // opened.
     check(&metadata(path)?, largest)?;
     // O_NONBLOCK: the path may lead to a FIFO by now, which would wait for a writer. It has no effect on regular files.
     let file = options.custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY).open(path)?;

@@ -8,6 +8,7 @@ mod wrong;
 use crate::files::{raised_privileges, read_regular_file};
 use crate::hand::HandError;
 use crate::hand::announcement::say;
+use crate::model::ShownPath;
 use crate::model::configuration::{Configuration, FINGERS};
 use std::path::{Path, PathBuf};
 pub(super) use text::overlay;
@@ -28,16 +29,17 @@ pub struct Configured {
     ports_named: [bool; FINGERS],
 }
 
-/// Finds and reads the configuration file: the one that `SUN2XP_CONFIG` names, else `sun2xp.toml` in the working directory, else
-/// `sun2xp/sun2xp.toml` in the user's configuration folder, else in the system's (`XDG_CONFIG_DIRS`, or `/etc/xdg`). Where there is none
-/// of them, the hand is the simulated one. An empty `SUN2XP_CONFIG` counts as unset.
+/// Finds and reads the configuration file: the one that `SUN2XP_CONFIG` names, else `sun2xp.toml` in the working
+/// directory, else `sun2xp/sun2xp.toml` in the user's configuration folder, else in the system's (`XDG_CONFIG_DIRS`, or
+/// `/etc/xdg`). Where there is none of them, the hand is the simulated one. An empty `SUN2XP_CONFIG` counts as unset.
 ///
-/// A program that is setuid or setgid, or whose file has capabilities, reads only `/etc/xdg/sun2xp/sun2xp.toml`: the environment and the
-/// working directory belong to whoever starts it.
+/// A program that is setuid or setgid, or whose file has capabilities, reads only `/etc/xdg/sun2xp/sun2xp.toml`: the
+/// environment and the working directory belong to whoever starts it.
 ///
 /// # Errors
-/// A file that is named or found and cannot be read or used. A missing file that `SUN2XP_CONFIG` names is an error too, and so is
-/// `SUN2XP_CONFIG` where it is not trusted: a planner that believes it moves a real hand must never get the simulation instead.
+/// A file that is named or found and cannot be read or used. A missing file that `SUN2XP_CONFIG` names is an error too,
+/// and so is `SUN2XP_CONFIG` where it is not trusted: a planner that believes it moves a real hand must never get the
+/// simulation instead.
 pub fn configured() -> Result<Configured, HandError> {
     match place::locate()? {
         Some(path) => Configured::read(&path),
@@ -48,8 +50,8 @@ pub fn configured() -> Result<Configured, HandError> {
 /// Reads and checks one configuration file.
 ///
 /// # Errors
-/// [`HandError::Configuration`] with file, line and reason; [`HandError::ConfigurationFile`] where it cannot be read, is no regular file
-/// or is larger than 1 MiB.
+/// [`HandError::Configuration`] with file, line and reason; [`HandError::ConfigurationFile`] where it cannot be read,
+/// is no regular file or is larger than 1 MiB.
 pub fn read(path: &Path) -> Result<Configuration, HandError> {
     Configured::read(path).map(|configured| configured.configuration)
 }
@@ -84,8 +86,8 @@ impl Configured {
                         .into()
                 }
                 true => format!(
-                    "no {}: this is the simulated hand (a program that is setuid or setgid, or has capabilities, reads no other \
-                     configuration file)",
+                    "no {}: this is the simulated hand (a program that is setuid or setgid, or has capabilities, \
+                     reads no other configuration file)",
                     place::SYSTEM_FILE
                 ),
             });
@@ -98,7 +100,7 @@ impl Configured {
             FINGERS => "for any finger: the whole hand is".into(),
             _ => format!("for fingers {}: they are", unnamed.join(" and ")),
         };
-        let file = file.display();
+        let file = ShownPath(file);
         Some(format!("{file} names no port {fingers} simulated (port = \"simulated\" says so without this line)"))
     }
 }

@@ -7,7 +7,7 @@ use crate::files::errno;
 use crate::finger::{Fault, FaultKind};
 use crate::hand::missing::Missing;
 use crate::model::configuration::Unusable;
-use crate::model::{ContactError, Refusal};
+use crate::model::{ContactError, Refusal, ShownPath};
 use crate::realtime::with_remedy;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -164,8 +164,9 @@ pub enum HandError {
     },
     /// A configuration file that the environment names, in a program with raised privileges.
     #[error(
-        "SUN2XP_CONFIG names {}, but this program is setuid or setgid, or has capabilities, and does not trust its environment: unset \
-         SUN2XP_CONFIG, and describe the hand in {system}", path.display()
+        "SUN2XP_CONFIG names {}, but this program is setuid or setgid, or has capabilities, and does not trust its \
+         environment: unset SUN2XP_CONFIG, and describe the hand in {system}",
+        ShownPath(path)
     )]
     UntrustedEnvironment {
         /// What the environment names.

@@ -11,8 +11,8 @@ const MOST_OF_PATH: usize = 240;
 const BEGINNING_OF_PATH: usize = 120;
 const END_OF_PATH: usize = 60;
 
-/// Shows a text that somebody else has written: control characters and other characters that cannot be seen are escaped, and what goes
-/// beyond 60 characters is left out.
+/// Shows a text that somebody else has written: control characters and other characters that cannot be seen are
+/// escaped, and what goes beyond 60 characters is left out.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown<'a>(pub &'a str);
 

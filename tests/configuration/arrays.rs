@@ -1,4 +1,5 @@
-//! An array has as many entries as its key has places: one more would be lost without a word, one less would be a default.
+//! An array has as many entries as its key has places: one more would be lost without a word, one less would be a
+//! default.
 
 use crate::reading::{keys, read, with_optional_keys};
 use toml_edit::{Array, Value};

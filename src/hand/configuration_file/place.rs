@@ -33,7 +33,8 @@ pub(super) fn locate() -> Result<Option<PathBuf>, HandError> {
         user: etcetera::choose_base_strategy().ok().map(|strategy| strategy.config_dir()),
         system: env::var_os("XDG_CONFIG_DIRS"),
     };
-    // A file that is there but unreadable is found, and refused: symlink_metadata needs no permission on the file itself.
+    // A file that is there but unreadable is found, and refused: symlink_metadata needs no permission on the file
+    // itself.
     environment.file(|path| path.symlink_metadata().is_ok())
 }
 

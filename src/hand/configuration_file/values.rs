@@ -1,5 +1,6 @@
-//! From TOML to the types of a configuration. General deserializers take an array that is longer than its type, and an array in the place of
-//! a table; this one takes only what a key can mean, and says of everything else where it stands and what belongs there.
+//! From TOML to the types of a configuration. General deserializers take an array that is longer than its type, and an
+//! array in the place of a table; this one takes only what a key can mean, and says of everything else where it stands
+//! and what belongs there.
 
 mod choice;
 mod content;

@@ -14,8 +14,8 @@ impl Configuration {
             return unusable(
                 "thread",
                 format!(
-                    "fingers {first_number} and {second_number} share thread {}, but have different cores or priorities: set core and \
-                     priority in [finger], for all of them",
+                    "fingers {first_number} and {second_number} share thread {}, but have different cores or \
+                     priorities: set core and priority in [finger], for all of them",
                     self.thread(first)
                 ),
             );
@@ -27,23 +27,23 @@ impl Configuration {
         if !same_thread {
             let thread = self.thread(first);
             let reason = format!(
-                "fingers {first_number} and {second_number} share the port {port}, and one thread serves all fingers of a port: set \
-                 thread = {thread} for every finger of the port"
+                "fingers {first_number} and {second_number} share the port {port}, and one thread serves all fingers \
+                 of a port: set thread = {thread} for every finger of the port"
             );
             return unusable("thread", reason);
         }
         if self.address(first) == self.address(second) {
             let reason = format!(
-                "fingers {first_number} and {second_number} have the address {} on the one port {port}: leave `address` out, or give each \
-                 finger the address that its board has",
+                "fingers {first_number} and {second_number} have the address {} on the one port {port}: leave \
+                 `address` out, or give each finger the address that its board has",
                 self.address(first)
             );
             return unusable("address", reason);
         }
         if one.baud != other.baud {
             let reason = format!(
-                "fingers {first_number} and {second_number} share the port {port}, but one has {} baud and the other {}: set baud in \
-                 [finger], for all of them",
+                "fingers {first_number} and {second_number} share the port {port}, but one has {} baud and the other \
+                 {}: set baud in [finger], for all of them",
                 one.baud, other.baud
             );
             return unusable("baud", reason);
