@@ -28,7 +28,8 @@ pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> 
         let board = SimulatedPort::start(board, pace, Priority { fifo: board_priority, core: None })?;
         let mut link = Link::open(&board.path(), finger.baud)?;
         let terms = Terms::new(&configuration.hand, finger);
-        let (identity, configured) = link.shake_hands(configuration.address(index), &terms, now() + 1_000_000_000)?;
+        let deadline = now() + 10_000_000_000;
+        let (identity, configured) = link.shake_hands(configuration.address(index), &terms, deadline)?;
         let (producer, timings) = RingBuffer::new(16);
         let stiffness = finger.initial_stiffness();
         let (recorder, black_box) = BlackBox::new(configuration, index);

@@ -26,45 +26,69 @@ const KINDS: [(Planners, &str); 3] = [
     (Planners::Calling, "two that call"),
 ];
 
+/// A turn in which a finger faulted is measured again, until there were so many in all.
+const MOST_DISTURBED: usize = 10;
+
+/// Median and 99 % of the wake-up of a finger, us.
+type WakeUp = (f64, f64);
+
 pub fn run(turns: &Turns) -> Result<(), Failure> {
-    let hand = Hand::open(Configuration::default())?;
     let mut wake_ups = [const { Vec::new() }; 3];
     let calls = AtomicU64::new(0);
+    let mut disturbed = 0;
     for _ in 0..turns.repeats {
-        for ((kind, _), wake_ups) in KINDS.into_iter().zip(&mut wake_ups) {
-            let ended = AtomicBool::new(false);
-            std::thread::scope(|scope| -> Result<(), Failure> {
-                let planners = [1, 2].map(|finger| {
-                    let (hand, ended, calls) = (&hand, &ended, &calls);
-                    scope.spawn(move || plan(hand, finger, kind, ended, calls))
-                });
-                let measured = measure(&hand, turns.seconds);
-                ended.store(true, Relaxed);
-                for planner in planners {
-                    planner.join().map_err(|_| "a planner panicked")??;
+        for ((kind, name), wake_ups) in KINDS.into_iter().zip(&mut wake_ups) {
+            while disturbed < MOST_DISTURBED {
+                match turn(turns.seconds, kind, &calls) {
+                    Ok(measured) => {
+                        wake_ups.extend(measured);
+                        break;
+                    }
+                    Err(reason) => {
+                        disturbed += 1;
+                        eprintln!("{name}: {reason}. Other work on the machine disturbs it.");
+                    }
                 }
-                wake_ups.extend(measured?);
-                Ok(())
-            })?;
+            }
         }
     }
     println!(
         "| | wake-up, median | 99 % | against spinning, median (goal for those that call: at most 1.1) | 99 % |\n|---|---|---|---|---|"
     );
-    let of = |kind: usize, part: fn(&(f64, f64)) -> f64| median(wake_ups[kind].iter().map(part));
+    let of = |kind: usize, part: fn(&WakeUp) -> f64| median(wake_ups[kind].iter().map(part));
     let (spinning, spinning_p99) = (of(1, |wake| wake.0), of(1, |wake| wake.1));
     for (kind, (_, name)) in KINDS.iter().enumerate() {
         let (middle, p99) = (of(kind, |wake| wake.0), of(kind, |wake| wake.1));
         println!("| {name} | {middle:.1} us | {p99:.1} us | {:.2} | {:.2} |", middle / spinning, p99 / spinning_p99);
     }
-    let seconds = turns.repeats as u64 * turns.seconds;
+    let [_, _, calling] = wake_ups.map(|wake_ups| wake_ups.len() / FINGERS);
     println!(
-        "\nMedians over three fingers and {} repeats of {} s; {:.1} million calls a second.\n",
+        "\nMedians over three fingers and {} repeats of {} s, {disturbed} more disturbed by faults; {:.1} million calls a second.\n",
         turns.repeats,
         turns.seconds,
-        calls.load(Relaxed) as f64 / seconds as f64 * 1e-6
+        calls.load(Relaxed) as f64 / (calling as u64 * turns.seconds) as f64 * 1e-6
     );
     Ok(())
+}
+
+/// One measurement, on a hand of its own.
+fn turn(seconds: u64, kind: Planners, calls: &AtomicU64) -> Result<Vec<WakeUp>, Failure> {
+    let hand = Hand::open(Configuration::default())?;
+    let (ended, made) = (AtomicBool::new(false), AtomicU64::new(0));
+    std::thread::scope(|scope| {
+        let planners = [1, 2].map(|finger| {
+            let (hand, ended, made) = (&hand, &ended, &made);
+            scope.spawn(move || plan(hand, finger, kind, ended, made))
+        });
+        let measured = measure(&hand, seconds);
+        ended.store(true, Relaxed);
+        for planner in planners {
+            planner.join().map_err(|_| "a planner panicked")??;
+        }
+        let measured = measured?;
+        calls.fetch_add(made.load(Relaxed), Relaxed);
+        Ok(measured)
+    })
 }
 
 /// One planner, until it is told to end.
@@ -86,8 +110,8 @@ fn plan(hand: &Hand, finger: i32, kind: Planners, ended: &AtomicBool, calls: &At
     Ok(())
 }
 
-/// Median and 99 % of the wake-up of each finger, us.
-fn measure(hand: &Hand, seconds: u64) -> Result<Vec<(f64, f64)>, Failure> {
+/// Of each finger.
+fn measure(hand: &Hand, seconds: u64) -> Result<Vec<WakeUp>, Failure> {
     let fingers = 1..=FINGERS as i32;
     // What begins is not what is measured.
     sleep(Duration::from_millis(200));

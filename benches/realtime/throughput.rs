@@ -3,11 +3,14 @@
 
 use crate::Failure;
 use crate::fingers::reach;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
+use std::time::{Duration, Instant};
 use sun2xp::board::capacity;
 use sun2xp::board::protocol::Kind;
-use sun2xp::finger::{Mailbox, Servo, Stage};
-use sun2xp::model::configuration::{Configuration, Scheme};
-use sun2xp::realtime::{Clock, Priority, now, spawn};
+use sun2xp::finger::{Losses, Mailbox, Servo, Stage};
+use sun2xp::model::configuration::{Configuration, FINGERS, Scheme};
+use sun2xp::realtime::{Clock, MonotonicClock, Priority, now, spawn};
 
 /// Cycles a second with the rate limit off, three fingers on three pseudo-terminals.
 #[derive(clap::Args)]
@@ -32,77 +35,85 @@ const GOAL: f64 = 30_000.0;
 /// What the controllers are told, Hz: near what comes of it, so that the fingers are under control.
 const TOLD: f64 = 10_000.0;
 
-/// Replies are awaited for most of this, ns.
-const LONGEST_CYCLE: u64 = 1_000_000;
+/// How far apart cycles begin until the fingers are under control, ns. Replies are awaited for most of it.
+const PERIOD: u64 = 1_000_000;
 
 /// Of the simulated boards, below the servos.
 const BOARD_PRIORITY: u8 = 20;
 
 const BAUD: u32 = 1_000_000;
 
-/// A clock that never waits.
-#[derive(Clone, Copy)]
-struct Impatient;
+/// What the servo threads do.
+const OPEN: u8 = 0;
+const MEASURE: u8 = 1;
+const END: u8 = 2;
 
-impl Clock for Impatient {
+/// A clock that waits only while the fingers come under tension. They do so at an ordinary rate: on a machine with other work a servo that
+/// never waits keeps the bytes of its own terminals from being carried.
+#[derive(Clone)]
+struct UnlimitedClock {
+    phase: Arc<AtomicU8>,
+}
+
+impl Clock for UnlimitedClock {
     fn now(&self) -> u64 {
         now()
     }
 
-    fn sleep_until(&self, _: u64) {}
+    fn sleep_until(&self, deadline: u64) {
+        if self.phase.load(Relaxed) == OPEN {
+            MonotonicClock.sleep_until(deadline);
+        }
+    }
 }
 
+/// How long the fingers may take to come under tension. Other work on the machine slows them down.
+const OPENING: Duration = Duration::from_secs(30);
+
+/// A measurement in which a finger was not under control is made again, until there were so many.
+const ATTEMPTS: u32 = 3;
+
+/// A finger that stays under control for a shorter time is not measured.
+const SHORTEST: Duration = Duration::from_millis(500);
+
+/// Whatever becomes of the measurement, the servo threads end with it.
+struct Phase(Arc<AtomicU8>);
+
+impl Drop for Phase {
+    fn drop(&mut self) {
+        self.0.store(END, Relaxed);
+    }
+}
+
+/// Of one finger: cycles a second with a reply, how many replies were lost, and what ended the measurement early; or why nothing was
+/// measured.
+type Row = Result<(f64, u64, Option<String>), String>;
+
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut configuration = Configuration::default();
-    configuration.hand.rate = TOLD;
-    for finger in &mut configuration.fingers {
-        // State feedback reckons with equal periods, and without a rate limit none is like the other.
-        finger.controller.scheme = Some(Scheme::Figure10);
-    }
-    let (mut mailboxes, mut boards, mut threads) = (Vec::new(), Vec::new(), Vec::new());
-    let fingers = reach(&configuration, LONGEST_CYCLE, BOARD_PRIORITY)?;
-    let begun = now();
-    let measured = begun + 1_000_000_000;
-    let end = measured + arguments.seconds * 1_000_000_000;
-    for finger in fingers {
-        let (port, schedule, uncollected) = (finger.port, finger.schedule, finger.uncollected);
-        mailboxes.push(finger.mailbox);
-        boards.push(finger.board);
-        threads.push(spawn("servo", Priority { fifo: arguments.priority, core: None }, move |_| {
-            let mut servo = Servo::new(Impatient, schedule, vec![port]);
-            // The fingers come under tension first.
-            while now() < measured {
-                servo.cycle();
+    let mut rows: Vec<Row> = Vec::new();
+    for attempt in 1..=ATTEMPTS {
+        rows = measure(arguments).unwrap_or_else(|failure| vec![Err(failure.to_string()); FINGERS]);
+        match rows.iter().find_map(|row| row.as_ref().err()) {
+            Some(reason) => {
+                eprintln!("attempt {attempt} of {ATTEMPTS}: {reason}. Other work on the machine disturbs it.")
             }
-            let mut cycles = 0u64;
-            while now() < end {
-                servo.cycle();
-                cycles += 1;
-            }
-            drop(uncollected);
-            cycles
-        })?);
-    }
-    while now() < measured {
-        std::thread::sleep(std::time::Duration::from_millis(10));
-    }
-    let lost_before: Vec<u64> =
-        mailboxes.iter().map(|mailbox: &Mailbox| mailbox.report().losses.lost_replies).collect();
-    let mut all = 0.0;
-    println!("| finger | cycles a second | replies lost |\n|---|---|---|");
-    for (index, thread) in threads.into_iter().enumerate() {
-        let cycles = thread.join().map_err(|_| "a servo panicked")?;
-        let report = mailboxes[index].report();
-        if report.stage != Stage::Running {
-            return Err(
-                format!("finger {} is {:?}, not under control: nothing measured", index + 1, report.stage).into()
-            );
+            None => break,
         }
-        let lost = report.losses.lost_replies - lost_before[index];
-        let rate = cycles.saturating_sub(lost) as f64 / arguments.seconds as f64;
-        println!("| {} | {rate:.0} | {lost} |", index + 1);
-        all += rate;
     }
+    println!("| finger | cycles a second | replies lost |\n|---|---|---|");
+    for (finger, row) in (1..).zip(&rows) {
+        match row {
+            Ok((rate, lost, None)) => println!("| {finger} | {rate:.0} | {lost} |"),
+            Ok((rate, lost, Some(reason))) => println!("| {finger} | {rate:.0}, {reason} | {lost} |"),
+            Err(reason) => println!("| {finger} | not measured: {reason} | |"),
+        }
+    }
+    let rates: Result<Vec<f64>, &String> = rows.iter().map(|row| row.as_ref().map(|(rate, ..)| *rate)).collect();
+    let Ok(rates) = rates else {
+        println!("| all | not measured (goal {GOAL:.0}) | |\n");
+        return Ok(());
+    };
+    let all: f64 = rates.iter().sum();
     println!("| all | {all:.0} (goal {GOAL:.0}) | |\n");
     let bytes = Kind::Command.wire_length() + Kind::Reply.wire_length();
     let share = capacity(BAUD, 1, 1000.0)?;
@@ -114,4 +125,90 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         all / 3.0 * share / 1000.0
     );
     Ok(())
+}
+
+fn measure(arguments: &Arguments) -> Result<Vec<Row>, Failure> {
+    let mut configuration = Configuration::default();
+    configuration.hand.rate = TOLD;
+    // Nothing is to fault only because a machine with other work lets the terminals' bytes wait.
+    (configuration.hand.watchdog_ms, configuration.hand.open_timeout_ms) = (1000, 60_000);
+    for finger in &mut configuration.fingers {
+        // State feedback reckons with equal periods, and without a rate limit none is like the other.
+        finger.controller.scheme = Some(Scheme::Figure10);
+    }
+    let phase = Phase(Arc::new(AtomicU8::new(OPEN)));
+    let (mut mailboxes, mut boards, mut threads) = (Vec::new(), Vec::new(), Vec::new());
+    for finger in reach(&configuration, PERIOD, BOARD_PRIORITY)? {
+        let (port, schedule, uncollected) = (finger.port, finger.schedule, finger.uncollected);
+        let clock = UnlimitedClock { phase: phase.0.clone() };
+        mailboxes.push(finger.mailbox);
+        boards.push(finger.board);
+        threads.push(spawn("servo", Priority { fifo: arguments.priority, core: None }, move |_| {
+            let phase = clock.phase.clone();
+            let mut servo = Servo::new(clock, schedule, vec![port]);
+            while phase.load(Relaxed) != END {
+                servo.cycle();
+            }
+            drop(uncollected);
+        })?);
+    }
+    let rows = observe(&mailboxes, &phase, Duration::from_secs(arguments.seconds));
+    drop(phase);
+    threads.into_iter().try_for_each(|thread| thread.join().map_err(|_| "a servo panicked"))?;
+    Ok(rows)
+}
+
+/// Lets the servos run without a rate limit once all fingers are under control, and looks at them.
+fn observe(mailboxes: &[Mailbox], phase: &Phase, length: Duration) -> Vec<Row> {
+    let begun = Instant::now();
+    let opening = |mailbox: &Mailbox| mailbox.report().stage == Stage::Opening;
+    while mailboxes.iter().any(opening) && begun.elapsed() < OPENING {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let running = |mailbox: &Mailbox| mailbox.report().stage == Stage::Running;
+    if !mailboxes.iter().all(running) {
+        return mailboxes.iter().map(|mailbox| Err(state(mailbox))).collect();
+    }
+    phase.0.store(MEASURE, Relaxed);
+    let begun = Instant::now();
+    let before: Vec<_> = mailboxes.iter().map(|mailbox| mailbox.report().losses).collect();
+    // Of each finger what was counted last while it was under control, and when.
+    let mut last: Vec<_> = before.iter().map(|losses| (*losses, Duration::ZERO)).collect();
+    while begun.elapsed() < length {
+        std::thread::sleep(Duration::from_millis(50));
+        for (mailbox, last) in mailboxes.iter().zip(&mut last) {
+            let report = mailbox.report();
+            if report.stage == Stage::Running {
+                *last = (report.losses, begun.elapsed());
+            }
+        }
+    }
+    let row = |((mailbox, before), (losses, after)): ((&Mailbox, &Losses), &(Losses, Duration))| {
+        if *after < SHORTEST {
+            return Err(state(mailbox));
+        }
+        let losses = losses.since(before);
+        let rate = (losses.cycles - losses.lost_replies) as f64 / after.as_secs_f64();
+        let ended =
+            (!running(mailbox)).then(|| format!("until after {:.1} s: {}", after.as_secs_f64(), state(mailbox)));
+        Ok((rate, losses.lost_replies, ended))
+    };
+    mailboxes.iter().zip(&before).zip(&last).map(row).collect()
+}
+
+/// Why a finger is not measured.
+fn state(mailbox: &Mailbox) -> String {
+    let report = mailbox.report();
+    let losses = report.losses;
+    match report.stage {
+        Stage::Running => "another finger did not come under control".into(),
+        Stage::Opening => format!(
+            "not under tension after {} s, {} of {} replies lost",
+            OPENING.as_secs(),
+            losses.lost_replies,
+            losses.cycles
+        ),
+        Stage::Faulted(fault) => fault.to_string(),
+        stage => format!("{stage:?}"),
+    }
 }
