@@ -37,7 +37,7 @@ fn content() -> impl Strategy<Value = Vec<u8>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(ProptestConfig::default().cases.max(2000)))]
 
     #[test]
     fn whole_frames_in_any_pieces(contents in prop::collection::vec(content(), 1..5), chunk in 1usize..40) {

@@ -24,7 +24,7 @@ fn least(tendons: &Tendons, torque: Vector3<f64>) -> Vector4<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases.max(2000), failure_persistence: None, ..Default::default() })]
 
     #[test]
     fn tensions_give_the_scaled_torque_within_both_bounds_with_the_largest_scale(
@@ -38,23 +38,30 @@ proptest! {
         let found = distribution.below(&limits.into()).distribute(&torque);
         // A motor that is too weak for the pretension lets no torque through that needs more of it.
         let bounds = Vector4::from(limits).inf(&Vector4::repeat(MAXIMUM)).sup(&tendons.pretension(MINIMUM));
-        let within = |tensions: &Vector4<f64>| (tensions - bounds).max() <= 1e-9;
+        let within = |tensions: &Vector4<f64>, tolerance: f64| (tensions - bounds).max() <= tolerance;
         prop_assert!((tendons.r * found.tensions - torque * found.scale).amax() < 1e-9 * (1.0 + size));
         prop_assert!(found.tensions.min() >= MINIMUM);
-        prop_assert!(within(&found.tensions), "{} beyond {bounds}", found.tensions);
+        prop_assert!(within(&found.tensions, 1e-9), "{} beyond {bounds}", found.tensions);
         prop_assert!((0.0..=1.0).contains(&found.scale));
         // The largest scale by bisection: least tensions grow with the scale.
-        let fits = |scale: f64| within(&least(&tendons, torque * scale));
-        let (mut low, mut high) = (0.0, 1.0);
-        if fits(1.0) {
-            low = 1.0;
-        } else {
+        let largest = |tolerance: f64| {
+            let fits = |scale: f64| within(&least(&tendons, torque * scale), tolerance);
+            let (mut low, mut high) = (0.0, 1.0);
+            if fits(1.0) {
+                return 1.0;
+            }
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
                 if fits(middle) { low = middle } else { high = middle }
             }
-        }
-        prop_assert!((found.scale - low).abs() < 1e-7, "{} but {low} fits", found.scale);
+            low
+        };
+        // A tension is a sum of four products of at most 300 N, each rounded to some 1e-16 of itself. Where a tension hardly changes with
+        // the scale, that rounding decides over much of the scale: so the tolerance is one of tension, and bounds the scale from both sides.
+        let rounding = 1e-14 * (100.0 + size);
+        let (lowest, highest) = (largest(-rounding), largest(rounding));
+        // The bisection itself ends with an interval of 1e-18.
+        prop_assert!((lowest - 1e-15..=highest + 1e-15).contains(&found.scale), "{}, not {lowest} to {highest}", found.scale);
     }
 
     /// Whatever else gives the same torque is larger, in the 1-, 2- and infinity-norm: R's null vector is all positive, so

@@ -107,7 +107,7 @@ fn agrees_with_an_independent_integration_of_lagranges_equations() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases / 8, failure_persistence: None, ..Default::default() })]
 
     /// Motors without torque, the finger let go from a strained state between tendons, stops, a wall and gravity.
     #[test]

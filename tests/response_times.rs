@@ -108,7 +108,7 @@ fn thread() -> impl Strategy<Value = PeriodicThread> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases.max(400), failure_persistence: None, ..Default::default() })]
 
     #[test]
     fn no_cycle_takes_longer_than_its_bound(threads in prop::collection::vec(thread(), 1..5), seed in any::<u64>()) {

@@ -110,7 +110,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(32))]
+        #![proptest_config(ProptestConfig::with_cases(ProptestConfig::default().cases / 8))]
         #[test]
         fn the_period_is_what_it_should_be_by_the_other_clock(
             drift in -200e-6..200e-6f64, start in 0.0..1e9f64, seed in 1u64..1000,
