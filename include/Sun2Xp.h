@@ -1484,7 +1484,7 @@ int StopHand(void);
             CloseHand and OpenHand mend; HandError says which
    EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
    ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: it is not there yet, or
-            the board does not answer. Call again
+            the board does not answer, or the servo does not run. Call again
 
  Threads: any.
 
