@@ -111,39 +111,6 @@ fn a_planner_without_standard_descriptors_keeps_its_ports_to_itself() {
 }
 
 #[test]
-fn a_planner_that_closes_the_descriptors_up_to_255_keeps_its_hand() {
-    // The library has higher ones.
-    closes_descriptors("1024", "255");
-}
-
-#[test]
-fn a_planner_that_closes_every_descriptor_is_told_and_keeps_its_files_to_itself() {
-    closes_descriptors("1024", "1023");
-}
-
-#[test]
-fn a_planner_that_may_have_few_descriptors_and_closes_all_is_told_and_keeps_its_files_to_itself() {
-    // None is far from the first that the planner gets.
-    closes_descriptors("60", "255");
-}
-
-fn closes_descriptors(limit: &str, highest: &str) {
-    let bench = Bench::new();
-    // Nor are pseudo-terminals of the planner's taken for ports that have come back.
-    fs::write(bench.path().join("named.toml"), "[finger]\nreconnect = true\n").expect("a configuration file");
-    let program = bench.build(c_compiler(), &strict(&["-D_XOPEN_SOURCE=600"]), &["closes_descriptors.c"]);
-    let mut command = Command::new(&program);
-    command.args([limit, highest]);
-    let run = bench.run(command);
-    assert!(run.status.success(), "{highest} of {limit}: {}\n{}", run.status, said(&run));
-}
-
-#[test]
-fn limits_of_the_system_are_told_with_their_remedy_and_leave_nothing_behind() {
-    succeed(&strict(&[]), &["limits.c"]);
-}
-
-#[test]
 fn dlclose_leaves_the_hand() {
     succeed(&strict(&[]), &["loaded.c"]);
 }

@@ -3,6 +3,7 @@
 
 use crate::capi::process;
 use crate::hand;
+use crate::model::one_line;
 use parking_lot::Mutex;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_int};
@@ -111,14 +112,14 @@ pub(super) fn guarded(name: &'static str, call: impl FnOnce() -> Result<(), Refu
 }
 
 fn refuse(name: &str, refusal: &Refusal) {
-    let text = format!("{name}: {refusal}");
+    let text = one_line(&format!("{name}: {refusal}"));
     if PRINT.load(Ordering::Relaxed) && is_first_of_its_kind(refusal.kind()) {
         process::print_line(&text);
     }
     // A thread that is ending may have no text any more: errno still tells.
     let _ = TEXT.try_with(|slot| {
         if let Ok(mut slot) = slot.try_borrow_mut() {
-            *slot = CString::new(text.replace('\0', " ")).ok();
+            *slot = CString::new(text).ok();
         }
     });
     process::set_errno(refusal.errno());

@@ -4,6 +4,7 @@ use crate::files::create_file;
 use crate::finger::{KeptRecord, Recording};
 use crate::hand::announcement::say;
 use crate::hand::{Hand, HandError};
+use crate::model::ShownPath;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -50,9 +51,9 @@ pub fn save(recording: &Recording, path: &Path) -> Result<(), HandError> {
 pub(super) fn keep(recording: &Recording, folder: &Path) {
     let finger = recording.origin.finger;
     say(&match write_new(recording, folder) {
-        Ok(path) => format!("finger {finger} faulted: its last seconds are in {} (sun2xp replay)", path.display()),
+        Ok(path) => format!("finger {finger} faulted: its last seconds are in {} (sun2xp replay)", ShownPath(&path)),
         Err(error) => {
-            format!("finger {finger} faulted, and its black box cannot be written into {}: {error}", folder.display())
+            format!("finger {finger} faulted, and its black box cannot be written into {}: {error}", ShownPath(folder))
         }
     });
 }

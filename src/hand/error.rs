@@ -154,7 +154,8 @@ pub enum HandError {
     /// A configuration file cannot be read.
     #[error(
         "cannot read the configuration file {}: {source}. It must be a text file of at most 1 MiB that this \
-         user can read; where SUN2XP_CONFIG names one it must exist", path.display()
+         user can read; where SUN2XP_CONFIG names one it must exist",
+        ShownPath(path)
     )]
     ConfigurationFile {
         /// The file.
@@ -175,7 +176,7 @@ pub enum HandError {
         system: &'static str,
     },
     /// A configuration that cannot be used.
-    #[error("{}{}: {reason}", file.display(), line.map(|line| format!(":{line}")).unwrap_or_default())]
+    #[error("{}{}: {reason}", ShownPath(file), line.map(|line| format!(":{line}")).unwrap_or_default())]
     Configuration {
         /// The file.
         file: PathBuf,
@@ -234,7 +235,7 @@ pub enum HandError {
     #[error("finger {0} takes no orders: its hand was closed or opened anew, or its servo does not run")]
     NoAnswer(i32),
     /// A calibration that cannot be written.
-    #[error("cannot store the calibration in {}: {source}. It is in force until the hand is closed", path.display())]
+    #[error("cannot store the calibration in {}: {source}. It is in force until the hand is closed", ShownPath(path))]
     Store {
         /// The configuration file.
         path: PathBuf,
@@ -270,7 +271,10 @@ pub enum HandError {
     )]
     NotReconnected(i32),
     /// A black box that cannot be written.
-    #[error("cannot write the black box to {}: {source}. Name a file in a folder that this user can write to", path.display())]
+    #[error(
+        "cannot write the black box to {}: {source}. Name a file in a folder that this user can write to",
+        ShownPath(path)
+    )]
     BlackBox {
         /// The file.
         path: PathBuf,

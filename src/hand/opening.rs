@@ -10,7 +10,7 @@ use crate::hand::announcement::say;
 use crate::hand::damping_admission::DampingAdmission;
 use crate::hand::workshop::{KnownBoard, Workshop};
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
-use crate::model::{Refusal, Shown};
+use crate::model::{Refusal, Shown, ShownPath};
 use crate::realtime::{CycleTiming, Priority, now};
 use nalgebra::Matrix3;
 use rtrb::{Consumer, RingBuffer};
@@ -157,7 +157,7 @@ fn warn_of_latency(port: &Port) {
         say(&format!(
             "{} holds bytes back for {milliseconds} ms (its latency timer): write 1 to latency_timer under /sys/bus/usb-serial/devices, \
              or let a udev rule do so",
-            port.path().display()
+            ShownPath(port.path())
         ));
     }
 }

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
 use sun2xp::hand;
 use sun2xp::model::configuration::{Configuration, FINGERS};
+use sun2xp::model::{ShownPath, one_line};
 use sun2xp::realtime::Priority;
 
 /// Runs a simulated board behind a serial port of its own.
@@ -144,7 +145,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
             Ok(Some(order)) => say(&desk.carry_out(&order)?)?,
             Ok(None) => {}
-            Err(error) => say(&format!("error {error}"))?,
+            Err(error) => say(&one_line(&format!("error {error}")))?,
         }
     }
     loop {
@@ -162,11 +163,13 @@ fn say(line: &str) -> io::Result<()> {
 fn make_link(port: &Path, link: &Path) -> Result<(), Failure> {
     match std::fs::symlink_metadata(link) {
         Ok(there) if there.is_symlink() => std::fs::remove_file(link)?,
-        Ok(_) => return Err(format!("{} exists and is no symbolic link: choose another --link", link.display()).into()),
+        Ok(_) => {
+            return Err(format!("{} exists and is no symbolic link: choose another --link", ShownPath(link)).into());
+        }
         Err(_) => {}
     }
     std::os::unix::fs::symlink(port, link)
-        .map_err(|error| format!("cannot make the symbolic link {}: {error}", link.display()).into())
+        .map_err(|error| format!("cannot make the symbolic link {}: {error}", ShownPath(link)).into())
 }
 
 /// Where orders are carried out.

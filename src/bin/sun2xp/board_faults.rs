@@ -1,6 +1,7 @@
 //! Orders of `sun2xp board` that break things.
 
 use sun2xp::board::{Defect, LineFault, SimulatedPort};
+use sun2xp::model::Shown;
 
 /// What an order does to the board or its cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,7 +158,7 @@ impl Trouble {
 
 fn number(word: &str) -> Result<f64, String> {
     let number: Option<f64> = word.parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| format!("{word} is no number"))
+    number.ok_or_else(|| format!("{} is no number", Shown(word)))
 }
 
 fn whole(number: f64) -> Result<u8, String> {

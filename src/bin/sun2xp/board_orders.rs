@@ -3,7 +3,7 @@
 use crate::board_faults::Trouble;
 use nalgebra::Vector3;
 use sun2xp::board::SimulatedFinger;
-use sun2xp::model::Surface;
+use sun2xp::model::{Shown, Surface};
 
 /// A line of standard input.
 #[derive(Debug, PartialEq)]
@@ -33,16 +33,16 @@ impl Order {
         let (name, finger, numbers) = match words[..] {
             [] => return Ok(None),
             ["quit"] => return Ok(Some(Order::Quit)),
-            [name] => return Err(format!("{name}: of which finger?")),
+            [name] => return Err(format!("{}: of which finger?", Shown(name))),
             [name, finger, ref numbers @ ..] => (name, finger, numbers),
         };
-        let finger = finger.parse().map_err(|_| format!("{finger} is no finger's number"))?;
+        let finger = finger.parse().map_err(|_| format!("{} is no finger's number", Shown(finger)))?;
         Ok(Some(Order::For(finger, Action::new(name, &numbers_in(numbers)?)?)))
     }
 }
 
 fn numbers_in(words: &[&str]) -> Result<Vec<f64>, String> {
-    words.iter().map(|word| word.trim().parse().map_err(|_| format!("{word} is no number"))).collect()
+    words.iter().map(|word| word.trim().parse().map_err(|_| format!("{} is no number", Shown(word)))).collect()
 }
 
 impl Action {
@@ -74,7 +74,7 @@ impl Action {
             ("force" | "wall" | "ball" | "hold" | "free" | "state", _) => {
                 Err(format!("{name} does not take {} numbers; see sun2xp board --help", numbers.len()))
             }
-            _ => Err(format!("no order {name}: force, wall, ball, hold, free, state or quit")),
+            _ => Err(format!("no order {}: force, wall, ball, hold, free, state or quit", Shown(name))),
         }
     }
 

@@ -7,6 +7,7 @@ use serde::de::value::{Error, StrDeserializer};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use sun2xp::hand;
+use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RATES, Scheme};
 use sun2xp::stability::{Limit, Search, StiffnessBound};
 
@@ -79,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         finger.stiffness.bound = Some(bound.stiffness);
     }
     hand::store(path, &configuration)?;
-    writeln!(io::stdout(), "written to {}", path.display())?;
+    writeln!(io::stdout(), "written to {}", ShownPath(path))?;
     Ok(())
 }
 

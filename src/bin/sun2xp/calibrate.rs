@@ -6,6 +6,7 @@ use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use sun2xp::control::calibration::{Findings, Progress, Step};
 use sun2xp::hand::{Configured, Hand};
+use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{ConfiguredFinger, FINGERS};
 
 /// Finds signs, zeros, friction and stiffness of the fingers and writes them into the configuration file.
@@ -62,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut output = io::stdout().lock();
     match arguments.dry_run {
         true => writeln!(output, "nothing written (--dry-run)")?,
-        false => writeln!(output, "written to {}", arguments.config.display())?,
+        false => writeln!(output, "written to {}", ShownPath(&arguments.config))?,
     }
     Ok(())
 }

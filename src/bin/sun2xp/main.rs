@@ -13,6 +13,7 @@ mod schedule;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
+use sun2xp::model::one_line;
 
 /// Tools for a hand that the sun2xp library drives.
 #[derive(Parser)]
@@ -46,7 +47,7 @@ fn main() -> ExitCode {
     match result {
         Ok(status) => status,
         Err(error) => {
-            eprintln!("sun2xp: {error}");
+            eprintln!("sun2xp: {}", one_line(&error.to_string()));
             ExitCode::FAILURE
         }
     }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use sun2xp::control::Activity;
 use sun2xp::finger::{CycleRecord, Difference, Recording};
-use sun2xp::model::Shown;
+use sun2xp::model::{Shown, ShownPath};
 
 /// Runs the pure controller over a black box and compares what it commands with what was commanded, bit for bit.
 ///
@@ -24,7 +24,7 @@ const DIFFERENT: u8 = 2;
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let recording = Recording::open(&arguments.file)?;
-    let replayed = recording.replay().map_err(|error| format!("{}: {error}", arguments.file.display()))?;
+    let replayed = recording.replay().map_err(|error| format!("{}: {error}", ShownPath(&arguments.file)))?;
     let mut output = io::stdout().lock();
     describe(&recording, &mut output)?;
     match &replayed.first {

@@ -8,6 +8,7 @@ use std::thread::sleep;
 use std::time::Duration;
 use sun2xp::files::read_regular_file;
 use sun2xp::hand::{self, Costs, Hand, Limit, Scheduled, Sensor, fastest_rate, off_line_schedule};
+use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, RATES};
 use sun2xp::realtime::{Distribution, Stage};
 
@@ -83,8 +84,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn read(file: &Path) -> Result<Costs, Failure> {
-    let text = read_regular_file(file, LARGEST_COSTS).map_err(|error| format!("{}: {error}", file.display()))?;
-    Ok(Costs::parse(&text).map_err(|reason| format!("{}:{reason}", file.display()))?)
+    let text = read_regular_file(file, LARGEST_COSTS).map_err(|error| format!("{}: {error}", ShownPath(file)))?;
+    Ok(Costs::parse(&text).map_err(|reason| format!("{}:{reason}", ShownPath(file)))?)
 }
 
 fn measure(configuration: &Configuration, arguments: &Arguments) -> Result<Costs, Failure> {

@@ -3,7 +3,7 @@
 use super::{Header, Recording, RecordingError, VERSION};
 use crate::files::open_regular_file;
 use crate::finger::{ControllerSource, CycleRecord};
-use crate::model::Shown;
+use crate::model::{Shown, ShownPath};
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;
@@ -38,7 +38,7 @@ impl Recording {
     /// # Errors
     /// A file that cannot be read, or is no whole recording of this version.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
-        let file = path.display().to_string();
+        let file = ShownPath(path).to_string();
         match open_regular_file(path, LARGEST) {
             Ok(input) => Self::read(BufReader::new(input), &file),
             Err(error) => Err(RecordingError::Unreadable(file, error)),

@@ -7,6 +7,7 @@ use crate::hand::HandError;
 use crate::hand::doctor::{Finding, Verdict};
 use crate::hand::opening::ports;
 use crate::hand::servo_threads::priority;
+use crate::model::ShownPath;
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{Clock, CycleTiming, Distribution, Histograms, MonotonicClock, Schedule, Stage, now, spawn};
 use std::os::unix::fs::MetadataExt;
@@ -29,7 +30,7 @@ pub(super) fn findings(
     let each = duration / ports.len() as u32;
     let mut findings = Vec::new();
     for (path, fingers) in ports {
-        let subject = format!("port {}", path.display());
+        let subject = format!("port {}", ShownPath(&path));
         let mut link = match Link::open(&path, configuration.fingers[fingers[0]].baud) {
             Ok(link) => link,
             Err(error) => {
@@ -44,7 +45,7 @@ pub(super) fn findings(
             .map_err(|source| HandError::System { doing: "start a thread", source })?;
         // A thread that panicked has nothing to tell.
         if let Ok(measured) = measuring.join() {
-            findings.push(judge(configuration, format!("round trip on {}", path.display()), measured));
+            findings.push(judge(configuration, format!("round trip on {}", ShownPath(&path)), measured));
         }
     }
     Ok(findings)

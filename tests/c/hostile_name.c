@@ -1,0 +1,14 @@
+/* Writes a black box to the file that the argument names, which cannot be written, and tells why. */
+#include <string.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+int main(int count, char **arguments)
+{
+    CHECK(count == 2);
+    CHECK(OpenHand() == 0);
+    CHECK(WriteBlackBox(1, arguments[1]) == -1);
+    printf("%s\n", HandError());
+    CHECK(CloseHand() == 0);
+    return 0;
+}
