@@ -592,6 +592,7 @@ const char *HandError(void);
 #define FAULT_COMPANION              46 /* stopped with another */
 #define FAULT_PORT_CLOSED            47 /* port closed */
 #define FAULT_OPENING_TIMED_OUT      48 /* opening timed out */
+#define FAULT_SAME_NUMBER            49 /* same number */
 
 
 /*

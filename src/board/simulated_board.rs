@@ -54,12 +54,19 @@ impl SimulatedBoard {
             if !(1..=HIGHEST_ADDRESS).contains(&address) || board.finger(address).is_some() {
                 return Err(SimulatedBoardError::Address(address));
             }
-            let finger = SimulatedFinger::new(address, &configured, hand.gravity(index))
+            let finger = SimulatedFinger::new(index, address, &configured, hand.gravity(index))
                 .map_err(|source| SimulatedBoardError::Tendons { address, source })?;
             board.fingers.push(finger);
         }
         board.fingers.sort_by_key(SimulatedFinger::address);
         Ok(board)
+    }
+
+    /// The same board with its own number in the unique numbers of its fingers: no two boards of one hand may have the same fingers
+    /// and the same number.
+    pub fn numbered(mut self, number: u32) -> Self {
+        self.fingers.iter_mut().for_each(|finger| finger.set_board_number(number));
+        self
     }
 
     /// The finger at this address.

@@ -1,19 +1,12 @@
 //! One finger of a simulated board: the board's side of the protocol over the physics of a finger.
 
-use super::protocol::{
-    Capabilities, Command, Configure, Configured, FirmwareVersion, Frame, Hello, Identity, Reason, Refused, Reply,
-    Status, Stopped, VERSION,
-};
+mod greeting;
+
+use super::protocol::{Command, Configure, Configured, Frame, Reason, Refused, Reply, Status, Stopped, VERSION};
 use crate::model::TendonsError;
 use crate::model::configuration::{ConfiguredFinger, EndState};
 use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 use nalgebra::{Vector3, Vector4};
-
-/// In [`Identity::board_kind`].
-const SIMULATED_BOARD: u16 = 1;
-
-/// As of the 12-bit converter in [`Sensors`].
-const GAUGE_BITS: u8 = 12;
 
 const SHORTEST_WATCHDOG_MS: u16 = 2;
 
@@ -39,6 +32,7 @@ enum State {
 #[derive(Debug)]
 pub struct SimulatedFinger {
     address: u8,
+    unique_number: [u8; 12],
     plant: Plant,
     sensors: Sensors,
     state: State,
@@ -63,14 +57,20 @@ pub struct SimulatedFinger {
 }
 
 impl SimulatedFinger {
-    /// Gravity in the finger's frame, m/s^2.
-    pub(super) fn new(address: u8, finger: &ConfiguredFinger, gravity: Vector3<f64>) -> Result<Self, TendonsError> {
+    /// `index`: 0 to 2, of the finger in its hand. Gravity in the finger's frame, m/s^2.
+    pub(super) fn new(
+        index: usize,
+        address: u8,
+        finger: &ConfiguredFinger,
+        gravity: Vector3<f64>,
+    ) -> Result<Self, TendonsError> {
         let strongest = finger.motor.torque_limit.into_iter().fold(0.0, f64::max);
         // The finest unit, in whole nN m, in which the strongest motor's limit is 30 000 units at most. 1 N cm = 1e7 nN m.
         let torque_unit = (strongest * 1e7 / 30_000.0).ceil().max(1.0);
         let counts = finger.encoder.counts_per_revolution;
         Ok(Self {
             address,
+            unique_number: greeting::unique_number(index, address),
             plant: Plant::new(finger, gravity)?,
             sensors: Sensors::new(finger),
             state: State::Idle,
@@ -189,35 +189,6 @@ impl SimulatedFinger {
         let newton_metres = self.motor_torques() * 0.01;
         self.plant.step(newton_metres.into());
         self.sensors.pass(PLANT_STEP_SECONDS);
-    }
-
-    pub(super) fn greet(&self, hello: &Hello, addresses: u16) -> Frame {
-        if !(hello.lowest_version..=hello.highest_version).contains(&VERSION) {
-            let detail = u16::from_le_bytes([VERSION, VERSION]);
-            return Frame::Refused(Refused { request: 0x1, reason: Reason::Version, detail });
-        }
-        let mut unique_number = *b"sun2xp\0\0\0\0\0\0";
-        unique_number[11] = self.address;
-        let part = |text: &str| text.parse().unwrap_or(0);
-        Frame::Identity(Identity {
-            version: VERSION,
-            addresses,
-            board_kind: SIMULATED_BOARD,
-            unique_number,
-            firmware: FirmwareVersion([
-                part(env!("CARGO_PKG_VERSION_MAJOR")),
-                part(env!("CARGO_PKG_VERSION_MINOR")),
-                part(env!("CARGO_PKG_VERSION_PATCH")),
-            ]),
-            counts_per_revolution: self.counts_per_revolution,
-            gauge_bits: GAUGE_BITS,
-            torque_unit: self.torque_unit,
-            torque_limit: self.torque_limit,
-            shortest_watchdog_ms: SHORTEST_WATCHDOG_MS,
-            capabilities: Capabilities(
-                Capabilities::HOLD.0 | Capabilities::KEEPS_ZERO.0 | Capabilities::EMERGENCY_STOP.0,
-            ),
-        })
     }
 
     pub(super) fn configure(&mut self, terms: &Configure) -> Frame {

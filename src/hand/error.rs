@@ -201,6 +201,20 @@ pub enum HandError {
         /// What is wrong with it.
         source: LinkError,
     },
+    /// Boards at two ports that say that they are the same.
+    #[error(
+        "fingers {} ({}) and {} ({}) are on boards with one unique number, {number}, so that nobody can tell them apart: give every board a \
+         number of its own in its firmware, the processor's with the finger's address in it for example (fault {code})",
+        fingers[0], ports[0].display(), fingers[1], ports[1].display(), code = FaultKind::SameNumber.number()
+    )]
+    SameNumber {
+        /// 1 to 3.
+        fingers: [i32; 2],
+        /// Where they are.
+        ports: [PathBuf; 2],
+        /// Bytes in hex.
+        number: String,
+    },
     /// The system refuses a thread or a pseudo terminal.
     #[error("cannot {doing}: {}", with_remedy(source))]
     System {
@@ -332,6 +346,7 @@ impl HandError {
             Self::NoAnswer(_) | Self::ServoStalled(_) => libc::ETIMEDOUT,
             Self::Calibration { .. } => libc::ECANCELED,
             Self::NotReconnected(_) => libc::ENODEV,
+            Self::SameNumber { .. } => libc::ENOTUNIQ,
             Self::Busy(_) | Self::PortInUse { .. } => libc::EBUSY,
             Self::Store { source, .. } | Self::BlackBox { source, .. } => errno(source),
             Self::NoRecord { .. } => libc::ENOENT,

@@ -14,6 +14,7 @@ mod doctor;
 mod error;
 mod faults;
 mod fingertip;
+mod identities;
 mod missing;
 mod off_line_schedule;
 mod opening;

@@ -8,6 +8,7 @@ use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::announcement::say;
 use crate::hand::damping_admission::DampingAdmission;
+use crate::hand::identities::Identities;
 use crate::hand::workshop::{KnownBoard, Workshop};
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
 use crate::model::{Refusal, Shown, ShownPath};
@@ -107,6 +108,7 @@ pub(super) fn reach(
     // An emergency stop from here on counts.
     let alarm = Alarm::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
     let (mut lines, mut reached, mut workshops) = (Vec::new(), Vec::new(), Vec::new());
+    let mut identities = Identities::default();
     for (path, sharing) in ports(configuration, simulated) {
         let first = sharing[0];
         let failed = |source| HandError::Link { finger: first + 1, source };
@@ -115,6 +117,7 @@ pub(super) fn reach(
         let (mut fingers, mut boards) = (Vec::new(), Vec::new());
         for &index in &sharing {
             let (servo, finger, board) = shake_hands(configuration, index, &mut link)?;
+            identities.meet(board.finger, &path, &board.identity)?;
             let servo = servo.with(alarm.clone());
             fingers.push(if limp { servo.limp() } else { servo });
             reached.push(finger);

@@ -115,3 +115,21 @@ impl KnownBoard {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand::identities::tests::identity;
+    use crate::model::configuration::{ConfiguredFinger, ConfiguredHand};
+
+    /// So no two boards of a hand have one number after a recovery either.
+    #[test]
+    fn a_board_with_another_number_is_not_the_one_of_open() {
+        let terms = Terms::new(&ConfiguredHand::default(), &ConfiguredFinger::default());
+        let board = KnownBoard { finger: 1, address: 1, terms, identity: identity(5), zero_valid: false };
+        assert!(board.check(&identity(5), Status::default()).is_ok());
+        let error = board.check(&identity(6), Status::default()).expect_err("another board");
+        let changed = |fault: Fault| fault.kind == FaultKind::IdentityChanged;
+        assert!(matches!(error, HandError::Faulted { finger: 1, fault } if changed(fault)), "{error}");
+    }
+}

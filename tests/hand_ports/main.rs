@@ -12,6 +12,7 @@ mod floods;
 mod killed;
 mod leaks;
 mod motion;
+mod numbers;
 mod opening;
 mod recovery;
 mod rig;

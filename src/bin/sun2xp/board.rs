@@ -4,7 +4,9 @@ use crate::board_faults::Trouble;
 use crate::board_orders::{Action, Order};
 use std::error::Error;
 use std::io::{self, BufRead, Write};
+use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
+use sun2xp::board::protocol::check;
 use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
 use sun2xp::hand;
 use sun2xp::model::configuration::{Configuration, FINGERS};
@@ -88,7 +90,8 @@ pub struct Arguments {
     /// An order to carry out at the start; may be repeated.
     #[arg(long = "order", value_name = "ORDER")]
     orders: Vec<String>,
-    /// A symbolic link to the port, made now and removed by `quit`. A symbolic link that is there is replaced.
+    /// A symbolic link to the port, made now and removed by `quit`. A symbolic link that is there is replaced. A board that is started
+    /// again with the same link is the same board for its host: its unique number comes from this path.
     #[arg(long, value_name = "PATH")]
     link: Option<PathBuf>,
     /// SCHED_FIFO priority of the board, where permitted; 0: not real-time.
@@ -112,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         configuration.fingers.iter_mut().for_each(|finger| finger.simulation.seed = seed);
     }
     let fingers: Vec<usize> = arguments.fingers.iter().map(|&number| usize::from(number) - 1).collect();
-    let mut board = SimulatedBoard::new(&configuration, &fingers)?;
+    let mut board = SimulatedBoard::new(&configuration, &fingers)?.numbered(number(arguments.link.as_deref())?);
     for action in [&arguments.force, &arguments.wall, &arguments.ball].into_iter().flatten() {
         for finger in board.fingers() {
             action.apply(finger);
@@ -150,6 +153,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     loop {
         std::thread::park();
+    }
+}
+
+/// The board's number: by its link, so that it stays when the board is started again, or else by its process. Processes have numbers
+/// of less than 31 bits, and links of more.
+fn number(link: Option<&Path>) -> io::Result<u32> {
+    match link {
+        Some(link) => Ok(check(std::path::absolute(link)?.as_os_str().as_bytes()) | 1 << 31),
+        None => Ok(std::process::id()),
     }
 }
 

@@ -230,6 +230,10 @@ faults! {
         "the tendons were not all under tension when hand.open_timeout_ms was over, because the servo ran too few of its cycles",
         "the machine is overloaded, or the board's replies are lost",
         "Free the machine or permit real time (README), or raise hand.open_timeout_ms; RecoverHand, or OpenHand";
+    49 SameNumber "SAME_NUMBER" Refusal Finger Nothing "same number",
+        "boards at two ports have one unique number, so that nobody can tell them apart",
+        "their firmware gives every board the same number",
+        "Give every board a number of its own in its firmware";
 }
 
 #[cfg(test)]

@@ -1,0 +1,71 @@
+//! The unique numbers of the boards that a hand meets when it is opened: each port has its own.
+
+use crate::board::protocol::Identity;
+use crate::hand::HandError;
+use std::path::{Path, PathBuf};
+
+/// The boards so far.
+#[derive(Default)]
+pub(super) struct Identities(Vec<Met>);
+
+struct Met {
+    /// 1 to 3.
+    finger: i32,
+    port: PathBuf,
+    number: [u8; 12],
+}
+
+impl Identities {
+    /// Takes in the board of finger 1, 2 or 3.
+    ///
+    /// # Errors
+    /// A board at another port has the same number. Fingers on one port may have one.
+    pub fn meet(&mut self, finger: i32, port: &Path, identity: &Identity) -> Result<(), HandError> {
+        let number = identity.unique_number;
+        match self.0.iter().find(|met| met.number == number && met.port != port) {
+            Some(met) => Err(HandError::SameNumber {
+                fingers: [met.finger, finger],
+                ports: [met.port.clone(), port.to_owned()],
+                number: number.map(|byte| format!("{byte:02X}")).join(" "),
+            }),
+            None => {
+                self.0.push(Met { finger, port: port.to_owned(), number });
+                Ok(())
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::board::protocol::{Capabilities, FirmwareVersion, VERSION};
+
+    /// A board that differs from others of this function in its number only.
+    pub fn identity(number: u8) -> Identity {
+        Identity {
+            version: VERSION,
+            addresses: 0b1110,
+            board_kind: 0,
+            unique_number: [number; 12],
+            firmware: FirmwareVersion([1, 0, 0]),
+            counts_per_revolution: 2000,
+            gauge_bits: 12,
+            torque_unit: 2000,
+            torque_limit: 23_750,
+            shortest_watchdog_ms: 2,
+            capabilities: Capabilities::HOLD,
+        }
+    }
+
+    #[test]
+    fn each_port_has_its_own_number_and_its_fingers_may_share_it() {
+        let mut identities = Identities::default();
+        assert!(identities.meet(1, Path::new("/dev/left"), &identity(5)).is_ok());
+        assert!(identities.meet(2, Path::new("/dev/left"), &identity(5)).is_ok());
+        assert!(identities.meet(3, Path::new("/dev/right"), &identity(6)).is_ok());
+        let error =
+            identities.meet(3, Path::new("/dev/right"), &identity(5)).expect_err("the number of fingers 1 and 2");
+        assert!(matches!(error, HandError::SameNumber { fingers: [1, 3], .. }), "{error}");
+    }
+}
