@@ -58,8 +58,9 @@
        EPERM    the process is a forked child (chapter 6)
        EFAULT   an argument is a null pointer
        ENODEV   no hand is open
-       EBUSY    OpenHand while a hand is open, or is being opened or closed; a key that
-                cannot change while a hand is open
+       EBUSY    a hand is open already, or is being opened or closed; the finger is being
+                calibrated or recovered, or another one on its port runs; the key cannot
+                change while a hand is open
        EINVAL   no such finger; NaN or infinity; an unusable configuration
        ERANGE   angles outside the joint limits; a tip out of reach; Kx stiffer than the
                 bound; damping outside its range
@@ -69,7 +70,7 @@
        others   a configuration file, a port, or enforced real time: what the system
                 said, or the nearest
 
-   Where several hold, a call reports the first in the order of its entry. A call that
+   Where several are true, a call reports the first in the order of its entry. A call that
    succeeds leaves errno and HandError() as they are.
 
    Planners of 1990 never look at results. So the first refusal of each kind in a
@@ -127,11 +128,11 @@
        no look at results         see the line on standard error (chapter 2)
        own functions named        #define SUN2XP_FIVE_CALLS before the include: the
        GetTip, StopHand ...       header declares only OpenHand, SendPos, SendKx,
-                                  GetPos, CloseHand and HandError
-
-   The shared library never calls a function of the planner in the place of its own. For
-   the static library, name the planner's files first and link with
-   -Wl,--allow-multiple-definition.
+                                  GetPos, CloseHand, HandError, and SendPosD, SendKxD
+                                  and GetPosD for double. The shared library never
+                                  calls the planner's functions for its own. To link
+                                  the static library, name the planner's files first
+                                  and add -Wl,--allow-multiple-definition
 
    The planner's macros may have any name, such as i, K, Pos, or Status of X11: gcc and
    clang set them aside while they read this header. The exceptions are SendPos, SendKx,
@@ -141,9 +142,10 @@
 
    6. THREADS, SIGNALS, FORK, EXIT
 
-   Threads: every call may be made from any thread, at the same time as any other.
-   Calls to a finger never wait for its servo, nor the servo for them. Of two threads
-   that command one finger the later call wins; each command takes effect whole.
+   Threads: every call may be made from any thread, at the same time as any other. A
+   servo never waits for a call. A call waits for a servo only where its entry says that
+   it waits. Of two threads that command one finger the later call wins; each command
+   takes effect whole.
 
    Signals: the servo threads block all signals, so the planner's alarms and handlers
    are served by the planner's own threads. A signal handler may call StopHand, and no
@@ -168,16 +170,16 @@
 
    7. SERVO AND REAL TIME
 
-   One servo thread runs each finger, 1000 times a second by default, in SCHED_FIFO,
-   with locked memory and on the configured core, where the system permits it. Where it
-   does not, hand.real_time says what OpenHand does:
+   By default each finger has a servo thread of its own, which runs 1000 times a second
+   under SCHED_FIFO, with locked memory and on the configured core. Where the system does
+   not permit that, hand.real_time says what OpenHand does:
 
        "try"      goes on without; one line on standard error says so, and GetStatus:
                   everything works, but with the jitter of an ordinary process
        "enforce"  is refused, and HandError says what to change
        "ignore"   does not try
 
-   sun2xp doctor looks at a machine and says what to change. GetTiming tells where the
+   sun2xp doctor examines a machine and says what to change. GetTiming says where the
    time of a cycle goes.
 
 
@@ -200,7 +202,7 @@
    /etc/xdg/sun2xp/sun2xp.toml; where SUN2XP_CONFIG is set, OpenHand fails with EACCES.
 
    The file is TOML: [hand], [finger] for all fingers, [finger.1] to [finger.3] for
-   one. All has defaults; an unknown key is refused, with file, line and reason.
+   one. Every key has a default. An unknown key is refused, with file, line and reason.
 
    Example, sun2xp.toml:
 
@@ -218,13 +220,13 @@
 
    10. FAULTS
 
-   What goes wrong with a finger has a number that never changes (FAULT_..., below), a
-   text, a likely cause and a remedy: FaultText. A fault stops the finger: its motors go
-   to the configured end state, its calls are refused with EIO, and HandError says why,
-   until RecoverHand, or CloseHand and OpenHand. A warning is told and the finger goes
-   on: it stays for a second after it was last seen. GetFault tells both. Some faults
-   make OpenHand refuse; their numbers stand in the text of HandError. docs/faults.md
-   lists all, with how and how fast each is found. */
+   Every fault has a number that never changes (FAULT_..., below). FaultText gives its
+   text, its likely cause and its remedy. A fault stops the finger: its motors go to the
+   configured end state, its calls are refused with EIO, and HandError says why, until
+   RecoverHand, or CloseHand and OpenHand. A warning does not stop the finger; it lasts
+   until a second after its cause was last seen. GetFault reports both. Some faults make
+   OpenHand refuse; HandError gives their numbers. docs/faults.md lists all faults, with
+   how and how fast each is detected. */
 
 #ifndef SUN2XP_H
 #define SUN2XP_H
@@ -459,12 +461,12 @@ int SendPosD(int, const double *);
          row (x, y, z of the finger's frame, chapter 3) for a displacement of 1 cm
          along axis column, N/cm. Read during the call only
 
- Taken over whole, from the next cycle on and without a jump in torque: 95 % of the
- change is there after 50 ms. Kx must be symmetric: a difference of up
- to 1e-3 of the largest entry is averaged away. No eigenvalue may be below -1e-3 of
- the largest one. Kx of lower rank is fine, and so is zero: the finger is limp along
- those directions, still damped. The largest eigenvalue may be up to the configured
- bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
+ Kx takes effect whole, from the next cycle on and without a jump in torque: 95 % of the
+ change is there after 50 ms. Kx must be symmetric; a difference of up to 1e-3 of the
+ largest entry is averaged. No eigenvalue may be below -1e-3 of the largest one. Kx may
+ have a lower rank, and may be zero: along directions without stiffness the finger is
+ limp but still damped. The largest eigenvalue may be up to the configured bound, by
+ default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -693,8 +695,8 @@ struct FingerStatus {
      */
     int State;
     /*
-     1: the servo thread runs under SCHED_FIFO. 0: it does not, and shares its core with
-     everybody.
+     1: every servo thread of the hand runs under SCHED_FIFO. 0: one does not, and shares
+     its core with everybody.
      */
     int Realtime;
     /*
@@ -706,8 +708,8 @@ struct FingerStatus {
      */
     double MeasuredRate;
     /*
-     How late cycles began, microseconds: half of them no later than this. The servo's
-     jitter.
+     How late cycles began since OpenHand or ResetTiming, microseconds: half of them no
+     later than this. The servo's jitter.
      */
     double WakeUpMedian;
     /*
@@ -715,7 +717,7 @@ struct FingerStatus {
      */
     double WakeUp99;
     /*
-     The same, microseconds: the worst since OpenHand.
+     The same, microseconds: the latest.
      */
     double WakeUpMaximum;
     /*
@@ -742,21 +744,21 @@ struct FingerStatus {
      */
     unsigned long DamagedFrames;
     /*
-     The part of the calibration under way that is done, 0 to 1; 0 where there is none.
+     How much of a calibration is done, 0 to 1. 0 if the finger is not being calibrated.
      */
     double Calibration;
     /*
-     1: the memory that the servo thread uses is locked, so that it never waits for a page.
-     0: it is not.
+     1: every servo thread has its memory locked, so that it never waits for a page. 0: one
+     has not.
      */
     int MemoryLocked;
     /*
-     1: the servo thread runs on the configured core, or none is configured. 0: it does not.
+     1: every servo thread runs on its configured core, or has none. 0: one does not.
      */
     int OnCore;
     /*
      The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where
-     its tendons carry no more in this pose, so near straight.
+     its tendons carry no more in this pose, for example near the straight one.
      */
     double StiffnessScale;
 };
@@ -945,7 +947,7 @@ struct Fault {
      */
     unsigned int Size;
     /*
-     The fault that has stopped the finger: FAULT_...; 0 none.
+     The fault that has stopped the finger: FAULT_..., or 0 if none has.
      */
     int Number;
     /*
@@ -954,7 +956,7 @@ struct Fault {
      */
     int Part;
     /*
-     What the finger is warned of, up to a second ago: FAULT_...; 0 nothing.
+     A warning of the last second: FAULT_..., or 0 if there was none.
      */
     int Warning;
     /*
@@ -1034,14 +1036,13 @@ int GetStatus(int, struct FingerStatus *);
 int GetTiming(int, int, struct FingerTiming *);
 
 /*
- ResetTiming - begin to count anew what GetTiming tells
+ ResetTiming - restart the counts of GetTiming
 
      int ResetTiming(int i);
 
    i        finger, 1 to 3; 0: all
 
- What GetStatus tells since OpenHand goes on, but for the wake-up times, which are
- those of GetTiming.
+ The counts of GetStatus go on, except the wake-up times, which are those of GetTiming.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1062,10 +1063,10 @@ int ResetTiming(int);
          Always double. Read during the call only
 
  From the next cycle on the fingertip is a spring anchored there, with the stiffness
- sent last, and exactly so at any distance: its force is Kx (Tip - tip), where SendPos
- by default has the report's law, which is that of small distances. Of several joint
- solutions within the joint limits it takes the one nearest to the present pose. The
- anchor goes there straight in the joints, at a bounded speed.
+ sent last. Its force is Kx (Tip - tip) at any distance. SendPos by default uses the law
+ of the report, which holds for small distances. Of several joint solutions within the
+ joint limits the call takes the one nearest to the present pose. The anchor moves there
+ in a straight line of joint angles, at a bounded speed.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1129,11 +1130,11 @@ int GetTip(int, struct FingerTip *);
    Normal   Normal[3]: direction of the contact's normal in the finger's frame, of any
             length but zero. Not used for D = 3, and may be null there
 
- Always double. Read during the calls only. Taken over whole, without a jump in torque,
- and takes the place of the stiffness sent last, as a later SendKx takes its. In the
- directions that a contact does not have the finger is limp, still damped. K must be
- symmetric and without a negative eigenvalue, as for SendKx; for its bound a rotation
- counts as it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
+ Always double. Read during the call only. The contact takes effect whole, without a jump
+ in torque. It replaces the stiffness sent last, and a later SendKx replaces it. In the
+ directions that a contact does not have, the finger is limp but still damped. K must be
+ symmetric and without a negative eigenvalue, as for SendKx. For the bound a rotation
+ counts by how far it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1201,9 +1202,10 @@ int SendDamping(int, double);
 
  All keys take effect together, within a cycle and without a jump in torque; what is
  not named stays. The change lasts until CloseHand: the file is not written. What a
- finger is opened with cannot change: port, baud, address, thread, core, priority,
- base, turn_degrees, encoder, motor.sign, motor.torque_limit, motor.torque_constant,
- stiffness.initial and simulation. controller.law counts from the next SendPos on.
+ finger is opened with cannot change: port, baud, reconnect, address, thread, core,
+ priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
+ motor.torque_constant, stiffness.initial and simulation. controller.law counts from
+ the next SendPos on.
 
  A configured stiffness.bound was found for one controller. Under another
  controller.scheme it counts only if it is less than the default bound, or if Keys
@@ -1260,16 +1262,16 @@ int PushFinger(int, const double *);
    Record   Record->Size is set by the caller, all else is filled in. Written only if the
             call returns 0
 
- Tells in numbers what WriteBlackBox writes into a file, and less: the file can be
- computed again. What is kept moves on with every cycle; of a faulted finger it stays as
- it was at the fault.
+ These numbers are a part of what WriteBlackBox writes into a file. Every cycle adds a
+ record and removes the oldest one. The records of a faulted finger stay as they were at
+ the fault.
 
  Returns 0, or -1 with
    EPERM    forked child
    EFAULT   Record is null
    ENODEV   no hand is open
    EINVAL   Size is too small; no such finger
-   ENOENT   the cycle is not kept any more, or has not been yet
+   ENOENT   the cycle is no longer kept, or has not taken place yet
 
  Threads: any. Never waits for a servo.
 
@@ -1424,8 +1426,8 @@ int GetFault(int, struct Fault *);
    Number   FAULT_...
 
  Its name, what is the case, the likely cause and the remedy, in one line. An empty
- string for a number that is no fault. Never null, valid for ever. HandError tells the
- same of a fault that refused a call, with part and figures.
+ string for a number that is no fault. Never null, valid for ever. Where a call was
+ refused because of a fault, HandError gives the same with part and figures.
 
  Threads: any. Works in a forked child too.
  */
@@ -1470,7 +1472,7 @@ int StopHand(void);
  has failed and finger.reconnect is true. Then the tendons are brought under tension,
  and the finger holds the pose that it is found in, at the configured initial stiffness.
  Fingers that share the port recover with it. A finger that is not faulted goes on as it
- is. What made the finger fault must be mended before: GetFault, FaultText.
+ is. Repair the cause of the fault first: GetFault and FaultText name it.
 
  Waits until the finger holds its pose or faults again: up to some seconds. Other calls
  go on meanwhile. CloseHand too, and this call is refused then.

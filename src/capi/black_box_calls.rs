@@ -61,16 +61,16 @@ pub struct FingerRecord {
 ///   Record   Record->Size is set by the caller, all else is filled in. Written only if the
 ///            call returns 0
 ///
-/// Tells in numbers what WriteBlackBox writes into a file, and less: the file can be
-/// computed again. What is kept moves on with every cycle; of a faulted finger it stays as
-/// it was at the fault.
+/// These numbers are a part of what WriteBlackBox writes into a file. Every cycle adds a
+/// record and removes the oldest one. The records of a faulted finger stay as they were at
+/// the fault.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
 ///   EFAULT   Record is null
 ///   ENODEV   no hand is open
 ///   EINVAL   Size is too small; no such finger
-///   ENOENT   the cycle is not kept any more, or has not been yet
+///   ENOENT   the cycle is no longer kept, or has not taken place yet
 ///
 /// Threads: any. Never waits for a servo.
 ///

@@ -119,12 +119,12 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 ///         row (x, y, z of the finger's frame, chapter 3) for a displacement of 1 cm
 ///         along axis column, N/cm. Read during the call only
 ///
-/// Taken over whole, from the next cycle on and without a jump in torque: 95 % of the
-/// change is there after 50 ms. Kx must be symmetric: a difference of up
-/// to 1e-3 of the largest entry is averaged away. No eigenvalue may be below -1e-3 of
-/// the largest one. Kx of lower rank is fine, and so is zero: the finger is limp along
-/// those directions, still damped. The largest eigenvalue may be up to the configured
-/// bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
+/// Kx takes effect whole, from the next cycle on and without a jump in torque: 95 % of the
+/// change is there after 50 ms. Kx must be symmetric; a difference of up to 1e-3 of the
+/// largest entry is averaged. No eigenvalue may be below -1e-3 of the largest one. Kx may
+/// have a lower rank, and may be zero: along directions without stiffness the finger is
+/// limp but still damped. The largest eigenvalue may be up to the configured bound, by
+/// default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child

@@ -17,12 +17,12 @@ use std::sync::LazyLock;
 pub struct Fault {
     /// In: bytes of room, sizeof *Fault. Out: bytes that were filled, never more.
     pub Size: c_uint,
-    /// The fault that has stopped the finger: FAULT_...; 0 none.
+    /// The fault that has stopped the finger: FAULT_..., or 0 if none has.
     pub Number: c_int,
     /// Its joint (0 to 2), tendon, motor, gauge or encoder (1 to 4), as its text says;
     /// 0 where it is of the whole finger.
     pub Part: c_int,
-    /// What the finger is warned of, up to a second ago: FAULT_...; 0 nothing.
+    /// A warning of the last second: FAULT_..., or 0 if there was none.
     pub Warning: c_int,
     /// Its joint, tendon, motor, gauge or encoder.
     pub WarningPart: c_int,
@@ -73,8 +73,8 @@ pub unsafe extern "C" fn GetFault(i: c_int, Fault: *mut Fault) -> c_int {
 ///   Number   FAULT_...
 ///
 /// Its name, what is the case, the likely cause and the remedy, in one line. An empty
-/// string for a number that is no fault. Never null, valid for ever. HandError tells the
-/// same of a fault that refused a call, with part and figures.
+/// string for a number that is no fault. Never null, valid for ever. Where a call was
+/// refused because of a fault, HandError gives the same with part and figures.
 ///
 /// Threads: any. Works in a forked child too.
 #[unsafe(no_mangle)]

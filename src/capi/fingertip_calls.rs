@@ -41,10 +41,10 @@ pub struct FingerTip {
 ///         Always double. Read during the call only
 ///
 /// From the next cycle on the fingertip is a spring anchored there, with the stiffness
-/// sent last, and exactly so at any distance: its force is Kx (Tip - tip), where SendPos
-/// by default has the report's law, which is that of small distances. Of several joint
-/// solutions within the joint limits it takes the one nearest to the present pose. The
-/// anchor goes there straight in the joints, at a bounded speed.
+/// sent last. Its force is Kx (Tip - tip) at any distance. SendPos by default uses the law
+/// of the report, which holds for small distances. Of several joint solutions within the
+/// joint limits the call takes the one nearest to the present pose. The anchor moves there
+/// in a straight line of joint angles, at a bounded speed.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -118,11 +118,11 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 ///   Normal   Normal[3]: direction of the contact's normal in the finger's frame, of any
 ///            length but zero. Not used for D = 3, and may be null there
 ///
-/// Always double. Read during the calls only. Taken over whole, without a jump in torque,
-/// and takes the place of the stiffness sent last, as a later SendKx takes its. In the
-/// directions that a contact does not have the finger is limp, still damped. K must be
-/// symmetric and without a negative eigenvalue, as for SendKx; for its bound a rotation
-/// counts as it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
+/// Always double. Read during the call only. The contact takes effect whole, without a jump
+/// in torque. It replaces the stiffness sent last, and a later SendKx replaces it. In the
+/// directions that a contact does not have, the finger is limp but still damped. K must be
+/// symmetric and without a negative eigenvalue, as for SendKx. For the bound a rotation
+/// counts by how far it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -208,9 +208,10 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 ///
 /// All keys take effect together, within a cycle and without a jump in torque; what is
 /// not named stays. The change lasts until CloseHand: the file is not written. What a
-/// finger is opened with cannot change: port, baud, address, thread, core, priority,
-/// base, turn_degrees, encoder, motor.sign, motor.torque_limit, motor.torque_constant,
-/// stiffness.initial and simulation. controller.law counts from the next SendPos on.
+/// finger is opened with cannot change: port, baud, reconnect, address, thread, core,
+/// priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
+/// motor.torque_constant, stiffness.initial and simulation. controller.law counts from
+/// the next SendPos on.
 ///
 /// A configured stiffness.bound was found for one controller. Under another
 /// controller.scheme it counts only if it is less than the default bound, or if Keys

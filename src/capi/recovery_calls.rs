@@ -48,7 +48,7 @@ pub extern "C" fn StopHand() -> c_int {
 /// has failed and finger.reconnect is true. Then the tendons are brought under tension,
 /// and the finger holds the pose that it is found in, at the configured initial stiffness.
 /// Fingers that share the port recover with it. A finger that is not faulted goes on as it
-/// is. What made the finger fault must be mended before: GetFault, FaultText.
+/// is. Repair the cause of the fault first: GetFault and FaultText name it.
 ///
 /// Waits until the finger holds its pose or faults again: up to some seconds. Other calls
 /// go on meanwhile. CloseHand too, and this call is refused then.

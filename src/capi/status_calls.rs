@@ -46,19 +46,19 @@ pub struct FingerStatus {
     /// FINGER_RUNNING, FINGER_FAULTED, FINGER_LIMP, FINGER_CALIBRATING, FINGER_TENSIONING or
     /// FINGER_CLOSED.
     pub State: c_int,
-    /// 1: the servo thread runs under SCHED_FIFO. 0: it does not, and shares its core with
-    /// everybody.
+    /// 1: every servo thread of the hand runs under SCHED_FIFO. 0: one does not, and shares
+    /// its core with everybody.
     pub Realtime: c_int,
     /// Configured servo rate, Hz.
     pub Rate: f64,
     /// Measured servo rate since OpenHand, Hz.
     pub MeasuredRate: f64,
-    /// How late cycles began, microseconds: half of them no later than this. The servo's
-    /// jitter.
+    /// How late cycles began since OpenHand or ResetTiming, microseconds: half of them no
+    /// later than this. The servo's jitter.
     pub WakeUpMedian: f64,
     /// The same, microseconds: 99 of 100 cycles no later than this.
     pub WakeUp99: f64,
-    /// The same, microseconds: the worst since OpenHand.
+    /// The same, microseconds: the latest.
     pub WakeUpMaximum: f64,
     /// The part of the joint torque that the tension limits let through in the last cycle,
     /// 0 to 1. Its direction is kept.
@@ -73,15 +73,15 @@ pub struct FingerStatus {
     /// Pieces of bytes on the finger's port that were no frame: damaged, cut short, noise.
     /// FingerTiming.ForeignFrames counts whole frames that nobody waited for.
     pub DamagedFrames: c_ulong,
-    /// The part of the calibration under way that is done, 0 to 1; 0 where there is none.
+    /// How much of a calibration is done, 0 to 1. 0 if the finger is not being calibrated.
     pub Calibration: f64,
-    /// 1: the memory that the servo thread uses is locked, so that it never waits for a page.
-    /// 0: it is not.
+    /// 1: every servo thread has its memory locked, so that it never waits for a page. 0: one
+    /// has not.
     pub MemoryLocked: c_int,
-    /// 1: the servo thread runs on the configured core, or none is configured. 0: it does not.
+    /// 1: every servo thread runs on its configured core, or has none. 0: one does not.
     pub OnCore: c_int,
     /// The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where
-    /// its tendons carry no more in this pose, so near straight.
+    /// its tendons carry no more in this pose, for example near the straight one.
     pub StiffnessScale: f64,
 }
 

@@ -127,14 +127,13 @@ pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTi
     })
 }
 
-/// ResetTiming - begin to count anew what GetTiming tells
+/// ResetTiming - restart the counts of GetTiming
 ///
 ///     int ResetTiming(int i);
 ///
 ///   i        finger, 1 to 3; 0: all
 ///
-/// What GetStatus tells since OpenHand goes on, but for the wake-up times, which are
-/// those of GetTiming.
+/// The counts of GetStatus go on, except the wake-up times, which are those of GetTiming.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child

@@ -1,5 +1,6 @@
 //! The C manual, which is the header, says the same in its chapters, in its entries and by what the library does.
 
+mod adjusting;
 #[allow(dead_code)]
 #[path = "../c/mod.rs"]
 mod c;

@@ -1,0 +1,46 @@
+//! The keys that AdjustFinger refuses to change are those that its entry names.
+
+use super::c::root;
+use super::manual::{Manual, in_one_line, listed};
+use std::fs;
+use sun2xp::hand::Hand;
+use sun2xp::model::configuration::Configuration;
+
+/// Every key of a finger in docs/sun2xp.toml, as a line that leaves it as it is. Optional keys stand there behind a #.
+fn keys_of_a_finger() -> Vec<String> {
+    let page = fs::read_to_string(root().join("docs/sun2xp.toml")).expect("the page");
+    let mut table = None;
+    let mut keys = Vec::new();
+    for line in page.lines() {
+        if let Some(name) = line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
+            table = name.strip_prefix("finger").map(|table| table.trim_start_matches('.').to_string());
+        } else if let Some(table) = &table {
+            let key = line.strip_prefix('#').unwrap_or(line);
+            if key.starts_with(|first: char| first.is_ascii_lowercase()) && key.contains(" = ") {
+                let dot = if table.is_empty() { "" } else { "." };
+                keys.push(format!("{table}{dot}{key}"));
+            }
+        }
+    }
+    keys
+}
+
+#[test]
+fn the_keys_that_cannot_change_are_named() {
+    let manual = Manual::read();
+    let entry = manual.entries.iter().find(|entry| entry.call == "AdjustFinger").expect("the entry");
+    let text = in_one_line(&entry.text);
+    let (_, rest) = text.split_once("opened with cannot change: ").expect("a sentence that names them");
+    let named = listed(rest.split_once(". ").expect("the sentence ends").0);
+    let hand = Hand::open(Configuration::default()).expect("the simulated hand");
+    let keys = keys_of_a_finger();
+    assert!(keys.len() > 30, "{keys:?}");
+    let covers = |named: &str, key: &str| key.strip_prefix(named).is_some_and(|rest| rest.starts_with([' ', '.']));
+    for key in &keys {
+        let refused = hand.adjust(1, key).is_err_and(|error| error.errno() == libc::EBUSY);
+        assert_eq!(refused, named.iter().any(|named| covers(named, key)), "{key}: {named:?}");
+    }
+    for named in named {
+        assert!(keys.iter().any(|key| covers(named, key)), "{named} is no key of a finger");
+    }
+}
