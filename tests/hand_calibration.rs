@@ -3,7 +3,7 @@
 use std::fs;
 use sun2xp::control::calibration::{Findings, Obstacle, Step};
 use sun2xp::finger::Stage;
-use sun2xp::hand::{Calibrating, Hand, HandError, read};
+use sun2xp::hand::{Calibrating, Fingers, Hand, HandError, read};
 
 const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.zeroing]\nspeed = 2.0\n[finger.encoder]\nzero = [700, -20, 30, 4000] # last year\n\
                     [finger.2.gauge]\nzero = [ 204.0, 200.0, 200.0,  # tendon 3 was exchanged\n 190.0 ]\n";
@@ -13,7 +13,7 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("hand.toml");
     fs::write(&path, FILE).expect("written");
-    let hand = Hand::open_limp(read(&path).expect("usable"), Some(path.clone())).expect("open");
+    let hand = Hand::open_limp(read(&path).expect("usable"), Some(path.clone()), Fingers::ALL).expect("open");
     let stage = |finger| hand.report(finger).expect("a report").stage;
     assert_eq!([1, 2, 3].map(stage), [Stage::Limp; 3]);
 

@@ -131,6 +131,13 @@ fn the_tool_stores_the_bound_and_keeps_the_rest_of_the_file() {
     let looked = run(&[]);
     assert!(looked.status.success(), "{looked:?}");
     assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+    // Of one finger, for which alone it is looked.
+    let one = run(&["--finger", "2", "--write"]);
+    let said = String::from_utf8(one.stdout).unwrap();
+    assert!(said.contains("finger 2:") && !said.contains("finger 1:") && !said.contains("finger 3:"), "{said}");
+    let bounds = hand::read(&path).unwrap().fingers.map(|finger| finger.stiffness.bound.unwrap());
+    assert!(bounds[0] == 5.5 && bounds[1] >= 6.0 && bounds[2] == 5.5, "{bounds:?}");
+    std::fs::write(&path, text).unwrap();
     let written = run(&["--write"]);
     assert!(written.status.success(), "{written:?}");
     let after = std::fs::read_to_string(&path).unwrap();

@@ -6,8 +6,8 @@ mod values;
 mod wrong;
 
 use crate::files::{raised_privileges, read_regular_file};
-use crate::hand::HandError;
 use crate::hand::announcement::say;
+use crate::hand::{Fingers, HandError};
 use crate::model::ShownPath;
 use crate::model::configuration::{Configuration, FINGERS};
 use std::path::{Path, PathBuf};
@@ -71,14 +71,14 @@ impl Configured {
         }
     }
 
-    /// Says in one line on standard error which fingers are simulated although nobody has asked for that.
-    pub fn announce(&self) {
-        if let Some(line) = self.announcement() {
+    /// Says in one line on standard error which of these fingers are simulated although nobody has asked for that.
+    pub fn announce(&self, fingers: Fingers) {
+        if let Some(line) = self.announcement(fingers) {
             say(&line);
         }
     }
 
-    fn announcement(&self) -> Option<String> {
+    fn announcement(&self, fingers: Fingers) -> Option<String> {
         let Some(file) = &self.file else {
             return Some(match raised_privileges() {
                 false => {
@@ -93,7 +93,7 @@ impl Configured {
             });
         };
         let unnamed: Vec<String> =
-            (1..=FINGERS).filter(|number| !self.ports_named[number - 1]).map(|number| number.to_string()).collect();
+            fingers.indices().filter(|&index| !self.ports_named[index]).map(|index| (index + 1).to_string()).collect();
         let fingers = match unnamed.len() {
             0 => return None,
             1 => format!("for finger {}: it is", unnamed[0]),
@@ -125,7 +125,7 @@ mod tests {
         ] {
             let (configuration, ports_named) = text::parse(text).expect("usable");
             let configured = Configured { configuration, file: Some("the/file".into()), ports_named };
-            let announcement = configured.announcement();
+            let announcement = configured.announcement(Fingers::ALL);
             match expected {
                 None => assert_eq!(announcement, None),
                 Some(expected) => {
@@ -134,5 +134,15 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn fingers_that_are_not_opened_are_not_announced() {
+        let text = "[finger.1]\nport = '/dev/a'\n";
+        let (configuration, ports_named) = text::parse(text).expect("usable");
+        let configured = Configured { configuration, file: Some("the/file".into()), ports_named };
+        assert_eq!(configured.announcement(Fingers::only(1).expect("finger 1")), None);
+        let said = configured.announcement(Fingers::only(3).expect("finger 3")).expect("an announcement");
+        assert!(said.contains("for finger 3: it is simulated"), "{said}");
     }
 }

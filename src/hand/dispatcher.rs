@@ -2,10 +2,10 @@
 
 use crate::control::{SetPoint, spatial};
 use crate::finger::{self, Adjustable, BlackBox, FingerReport, KeptRecord, Losses, Mailbox, Recording};
-use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::black_box::keep;
 use crate::hand::opening::Reached;
+use crate::hand::{Fingers, HandError};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
 use crate::realtime::{CycleTiming, Distribution, Histograms, Priority, Stage, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
@@ -23,6 +23,8 @@ const COLLECTING: Duration = Duration::from_millis(50);
 
 /// One finger as the planners see it.
 pub(super) struct Member {
+    /// 1 to 3.
+    pub number: i32,
     pub admission: RwLock<Admission>,
     pub mailbox: Mailbox,
 }
@@ -53,11 +55,15 @@ impl Collected {
 }
 
 impl Dispatcher {
-    /// `fingers` in the order of their numbers.
+    /// `fingers` in the order of their numbers: all that were opened.
     pub fn new(fingers: Vec<Reached>) -> Self {
         let (mut members, mut collected) = (Vec::new(), Vec::new());
         for finger in fingers {
-            members.push(Member { admission: RwLock::new(finger.admission), mailbox: finger.mailbox });
+            members.push(Member {
+                number: finger.index as i32 + 1, // 1 to 3
+                admission: RwLock::new(finger.admission),
+                mailbox: finger.mailbox,
+            });
             collected.push(Mutex::new(Collected {
                 arriving: finger.timings,
                 histograms: Histograms::new(),
@@ -233,8 +239,11 @@ impl Dispatcher {
     }
 
     fn index(&self, finger: i32) -> Result<usize, HandError> {
-        let index = usize::try_from(finger).ok().and_then(|number| number.checked_sub(1));
-        index.filter(|&index| index < self.members.len()).ok_or(HandError::NoSuchFinger(finger))
+        let index = self.members.iter().position(|member| member.number == finger);
+        index.ok_or_else(|| match Fingers::only(finger) {
+            Ok(_) => HandError::NotOpened(finger),
+            Err(there_is_none) => there_is_none,
+        })
     }
 }
 

@@ -18,6 +18,9 @@ pub enum HandError {
     /// Fingers are 1, 2 and 3.
     #[error("there is no finger {0}: fingers are 1, 2 and 3")]
     NoSuchFinger(i32),
+    /// A finger of a hand of which only others were opened.
+    #[error("finger {0} is not open: this hand was opened with other fingers only")]
+    NotOpened(i32),
     /// A stage of a cycle that is not known.
     #[error("there is no stage {0}: stages are TIMING_WAKE_UP to TIMING_AGE, 0 to 7")]
     NoSuchStage(i32),
@@ -345,8 +348,8 @@ impl HandError {
             Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } => libc::ETIMEDOUT,
             Self::NoAnswer(_) | Self::ServoStalled(_) => libc::ETIMEDOUT,
             Self::Calibration { .. } => libc::ECANCELED,
-            Self::NotReconnected(_) => libc::ENODEV,
             Self::SameNumber { .. } => libc::ENOTUNIQ,
+            Self::NotReconnected(_) | Self::NotOpened(_) => libc::ENODEV,
             Self::Busy(_) | Self::PortInUse { .. } => libc::EBUSY,
             Self::Store { source, .. } | Self::BlackBox { source, .. } => errno(source),
             Self::NoRecord { .. } => libc::ENOENT,

@@ -8,6 +8,7 @@ use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::announcement::say;
 use crate::hand::damping_admission::DampingAdmission;
+use crate::hand::fingers::Fingers;
 use crate::hand::identities::Identities;
 use crate::hand::workshop::{KnownBoard, Workshop};
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
@@ -76,10 +77,14 @@ pub(super) fn check_folder(configuration: &Configuration) -> Result<(), Refusal>
     }
 }
 
-/// A simulated board behind a pseudo-terminal, for each finger whose port is `simulated`.
-pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<SimulatedPort>; FINGERS], HandError> {
+/// A simulated board behind a pseudo-terminal, for each of these fingers whose port is `simulated`.
+pub(super) fn simulate(
+    configuration: &Configuration,
+    fingers: Fingers,
+) -> Result<[Option<SimulatedPort>; FINGERS], HandError> {
     let mut ports = [const { None }; FINGERS];
-    for (index, finger) in configuration.fingers.iter().enumerate() {
+    for index in fingers.indices() {
+        let finger = &configuration.fingers[index];
         if !finger.simulated() {
             continue;
         }
@@ -99,9 +104,10 @@ pub(super) fn simulate(configuration: &Configuration) -> Result<[Option<Simulate
     Ok(ports)
 }
 
-/// Opens every port and shakes hands with every finger on it. `limp`: the motors shall stay off.
+/// Opens the ports of these fingers and shakes hands with each of them. `limp`: the motors shall stay off.
 pub(super) fn reach(
     configuration: &Configuration,
+    fingers: Fingers,
     simulated: &[Option<SimulatedPort>; FINGERS],
     limp: bool,
 ) -> Result<Connected, HandError> {
@@ -109,24 +115,24 @@ pub(super) fn reach(
     let alarm = Alarm::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
     let (mut lines, mut reached, mut workshops) = (Vec::new(), Vec::new(), Vec::new());
     let mut identities = Identities::default();
-    for (path, sharing) in ports(configuration, simulated) {
+    for (path, sharing) in ports(configuration, fingers, simulated) {
         let first = sharing[0];
         let failed = |source| HandError::Link { finger: first + 1, source };
         let mut link = Link::open(&path, configuration.fingers[first].baud).map_err(failed)?;
         warn_of_latency(link.transport());
-        let (mut fingers, mut boards) = (Vec::new(), Vec::new());
+        let (mut servos, mut boards) = (Vec::new(), Vec::new());
         for &index in &sharing {
             let (servo, finger, board) = shake_hands(configuration, index, &mut link)?;
             identities.meet(board.finger, &path, &board.identity)?;
             let servo = servo.with(alarm.clone());
-            fingers.push(if limp { servo.limp() } else { servo });
+            servos.push(if limp { servo.limp() } else { servo });
             reached.push(finger);
             boards.push(board);
         }
         let (lender, borrower) = lending();
         lines.push(Line {
             thread: configuration.thread(first),
-            port: ServedPort::new(link, fingers).lent_through(lender),
+            port: ServedPort::new(link, servos).lent_through(lender),
         });
         let baud = configuration.fingers[first].baud;
         // The path of a built-in board's port may mean a pseudo-terminal of the planner's once that port is gone.
@@ -138,14 +144,16 @@ pub(super) fn reach(
     Ok(Connected { lines, reached, workshops })
 }
 
-/// Every port, with the fingers on it, 0 to 2, one at least.
+/// Every port of these fingers, with those that are on it, 0 to 2, one at least.
 pub(super) fn ports(
     configuration: &Configuration,
+    fingers: Fingers,
     simulated: &[Option<SimulatedPort>; FINGERS],
 ) -> Vec<(PathBuf, Vec<usize>)> {
     let mut ports: Vec<(PathBuf, Vec<usize>)> = Vec::new();
-    for (index, finger) in configuration.fingers.iter().enumerate() {
-        let path = simulated[index].as_ref().map_or_else(|| PathBuf::from(&finger.port), |port| port.path());
+    for index in fingers.indices() {
+        let named = || PathBuf::from(&configuration.fingers[index].port);
+        let path = simulated[index].as_ref().map_or_else(named, |port| port.path());
         match ports.iter_mut().find(|(known, _)| *known == path) {
             Some((_, fingers)) => fingers.push(index),
             None => ports.push((path, vec![index])),

@@ -127,8 +127,8 @@ impl Recovering {
         // An emergency stop from here on counts.
         let stop_calls = stop_calls();
         let place = hand.recovery.places.iter().find(|place| place.fingers.contains(&finger));
-        let place = place.ok_or(HandError::NoSuchFinger(finger))?.clone();
         let report = hand.report(finger)?;
+        let place = place.ok_or(HandError::NotOpened(finger))?.clone();
         if !matches!(report.stage, Stage::Faulted(_)) {
             return Ok(Self { task: None, begun });
         }

@@ -7,7 +7,7 @@ use crate::hand::dispatcher::Dispatcher;
 use crate::hand::opening::{Connected, check, check_folder, reach, simulate};
 use crate::hand::recovery::Recovery;
 use crate::hand::servo_threads::{Given, PortServo, start};
-use crate::hand::{Configured, HandError, configured};
+use crate::hand::{Configured, Fingers, HandError, configured};
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{self, Distribution, now};
 use nalgebra::Vector3;
@@ -29,7 +29,7 @@ const LAST_WORDS: Duration = Duration::from_millis(20);
 /// How often OpenHand looks whether every finger holds its pose.
 const LOOKING: Duration = Duration::from_millis(1);
 
-/// An open hand: three fingers, their servo threads and their ports. A value: a process can have several.
+/// An open hand: its fingers, their servo threads and their ports. A value: a process can have several.
 ///
 /// Every call may come from several threads. Dropping it closes it.
 pub struct Hand {
@@ -90,8 +90,8 @@ impl Hand {
     /// # Errors
     /// As [`Hand::open`].
     pub fn open_as(configured: Configured) -> Result<Self, HandError> {
-        configured.announce();
-        Self::open_from(configured.configuration, configured.file, false)
+        configured.announce(Fingers::ALL);
+        Self::open_from(configured.configuration, configured.file, Fingers::ALL, false)
     }
 
     /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons and returns when every finger holds the
@@ -101,23 +101,28 @@ impl Hand {
     /// A configuration that cannot be used, a port or board that does not serve, a finger that faults. Everything that was
     /// opened is closed again then, and every motor is in its end state.
     pub fn open(configuration: Configuration) -> Result<Self, HandError> {
-        Self::open_from(configuration, None, false)
+        Self::open_from(configuration, None, Fingers::ALL, false)
     }
 
-    /// Opens the hand with its motors off: to find signs and zeros before anything pulls. `file`: where calibration shall
-    /// be stored. A finger becomes a spring when it has been calibrated by [`Hand::zero`] or [`Hand::identify`].
+    /// Opens these fingers of the hand, with their motors off: to find signs and zeros before anything pulls. `file`: where calibration
+    /// shall be stored. A finger becomes a spring when it has been calibrated by [`Hand::zero`] or [`Hand::identify`].
     ///
     /// # Errors
     /// As [`Hand::open`].
-    pub fn open_limp(configuration: Configuration, file: Option<PathBuf>) -> Result<Self, HandError> {
-        Self::open_from(configuration, file, true)
+    pub fn open_limp(configuration: Configuration, file: Option<PathBuf>, fingers: Fingers) -> Result<Self, HandError> {
+        Self::open_from(configuration, file, fingers, true)
     }
 
-    fn open_from(configuration: Configuration, file: Option<PathBuf>, limp: bool) -> Result<Self, HandError> {
+    fn open_from(
+        configuration: Configuration,
+        file: Option<PathBuf>,
+        fingers: Fingers,
+        limp: bool,
+    ) -> Result<Self, HandError> {
         check(&configuration)?;
         check_folder(&configuration)?;
-        let simulated = simulate(&configuration)?;
-        let Connected { lines, reached, workshops } = reach(&configuration, &simulated, limp)?;
+        let simulated = simulate(&configuration, fingers)?;
+        let Connected { lines, reached, workshops } = reach(&configuration, fingers, &simulated, limp)?;
         let recovery = Recovery::new(workshops);
         let dispatcher = Dispatcher::new(reached);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOPPING;

@@ -6,12 +6,12 @@ use serde::de::IntoDeserializer;
 use serde::de::value::{Error, StrDeserializer};
 use std::io::{self, Write};
 use std::path::PathBuf;
-use sun2xp::hand;
+use sun2xp::hand::{self, Fingers};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RATES, Scheme};
 use sun2xp::stability::{Limit, Search, StiffnessBound};
 
-/// Finds the bound on the largest eigenvalue of Kx: the stiffness up to which every finger is stable in every pose.
+/// Finds the bound on the largest eigenvalue of Kx: the stiffness up to which a finger is stable in every pose.
 ///
 /// Controller, links, tendons and motors are those of the configuration, in simulation: without friction, exactly measured, with
 /// one cycle of delay. Poses within the joint limits, axes of Kx and loads are random. Where a pose carries less than the bound the
@@ -21,6 +21,9 @@ pub struct Arguments {
     /// The configuration file. Without it: the one that OpenHand would take.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
+    /// Which finger; may be given again. Without it: all.
+    #[arg(long = "finger", value_name = "N", value_parser = clap::value_parser!(i32).range(1..=FINGERS as i64))]
+    fingers: Vec<i32>,
     /// Writes the bounds into the configuration file, as finger.stiffness.bound.
     #[arg(long, requires = "config", conflicts_with_all = ["scheme", "rate"])]
     write: bool,
@@ -62,22 +65,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     configuration.hand.rate = arguments.rate.unwrap_or(configuration.hand.rate);
     let search = Search { samples: arguments.samples, seed: arguments.seed };
-    let mut found: Vec<StiffnessBound> = Vec::new();
-    for index in 0..FINGERS {
+    let mut found: Vec<(usize, StiffnessBound)> = Vec::new();
+    for number in Fingers::of(&arguments.fingers)?.numbers() {
+        let index = number as usize - 1; // 1 to 3
         let finger = &configuration.fingers[index];
-        let twin = (0..index).find(|&other| alike(finger, &configuration.fingers[other]));
+        let twin = found.iter().find(|&&(other, _)| alike(finger, &configuration.fingers[other]));
         let bound = match twin {
-            Some(other) => found[other],
+            Some(&(_, bound)) => bound,
             None => search
                 .bound(finger, configuration.hand.rate)
                 .map_err(|unusable| format!("finger {}: {} {}", index + 1, unusable.key, unusable.reason))?,
         };
-        found.push(bound);
-        tell(&configuration, index, &bound, twin)?;
+        tell(&configuration, index, &bound, twin.map(|&(other, _)| other))?;
+        found.push((index, bound));
     }
     let Some(path) = arguments.config.as_ref().filter(|_| arguments.write) else { return Ok(()) };
-    for (finger, bound) in configuration.fingers.iter_mut().zip(&found) {
-        finger.stiffness.bound = Some(bound.stiffness);
+    for (index, bound) in found {
+        configuration.fingers[index].stiffness.bound = Some(bound.stiffness);
     }
     hand::store(path, &configuration)?;
     writeln!(io::stdout(), "written to {}", ShownPath(path))?;

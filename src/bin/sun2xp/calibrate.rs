@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use sun2xp::control::calibration::{Findings, Progress, Step};
-use sun2xp::hand::{Configured, Hand};
+use sun2xp::hand::{Configured, Fingers, Hand};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{ConfiguredFinger, FINGERS};
 
@@ -20,7 +20,7 @@ pub struct Arguments {
     /// The configuration file: read, and rewritten at the end.
     #[arg(long, value_name = "FILE")]
     config: PathBuf,
-    /// Which finger; may be given again. Without it: all.
+    /// Which finger; may be given again. Without it: all. The ports of the others are not opened.
     #[arg(long = "finger", value_name = "N", value_parser = clap::value_parser!(i32).range(1..=FINGERS as i64))]
     fingers: Vec<i32>,
     /// Find which way motors, encoders and gauges count.
@@ -39,11 +39,11 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let configured = Configured::read(&arguments.config)?;
-    configured.announce();
+    let fingers = Fingers::of(&arguments.fingers)?;
+    configured.announce(fingers);
     let everything = !(arguments.signs || arguments.zero || arguments.identify);
-    let fingers = if arguments.fingers.is_empty() { vec![1, 2, 3] } else { arguments.fingers.clone() };
-    let hand = Hand::open_limp(configured.configuration, Some(arguments.config.clone()))?;
-    for finger in fingers {
+    let hand = Hand::open_limp(configured.configuration, Some(arguments.config.clone()), fingers)?;
+    for finger in fingers.numbers() {
         let before = hand.calibrated(finger)?;
         if everything || arguments.signs {
             tell(hand.find_signs(finger, show(finger))?)?;

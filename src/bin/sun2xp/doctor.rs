@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
-use sun2xp::hand::{self, Configured, Finding, Verdict};
+use sun2xp::hand::{self, Configured, Finding, Fingers, Verdict};
 
 /// Looks at kernel, limits, cores and ports, measures wake-ups and round trips, and says what to change. Motors stay off.
 ///
@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Some(path) => Configured::read(path)?,
         None => hand::configured()?,
     };
-    configured.announce();
+    configured.announce(Fingers::ALL);
     let findings =
         hand::examine(&configured.configuration, Path::new("/"), Duration::from_secs_f64(arguments.seconds))?;
     let pass = findings.iter().all(|finding| finding.verdict < Verdict::Failure);

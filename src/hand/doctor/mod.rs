@@ -4,8 +4,8 @@ mod machine;
 mod measured;
 mod ports;
 
-use crate::hand::HandError;
 use crate::hand::opening::{check, simulate};
+use crate::hand::{Fingers, HandError};
 use crate::model::configuration::{Configuration, RealTime};
 use serde::Serialize;
 use std::path::Path;
@@ -55,7 +55,7 @@ pub fn examine(configuration: &Configuration, root: &Path, duration: Duration) -
     check(configuration)?;
     let mut findings = machine::findings(configuration, root);
     findings.extend(measured::wake_ups(configuration, duration / 2)?);
-    let simulated = simulate(configuration)?;
+    let simulated = simulate(configuration, Fingers::ALL)?;
     findings.extend(ports::findings(configuration, &simulated, root, duration / 2)?);
     Ok(findings)
 }

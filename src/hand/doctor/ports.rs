@@ -3,10 +3,10 @@
 use crate::board::protocol::Command;
 use crate::board::{Allowance, Link, LinkError, OutgoingCommand, Port, PortError, SimulatedPort, Terms};
 use crate::finger::REPLY_WINDOW;
-use crate::hand::HandError;
 use crate::hand::doctor::{Finding, Verdict};
 use crate::hand::opening::ports;
 use crate::hand::servo_threads::priority;
+use crate::hand::{Fingers, HandError};
 use crate::model::ShownPath;
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{Clock, CycleTiming, Distribution, Histograms, MonotonicClock, Schedule, Stage, now, spawn};
@@ -26,7 +26,7 @@ pub(super) fn findings(
     root: &Path,
     duration: Duration,
 ) -> Result<Vec<Finding>, HandError> {
-    let ports = ports(configuration, simulated);
+    let ports = ports(configuration, Fingers::ALL, simulated);
     let each = duration / ports.len() as u32;
     let mut findings = Vec::new();
     for (path, fingers) in ports {
