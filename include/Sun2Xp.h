@@ -152,6 +152,27 @@
    other call. One that calls exit, which C does not promise to work, ends the program;
    where it broke into a call the boards end the motion instead of CloseHand.
 
+   Broken pipes: where nobody reads standard error, lines of the library are lost. The
+   planner gets no SIGPIPE for them.
+
+   Stack: a call needs up to 16 KiB of the stack of its thread.
+
+   Slow calls: OpenHand, CloseHand, RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger
+   and WriteBlackBox work in a thread of the library, for which the planner's waits. A
+   signal handler may jump out of that wait (siglongjmp). The call then goes on to its
+   end by itself: until then OpenHand is refused with EBUSY, and CloseHand waits.
+
+   Undefined: to jump out of any other call, and to leave any call by pthread_exit or by
+   an exception in a signal handler.
+
+   Cancellation: pthread_cancel does not interrupt a call. It takes effect at the
+   planner's next cancellation point; with asynchronous cancellation, when the call
+   returns.
+
+   Floating point: the library computes in the default environment, in its threads and
+   in every call. The planner's rounding, traps, treatment of denormals and exception
+   flags are after a call what they were before.
+
    Fork: a child has no servo threads. Once a process has called OpenHand, every call
    in a child forked from it is refused with EPERM, except HandError, FaultText and
    StopHand; the parent is undisturbed. A child that calls exec starts afresh.
@@ -1222,7 +1243,7 @@ int SendDamping(int, double);
             clamped: hand.out_of_range)
    EIO      the finger is faulted
 
- Threads: any. Never waits for a servo; about 100 us, and allocates.
+ Threads: any. Never waits for a servo; about 200 us, and allocates.
 
  Example:
 

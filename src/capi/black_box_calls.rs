@@ -3,16 +3,17 @@
 // The names of the header.
 #![allow(non_snake_case)]
 
+use crate::capi::boundary::{delegated, guarded};
 use crate::capi::default_hand;
 use crate::capi::memory::{fill, non_null, size_up_to};
-use crate::capi::refusal::{Wanted, guarded};
+use crate::capi::refusal::Wanted;
 use crate::capi::status_calls::{count, state};
 use crate::control::Activity;
 use crate::finger::KeptRecord;
 use crate::hand;
 use std::ffi::{CStr, OsStr, c_char, c_int, c_uint, c_ulong};
 use std::os::unix::ffi::OsStrExt;
-use std::path::Path;
+use std::path::PathBuf;
 
 /// One cycle of a finger, as the black box keeps it. Set Size = sizeof (struct
 /// FingerRecord) before the call: later versions add members at the end.
@@ -129,13 +130,15 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 ///     WriteBlackBox(1, "finger-1.jsonl");
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn WriteBlackBox(i: c_int, Path: *const c_char) -> c_int {
-    guarded("WriteBlackBox", || {
+    delegated("WriteBlackBox", || {
         non_null(Path, "Path", Wanted::FileName)?;
         // SAFETY: not null, and a C string by the manual's contract.
-        let path = unsafe { CStr::from_ptr(Path) };
-        let recording = default_hand::with(|hand| hand.recording(i))?;
-        // Without the hand: a slow disk must not keep it from being closed.
-        Ok(hand::save(&recording, self::Path::new(OsStr::from_bytes(path.to_bytes())))?)
+        let path = PathBuf::from(OsStr::from_bytes(unsafe { CStr::from_ptr(Path) }.to_bytes()));
+        Ok(move || {
+            let recording = default_hand::with(|hand| hand.recording(i))?;
+            // Without the hand: a slow disk must not keep it from being closed.
+            Ok(hand::save(&recording, &path)?)
+        })
     })
 }
 

@@ -3,8 +3,8 @@
 // Named like the calls of 1990.
 #![allow(non_snake_case)]
 
+use crate::capi::boundary::delegated;
 use crate::capi::default_hand;
-use crate::capi::refusal::guarded;
 use crate::control::calibration::Task;
 use std::ffi::c_int;
 
@@ -54,7 +54,7 @@ use std::ffi::c_int;
 ///         fprintf(stderr, "%s\n", HandError());
 #[unsafe(no_mangle)]
 pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
-    guarded("ZeroFinger", || default_hand::calibrate(i, Task::Zero))
+    delegated("ZeroFinger", || Ok(move || default_hand::calibrate(i, Task::Zero)))
 }
 
 /// IdentifyFinger - measure gauge gains, friction and tendon stiffness of a finger
@@ -75,5 +75,5 @@ pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
 /// Threads: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn IdentifyFinger(i: c_int) -> c_int {
-    guarded("IdentifyFinger", || default_hand::calibrate(i, Task::Identify))
+    delegated("IdentifyFinger", || Ok(move || default_hand::calibrate(i, Task::Identify)))
 }

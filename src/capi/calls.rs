@@ -5,9 +5,10 @@
 // The names of 1990.
 #![allow(non_snake_case)]
 
+use crate::capi::boundary::{delegated, delegated_or_done_here, guarded, uncancelled};
 use crate::capi::default_hand;
 use crate::capi::memory::{load, non_null};
-use crate::capi::refusal::{self, Wanted, guarded};
+use crate::capi::refusal::{self, Wanted};
 use std::ffi::{c_char, c_int};
 
 /// OpenHand - start the hand
@@ -40,7 +41,7 @@ use std::ffi::{c_char, c_int};
 ///     }
 #[unsafe(no_mangle)]
 pub extern "C" fn OpenHand() -> c_int {
-    guarded("OpenHand", default_hand::open)
+    delegated("OpenHand", || Ok(default_hand::open))
 }
 
 /// CloseHand - stop the hand
@@ -59,7 +60,7 @@ pub extern "C" fn OpenHand() -> c_int {
 /// closes.
 #[unsafe(no_mangle)]
 pub extern "C" fn CloseHand() -> c_int {
-    guarded("CloseHand", default_hand::close)
+    delegated_or_done_here("CloseHand", default_hand::close)
 }
 
 /// SendPos - send desired joint angles to a finger
@@ -225,7 +226,7 @@ pub unsafe extern "C" fn GetPosD(i: c_int, Pos: *mut f64) -> c_int {
 /// Threads: any; each has its own text. Works in a forked child too.
 #[unsafe(no_mangle)]
 pub extern "C" fn HandError() -> *const c_char {
-    refusal::text()
+    uncancelled(refusal::text)
 }
 
 fn rows(entries: [f64; 9]) -> [[f64; 3]; 3] {

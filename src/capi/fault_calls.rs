@@ -3,8 +3,8 @@
 // The names of the header.
 #![allow(non_snake_case)]
 
+use crate::capi::boundary::{guarded, uncancelled};
 use crate::capi::memory::{fill, size_up_to};
-use crate::capi::refusal::guarded;
 use crate::finger::{self, FaultKind};
 use crate::hand::FingerFault;
 use std::ffi::{CString, c_char, c_int, c_uint, c_ulong};
@@ -79,8 +79,10 @@ pub unsafe extern "C" fn GetFault(i: c_int, Fault: *mut Fault) -> c_int {
 /// Threads: any. Works in a forked child too.
 #[unsafe(no_mangle)]
 pub extern "C" fn FaultText(Number: c_int) -> *const c_char {
-    let index = usize::try_from(Number).ok().and_then(|number| number.checked_sub(1));
-    index.and_then(|index| TEXTS.get(index)).map_or(c"".as_ptr(), |text| text.as_ptr())
+    uncancelled(|| {
+        let index = usize::try_from(Number).ok().and_then(|number| number.checked_sub(1));
+        index.and_then(|index| TEXTS.get(index)).map_or(c"".as_ptr(), |text| text.as_ptr())
+    })
 }
 
 static TEXTS: LazyLock<Vec<CString>> = LazyLock::new(|| {

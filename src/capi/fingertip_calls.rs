@@ -4,9 +4,10 @@
 // Named like the calls of 1990.
 #![allow(non_snake_case)]
 
+use crate::capi::boundary::{delegated, guarded};
 use crate::capi::default_hand;
 use crate::capi::memory::{fill, load, non_null, size_up_to};
-use crate::capi::refusal::{Wanted, guarded};
+use crate::capi::refusal::Wanted;
 use crate::hand::{self, HandError};
 use crate::model::{Contact, ContactError};
 use nalgebra::{Matrix3, Matrix4, Vector3};
@@ -228,21 +229,23 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 ///            clamped: hand.out_of_range)
 ///   EIO      the finger is faulted
 ///
-/// Threads: any. Never waits for a servo; about 100 us, and allocates.
+/// Threads: any. Never waits for a servo; about 200 us, and allocates.
 ///
 /// Example:
 ///
 ///     AdjustFinger(1, "tendon.minimum = 6\ncontroller.tension_gain = 3");
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
-    guarded("AdjustFinger", || {
+    delegated("AdjustFinger", || {
         non_null(Keys, "Keys", Wanted::Text)?;
         // SAFETY: not null, and a string by the manual's contract.
-        let keys = unsafe { CStr::from_ptr(Keys) }.to_str();
-        default_hand::with(|hand| -> Result<(), HandError> {
-            hand.report(i)?;
-            let reason = "is not UTF-8".to_string();
-            hand.adjust(i, keys.map_err(|_| HandError::Adjustment { finger: i, line: 1, reason })?)
+        let keys = unsafe { CStr::from_ptr(Keys) }.to_owned();
+        Ok(move || {
+            default_hand::with(|hand| -> Result<(), HandError> {
+                hand.report(i)?;
+                let reason = "is not UTF-8".to_string();
+                hand.adjust(i, keys.to_str().map_err(|_| HandError::Adjustment { finger: i, line: 1, reason })?)
+            })
         })
     })
 }

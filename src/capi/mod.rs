@@ -10,6 +10,7 @@
 #![allow(unsafe_code)]
 
 mod black_box_calls;
+mod boundary;
 mod calibration_calls;
 mod calls;
 mod default_hand;

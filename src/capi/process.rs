@@ -1,4 +1,4 @@
-//! What the process around the hand does: fork, exit, errno and standard error.
+//! What the process around the hand does: fork, exit and errno.
 
 use crate::capi::default_hand;
 use crate::capi::fault_calls::compose_texts;
@@ -70,12 +70,4 @@ pub(super) fn errno() -> c_int {
 pub(super) fn set_errno(errno: c_int) {
     // SAFETY: the address of the calling thread's own errno is always valid.
     unsafe { *libc::__errno_location() = errno }
-}
-
-/// Writes one line on standard error. Not with `eprintln!`, whose lock a forked child may find taken for ever, and which
-/// panics when standard error is closed.
-pub(super) fn print_line(text: &str) {
-    let line = format!("sun2xp: {text}\n");
-    // SAFETY: the pointer and the length are those of a live string. A short or failed write has no remedy.
-    unsafe { libc::write(libc::STDERR_FILENO, line.as_ptr().cast(), line.len()) };
 }

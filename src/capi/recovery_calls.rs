@@ -3,8 +3,8 @@
 // The names of the header.
 #![allow(non_snake_case)]
 
+use crate::capi::boundary::delegated;
 use crate::capi::default_hand;
-use crate::capi::refusal::guarded;
 use crate::hand;
 use std::ffi::c_int;
 
@@ -75,5 +75,5 @@ pub extern "C" fn StopHand() -> c_int {
 ///     }
 #[unsafe(no_mangle)]
 pub extern "C" fn RecoverHand(i: c_int) -> c_int {
-    guarded("RecoverHand", || default_hand::recover(i))
+    delegated("RecoverHand", || Ok(move || default_hand::recover(i)))
 }

@@ -4,12 +4,12 @@
 use crate::capi::process;
 use crate::hand;
 use crate::model::one_line;
+use crate::realtime::print_line;
 use parking_lot::Mutex;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_int};
 use std::fmt::{self, Display, Formatter};
 use std::mem::{Discriminant, discriminant};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use thiserror::Error;
 
@@ -91,30 +91,11 @@ thread_local! {
 static PRINT: AtomicBool = AtomicBool::new(true);
 static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
 
-/// Runs one call: 0 where it is done, -1 where it is refused. No panic leaves it.
-pub(super) fn guarded(name: &'static str, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
-    let errno = process::errno();
-    let outcome = match process::is_forked_child() {
-        true => Err(Refusal::Forked),
-        false => catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| Err(Refusal::Panicked(message(&*panic)))),
-    };
-    match outcome {
-        Ok(()) => {
-            // Files that are looked for and not there, and locks that were waited for, have set it.
-            process::set_errno(errno);
-            0
-        }
-        Err(refusal) => {
-            refuse(name, &refusal);
-            -1
-        }
-    }
-}
-
-fn refuse(name: &str, refusal: &Refusal) {
+/// Leaves errno, the text of the calling thread and, at the first of its kind, a line on standard error.
+pub(super) fn refuse(name: &str, refusal: &Refusal) {
     let text = one_line(&format!("{name}: {refusal}"));
     if PRINT.load(Ordering::Relaxed) && is_first_of_its_kind(refusal.kind()) {
-        process::print_line(&text);
+        print_line(&text);
     }
     // A thread that is ending may have no text any more: errno still tells.
     let _ = TEXT.try_with(|slot| {
@@ -146,47 +127,9 @@ pub(super) fn text() -> *const c_char {
     text.ok().flatten().unwrap_or(c"".as_ptr())
 }
 
-fn message(panic: &(dyn std::any::Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
-    text.unwrap_or("no message").to_string()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::thread;
-
-    fn told() -> String {
-        // SAFETY: the text of this thread, which refuses nothing meanwhile.
-        unsafe { CStr::from_ptr(text()) }.to_string_lossy().into_owned()
-    }
-
-    #[test]
-    fn a_panic_does_not_leave_the_boundary() {
-        let result = guarded("SendPos", || panic!("a defect"));
-        let errno = std::io::Error::last_os_error().raw_os_error();
-        assert_eq!((result, errno), (-1, Some(libc::EIO)));
-        assert_eq!(told(), "SendPos: the library failed (a defect): a defect of this library, please report it");
-    }
-
-    #[test]
-    fn success_leaves_errno() {
-        process::set_errno(libc::E2BIG);
-        let call = || {
-            process::set_errno(libc::ENOENT);
-            Ok(())
-        };
-        assert_eq!((guarded("OpenHand", call), process::errno()), (0, libc::E2BIG));
-    }
-
-    #[test]
-    fn every_thread_has_its_own_text_which_success_leaves_alone() {
-        assert_eq!(told(), "");
-        assert_eq!(guarded("GetPos", || Err(Refusal::NoHand)), -1);
-        assert_eq!(guarded("SendPos", || Ok(())), 0);
-        assert!(told().starts_with("GetPos: no hand is open"));
-        thread::scope(|scope| scope.spawn(|| assert_eq!(told(), "")).join()).expect("another thread has no text yet");
-    }
 
     #[test]
     fn kinds_are_told_apart_by_the_refusal_of_the_hand() {

@@ -3,8 +3,8 @@
 // Named like the calls of 1990.
 #![allow(non_snake_case)]
 
+use crate::capi::boundary::guarded;
 use crate::capi::memory::{fill, size_up_to};
-use crate::capi::refusal::guarded;
 use crate::finger::Stage;
 use crate::hand;
 use std::ffi::{c_int, c_uint, c_ulong};

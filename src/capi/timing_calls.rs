@@ -3,9 +3,9 @@
 // Named like the calls of 1990.
 #![allow(non_snake_case)]
 
+use crate::capi::boundary::guarded;
 use crate::capi::default_hand;
 use crate::capi::memory::{fill, size_up_to};
-use crate::capi::refusal::guarded;
 use crate::capi::status_calls::count;
 use crate::finger::Losses;
 use crate::hand::{Hand, HandError};

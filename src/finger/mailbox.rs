@@ -195,7 +195,12 @@ fn shared<T: Clone + Send>(initial: &T, memory: &mut Memory) -> (Input<T>, Outpu
 impl Mailbox {
     /// The newest report.
     pub fn report(&self) -> FingerReport {
-        *self.planners.lock().reports.read()
+        self.look(|report| *report)
+    }
+
+    /// Looks at the newest report where it is: it is large.
+    pub fn look<R>(&self, look: impl FnOnce(&FingerReport) -> R) -> R {
+        look(self.planners.lock().reports.read())
     }
 
     /// Whether the servo has nothing more to do for the finger; none where a planner's call is just using the mailbox, perhaps one
@@ -223,22 +228,27 @@ impl Mailbox {
     /// # Errors
     /// The fault, or inside it what the change refuses; nothing is sent then.
     pub fn try_send<E>(&self, change: impl FnOnce(&mut SetPoint) -> Result<(), E>) -> Result<Result<(), E>, Fault> {
-        let mut planners = self.planners.lock();
-        if let Stage::Faulted(fault) = planners.reports.read().stage {
+        let planners = &mut *self.planners.lock();
+        let report = planners.reports.read();
+        if let Stage::Faulted(fault) = report.stage {
             return Err(fault);
         }
-        let mut sent = planners.sent();
-        if let Err(refusal) = change(&mut sent.set_point) {
+        planners.sent.begin_with(report);
+        let next = planners.set_points.input_buffer_mut();
+        *next = planners.sent;
+        if let Err(refusal) = change(&mut next.set_point) {
             return Ok(Err(refusal));
         }
-        planners.sent = sent;
-        planners.set_points.write(sent);
+        planners.sent = *next;
+        planners.set_points.publish();
         Ok(Ok(()))
     }
 
     /// The set point that was sent last; where none was since the finger became a spring, the one it holds.
     pub fn sent(&self) -> SetPoint {
-        self.planners.lock().sent().set_point
+        let planners = &mut *self.planners.lock();
+        planners.sent.begin_with(planners.reports.read());
+        planners.sent.set_point
     }
 
     /// Gives the servo something else to compute with, unless the finger is faulted.
@@ -277,16 +287,16 @@ impl Mailbox {
     }
 }
 
-impl PlannersEnd {
-    /// What the next change starts from.
-    fn sent(&mut self) -> SentSetPoint {
-        let report = self.reports.read();
-        if report.springs != self.sent.spring {
-            self.sent = SentSetPoint { spring: report.springs, set_point: report.set_point };
+impl SentSetPoint {
+    /// What the next change starts from: what was sent last; in a new stretch what the servo holds.
+    fn begin_with(&mut self, report: &FingerReport) {
+        if report.springs != self.spring {
+            *self = Self { spring: report.springs, set_point: report.set_point };
         }
-        self.sent
     }
+}
 
+impl PlannersEnd {
     /// What is handed over goes first: a servo that has the order has that too.
     fn order(&mut self, order: Order, adjustable: Option<Adjustable>) -> Result<Option<u32>, Fault> {
         let report = *self.reports.read();

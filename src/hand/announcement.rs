@@ -1,9 +1,9 @@
 //! What a hand says on standard error: one line each, for people who do not look at results.
 
 use crate::model::one_line;
-use std::io::Write;
+use crate::realtime::print_line;
 
-/// One line, written at once, so that those of several threads do not mix. Not with `eprintln!`, which panics where nobody reads it.
+/// One line.
 pub(super) fn say(text: &str) {
-    let _ = std::io::stderr().write_all(format!("sun2xp: {}\n", one_line(text)).as_bytes());
+    print_line(&one_line(text));
 }

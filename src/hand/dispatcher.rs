@@ -125,6 +125,14 @@ impl Dispatcher {
         member.mailbox.try_send(change).map_err(|fault| HandError::Faulted { finger, fault })?
     }
 
+    /// Joints 0, 1, 2 of a finger that is not faulted, rad.
+    pub fn position(&self, finger: i32) -> Result<[f64; 3], HandError> {
+        self.member(finger)?.mailbox.look(|report| match report.stage {
+            finger::Stage::Faulted(fault) => Err(HandError::Faulted { finger, fault }),
+            _ => Ok(report.cycle.joints.into()),
+        })
+    }
+
     /// The newest report of a finger that is not faulted.
     pub fn report(&self, finger: i32) -> Result<FingerReport, HandError> {
         let report = self.last_report(finger)?;

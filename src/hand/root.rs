@@ -165,7 +165,7 @@ impl Hand {
     /// # Errors
     /// No such finger, finger faulted.
     pub fn position(&self, finger: i32) -> Result<[f64; 3], HandError> {
-        self.dispatcher.report(finger).map(|report| report.cycle.joints.into())
+        self.dispatcher.position(finger)
     }
 
     /// The newest report of finger 1, 2 or 3, faulted or not.

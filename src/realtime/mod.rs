@@ -1,21 +1,32 @@
-//! Clock, periods, priorities, locked memory and timing figures of the servo threads.
+//! Clock, periods, priorities, locked memory and timing figures of the servo threads; and what keeps threads of this library and of
+//! planners apart: signals, cancellation, floating-point environments.
 
+mod cancellation;
 mod clock;
+mod errand;
+mod floating_point;
 mod follower;
 mod limits;
 mod memory;
 mod period;
 mod response_time;
+mod signals;
+mod standard_error;
 mod threads;
 mod timing;
 mod wake_up;
 
+pub use cancellation::{DeferredCancellation, NoCancellation};
 pub use clock::{Clock, MonotonicClock, now};
+pub use errand::Errand;
+pub use floating_point::Environment;
 pub use follower::Follower;
 pub use limits::{remedy, with_remedy};
 pub use memory::Memory;
 pub use period::Schedule;
 pub use response_time::{PeriodicThread, Response, response_times};
+pub use signals::SignalsBlocked;
+pub use standard_error::print_line;
 pub use threads::{Priority, Realtime, lock_stack, spawn, touch_stack};
 pub use timing::{CycleTiming, Distribution, Histograms, Stage};
 pub use wake_up::{WakeUp, measure_wake_up};

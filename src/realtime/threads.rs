@@ -1,12 +1,17 @@
 //! Threads that leave the planner's signals alone and run real-time where the system permits it.
 #![allow(unsafe_code)]
 
+use super::floating_point::use_default_environment;
+use super::signals::SignalsBlocked;
 use std::io;
 use std::mem::MaybeUninit;
 use std::thread::{Builder, JoinHandle};
 
 /// Small, so that a planner that locks its memory (mlockall) locks little of ours; many times what a servo cycle uses.
 const STACK_BYTES: usize = 256 * 1024;
+
+/// Opening a hand takes 290 KiB.
+const STAND_IN_STACK_BYTES: usize = 512 * 1024;
 
 /// How a thread is scheduled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,7 +34,8 @@ pub struct Realtime {
 }
 
 /// Starts a thread with all signals blocked, so that it takes none of the planner's: not one that the process receives, nor
-/// one that its own system calls let in. `body` runs after the thread has the priority it could get, and is told.
+/// one that its own system calls let in; and with the default floating-point environment. `body` runs after the thread has the
+/// priority it could get, and is told.
 ///
 /// # Errors
 /// The system refuses a thread.
@@ -38,11 +44,28 @@ pub fn spawn<T: Send + 'static>(
     priority: Priority,
     body: impl FnOnce(Realtime) -> T + Send + 'static,
 ) -> io::Result<JoinHandle<T>> {
-    let restored = block_all_signals();
-    let handle = Builder::new().name(name.into()).stack_size(STACK_BYTES).spawn(move || body(apply(priority)));
-    // SAFETY: `restored` is the mask that this thread had.
-    unsafe { libc::pthread_sigmask(libc::SIG_SETMASK, &restored, std::ptr::null_mut()) };
-    handle
+    start(name, STACK_BYTES, move || body(apply(priority)))
+}
+
+/// Starts such a thread that is scheduled as the calling thread is: it works in its place.
+pub(super) fn spawn_alike<T: Send + 'static>(
+    name: &str,
+    body: impl FnOnce() -> T + Send + 'static,
+) -> io::Result<JoinHandle<T>> {
+    start(name, STAND_IN_STACK_BYTES, body)
+}
+
+fn start<T: Send + 'static>(
+    name: &str,
+    stack: usize,
+    body: impl FnOnce() -> T + Send + 'static,
+) -> io::Result<JoinHandle<T>> {
+    // The new thread inherits the mask.
+    let _blocked = SignalsBlocked::all();
+    Builder::new().name(name.into()).stack_size(stack).spawn(|| {
+        use_default_environment();
+        body()
+    })
 }
 
 /// Locks the stack of the calling thread, all of it, and so faults it in.
@@ -73,17 +96,6 @@ pub fn touch_stack() {
     for byte in stack.iter_mut().step_by(PAGE) {
         // SAFETY: a byte of a local array; volatile, because nobody ever reads it.
         unsafe { std::ptr::from_mut(byte).write_volatile(MaybeUninit::new(0)) };
-    }
-}
-
-/// Blocks every signal in the calling thread, whose new threads inherit that; returns the mask to restore.
-fn block_all_signals() -> libc::sigset_t {
-    let (mut all, mut before) = (MaybeUninit::uninit(), MaybeUninit::uninit());
-    // SAFETY: sigfillset and pthread_sigmask initialise what they are given; SIG_SETMASK with two valid pointers cannot fail.
-    unsafe {
-        libc::sigfillset(all.as_mut_ptr());
-        libc::pthread_sigmask(libc::SIG_SETMASK, all.as_ptr(), before.as_mut_ptr());
-        before.assume_init()
     }
 }
 

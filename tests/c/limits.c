@@ -98,8 +98,9 @@ int main(void)
     refused_terminal = 0;
 
     threads = 0;
-    open_and_close();
+    CHECK(OpenHand() == 0);
     number = threads;
+    CHECK(CloseHand() == 0);
     CHECK(number >= 7);
     for (refused_thread = 1; refused_thread <= number; refused_thread++) {
         threads = 0;
@@ -108,6 +109,16 @@ int main(void)
     }
     refused_thread = 0;
     printf("each of %d threads was refused\n", number);
+
+    /* Other slow calls need a thread too; CloseHand closes the hand without one. */
+    CHECK(OpenHand() == 0);
+    threads = 0;
+    refused_thread = 1;
+    REFUSED(ZeroFinger(1), EAGAIN, "ulimit -u");
+    threads = 0;
+    CHECK(CloseHand() == 0);
+    CHECK(threads == 1);
+    refused_thread = 0;
     open_and_close();
     return 0;
 }

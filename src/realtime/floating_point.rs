@@ -1,0 +1,241 @@
+//! The floating-point environment: rounding, flushed denormals and trapping exceptions belong to a thread, and a new thread
+//! inherits them from the one that starts it. The library computes in the default environment everywhere: a planner's must
+//! neither stop a servo nor change the last bit of what it computes.
+//!
+//! On x86-64 a call changes only MXCSR: nothing in this library computes with the x87 unit.
+#![allow(unsafe_code, reason = "no Rust function reads or writes these registers")]
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+use other as registers;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+use processor as registers;
+
+/// The environment that a thread had before it entered the default one. [`Environment::restore`] puts it back.
+#[must_use]
+pub struct Environment(registers::Saved);
+
+impl Environment {
+    /// Enters the default environment.
+    #[inline(always)]
+    pub fn enter_default() -> Self {
+        let saved = registers::read();
+        if !registers::computes_as_default(&saved) {
+            registers::write_default();
+        }
+        Self(saved)
+    }
+
+    /// Puts the environment back, with its exception flags as they were.
+    #[inline(always)]
+    pub fn restore(self) {
+        registers::restore(&self.0);
+    }
+}
+
+/// Puts the calling thread into the default environment for good.
+pub fn use_default_environment() {
+    registers::write_default();
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: resets the x87 unit, in which no Rust code keeps a value.
+    unsafe {
+        std::arch::asm!("fninit", out("st(0)") _, out("st(1)") _, out("st(2)") _, out("st(3)") _, out("st(4)") _,
+            out("st(5)") _, out("st(6)") _, out("st(7)") _, options(nostack));
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod processor {
+    use std::arch::asm;
+
+    /// MXCSR.
+    pub type Saved = u32;
+
+    /// Round to nearest, keep denormals, no exception traps.
+    const DEFAULT: u32 = 0x1f80;
+
+    /// The exceptions that have occurred.
+    const FLAGS: u32 = 0x3f;
+
+    #[inline(always)]
+    pub fn read() -> u32 {
+        let mut register = 0u32;
+        // SAFETY: stores the register in a local variable.
+        unsafe { asm!("stmxcsr [{}]", in(reg) &mut register, options(nostack, preserves_flags)) };
+        register
+    }
+
+    #[inline(always)]
+    fn write(register: u32) {
+        // SAFETY: `register` was read from MXCSR, or is its default: no reserved bit is set.
+        unsafe { asm!("ldmxcsr [{}]", in(reg) &register, options(nostack, preserves_flags)) };
+    }
+
+    #[inline(always)]
+    pub fn computes_as_default(saved: &u32) -> bool {
+        saved & !FLAGS == DEFAULT
+    }
+
+    #[inline(always)]
+    pub fn write_default() {
+        write(DEFAULT);
+    }
+
+    /// Without a look at what is there now: reading the register takes longer than writing it.
+    #[inline(always)]
+    pub fn restore(saved: &u32) {
+        write(*saved);
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+mod processor {
+    use std::arch::asm;
+
+    /// FPCR and FPSR.
+    pub type Saved = (u64, u64);
+
+    #[inline(always)]
+    pub fn read() -> (u64, u64) {
+        let (control, status): (u64, u64);
+        // SAFETY: reads two registers. Not `nomem`: what is computed must not move across it.
+        unsafe {
+            asm!("mrs {}, fpcr", "mrs {}, fpsr", out(reg) control, out(reg) status, options(nostack, preserves_flags))
+        };
+        (control, status)
+    }
+
+    #[inline(always)]
+    pub fn computes_as_default(saved: &(u64, u64)) -> bool {
+        saved.0 == 0
+    }
+
+    #[inline(always)]
+    pub fn write_default() {
+        // SAFETY: zero is the default of FPCR: round to nearest, keep denormals, no exception traps.
+        unsafe { asm!("msr fpcr, {}", in(reg) 0u64, options(nostack, preserves_flags)) };
+    }
+
+    #[inline(always)]
+    pub fn restore(saved: &(u64, u64)) {
+        let (control, status) = read();
+        // SAFETY: both values were read from these registers.
+        unsafe {
+            if control != saved.0 {
+                asm!("msr fpcr, {}", in(reg) saved.0, options(nostack, preserves_flags));
+            }
+            if status != saved.1 {
+                asm!("msr fpsr, {}", in(reg) saved.1, options(nostack, preserves_flags));
+            }
+        }
+    }
+}
+
+#[cfg_attr(any(target_arch = "x86_64", target_arch = "aarch64"), allow(dead_code, reason = "tested here too"))]
+mod other {
+    //! With the functions of C, which take ten times as long as the registers of the two processors above.
+
+    use std::ffi::c_int;
+
+    /// A fenv_t: no known one is larger.
+    #[repr(C, align(16))]
+    pub struct Saved([u8; 64]);
+
+    // The mathematical library, which Rust's own links.
+    unsafe extern "C" {
+        fn fegetenv(environment: *mut Saved) -> c_int;
+        fn fesetenv(environment: *const Saved) -> c_int;
+    }
+
+    pub fn read() -> Saved {
+        let mut saved = Saved([0; 64]);
+        // SAFETY: there is room for the environment.
+        unsafe { fegetenv(&mut saved) };
+        saved
+    }
+
+    /// Unknown: the default is written in any case.
+    pub fn computes_as_default(_: &Saved) -> bool {
+        false
+    }
+
+    pub fn write_default() {
+        // SAFETY: the address -1 is FE_DFL_ENV in the C libraries of Linux but for those of PowerPC and Alpha.
+        unsafe { fesetenv(std::ptr::without_provenance(usize::MAX)) };
+    }
+
+    pub fn restore(saved: &Saved) {
+        // SAFETY: read by `fegetenv`.
+        unsafe { fesetenv(saved) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ffi::c_int;
+    use std::hint::black_box;
+
+    unsafe extern "C" {
+        fn fesetround(rounding: c_int) -> c_int;
+        fn fegetround() -> c_int;
+        fn fetestexcept(flags: c_int) -> c_int;
+        fn feclearexcept(flags: c_int) -> c_int;
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    const UPWARD: c_int = 0x800;
+    #[cfg(target_arch = "aarch64")]
+    const UPWARD: c_int = 0x40_0000;
+    const EVERY_FLAG: c_int = 0x1f;
+
+    /// One third, rounded as the thread rounds.
+    fn third() -> f64 {
+        black_box(1.0) / black_box(3.0)
+    }
+
+    /// Computes a third between `enter` and `restore`, in a thread that rounds upward.
+    fn check<E>(enter: impl FnOnce() -> E, restore: impl FnOnce(E)) {
+        let nearest = third();
+        // SAFETY: functions of C without pointers. The rounding of this thread is put back below.
+        unsafe { fesetround(UPWARD) };
+        let upward = third();
+        unsafe { feclearexcept(EVERY_FLAG) };
+        let before = enter();
+        let within = third();
+        restore(before);
+        let found = unsafe { (fegetround(), fetestexcept(EVERY_FLAG)) };
+        unsafe { fesetround(0) };
+        assert_ne!(nearest, upward);
+        assert_eq!(within, nearest);
+        assert_eq!(found, (UPWARD, 0), "rounding and flags");
+    }
+
+    #[test]
+    fn the_default_environment_is_entered_and_left_without_a_trace() {
+        check(Environment::enter_default, Environment::restore);
+    }
+
+    #[test]
+    fn so_it_is_with_the_functions_of_c() {
+        let enter = || {
+            let saved = other::read();
+            assert!(!other::computes_as_default(&saved));
+            other::write_default();
+            saved
+        };
+        check(enter, |saved| other::restore(&saved));
+    }
+
+    #[test]
+    fn a_thread_can_use_the_default_environment_for_good() {
+        let nearest = third();
+        let inherited = std::thread::spawn(move || {
+            // SAFETY: a function of C without pointers.
+            unsafe { fesetround(UPWARD) };
+            use_default_environment();
+            // SAFETY: as above.
+            (third(), unsafe { fegetround() })
+        });
+        assert_eq!(inherited.join().expect("no panic"), (nearest, 0));
+    }
+}

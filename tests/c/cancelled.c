@@ -1,0 +1,146 @@
+/* Threads that are cancelled inside calls: the call goes on to its end, and the cancellation takes effect at the planner's
+   own cancellation point after it; with asynchronous cancellation as soon as the call has returned. */
+#include <errno.h>
+#include <pthread.h>
+#include <stdint.h>
+#include <string.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+#define HAMMERINGS 300
+
+static double Pos[3] = {0.0, 0.5, 0.8}, Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
+
+/* The call that a thread makes, and what it returned; 2: it has not. */
+struct job {
+    int (*call)(void);
+    int asynchronous;
+    volatile int result;
+};
+
+static int zero(void) { return ZeroFinger(1); }
+static int identify(void) { return IdentifyFinger(2); }
+static int write_black_box(void) { return WriteBlackBox(3, "cancelled.jsonl"); }
+static int adjust(void) { return AdjustFinger(3, "tendon.minimum = 6"); }
+
+/* A busy machine may keep the board from answering in time. */
+static int recover_finger(int finger)
+{
+    int attempts = 10;
+    while (RecoverHand(finger) != 0)
+        if (--attempts == 0)
+            return -1;
+    return 0;
+}
+
+static int recover(void)
+{
+    StopHand();
+    PAUSE_MS(50);
+    return recover_finger(1);
+}
+
+/* Prints a line: this kind of refusal is the first of this process. */
+static int refused(void) { return SendPos(1, NULL) == -1 && errno == EFAULT ? 0 : -1; }
+
+static void *work(void *own)
+{
+    struct job *job = own;
+    int unused;
+    if (job->asynchronous)
+        pthread_setcanceltype(PTHREAD_CANCEL_ASYNCHRONOUS, &unused);
+    job->result = job->call();
+    for (;;)
+        pthread_testcancel();
+    return NULL;
+}
+
+/* Cancels a thread a while after it has begun a call; what the call returned. */
+static int cancelled_in(int (*call)(void), int asynchronous, int milliseconds)
+{
+    struct job job;
+    pthread_t thread;
+    void *end;
+    job.call = call;
+    job.asynchronous = asynchronous;
+    job.result = 2;
+    CHECK(pthread_create(&thread, NULL, work, &job) == 0);
+    PAUSE_MS(milliseconds);
+    CHECK(pthread_cancel(thread) == 0);
+    CHECK(pthread_join(thread, &end) == 0);
+    CHECK(end == PTHREAD_CANCELED);
+    return job.result;
+}
+
+/* Calls that the planner makes all the while. */
+static void *hammer(void *own)
+{
+    int unused;
+    double Heard[3];
+    struct FingerTip Tip;
+    Tip.Size = sizeof Tip;
+    pthread_setcanceltype(*(int *)own ? PTHREAD_CANCEL_ASYNCHRONOUS : PTHREAD_CANCEL_DEFERRED, &unused);
+    for (;;) {
+        SendPos(1, Pos);
+        GetPos(1, Heard);
+        SendKx(1, Kx);
+        SendPos(1, NULL);
+        GetTip(1, &Tip);
+        HandError();
+        FaultText(3);
+        pthread_testcancel();
+    }
+    return NULL;
+}
+
+int main(void)
+{
+    struct job identifying = {identify, 0, 2};
+    int asynchronous, round;
+    double Heard[3];
+    pthread_t thread;
+    void *end;
+
+    for (asynchronous = 0; asynchronous < 2; asynchronous++) {
+        int result = cancelled_in(OpenHand, asynchronous, 20);
+        /* An asynchronous cancellation takes effect before the thread can note the result. */
+        CHECK(result == 0 || (asynchronous && result == 2));
+        CHECK(GetPos(1, Heard) == 0);
+        if (!asynchronous)
+            CHECK(cancelled_in(refused, 0, 0) == 0);
+        result = cancelled_in(zero, asynchronous, 100);
+        CHECK(result == 0 || (asynchronous && result == 2));
+        result = cancelled_in(write_black_box, asynchronous, 2);
+        CHECK(result == 0 || (asynchronous && result == 2));
+        result = cancelled_in(adjust, asynchronous, 0);
+        CHECK(result == 0 || (asynchronous && result == 2));
+        result = cancelled_in(recover, asynchronous, 60);
+        CHECK(result == 0 || (asynchronous && result == 2));
+        for (round = 1; round <= 3; round++)
+            CHECK(recover_finger(round) == 0);
+        for (round = 0; round < HAMMERINGS; round++) {
+            struct timespec span = {0, 0};
+            span.tv_nsec = 20000 + 137 * round;
+            CHECK(pthread_create(&thread, NULL, hammer, &asynchronous) == 0);
+            nanosleep(&span, NULL);
+            CHECK(pthread_cancel(thread) == 0);
+            CHECK(pthread_join(thread, &end) == 0 && end == PTHREAD_CANCELED);
+        }
+        /* No lock was left behind. */
+        CHECK(SendPos(1, Pos) == 0 && SendKx(1, Kx) == 0 && GetPos(1, Heard) == 0);
+        result = cancelled_in(CloseHand, asynchronous, 5);
+        CHECK(result == 0 || (asynchronous && result == 2));
+        CHECK(GetPos(1, Heard) == -1 && errno == ENODEV);
+    }
+    /* Identifying takes a minute: CloseHand ends it. */
+    CHECK(OpenHand() == 0);
+    CHECK(pthread_create(&thread, NULL, work, &identifying) == 0);
+    PAUSE_MS(300);
+    CHECK(pthread_cancel(thread) == 0);
+    PAUSE_MS(100);
+    CHECK(identifying.result == 2);
+    CHECK(CloseHand() == 0);
+    CHECK(pthread_join(thread, &end) == 0 && end == PTHREAD_CANCELED);
+    CHECK(identifying.result == -1);
+    return 0;
+}

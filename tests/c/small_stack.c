@@ -1,0 +1,164 @@
+/* Every call of the header in a thread of its own with 64 KiB of stack, which is painted: prints what each call has used. */
+#define _GNU_SOURCE
+#include <errno.h>
+#include <pthread.h>
+#include <string.h>
+#include <sys/mman.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+#define STACK_BYTES (64 * 1024)
+/* What the manual promises (chapter 6); the thread itself needs some of the stack too. */
+#define PROMISED_BYTES (16 * 1024)
+#define PAINT 0xA5
+
+static double Pos[3] = {0.0, 0.5, 0.8}, Beyond[3] = {9.0, 0.5, 0.8}, Tip[3] = {0.0, -6.0, 8.0}, Push[3], Normal[3] = {0, -1, 0};
+static double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}, Skewed[3][3] = {{3, 1, 0}, {0, 3, 0}, {0, 0, 3}};
+static double K[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
+static float Single[3] = {0.0f, 0.5f, 0.8f}, SingleKx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
+
+static int nothing(void) { return 0; }
+static int refused_without_hand(void) { return SendPos(1, Pos) + 1; }
+static int send_pos(void) { return SendPos(1, Single); }
+static int send_pos_double(void) { return SendPos(1, Pos); }
+static int send_pos_beyond(void) { return SendPos(1, Beyond) + 1; }
+static int send_kx(void) { return SendKx(1, SingleKx); }
+static int send_kx_double(void) { return SendKx(1, Kx); }
+static int send_kx_skewed(void) { return SendKx(1, Skewed) + 1; }
+static int get_pos(void) { return GetPos(1, Single); }
+static int get_pos_double(void) { return GetPos(1, Pos); }
+static int hand_error(void) { return HandError() == NULL; }
+static int send_tip(void) { return SendTip(1, Tip); }
+static int send_contact(void) { return SendContact(1, 4, &K[0][0], Normal); }
+static int send_damping(void) { return SendDamping(1, 1.0); }
+static int adjust_finger(void) { return AdjustFinger(1, "tendon.minimum = 6\ncontroller.tension_gain = 3"); }
+static int adjust_refused(void) { return AdjustFinger(1, "tendon.minimum = 6\ncontroller.tensoin_gain = 3") + 1; }
+static int push_finger(void) { return PushFinger(1, Push); }
+static int fault_text(void) { return FaultText(1) == NULL; }
+static int write_black_box(void) { return WriteBlackBox(1, "small_stack.jsonl"); }
+static int zero_finger(void) { return ZeroFinger(1); }
+static int identify_refused(void) { return IdentifyFinger(7) + 1; }
+static int recover_hand(void) { StopHand(); PAUSE_MS(50); return RecoverHand(1); }
+
+static int get_tip(void)
+{
+    struct FingerTip Told;
+    Told.Size = sizeof Told;
+    return GetTip(1, &Told);
+}
+
+static int get_status(void)
+{
+    struct FingerStatus Told;
+    Told.Size = sizeof Told;
+    return GetStatus(1, &Told);
+}
+
+static int get_timing(void)
+{
+    struct FingerTiming Told;
+    Told.Size = sizeof Told;
+    return GetTiming(1, TIMING_COMPUTE, &Told) + ResetTiming(0);
+}
+
+static int get_record(void)
+{
+    struct FingerRecord Told;
+    Told.Size = sizeof Told;
+    return GetRecord(1, 0, &Told);
+}
+
+static int get_fault(void)
+{
+    struct Fault Told;
+    Told.Size = sizeof Told;
+    return GetFault(1, &Told);
+}
+
+static const struct job {
+    const char *name;
+    int (*call)(void);
+} jobs[] = {
+    {"no call", nothing},
+    {"SendPos without a hand", refused_without_hand},
+    {"OpenHand", OpenHand},
+    {"OpenHand again", NULL},
+    {"SendPos", send_pos},
+    {"SendPosD", send_pos_double},
+    {"SendPosD beyond a limit", send_pos_beyond},
+    {"SendKx", send_kx},
+    {"SendKxD", send_kx_double},
+    {"SendKxD, not symmetric", send_kx_skewed},
+    {"GetPos", get_pos},
+    {"GetPosD", get_pos_double},
+    {"HandError", hand_error},
+    {"SendTip", send_tip},
+    {"GetTip", get_tip},
+    {"SendContact", send_contact},
+    {"SendDamping", send_damping},
+    {"AdjustFinger", adjust_finger},
+    {"AdjustFinger with a wrong key", adjust_refused},
+    {"PushFinger", push_finger},
+    {"GetStatus", get_status},
+    {"GetTiming, ResetTiming", get_timing},
+    {"GetRecord", get_record},
+    {"GetFault", get_fault},
+    {"FaultText", fault_text},
+    {"WriteBlackBox", write_black_box},
+    {"ZeroFinger", zero_finger},
+    {"IdentifyFinger without finger", identify_refused},
+    {"StopHand, RecoverHand", recover_hand},
+    {"CloseHand", CloseHand},
+};
+
+static int open_again(void) { return OpenHand() == -1 && errno == EBUSY ? 0 : 1; }
+
+static void *work(void *own)
+{
+    const struct job *job = own;
+    int result = job->call == NULL ? open_again() : job->call();
+    if (result != 0)
+        fprintf(stderr, "%s: %d (%s)\n", job->name, result, HandError());
+    return result == 0 ? own : NULL;
+}
+
+/* Bytes of stack that a job has used in a thread of its own, with what the thread itself needs. */
+static size_t used_by(const struct job *job)
+{
+    pthread_t thread;
+    pthread_attr_t attributes;
+    void *end = NULL;
+    size_t untouched = 0;
+    unsigned char *stack;
+    /* A page below, that cannot be touched. */
+    stack = mmap(NULL, STACK_BYTES + 4096, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    CHECK(stack != MAP_FAILED);
+    stack += 4096;
+    CHECK(mprotect(stack, STACK_BYTES, PROT_READ | PROT_WRITE) == 0);
+    memset(stack, PAINT, STACK_BYTES);
+    CHECK(pthread_attr_init(&attributes) == 0);
+    CHECK(pthread_attr_setstack(&attributes, stack, STACK_BYTES) == 0);
+    CHECK(pthread_create(&thread, &attributes, work, (void *)job) == 0);
+    CHECK(pthread_join(thread, &end) == 0);
+    CHECK(end == job);
+    while (untouched < STACK_BYTES && stack[untouched] == PAINT)
+        untouched++;
+    pthread_attr_destroy(&attributes);
+    munmap(stack - 4096, STACK_BYTES + 4096);
+    return STACK_BYTES - untouched;
+}
+
+int main(void)
+{
+    size_t number, most = 0, thread = used_by(&jobs[0]);
+    for (number = 1; number < sizeof jobs / sizeof *jobs; number++) {
+        size_t used = used_by(&jobs[number]) - thread;
+        printf("%-32s %6lu bytes\n", jobs[number].name, (unsigned long)used);
+        fflush(stdout);
+        if (used > most)
+            most = used;
+    }
+    printf("at most %lu bytes\n", (unsigned long)most);
+    CHECK(most <= PROMISED_BYTES);
+    return 0;
+}

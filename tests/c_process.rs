@@ -1,0 +1,55 @@
+//! What the library does to the process of a planner, and what a planner may do to it: signals, cancellation, floating-point
+//! environments, stacks, locked memory and the end of the process.
+
+#[allow(dead_code)]
+mod c;
+
+use c::{Bench, STRICT, c_compilers, said};
+use std::process::Command;
+
+fn succeed(sources: &[&str]) {
+    Bench::new().succeed(STRICT, sources);
+}
+
+#[test]
+fn a_refusal_on_a_closed_pipe_leaves_the_planner_alive() {
+    succeed(&["broken_pipe.c"]);
+}
+
+#[test]
+fn a_cancelled_thread_ends_after_its_call() {
+    succeed(&["cancelled.c"]);
+}
+
+/// Rounding, flushed denormals and trapping exceptions of a planner are its own: they reach neither the servos, whose cycles
+/// are computed again to the last bit by the replay, nor what the calls compute.
+#[test]
+fn the_floating_point_environment_of_a_planner_is_its_own() {
+    let bench = Bench::new();
+    let program = bench.build(c_compilers()[0], STRICT, &["rounding.c"]);
+    for way in ["default", "upward", "flushed", "trapping"] {
+        let file = bench.path().join(format!("{way}.jsonl"));
+        let mut command = Command::new(&program);
+        command.arg(way).arg(&file);
+        let run = bench.run(command);
+        assert!(run.status.success(), "{way}: {}\n{}", run.status, said(&run));
+        let run = Command::new(env!("CARGO_BIN_EXE_sun2xp")).arg("replay").arg(&file).output().expect("the tool runs");
+        assert!(run.status.success() && said(&run).contains("the same to the last bit"), "{way}: {}", said(&run));
+    }
+}
+
+#[test]
+fn a_small_stack_is_enough_for_every_call() {
+    succeed(&["small_stack.c"]);
+}
+
+#[test]
+fn a_call_that_was_jumped_out_of_goes_on_to_its_end() {
+    let bench = Bench::new();
+    let program = bench.build(c_compilers()[0], STRICT, &["jumped.c"]);
+    // What can go wrong is a call that waits for ever.
+    let mut command = Command::new("timeout");
+    command.args(["--signal=KILL", "120"]).arg(&program);
+    let run = bench.run(command);
+    assert!(run.status.success(), "{}\n{}", run.status, said(&run));
+}
