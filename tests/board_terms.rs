@@ -83,6 +83,23 @@ fn a_limit_beyond_the_boards_is_refused() {
     assert_eq!(told.expect("good terms").torque_limits, [23_750; 4]);
 }
 
+/// The page lets a board need up to 20 ms. Such a board works with the default, and no board is given more than that unasked.
+#[test]
+fn a_board_gets_the_shortest_watchdog_that_it_can_keep() {
+    let terms = terms(4.75, 1.0, 2.34);
+    assert_eq!(terms.watchdog_ms, 18);
+    for (shortest_watchdog_ms, agreed) in [(2, 18), (18, 18), (19, 19), (20, 20)] {
+        let board = Identity { shortest_watchdog_ms, ..board(2000) };
+        assert_eq!(terms.configure(&board).expect("good terms").watchdog_ms, agreed);
+    }
+    let slow = Identity { shortest_watchdog_ms: 21, ..board(2000) };
+    let error = terms.configure(&slow).expect_err("beyond the page");
+    assert!(matches!(error, TermsError::Watchdog { shortest: 21, wanted: 18 }), "{error}");
+    assert!(error.to_string().contains("raise hand.watchdog_ms to 21"), "{error}");
+    let patient = Terms { watchdog_ms: 21, ..terms };
+    assert_eq!(patient.configure(&slow).expect("good terms").watchdog_ms, 21);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
 

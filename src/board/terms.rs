@@ -5,6 +5,9 @@ use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState};
 use nalgebra::Vector4;
 use thiserror::Error;
 
+/// The protocol lets a board need a watchdog of up to so many ms. It gets what it needs, even where a shorter one is configured.
+const LONGEST_NEEDED_MS: u16 = 20;
+
 /// A board's torque unit is this part of a motor's torque limit at most: rounding takes as much off the limit.
 const COARSEST_UNIT: f64 = 0.01;
 
@@ -14,7 +17,7 @@ const MICRO_PER_CENTI: f64 = 1e4;
 /// The terms in physical units; a board's [`Identity`] turns them into a [`Configure`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terms {
-    /// Silence after which the board goes to its end state, ms.
+    /// Silence after which the board goes to its end state, ms. A board that needs more gets more, 20 ms at most.
     pub watchdog_ms: u16,
     /// What the board does when commands stop.
     pub end_state: EndState,
@@ -31,8 +34,11 @@ pub struct Terms {
 /// Terms that a board cannot keep.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum TermsError {
-    /// The watchdog is shorter than the board's.
-    #[error("its shortest watchdog is {shortest} ms, but {wanted} ms are configured: raise hand.watchdog_ms")]
+    /// The watchdog is shorter than the board's, and that is longer than the protocol lets it be.
+    #[error(
+        "its shortest watchdog is {shortest} ms, though the protocol allows {LONGEST_NEEDED_MS} ms, and {wanted} ms are configured: update \
+         its firmware, or raise hand.watchdog_ms to {shortest}, after which its motors go on for as long when commands stop"
+    )]
     Watchdog {
         /// The board's, ms.
         shortest: u16,
@@ -91,7 +97,7 @@ impl Terms {
         if board.torque_unit == 0 {
             return Err(TermsError::TorqueUnit);
         }
-        if self.watchdog_ms < board.shortest_watchdog_ms {
+        if board.shortest_watchdog_ms > self.watchdog_ms.max(LONGEST_NEEDED_MS) {
             return Err(TermsError::Watchdog { shortest: board.shortest_watchdog_ms, wanted: self.watchdog_ms });
         }
         if self.end_state == EndState::Hold && !board.capabilities.has(Capabilities::HOLD) {
@@ -111,7 +117,7 @@ impl Terms {
         }
         Ok(Configure {
             version: board.version,
-            watchdog_ms: self.watchdog_ms,
+            watchdog_ms: self.watchdog_ms.max(board.shortest_watchdog_ms),
             end_state: self.end_state,
             hold_time_ms: self.hold_time_ms,
             hold_torque_limit: count(board, self.hold_torque_limit),

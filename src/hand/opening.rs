@@ -173,6 +173,16 @@ fn warn_of_latency(port: &Port) {
     }
 }
 
+/// What is to be said of a board that keeps a longer watchdog than is configured, because it cannot keep a shorter one.
+fn longer_watchdog(finger: usize, configured_ms: u16, agreed_ms: u16) -> Option<String> {
+    (agreed_ms > configured_ms).then(|| {
+        format!(
+            "the board of finger {finger} cannot keep a watchdog of less than {agreed_ms} ms: it keeps {agreed_ms} ms, though \
+             hand.watchdog_ms is {configured_ms}. Its motors may go on for as long, and 1 ms and 1 % more, after the last command"
+        )
+    })
+}
+
 fn shake_hands(
     configuration: &Configuration,
     index: usize,
@@ -184,6 +194,8 @@ fn shake_hands(
     let deadline = now() + u64::from(hand.open_timeout_ms) * 1_000_000;
     let (identity, configured) =
         link.shake_hands(address, &terms, deadline).map_err(|source| HandError::Link { finger: index + 1, source })?;
+    let longer = longer_watchdog(index + 1, hand.watchdog_ms, configured.terms.watchdog_ms);
+    longer.iter().for_each(|text| say(text));
     let counts = identity.counts_per_revolution;
     if counts != 0 && finger.encoder.counts_per_revolution.iter().any(|&configured| configured != counts) {
         let reason = format!("the board of finger {} says that its encoders have {counts}", index + 1);
@@ -239,5 +251,20 @@ fn carries(configuration: &Configuration, index: usize) -> Result<(), Unusable> 
     match capacity(finger.baud, sharing, configuration.hand.rate) {
         Ok(_) => Ok(()),
         Err(too_fast) => Err(Unusable { key: "baud", reason: too_fast.to_string() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_board_that_keeps_a_longer_watchdog_is_announced() {
+        assert_eq!(longer_watchdog(2, 18, 18), None);
+        let text = longer_watchdog(2, 18, 20).expect("longer");
+        assert!(
+            text.contains("finger 2") && text.contains("20 ms") && text.contains("hand.watchdog_ms is 18"),
+            "{text}"
+        );
     }
 }
