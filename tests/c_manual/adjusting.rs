@@ -6,20 +6,24 @@ use std::fs;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 
-/// Every key of a finger in docs/sun2xp.toml, as a line that leaves it as it is. Optional keys stand there behind a #.
+/// Every key of a finger in docs/sun2xp.toml, with the value that it has there. Optional keys and tables stand behind a #.
 fn keys_of_a_finger() -> Vec<String> {
     let page = fs::read_to_string(root().join("docs/sun2xp.toml")).expect("the page");
     let mut table = None;
     let mut keys = Vec::new();
-    for line in page.lines() {
+    for line in page.lines().map(|line| line.strip_prefix('#').unwrap_or(line)) {
         if let Some(name) = line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
-            table = name.strip_prefix("finger").map(|table| table.trim_start_matches('.').to_string());
-        } else if let Some(table) = &table {
-            let key = line.strip_prefix('#').unwrap_or(line);
-            if key.starts_with(|first: char| first.is_ascii_lowercase()) && key.contains(" = ") {
-                let dot = if table.is_empty() { "" } else { "." };
-                keys.push(format!("{table}{dot}{key}"));
-            }
+            // Tables of one finger have the same keys as those of all fingers.
+            let below = |name: &str| {
+                name.trim_start_matches(|letter: char| letter == '.' || letter.is_ascii_digit()).to_string()
+            };
+            table = name.strip_prefix("finger").map(below);
+        } else if let Some(table) = &table
+            && line.starts_with(|first: char| first.is_ascii_lowercase())
+            && line.contains(" = ")
+        {
+            let dot = if table.is_empty() { "" } else { "." };
+            keys.push(format!("{table}{dot}{line}"));
         }
     }
     keys
