@@ -1,19 +1,21 @@
 //! `sun2xp calibrate`: signs, zeros, friction and stiffness of the fingers, into the configuration file.
 
 use crate::board::Failure;
+use crate::calibrate_pose::{ask_to_hold, ask_to_let_go};
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
-use sun2xp::control::calibration::{Findings, Progress, Step};
+use sun2xp::control::calibration::{Findings, Progress, Step, Task};
 use sun2xp::hand::{Configured, Fingers, Hand};
 use sun2xp::model::ShownPath;
-use sun2xp::model::configuration::{ConfiguredFinger, FINGERS};
+use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 
 /// Finds signs, zeros, friction and stiffness of the fingers and writes them into the configuration file.
 ///
 /// Without --signs, --zero and --identify it does all three, in this order. The motors are off in the beginning. Signs: every
 /// motor turns a little, to and fro. Zero: tendons are let out and gauges read, then the encoders are zeroed as
-/// `finger.zeroing.method` says. Identify: the finger goes to its lower stops, moves its joints to and fro and presses. Needs
+/// `finger.zeroing.method` says: without it, against the stops of the finger where `finger.zeroing` says where they are, and else at a pose
+/// that you are asked to hold the finger in. A pose that is not held is refused. Identify: the finger goes to its lower stops, moves its joints to and fro and presses. Needs
 /// the room that the joints can reach, and nothing in the hand. Only keys that changed are written; comments stay.
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -32,6 +34,9 @@ pub struct Arguments {
     /// Measure friction and tendon stiffness. The finger must have been zeroed.
     #[arg(long)]
     identify: bool,
+    /// Do not wait for Enter where a person is to hold a finger or let it go: for scripts, with a jig.
+    #[arg(long)]
+    yes: bool,
     /// Write nothing.
     #[arg(long)]
     dry_run: bool,
@@ -41,18 +46,34 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let configured = Configured::read(&arguments.config)?;
     let fingers = Fingers::of(&arguments.fingers)?;
     configured.announce(fingers);
-    let everything = !(arguments.signs || arguments.zero || arguments.identify);
+    let tasks = arguments.tasks();
     let hand = Hand::open_limp(configured.configuration, Some(arguments.config.clone()), fingers)?;
     for finger in fingers.numbers() {
         let before = hand.calibrated(finger)?;
-        if everything || arguments.signs {
-            tell(hand.find_signs(finger, show(finger))?)?;
-        }
-        if everything || arguments.zero {
-            tell(hand.zero(finger, show(finger))?)?;
-        }
-        if everything || arguments.identify {
-            tell(hand.identify(finger, show(finger))?)?;
+        for (done, &task) in tasks.iter().enumerate() {
+            let at_pose = hand.calibrated(finger)?.zeroing_method() == ZeroingMethod::Pose;
+            let progress = show(finger, task);
+            let found = match task {
+                Task::Signs => hand.find_signs(finger, progress),
+                Task::Zero => {
+                    if at_pose {
+                        ask_to_hold(finger, &before, arguments.yes)?;
+                    }
+                    hand.zero(finger, progress)
+                }
+                Task::Identify => {
+                    if at_pose && tasks.contains(&Task::Zero) {
+                        ask_to_let_go(finger, arguments.yes)?;
+                    }
+                    hand.identify(finger, progress)
+                }
+            };
+            let found = found.map_err(|error| {
+                end_line();
+                let rest = fingers.numbers().filter(|&other| other > finger);
+                format!("{error}\n{}", arguments.to_go_on(finger, &tasks[done..], &rest.collect::<Vec<_>>()))
+            })?;
+            tell(found)?;
         }
         compare(finger, &before, &hand.calibrated(finger)?)?;
         // After each finger: what was found is kept if the next one is refused.
@@ -68,28 +89,72 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
+impl Arguments {
+    /// What was asked for, in the order in which it is done.
+    fn tasks(&self) -> Vec<Task> {
+        let asked = [(Task::Signs, self.signs), (Task::Zero, self.zero), (Task::Identify, self.identify)];
+        let everything = asked.iter().all(|&(_, asked)| !asked);
+        asked.into_iter().filter(|&(_, asked)| asked || everything).map(|(task, _)| task).collect()
+    }
+
+    /// What to do after a refusal: these tasks of the finger are left, and everything of the others.
+    fn to_go_on(&self, finger: i32, left: &[Task], others: &[i32]) -> String {
+        let command = format!("sun2xp calibrate --config {}", ShownPath(&self.config));
+        let options = |tasks: &[Task]| {
+            let option = |task| match task {
+                Task::Signs => " --signs",
+                Task::Zero => " --zero",
+                Task::Identify => " --identify",
+            };
+            tasks.iter().map(|&task| option(task)).collect::<String>()
+        };
+        let again = if self.dry_run { self.tasks() } else { left.to_vec() };
+        let mut text = format!(
+            "Nothing more is done. To go on when that is mended: {command} --finger {finger}{}",
+            options(&again)
+        );
+        if !others.is_empty() {
+            let fingers: String = others.iter().map(|other| format!(" --finger {other}")).collect();
+            text += &format!("; and for what was not begun: {command}{fingers}{}", options(&self.tasks()));
+        }
+        text
+    }
+}
+
+/// Ends a line of progress on a terminal.
+fn end_line() {
+    if io::stderr().is_terminal() {
+        let _ = writeln!(io::stderr());
+    }
+}
+
 /// Progress on standard error: a line that is overwritten on a terminal, else one line for each step.
-fn show(finger: i32) -> impl FnMut(Progress) {
+fn show(finger: i32, task: Task) -> impl FnMut(Progress) {
+    let doing = match task {
+        Task::Signs => "finding signs",
+        Task::Zero => "zeroing",
+        Task::Identify => "identifying",
+    };
     let terminal = io::stderr().is_terminal();
     let mut last = None;
     move |progress| {
         let what = match progress.step {
             Step::TakingUpSlack => "taking up slack",
-            Step::ZeroingGauges => "zeroing gauges, tendons let out",
+            Step::ZeroingGauges => "reading the gauges with the tendons let out",
             Step::TryingPose => "pushing lightly against what holds the pose",
-            Step::ReadingEncoders => "reading encoders",
-            Step::SeekingStops => "seeking stops",
-            Step::TryingMotors => "trying motors",
-            Step::ComparingGauges => "comparing gauges",
-            Step::MovingJoints => "moving joints",
-            Step::Pressing => "pressing",
-            Step::Returning => "returning",
+            Step::ReadingEncoders => "reading the encoders",
+            Step::SeekingStops => "leading the joints against their stops",
+            Step::TryingMotors => "turning the motors one by one",
+            Step::ComparingGauges => "comparing the gauges",
+            Step::MovingJoints => "moving the joints",
+            Step::Pressing => "pressing against the stops",
+            Step::Returning => "going back to where it began",
         };
         let percent = (progress.part * 100.0) as u32;
         if last != Some((progress.step, if terminal { percent } else { 0 })) {
             let (begin, end) = if terminal { ("\r\x1b[K", "") } else { ("", "\n") };
             // Nobody may be reading it: no reason to stop the finger.
-            let _ = write!(io::stderr(), "{begin}finger {finger}: {percent:3} % {what}{end}");
+            let _ = write!(io::stderr(), "{begin}finger {finger}, {doing}: {percent:3} %, {what}{end}");
             last = Some((progress.step, if terminal { percent } else { 0 }));
         }
     }
@@ -98,9 +163,7 @@ fn show(finger: i32) -> impl FnMut(Progress) {
 /// What is found and stored nowhere.
 fn tell(findings: Findings) -> io::Result<()> {
     let mut output = io::stdout().lock();
-    if io::stderr().is_terminal() {
-        let _ = writeln!(io::stderr());
-    }
+    end_line();
     match findings {
         Findings::Signs(_) => Ok(()),
         Findings::Zeros(zeros) => {

@@ -7,6 +7,7 @@ mod board_faults;
 mod board_orders;
 mod bound;
 mod calibrate;
+mod calibrate_pose;
 mod doctor;
 mod replay;
 mod schedule;

@@ -1,0 +1,76 @@
+//! The person beside a finger that is zeroed at a pose: what to hold, and when to let go.
+
+use crate::board::Failure;
+use std::io::{self, Write};
+use sun2xp::model::configuration::ConfiguredFinger;
+
+/// Asks for the pose that the finger is to be held in. `yes`: does not wait for Enter.
+pub fn ask_to_hold(finger: i32, configured: &ConfiguredFinger, yes: bool) -> Result<(), Failure> {
+    let reason = match configured.zeroing.method {
+        Some(_) => "zeroing.method is \"pose\"",
+        None => "zeroing.lower_stop_degrees and upper_stop_degrees do not say where its stops are",
+    };
+    let text = format!(
+        "finger {finger} is zeroed at a pose, because {reason}.\n\
+         Hold it in this pose with a jig or a steady hand, until its zeros are found (about 10 s):\n{}",
+        pose(configured.zeroing.pose_degrees)
+    );
+    wait(&text, "when it is held there", yes)
+}
+
+/// Asks to let go of a finger that moves by itself from now on.
+pub fn ask_to_let_go(finger: i32, yes: bool) -> Result<(), Failure> {
+    wait(&format!("finger {finger} moves by itself next. Let go of it and clear its room.\n"), "when it is free", yes)
+}
+
+/// The joints in words, one a line.
+fn pose([side, base, middle]: [f64; 3]) -> String {
+    let toward = |angle: f64, positive, negative, zero| match angle {
+        angle if angle > 0.0 => positive,
+        angle if angle < 0.0 => negative,
+        _ => zero,
+    };
+    let side_words =
+        toward(side, "swung toward the +x axis of its frame", "swung toward its -x axis", "straight ahead");
+    let base_words = toward(base, "bent inward", "bent back", "in line with the first link");
+    let middle_words = toward(middle, "bent inward", "bent back", "in line with the middle link");
+    format!(
+        "  joint 0, which swings the whole finger sideways:        {side:6.1} degrees, {side_words}\n  \
+           joint 1, which bends the middle link against the first: {base:6.1} degrees, {base_words}\n  \
+           joint 2, which bends the last link against the middle:  {middle:6.1} degrees, {middle_words}\n"
+    )
+}
+
+fn wait(text: &str, when: &str, yes: bool) -> Result<(), Failure> {
+    let mut output = io::stderr().lock();
+    write!(output, "{text}")?;
+    if yes {
+        writeln!(output, "Goes on at once (--yes).")?;
+        return Ok(());
+    }
+    write!(output, "Press Enter {when}, or Ctrl-C to give up: ")?;
+    output.flush()?;
+    if io::stdin().read_line(&mut String::new())? == 0 {
+        writeln!(output)?;
+        return Err("standard input has ended, and nobody has pressed Enter: start it from a terminal, or with --yes \
+                    where a jig holds the finger"
+            .into());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_joint_is_told_in_degrees_and_in_words() {
+        let text = pose([-5.0, 30.0, 0.0]);
+        for part in
+            ["-5.0 degrees, swung toward its -x axis", "30.0 degrees, bent inward", " 0.0 degrees, in line with"]
+        {
+            assert!(text.contains(part), "{part:?} is not in:\n{text}");
+        }
+        assert_eq!(text.lines().count(), 3);
+    }
+}

@@ -1,0 +1,137 @@
+//! `sun2xp calibrate` as a person and as a script start it.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use tempfile::TempDir;
+
+/// A configuration file in a folder of its own.
+struct Desk {
+    folder: TempDir,
+    text: String,
+}
+
+impl Desk {
+    fn new(text: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("hand.toml"), text).expect("written");
+        Self { folder, text: text.into() }
+    }
+
+    fn file(&self) -> PathBuf {
+        self.folder.path().join("hand.toml")
+    }
+
+    fn unchanged(&self) -> bool {
+        fs::read_to_string(self.file()).expect("there") == self.text
+    }
+
+    /// With this on standard input.
+    fn calibrate(&self, arguments: &[&str], input: &str) -> Output {
+        let mut tool = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+        tool.args(["calibrate", "--config"]).arg(self.file()).args(arguments);
+        tool.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut tool = tool.spawn().expect("the tool runs");
+        // It may have ended before it reads.
+        let _ = tool.stdin.take().expect("a pipe").write_all(input.as_bytes());
+        tool.wait_with_output().expect("the tool ends")
+    }
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn contains(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "{part:?} is not in:\n{text}");
+    }
+}
+
+/// A board with finger 1 at a pseudo-terminal of its own.
+struct Board(Child);
+
+impl Board {
+    fn start(link: &Path) -> Self {
+        let mut board = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+        board.args(["board", "--finger", "1", "--patient", "500", "--link"]).arg(link);
+        let mut board = board.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().expect("the board runs");
+        let mut line = String::new();
+        BufReader::new(board.stdout.take().expect("a pipe")).read_line(&mut line).expect("its port");
+        Self(board)
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Neither the boards of the others nor their ports are there.
+#[test]
+fn one_finger_at_a_port_is_asked_to_be_held_in_its_pose() {
+    let links = tempfile::tempdir().expect("a folder");
+    let link = links.path().join("board");
+    let _board = Board::start(&link);
+    let desk = Desk::new(&format!(
+        "[hand]\nrate = 500\n[finger.1]\nport = \"{}\"\n[finger.1.zeroing]\npose_degrees = [0.0, -10.0, 60.0]\n\
+         [finger.2]\nport = \"/dev/sun2xp-none-2\"\n[finger.3]\nport = \"/dev/sun2xp-none-3\"\n",
+        link.display()
+    ));
+    let output = desk.calibrate(&["--finger", "1", "--zero"], "");
+    assert_eq!(output.status.code(), Some(1));
+    contains(
+        &said(&output),
+        &[
+            "finger 1 is zeroed at a pose, because zeroing.lower_stop_degrees and upper_stop_degrees do not say where its stops are",
+            "0.0 degrees, straight ahead",
+            "-10.0 degrees, bent back",
+            "60.0 degrees, bent inward",
+            "Press Enter when it is held there",
+            "nobody has pressed Enter",
+            "--yes",
+        ],
+    );
+    assert!(desk.unchanged());
+}
+
+/// A built-in simulated finger stands in its pose, but nothing holds it there.
+#[test]
+fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
+    let desk = Desk::new("[hand]\nrate = 500\n[finger]\nport = \"simulated\"\n[finger.zeroing]\nmethod = \"pose\"\n");
+    for (arguments, input) in [(["--yes"].as_slice(), ""), (&[], "\n")] {
+        let arguments = [&["--finger", "2", "--finger", "3", "--zero", "--identify"], arguments].concat();
+        let output = desk.calibrate(&arguments, input);
+        assert_eq!(output.status.code(), Some(1));
+        contains(
+            &said(&output),
+            &[
+                "finger 2 is zeroed at a pose, because zeroing.method is \"pose\"",
+                "finger 2, zeroing:",
+                "finger 2 is not calibrated, its motors are off, and nothing was changed: nothing holds the finger in its pose",
+                "--finger 2 --zero --identify; and for what was not begun:",
+                "--finger 3 --zero --identify\n",
+            ],
+        );
+        assert_eq!(said(&output).contains("Press Enter"), !input.is_empty());
+        assert!(desk.unchanged());
+    }
+}
+
+#[test]
+fn a_finger_whose_stops_are_known_is_zeroed_against_them() {
+    let desk = Desk::new(
+        "[hand]\nrate = 500\n[finger]\nport = \"simulated\"\n[finger.gauge]\nzero = [204.0, 204.0, 204.0, 204.0]\n\
+         [finger.zeroing]\nspeed = 3.0\nlower_stop_degrees = [-63.0, -33.0, 2.0]\nupper_stop_degrees = [63.0, 103.0, 123.0]\n",
+    );
+    let output = desk.calibrate(&["--finger", "1", "--zero"], "");
+    assert!(output.status.success(), "{}", said(&output));
+    let text = said(&output);
+    contains(&text, &["finger 1, zeroing:", "leading the joints against their stops"]);
+    assert!(!text.contains("Press Enter"), "{text}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("way between stops"), "{output:?}");
+    assert!(!desk.unchanged());
+}
