@@ -186,7 +186,8 @@
 
    Exit: a planner that exits without CloseHand has it called. One that is killed, or
    calls _exit, leaves the motors to the boards, which hear no more commands and go
-   to the configured end state. dlclose leaves library and hand as they are.
+   to the configured end state. A process whose last thread ends by pthread_exit with
+   a hand open is ended within some seconds, as by exit (0). dlclose leaves library and hand as they are.
 
 
    7. SERVO AND REAL TIME

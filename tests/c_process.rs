@@ -4,7 +4,7 @@
 #[allow(dead_code)]
 mod c;
 
-use c::{Bench, STRICT, c_compilers, said};
+use c::{Bench, STRICT, c_compiler, said};
 use std::process::Command;
 
 fn succeed(sources: &[&str]) {
@@ -26,7 +26,7 @@ fn a_cancelled_thread_ends_after_its_call() {
 #[test]
 fn the_floating_point_environment_of_a_planner_is_its_own() {
     let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], STRICT, &["rounding.c"]);
+    let program = bench.build(c_compiler(), STRICT, &["rounding.c"]);
     for way in ["default", "upward", "flushed", "trapping"] {
         let file = bench.path().join(format!("{way}.jsonl"));
         let mut command = Command::new(&program);
@@ -46,10 +46,23 @@ fn a_small_stack_is_enough_for_every_call() {
 #[test]
 fn a_call_that_was_jumped_out_of_goes_on_to_its_end() {
     let bench = Bench::new();
-    let program = bench.build(c_compilers()[0], STRICT, &["jumped.c"]);
+    let program = bench.build(c_compiler(), STRICT, &["jumped.c"]);
     // What can go wrong is a call that waits for ever.
     let mut command = Command::new("timeout");
     command.args(["--signal=KILL", "120"]).arg(&program);
     let run = bench.run(command);
     assert!(run.status.success(), "{}\n{}", run.status, said(&run));
+}
+
+#[test]
+fn the_process_ends_with_the_last_thread_of_the_planner() {
+    let bench = Bench::new();
+    let program = bench.build(c_compiler(), STRICT, &["last_thread.c"]);
+    for (way, last_words) in [("main", "closed: 0\n"), ("other", "the last thread ends\nclosed: 0\n")] {
+        let mut command = Command::new("timeout");
+        command.args(["--signal=KILL", "20"]).arg(&program).arg(way);
+        let run = bench.run(command);
+        assert!(run.status.success(), "{way}: {}\n{}", run.status, said(&run));
+        assert_eq!(String::from_utf8_lossy(&run.stdout), last_words, "{way}");
+    }
 }

@@ -7,7 +7,7 @@ use crate::hand::black_box::keep;
 use crate::hand::opening::Reached;
 use crate::hand::{Fingers, HandError};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
-use crate::realtime::{CycleTiming, Distribution, Histograms, Priority, Stage, spawn};
+use crate::realtime::{CycleTiming, Distribution, Histograms, PlannerWatch, Priority, Stage, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use nalgebra::Vector3;
 use parking_lot::{Mutex, MutexGuard, RwLock};
@@ -268,9 +268,11 @@ impl Drop for Dispatcher {
 fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopped: &Receiver<()>) {
     let mut ended = false;
     let mut writing = Vec::new();
+    let mut planner = PlannerWatch::default();
     while !ended {
         // Once more at the end: a finger may just have faulted.
         ended = stopped.recv_timeout(COLLECTING) != Err(RecvTimeoutError::Timeout);
+        planner.look();
         for collected in fingers {
             let mut collected = collected.lock();
             collected.collect();

@@ -3,6 +3,7 @@
 
 use super::floating_point::use_default_environment;
 use super::signals::SignalsBlocked;
+use parking_lot::Mutex;
 use std::io;
 use std::mem::MaybeUninit;
 use std::thread::{Builder, JoinHandle};
@@ -12,6 +13,9 @@ const STACK_BYTES: usize = 256 * 1024;
 
 /// Opening a hand takes 290 KiB.
 const STAND_IN_STACK_BYTES: usize = 512 * 1024;
+
+/// The numbers of the threads that were started here and have not ended.
+static OWN: Mutex<Vec<libc::pid_t>> = Mutex::new(Vec::new());
 
 /// How a thread is scheduled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,9 +67,33 @@ fn start<T: Send + 'static>(
     // The new thread inherits the mask.
     let _blocked = SignalsBlocked::all();
     Builder::new().name(name.into()).stack_size(stack).spawn(|| {
+        let _own = OwnThread::begin();
         use_default_environment();
         body()
     })
+}
+
+/// The numbers of the threads of this library.
+pub(super) fn own_threads() -> Vec<libc::pid_t> {
+    OWN.lock().clone()
+}
+
+/// A thread of this library, from its beginning to its end.
+struct OwnThread(libc::pid_t);
+
+impl OwnThread {
+    fn begin() -> Self {
+        // SAFETY: no arguments. Not `gettid`, which old C libraries do not have.
+        let number = unsafe { libc::syscall(libc::SYS_gettid) } as libc::pid_t;
+        OWN.lock().push(number);
+        Self(number)
+    }
+}
+
+impl Drop for OwnThread {
+    fn drop(&mut self) {
+        OWN.lock().retain(|&number| number != self.0);
+    }
 }
 
 /// Locks the stack of the calling thread, all of it, and so faults it in.
