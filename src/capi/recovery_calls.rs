@@ -14,6 +14,11 @@ use std::ffi::c_int;
 ///
 /// Every finger faults (FAULT_EMERGENCY_STOP_CALL) at the beginning of its next cycle: its
 /// board is told to go to the configured end state, and its calls are refused with EIO.
+/// With hand.end_state = "release", the default, the torque goes to zero at once. With
+/// "hold" the motors keep their last torque, up to hand.hold_torque_limit, for
+/// hand.hold_time_ms, by default 2 s and at most a minute: who configures "hold" has
+/// something that must not be dropped. No call makes the finger limp earlier; the
+/// emergency stop input of the board does, whatever the end state, and so does its power.
 /// It stays so until RecoverHand, or CloseHand and OpenHand. Without a hand it does
 /// nothing, and a hand that is opened later knows nothing of it. It is no safety function:
 /// it needs this process, this machine and the cable.

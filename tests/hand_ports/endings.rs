@@ -6,6 +6,8 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
+use sun2xp::hand::stop_all;
+use sun2xp::model::configuration::EndState;
 
 const HOLD: &str = "end_state = 'hold'\nhold_time_ms = 1500\nhold_torque_limit = 0.3\n";
 const HOLD_TIME: Duration = Duration::from_millis(1500);
@@ -134,5 +136,57 @@ fn a_planner_that_leaves_past_every_handler_is_left_to_the_watchdogs() {
     for (index, board) in boards.iter_mut().enumerate() {
         let state = board.wait_for(index + 1, "ended", |state| state.has(Status::ENDED));
         assert!(state.has(Status::WATCHDOG_TRIPPED) && state.limp(), "{state:?}");
+    }
+}
+
+/// Who configures *hold* has something that must not fall, and that counts for StopHand too: bounded in torque and time.
+#[test]
+fn an_emergency_stop_releases_at_once_or_holds_for_a_while_as_configured() {
+    let _turn = turn();
+    for end_state in [EndState::Release, EndState::Hold] {
+        let mut boards = three_boards();
+        let mut configuration = on_boards(&boards);
+        configuration.hand.end_state = end_state;
+        (configuration.hand.hold_time_ms, configuration.hand.hold_torque_limit) = (1500, MOST_HELD);
+        let hand = open(configuration);
+        goes(&hand, 2, TARGET);
+        stop_all();
+        for (index, board) in boards.iter_mut().enumerate() {
+            let state = board.wait_for(index + 1, "ended", |state| state.has(Status::ENDED));
+            assert!(!state.has(Status::WATCHDOG_TRIPPED), "left to the watchdog: {state:?}");
+            match end_state {
+                EndState::Release => assert!(!holds(&state) && state.limp(), "{state:?}"),
+                EndState::Hold => assert!(holds(&state), "{state:?}"),
+            }
+            if holds(&state) {
+                assert_held_within_the_limit(&state);
+            }
+        }
+        for (index, board) in boards.iter_mut().enumerate() {
+            let state = board.wait_for(index + 1, "released", |state| !holds(state));
+            let [now, _, ended] = state.times[..] else { panic!("three times") };
+            assert!(state.limp() && (end_state == EndState::Release || now - ended >= 1499.0), "{state:?}");
+        }
+    }
+}
+
+#[test]
+fn what_an_emergency_stop_holds_is_said_where_people_look() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |file: &str| std::fs::read_to_string(root.join(file)).expect("a text");
+    let after = |text: &str, begin: &str, end: &str| {
+        let from = text.split_once(begin).unwrap_or_else(|| panic!("no {begin:?}")).1;
+        from.split_once(end).unwrap_or_else(|| panic!("no {end:?}")).0.to_owned()
+    };
+    for (place, text) in [
+        ("the manual of StopHand", after(&read("include/Sun2Xp.h"), "StopHand - emergency stop", "Threads:")),
+        (
+            "docs/sun2xp.toml",
+            after(&read("docs/sun2xp.toml"), "# What the motors do when commands stop", "hold_time_ms ="),
+        ),
+        ("README.md", after(&read("README.md"), "## When something fails", "## The tool")),
+        ("docs/faults.md", after(&read("docs/faults.md"), "## Stopping and going on", "## All faults")),
+    ] {
+        assert!(text.contains("StopHand") && text.contains("hold_time_ms"), "{place}: {text}");
     }
 }
