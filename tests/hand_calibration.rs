@@ -1,9 +1,9 @@
 //! Calibration of an open hand on a simulated board: real threads, a real pseudo terminal, real time.
 
 use std::fs;
-use sun2xp::control::calibration::{Findings, Obstacle, Step};
+use sun2xp::control::calibration::{Findings, Obstacle, Step, Zeros};
 use sun2xp::finger::Stage;
-use sun2xp::hand::{Calibrating, Fingers, Hand, HandError, read};
+use sun2xp::hand::{Calibrating, Fingers, Found, Hand, HandError, read, store};
 
 const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.zeroing]\nspeed = 2.0\n[finger.encoder]\nzero = [700, -20, 30, 4000] # last year\n\
                     [finger.2.gauge]\nzero = [ 204.0, 200.0, 200.0,  # tendon 3 was exchanged\n 190.0 ]\n";
@@ -37,14 +37,24 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     let joints = hand.position(2).expect("position");
     hand.send_position(2, joints).expect("a finger that is zeroed takes set points");
 
-    assert!(hand.store_calibration().expect("stored"));
+    // Meanwhile another process has found the zeros of finger 1.
+    let other = Zeros { encoder: [5, 6, 7, 8], gauge: [0.0; 4], joint_error: Default::default(), range_error: None };
+    let other = Found::by_calibration(&Findings::Zeros(other), 1, &read(&path).expect("usable")).expect("a finger");
+    store(&path, &[other]).expect("stored");
+    assert!(hand.store_calibration(2).expect("stored"));
+    assert!(!hand.store_calibration(2).expect("nothing is left to store"));
     let text = fs::read_to_string(&path).expect("there");
     assert!(text.starts_with("# The hand on the desk.\n[hand]\nrate = 500\n"), "{text}");
     assert!(text.contains("# last year") && text.contains("# tendon 3 was exchanged"), "{text}");
-    assert!(text.contains("[finger.2.encoder]\nzero = ["), "{text}");
     let (again, found) = (read(&path).expect("usable"), hand.calibrated(2).expect("there"));
     assert_eq!(again.fingers[1].encoder.zero, found.encoder.zero);
-    assert_eq!(again.fingers[0].encoder.zero, [700, -20, 30, 4000]);
+    assert_eq!(again.fingers[0].encoder.zero, [5, 6, 7, 8]);
+    assert_eq!(again.fingers[2].encoder.zero, [700, -20, 30, 4000]);
+
+    fs::remove_file(&path).expect("removed");
+    hand.find_signs(3, |_| {}).expect("signs");
+    let refused = hand.store_calibration(3).expect_err("nowhere to store");
+    assert!(matches!(&refused, HandError::NotStored { finger: 3, .. }) && refused.errno() == libc::ENOENT, "{refused}");
 }
 
 #[test]
@@ -68,7 +78,7 @@ fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
     assert_eq!(refused.errno(), libc::ETIMEDOUT);
     assert_eq!(hand.report(1).expect("a report").stage, Stage::Limp);
     assert_eq!(hand.calibrated(1).expect("there"), configuration.fingers[0]);
-    assert!(!hand.store_calibration().expect("nowhere to store"));
+    assert!(!hand.store_calibration(1).expect("nowhere to store"));
     assert!(matches!(hand.zero(4, |_| {}), Err(HandError::NoSuchFinger(4))));
 }
 

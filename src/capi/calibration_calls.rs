@@ -23,7 +23,9 @@ use std::ffi::c_int;
 /// stays, if the board says that its counts are still good. Where no method is configured
 /// it is "stops" if the configuration says where the stops are, or if the finger is
 /// simulated, and else "pose". What was found is in force at once, and is written into the
-/// configuration file if OpenHand has read one: only the keys that changed, comments stay.
+/// configuration file if OpenHand has read one: these zeros and nothing else. All other keys
+/// and comments stay as they are in the file by then, so that several processes may store what
+/// they find. Each waits for the others, for 30 s at most.
 /// Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
 /// free finger has moved, by up to some tenths of a radian.
 ///
@@ -34,7 +36,8 @@ use std::ffi::c_int;
 /// Returns 0, or -1 with
 ///   EPERM      forked child
 ///   ENODEV     no hand is open, or it was closed meanwhile
-///   EINVAL     no such finger
+///   EINVAL     no such finger; the configuration file has been changed and what was found
+///              does not fit it: the zeros are in force until CloseHand and not stored
 ///   EIO        the finger is faulted
 ///   EBUSY      the finger is being calibrated or recovered already
 ///   ECANCELED  something stood in the way (the finger moved in its pose, a tendon is slack,

@@ -79,11 +79,9 @@ pub(super) fn calibrate(finger: i32, task: Task) -> Result<(), Refusal> {
     while let Standing::Going(_) = with(|hand| calibrating.poll(hand))? {
         sleep(LOOKING);
     }
-    // Without the hand: a slow disk must not keep it from being closed. One after the other: the later has what the earlier found.
-    static STORING: Mutex<()> = Mutex::new(());
-    let _storing = STORING.lock();
-    if let Some((file, calibrated)) = with(|hand| Ok::<_, hand::HandError>(hand.to_store()))? {
-        hand::store(&file, &calibrated)?;
+    // Without the hand: a slow disk, and others that store, must not keep it from being closed.
+    match with(|hand| Ok::<_, hand::HandError>(hand.to_store(finger)))? {
+        Some(calibration) => Ok(calibration.store()?),
+        None => Ok(()),
     }
-    Ok(())
 }

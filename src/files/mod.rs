@@ -4,10 +4,12 @@
 mod privileges;
 mod regular;
 mod replace;
+mod update;
 
 pub use privileges::raised_privileges;
 pub use regular::{open_regular_file, read_regular_file};
 pub use replace::{create_file, replace_file};
+pub use update::{UpdateError, update_file};
 
 use std::io::{Error, ErrorKind};
 
@@ -17,6 +19,8 @@ pub(crate) fn errno(error: &Error) -> i32 {
         ErrorKind::InvalidInput | ErrorKind::InvalidData => libc::EINVAL,
         ErrorKind::FileTooLarge => libc::EFBIG,
         ErrorKind::AlreadyExists => libc::EEXIST,
+        ErrorKind::ResourceBusy => libc::EBUSY,
+        ErrorKind::Unsupported => libc::ENOTSUP,
         _ => libc::EIO,
     })
 }

@@ -62,16 +62,16 @@ pub fn create_file(
 
 /// A file under a temporary name. Dropping it removes it, unless it was placed. One that a killed process leaves behind
 /// is never read.
-struct NewFile {
+pub(super) struct NewFile {
     folder: PathBuf,
     path: PathBuf,
-    output: BufWriter<File>,
+    pub output: BufWriter<File>,
     placed: bool,
 }
 
 impl NewFile {
     /// In the folder of `target`, to replace a file with the metadata `old`.
-    fn beside(target: &Path, old: Option<&Metadata>) -> io::Result<Self> {
+    pub fn beside(target: &Path, old: Option<&Metadata>) -> io::Result<Self> {
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
@@ -92,14 +92,14 @@ impl NewFile {
     }
 
     /// Takes the place of the file at `path`, or of none.
-    fn replace(mut self, path: &Path) -> io::Result<()> {
+    pub fn replace(mut self, path: &Path) -> io::Result<()> {
         fs::rename(&self.path, path)?;
         self.placed = true;
         flush_folder(&self.folder)
     }
 
     /// Everything written is on the disk.
-    fn flush(&mut self) -> io::Result<()> {
+    pub fn flush(&mut self) -> io::Result<()> {
         self.output.flush()?;
         self.output.get_ref().sync_all()
     }

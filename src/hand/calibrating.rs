@@ -3,9 +3,9 @@
 use crate::control::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
 use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
 use crate::hand::calibration_file::store;
-use crate::hand::{Hand, HandError};
+use crate::hand::{Found, Hand, HandError};
 use crate::model::Refusal;
-use crate::model::configuration::{Configuration, ConfiguredFinger};
+use crate::model::configuration::ConfiguredFinger;
 use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -17,12 +17,12 @@ const LOOKING: Duration = Duration::from_millis(5);
 const ANSWER: Duration = Duration::from_secs(5);
 
 /// A calibration under way. It goes on by itself; [`Calibrating::poll`] follows it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Calibrating {
     finger: i32,
     order: u32,
     /// What was found, once the finger is about to be controlled with it.
-    found: Option<Findings>,
+    found: Option<(Findings, Found)>,
     asked: Instant,
 }
 
@@ -57,14 +57,18 @@ impl Calibrating {
         })
     }
 
-    fn ordered(finger: i32, given: Result<Option<u32>, Fault>, found: Option<Findings>) -> Result<Self, HandError> {
+    fn ordered(
+        finger: i32,
+        given: Result<Option<u32>, Fault>,
+        found: Option<(Findings, Found)>,
+    ) -> Result<Self, HandError> {
         let order = given.map_err(|fault| HandError::Faulted { finger, fault })?.ok_or(HandError::Busy(finger))?;
         Ok(Self { finger, order, found, asked: Instant::now() })
     }
 
     /// How it stands now. What was found is put in force first: tendons are brought under tension, and the finger is a
-    /// spring that holds its pose at its initial stiffness; but after [`Task::Signs`] it stays limp, because its zeros may
-    /// be anywhere. Not to be called again after it is done.
+    /// spring that holds its pose at its initial stiffness; but after [`Task::Signs`] it stays limp, because its zeros
+    /// may be anywhere. Not to be called again after it is done.
     ///
     /// # Errors
     /// A routine that gave up, and left the finger limp; a finger that faults.
@@ -78,11 +82,12 @@ impl Calibrating {
             }
             return Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 0.0 }));
         }
-        if let Some(found) = self.found {
+        if let Some((findings, found)) = &self.found {
             if report.stage == Stage::Opening {
                 return Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }));
             }
-            return Ok(Standing::Done(found));
+            hand.note(found.clone());
+            return Ok(Standing::Done(*findings));
         }
         match report.calibration {
             None => Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 0.0 })),
@@ -98,9 +103,10 @@ impl Calibrating {
                 found.apply(&mut changed.fingers[index]);
                 let adjustable = Adjustable::new(&changed, index).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = matches!(found, Findings::Signs(_));
+                let to_store = Found::by_calibration(&found, finger, &changed)?;
                 let member = hand.dispatcher.member(finger)?;
                 *self = hand.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
-                    Self::ordered(finger, member.mailbox.restart(adjustable, limp), Some(found))
+                    Self::ordered(finger, member.mailbox.restart(adjustable, limp), Some((found, to_store)))
                 })?;
                 *configuration = changed;
                 Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))
@@ -156,20 +162,45 @@ impl Hand {
         Ok(self.configuration.read().fingers[finger as usize - 1].clone()) // the member is there: 1 to 3
     }
 
-    /// Writes what was found since open into the configuration file that the hand was opened with, keys that changed only:
-    /// comments and layout stay. The file is replaced as a whole. Whether there is such a file.
+    /// Writes what calibrations of finger 1, 2 or 3 have found since the last such call into the configuration file
+    /// that the hand was opened with, by [`store`]. Whether there is such a file, and something to write.
     ///
     /// # Errors
-    /// A file that cannot be read or written, or can no longer be used.
-    pub fn store_calibration(&self) -> Result<bool, HandError> {
-        let Some((file, calibrated)) = self.to_store() else { return Ok(false) };
-        store(&file, &calibrated)?;
-        Ok(true)
+    /// No such finger; [`HandError::NotStored`] with the reason. What was found stays in force until the hand is
+    /// closed, and is not kept for another such call.
+    pub fn store_calibration(&self, finger: i32) -> Result<bool, HandError> {
+        self.dispatcher.member(finger)?;
+        self.to_store(finger).map_or(Ok(false), |calibration| calibration.store().map(|()| true))
     }
 
-    /// The configuration file that the hand was opened with, if there is one, and what is to be [`store`]d there.
-    pub fn to_store(&self) -> Option<(PathBuf, Configuration)> {
-        Some((self.file.clone()?, self.configuration.read().clone()))
+    /// What [`Hand::store_calibration`] would write, for who writes it without the hand.
+    pub(crate) fn to_store(&self, finger: i32) -> Option<ToStore> {
+        let mut all = self.found.lock();
+        let place = all.iter().position(|found| found.finger() == finger)?;
+        let found = all.swap_remove(place);
+        Some(ToStore { file: self.file.clone()?, found })
+    }
+
+    fn note(&self, found: Found) {
+        let mut all = self.found.lock();
+        match all.iter_mut().find(|before| before.finger() == found.finger()) {
+            Some(before) => before.add(found),
+            None => all.push(found),
+        }
+    }
+}
+
+/// What was found, and the file that it belongs into.
+pub(crate) struct ToStore {
+    file: PathBuf,
+    found: Found,
+}
+
+impl ToStore {
+    pub(crate) fn store(&self) -> Result<(), HandError> {
+        let finger = self.found.finger();
+        let not_stored = |source| HandError::NotStored { finger, source: Box::new(source) };
+        store(&self.file, std::slice::from_ref(&self.found)).map_err(not_stored)
     }
 }
 

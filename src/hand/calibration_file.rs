@@ -1,178 +1,159 @@
-//! What was found into the configuration file: only keys that changed, in the finger's own table, comments and layout kept.
+//! What was found into the configuration file: only its keys, in the finger's own table, with comments and layout kept.
 
-use crate::hand::{HandError, read};
+mod editing;
+
+use super::configuration_file::{LARGEST, parse};
+use crate::files::{UpdateError, update_file};
+use crate::hand::HandError;
+use crate::hand::found::{Found, FoundValue, Misfit};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
-use std::fs;
-use std::io::{self, Write};
+use editing::{child, same, set, written};
 use std::path::Path;
-use toml_edit::{Array, DocumentMut, Formatted, Item, Table, TableLike, Value};
+use toml_edit::{DocumentMut, Item, Value};
 
-/// Significant digits that are written: more than any routine finds.
-const DIGITS: usize = 6;
+/// What some editors begin a text with.
+const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// One key that calibration may change.
-struct Found {
-    section: &'static str,
-    key: &'static str,
-    /// None of them: the key is left out.
-    values: Vec<Value>,
-    /// Whether the values stand in an array.
-    array: bool,
-}
-
-/// Writes what calibration or a search for the bound of Kx has found: the keys that differ between the file at `path` and
-/// `calibrated`.
+/// Writes what was found into the configuration file at `path`: the keys that were found, where the file has other
+/// values. Nothing else changes, whoever has changed what else in the file since it was read. Other processes may store
+/// at the same time: each waits for the others, for at most 30 seconds.
 ///
 /// # Errors
-/// [`HandError::Store`], or what [`read`] says; the file is as it was then.
-pub fn store(path: &Path, calibrated: &Configuration) -> Result<(), HandError> {
-    let failed = |source| HandError::Store { path: path.to_path_buf(), source };
-    let before = read(path)?;
-    let text = fs::read_to_string(path).map_err(failed)?;
-    // It was parsed a moment ago; if somebody has changed it since, that is an error of reading.
-    let mut document: DocumentMut = text.parse().map_err(|error| failed(io::Error::other(error)))?;
-    for (index, (before, now)) in before.fingers.iter().zip(&calibrated.fingers).enumerate() {
-        write_finger(&mut document, index + 1, before, now).map_err(failed)?;
-    }
-    replace(path, &document.to_string()).map_err(failed)
+/// A file that cannot be read, used or written; [`HandError::Unfit`] where the file has changed so that what was found
+/// does not fit. The file is as it was then, and nothing of what was found is written.
+pub fn store(path: &Path, found: &[Found]) -> Result<(), HandError> {
+    update_file(path, LARGEST, |text| change(path, text, found)).map_err(|error| match error {
+        UpdateError::File(source) => HandError::Store { path: path.to_path_buf(), source },
+        UpdateError::Change(error) => error,
+    })
 }
 
-fn write_finger(
-    document: &mut DocumentMut,
-    number: usize,
-    before: &ConfiguredFinger,
-    now: &ConfiguredFinger,
-) -> io::Result<()> {
-    for (old, new) in keys(before).into_iter().zip(keys(now)) {
-        if new.values.is_empty() || same(&old.values, &new.values) {
+/// The text with what was found; none where it stands there already.
+fn change(path: &Path, text: &str, found: &[Found]) -> Result<Option<String>, HandError> {
+    let file = || path.to_path_buf();
+    let before = parse(text).map_err(|wrong| HandError::Configuration {
+        file: file(),
+        line: wrong.line(text),
+        reason: wrong.to_string(),
+    })?;
+    if let Some(Misfit { key, was, is }) = found.iter().find_map(|found| found.misfit(&before)) {
+        return Err(HandError::Unfit { path: file(), key, was, is });
+    }
+    let unusable = |reason: String| HandError::Configuration { file: file(), line: None, reason };
+    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| unusable(error.to_string()))?;
+    let mut changed = false;
+    for found in found {
+        changed |= write_finger(&mut document, found, &before).map_err(unusable)?;
+    }
+    if !changed {
+        return Ok(None);
+    }
+    let changed = like(text, document.to_string());
+    match parse(&changed) {
+        Ok(_) => Ok(Some(changed)),
+        Err(wrong) => Err(unusable(format!("with what was found, {wrong}"))),
+    }
+}
+
+/// A changed text with the byte order mark and the ends of lines of the text before, which the parser drops.
+fn like(before: &str, mut changed: String) -> String {
+    if before.contains("\r\n") && before.matches("\r\n").count() == before.matches('\n').count() {
+        changed = changed.replace("\r\n", "\n").replace('\n', "\r\n");
+    }
+    match before.strip_prefix(BYTE_ORDER_MARK) {
+        Some(_) if !changed.starts_with(BYTE_ORDER_MARK) => format!("{BYTE_ORDER_MARK}{changed}"),
+        _ => changed,
+    }
+}
+
+/// Whether anything had to be changed.
+fn write_finger(document: &mut DocumentMut, found: &Found, before: &Configuration) -> Result<bool, String> {
+    let number = found.finger();
+    let present = &before.fingers[number as usize - 1]; // 1 to 3: it was found
+    let mut changed = false;
+    for FoundValue { section, key, numbers } in found.values() {
+        let present = numbers_at(present, section, key);
+        let (values, array) = written(numbers, &present);
+        if same(&values, &present) {
             continue;
         }
+        changed = true;
         let fingers = child(document.as_table_mut(), "finger")?;
         let finger = child(fingers, &number.to_string())?;
-        let section = child(finger, new.section)?;
-        if !new.array {
-            set(section, new);
-            continue;
-        }
-        match section.get_mut(new.key).and_then(Item::as_array_mut) {
-            Some(array) if array.len() == new.values.len() => {
-                for (place, value) in new.values.into_iter().enumerate() {
-                    array.replace(place, value);
-                }
-            }
-            _ => {
-                section.insert(new.key, Item::Value(Value::Array(new.values.into_iter().collect::<Array>())));
-            }
-        }
+        set(child(finger, section)?, key, values, array, &present);
     }
-    Ok(())
+    Ok(changed)
 }
 
-/// A key with one value, whose comments stay.
-fn set(section: &mut dyn TableLike, found: Found) {
-    for mut value in found.values {
-        match section.get_mut(found.key).and_then(Item::as_value_mut) {
-            Some(old) => {
-                *value.decor_mut() = old.decor().clone();
-                *old = value;
-            }
-            None => {
-                section.insert(found.key, Item::Value(value));
-            }
-        }
+/// What stands at a key, default or not; nothing where it is not set.
+fn numbers_at(finger: &ConfiguredFinger, section: &str, key: &str) -> Vec<f64> {
+    let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
+    let document = toml_edit::ser::to_document(finger).unwrap_or_default();
+    let value = document.get(section).and_then(|section| section.get(key)).and_then(Item::as_value);
+    match value {
+        Some(Value::Array(values)) => values.iter().filter_map(number).collect(),
+        Some(value) => number(value).into_iter().collect(),
+        None => Vec::new(),
     }
-}
-
-/// Everything that calibration and `sun2xp bound` find.
-fn keys(finger: &ConfiguredFinger) -> Vec<Found> {
-    let whole = |values: &[i32]| values.iter().map(|&value| i64::from(value).into()).collect();
-    let signs = |values: &[i8]| values.iter().map(|&value| i64::from(value).into()).collect();
-    let numbers = |values: &[f64]| values.iter().map(|&value| rounded(value)).collect();
-    let found = |section, key, values| Found { section, key, values, array: true };
-    vec![
-        found("motor", "sign", signs(&finger.motor.sign)),
-        found("encoder", "sign", signs(&finger.encoder.sign)),
-        found("encoder", "zero", whole(&finger.encoder.zero)),
-        found("gauge", "newton_per_count", numbers(&finger.gauge.newton_per_count)),
-        found("gauge", "zero", numbers(&finger.gauge.zero)),
-        found("tendon", "stiffness", numbers(&finger.tendon.stiffness)),
-        Found { array: false, ..found("tendon", "stiffness_tolerance", numbers(&[finger.tendon.stiffness_tolerance])) },
-        found("friction", "motor_coulomb", numbers(&finger.friction.motor_coulomb)),
-        found("friction", "conduit", numbers(&finger.friction.conduit)),
-        found("friction", "joint_coulomb", numbers(&finger.friction.joint_coulomb)),
-        Found { array: false, ..found("stiffness", "bound", numbers(finger.stiffness.bound.as_slice())) },
-    ]
-}
-
-/// To so many significant digits.
-fn rounded(value: f64) -> Value {
-    let digits = DIGITS - 1;
-    // The text of a finite number is one.
-    Value::Float(Formatted::new(format!("{value:.digits$e}").parse().unwrap_or(value)))
-}
-
-fn same(one: &[Value], other: &[Value]) -> bool {
-    one.len() == other.len()
-        && one.iter().zip(other).all(|(one, other)| match (one, other) {
-            (Value::Float(one), Value::Float(other)) => one.value() == other.value(),
-            (Value::Integer(one), Value::Integer(other)) => one.value() == other.value(),
-            _ => false,
-        })
-}
-
-/// The table behind a key; a new one, without a header of its own until it has keys, where there is none.
-fn child<'a>(parent: &'a mut dyn TableLike, key: &str) -> io::Result<&'a mut dyn TableLike> {
-    if !parent.contains_key(key) {
-        let mut table = Table::new();
-        table.set_implicit(true);
-        parent.insert(key, Item::Table(table));
-    }
-    let table = parent.get_mut(key).and_then(Item::as_table_like_mut);
-    table.ok_or_else(|| io::Error::other(format!("`{key}` is no table")))
-}
-
-/// Puts a file with this text in the place of the one at `path`: readers see the old one or the new one, whole, and so does
-/// who looks after a power cut.
-fn replace(path: &Path, text: &str) -> io::Result<()> {
-    // A symbolic link stays one.
-    let path = &path.canonicalize()?;
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.new", std::process::id()));
-    let new = path.with_file_name(name);
-    let written = (|| {
-        let mut file = fs::File::create(&new)?;
-        file.set_permissions(fs::metadata(path)?.permissions())?;
-        file.write_all(text.as_bytes())?;
-        file.sync_all()?;
-        fs::rename(&new, path)
-    })();
-    if written.is_err() {
-        // Nothing more can be done about a file that cannot be removed.
-        let _ = fs::remove_file(&new);
-    }
-    written
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::control::calibration::{Findings, Identified, Signs, Zeros};
+    use nalgebra::Vector3;
+    use std::fs;
 
-    fn stored(text: &str, change: impl FnOnce(&mut Configuration)) -> String {
+    /// What [`store`] makes of a file that was read before it became `text`.
+    fn try_to_store(text: &str, found: &[Found]) -> Result<String, HandError> {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("hand.toml");
         fs::write(&path, text).expect("written");
-        let mut configuration = read(&path).expect("usable");
-        change(&mut configuration);
-        store(&path, &configuration).expect("stored");
+        let stored = store(&path, found);
         let files = fs::read_dir(folder.path()).expect("a folder").count();
         assert_eq!(files, 1, "no temporary file is left");
-        let again = read(&path).expect("still usable");
-        for (one, other) in again.fingers.iter().zip(&configuration.fingers) {
-            assert!((0..4).all(|i| (one.tendon.stiffness[i] - other.tendon.stiffness[i]).abs() < 1e-3));
-            assert_eq!(one.encoder, other.encoder);
-            assert_eq!(one.motor.sign, other.motor.sign);
-        }
-        fs::read_to_string(&path).expect("there")
+        let after = fs::read_to_string(&path).expect("there");
+        assert!(stored.is_ok() || after == text, "refused and changed");
+        stored.map(|()| after)
+    }
+
+    fn stored(text: &str, found: &[Found]) -> String {
+        let after = try_to_store(text, found).unwrap_or_else(|error| panic!("{error}"));
+        parse(&after).expect("still usable");
+        // A second time there is nothing to do.
+        assert_eq!(try_to_store(&after, found).expect("stored"), after);
+        after
+    }
+
+    fn zeros(finger: i32, encoder: [i32; 4], gauge: f64) -> Found {
+        let findings =
+            Findings::Zeros(Zeros { encoder, gauge: [gauge; 4], joint_error: Vector3::zeros(), range_error: None });
+        Found::by_calibration(&findings, finger, &Configuration::default()).expect("a finger")
+    }
+
+    fn signs(finger: i32, motor: [i8; 4], gauge: [i8; 4]) -> Found {
+        let findings = Findings::Signs(Signs { motor, encoder: [1; 4], gauge });
+        Found::by_calibration(&findings, finger, &Configuration::default()).expect("a finger")
+    }
+
+    fn identified(finger: i32, stiffness: [f64; 4], conduit: f64) -> Found {
+        let findings = Findings::Identified(Identified {
+            tendon_stiffness: stiffness.into(),
+            travel_residual: 0.0,
+            motor_coulomb: [0.07; 4].into(),
+            conduit: [conduit; 4].into(),
+            gauge_gain: [1.0; 4].into(),
+            motor_ratio: [1.0; 4].into(),
+            joint_coulomb: Vector3::repeat(0.05),
+            joint_viscous: Vector3::repeat(0.05),
+        });
+        let mut configuration = Configuration::default();
+        findings.apply(&mut configuration.fingers[finger as usize - 1]);
+        Found::by_calibration(&findings, finger, &configuration).expect("a finger")
+    }
+
+    fn bound(finger: i32, bound: f64) -> Found {
+        Found::bound(bound, finger, &Configuration::default()).expect("a finger")
     }
 
     const FILE: &str = "# The hand in the corner.\n\n[hand]\nrate = 500 # slow cable\n\n[finger.encoder]\nzero = [1, 2, 3, 4]\n\n\
@@ -180,23 +161,21 @@ mod tests {
                         stiffness = [ 300.0, 300, # new\n  310.0, 300.0 ] # N/cm\n";
 
     #[test]
-    fn nothing_found_changes_nothing() {
-        assert_eq!(stored(FILE, |_| {}), FILE);
+    fn what_stands_there_already_changes_nothing() {
+        assert_eq!(stored(FILE, &[]), FILE);
+        assert_eq!(stored(FILE, &[zeros(1, [1, 2, 3, 4], 0.0), signs(3, [1; 4], [1; 4])]), FILE);
     }
 
     #[test]
     fn what_is_found_replaces_its_numbers_and_nothing_else() {
-        let text = stored(FILE, |hand| hand.fingers[1].tendon.stiffness = [330.0, 301.123_456_789, 310.0, 300.0]);
+        let text = stored(FILE, &[identified(2, [330.0, 301.123_456_789, 310.0, 300.0], 0.05)]);
         let expected = FILE.replace("[ 300.0, 300,", "[ 330.0, 301.123,");
-        assert_eq!(text, expected);
+        assert_eq!(text, expected + "stiffness_tolerance = 0.03\n");
     }
 
     #[test]
     fn what_all_fingers_share_is_overridden_for_one() {
-        let text = stored(FILE, |hand| {
-            hand.fingers[0].encoder.zero = [5, 6, 7, -8];
-            hand.fingers[0].motor.sign = [1, -1, 1, 1];
-        });
+        let text = stored(FILE, &[zeros(1, [5, 6, 7, -8], 0.0), signs(1, [1, -1, 1, 1], [1; 4])]);
         assert!(text.starts_with(FILE), "{text}");
         assert!(text.contains("[finger.1.encoder]\nzero = [5, 6, 7, -8]"), "{text}");
         assert!(text.contains("[finger.1.motor]\nsign = [1, -1, 1, 1]"), "{text}");
@@ -204,10 +183,8 @@ mod tests {
 
     #[test]
     fn inline_tables_take_it_too() {
-        let text = stored("finger.3 = { encoder = { zero = [0, 0, 0, 0] } }\n", |hand| {
-            hand.fingers[2].encoder.zero = [9, 0, 0, 0];
-            hand.fingers[2].friction.conduit = [0.07; 4];
-        });
+        let text = "finger.3 = { encoder = { zero = [0, 0, 0, 0] } }\n";
+        let text = stored(text, &[zeros(3, [9, 0, 0, 0], 0.0), identified(3, [300.0; 4], 0.07)]);
         assert!(text.contains("zero = [9, 0, 0, 0]"), "{text}");
         assert!(text.contains("conduit = [0.07, 0.07, 0.07, 0.07]"), "{text}");
     }
@@ -215,19 +192,67 @@ mod tests {
     #[test]
     fn a_single_number_keeps_its_comment_or_is_added() {
         let file = "[finger.1.stiffness]\nbound = 4.0 # N/cm, by hand\n";
-        let text = stored(file, |hand| {
-            hand.fingers[0].stiffness.bound = Some(8.300000001);
-            hand.fingers[2].stiffness.bound = Some(7.0);
-        });
+        let text = stored(file, &[bound(1, 8.300000001), bound(3, 7.0)]);
         let expected = "[finger.1.stiffness]\nbound = 8.3 # N/cm, by hand\n\n[finger.3.stiffness]\nbound = 7.0\n";
         assert_eq!(text, expected);
-        // What was never found is not written, nor taken away.
-        assert_eq!(stored(file, |hand| hand.fingers[0].stiffness.bound = None), file);
     }
 
     #[test]
-    fn a_folder_that_cannot_be_written_is_named() {
-        let error = store(Path::new("/proc/version"), &Configuration::default());
-        assert!(error.is_err());
+    fn others_findings_stay() {
+        // Both were found with the file as it was in the beginning.
+        let (first, second) = (zeros(1, [5, 6, 7, 8], 200.0), zeros(2, [9, 9, 9, 9], 190.0));
+        let bound = Found::bound(7.5, 1, &parse(FILE).expect("usable")).expect("a finger");
+        let text = stored(&stored(FILE, &[first]), &[second, bound]);
+        let hand = parse(&text).expect("usable");
+        assert_eq!(hand.fingers.each_ref().map(|finger| finger.encoder.zero[0]), [5, 9, 1]);
+        assert_eq!(hand.fingers.each_ref().map(|finger| finger.gauge.zero[0]), [200.0, 190.0, 0.0]);
+        assert_eq!(hand.fingers.each_ref().map(|finger| finger.stiffness.bound), [Some(7.5), None, None]);
+    }
+
+    #[test]
+    fn signs_are_given_to_the_sizes_that_are_there() {
+        let file = "[finger.1.gauge]\nnewton_per_count = [0.0312345678, 0.02, -0.03, 0.04] # measured\n";
+        let text = stored(file, &[signs(1, [1; 4], [1, -1, -1, 1])]);
+        assert_eq!(text, file.replace("0.02,", "-0.02,"));
+    }
+
+    #[test]
+    fn what_editors_of_other_systems_write_stays() {
+        for file in [FILE.replace('\n', "\r\n"), format!("\u{feff}{FILE}")] {
+            let text = stored(&file, &[zeros(1, [5, 6, 7, 8], 0.0)]);
+            assert!(text.starts_with(&file), "{text:?}");
+            assert_eq!(text.contains("\nzero = [5, 6, 7, 8]\n"), !file.contains('\r'), "{text:?}");
+        }
+        let text = stored("[hand]\nrate = 1000 # no line end", &[zeros(1, [5, 6, 7, 8], 0.0)]);
+        assert_eq!(text, "[hand]\nrate = 1000 # no line end\n\n[finger.1.encoder]\nzero = [5, 6, 7, 8]\n");
+    }
+
+    #[test]
+    fn a_file_that_no_longer_fits_is_left_and_the_reason_told() {
+        let radius = "[finger.1.geometry]\nmotor_radius = [0.05, 0.05, 0.05, 0.05]\n";
+        let error = try_to_store(radius, &[zeros(1, [5; 4], 0.0)]).expect_err("other motors").to_string();
+        assert!(error.contains("finger.1.geometry.motor_radius is [0.05, 0.05, 0.05, 0.05] there"), "{error}");
+        // Finger 2 has no part in that.
+        stored(radius, &[zeros(2, [5; 4], 0.0)]);
+        let error = try_to_store("[hand]\nrate = 500\n", &[bound(2, 7.0)]).expect_err("another rate").to_string();
+        assert!(error.contains("hand.rate is 500 there, and was 1000 when"), "{error}");
+        for (text, line, reason) in
+            [("[hand]\nrate = \n", Some(2), ""), ("\n[finger.3.tendon]\nmaximum = 8\n", Some(3), "null vector")]
+        {
+            match try_to_store(text, &[zeros(1, [5; 4], 0.0)]).expect_err("unusable") {
+                HandError::Configuration { line: found, reason: told, .. } => {
+                    assert!(found == line && told.contains(reason), "{found:?} {told}");
+                }
+                other => panic!("{other}"),
+            }
+        }
+        let error = try_to_store("", &[bound(1, 1e9)]).expect_err("beyond its range").to_string();
+        assert!(error.contains("with what was found, finger.1.stiffness.bound"), "{error}");
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_named() {
+        let error = store(Path::new("/proc/version"), &[]).expect_err("no text of a configuration");
+        assert!(error.to_string().contains("/proc/version"), "{error}");
     }
 }

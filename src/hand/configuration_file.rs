@@ -16,7 +16,7 @@ pub(super) use values::deserialize;
 pub(super) use wrong::Wrong;
 
 /// The largest configuration file that is read, bytes: more than sixty times docs/sun2xp.toml, which names every key.
-const LARGEST: u64 = 1 << 20;
+pub(super) const LARGEST: u64 = 1 << 20;
 
 /// A configuration, and where it comes from.
 #[derive(Clone, Debug)]
@@ -54,6 +54,11 @@ pub fn configured() -> Result<Configured, HandError> {
 /// is no regular file or is larger than 1 MiB.
 pub fn read(path: &Path) -> Result<Configuration, HandError> {
     Configured::read(path).map(|configured| configured.configuration)
+}
+
+/// Reads and checks the text of a configuration file.
+pub(super) fn parse(text: &str) -> Result<Configuration, Wrong> {
+    text::parse(text).map(|(configuration, _)| configuration)
 }
 
 impl Configured {

@@ -7,7 +7,7 @@ use crate::files::errno;
 use crate::finger::{Fault, FaultKind};
 use crate::hand::missing::Missing;
 use crate::model::configuration::Unusable;
-use crate::model::{ContactError, Refusal, ShownPath};
+use crate::model::{ContactError, Refusal, Shown, ShownPath};
 use crate::realtime::with_remedy;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -251,13 +251,42 @@ pub enum HandError {
     /// A servo that takes no order.
     #[error("finger {0} takes no orders: its hand was closed or opened anew, or its servo does not run")]
     NoAnswer(i32),
-    /// A calibration that cannot be written.
-    #[error("cannot store the calibration in {}: {source}. It is in force until the hand is closed", ShownPath(path))]
+    /// What was found cannot be written.
+    #[error(
+        "cannot write into the configuration file {}: {source}. This user must be able to write the file and its folder",
+        ShownPath(path)
+    )]
     Store {
         /// The configuration file.
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
+    },
+    /// What was found holds for something else than the configuration file now says.
+    #[error(
+        "what was found does not fit {}: {key} is {} there, and was {} when it was found. Nothing was written: make the two agree and find \
+         it again",
+        ShownPath(path),
+        Shown(is),
+        Shown(was)
+    )]
+    Unfit {
+        /// The configuration file.
+        path: PathBuf,
+        /// The key that differs.
+        key: String,
+        /// Its value when it was found.
+        was: String,
+        /// Its value in the file.
+        is: String,
+    },
+    /// A calibration that is in force and not stored.
+    #[error("finger {finger} is calibrated until its hand is closed, but this is not stored: {source}")]
+    NotStored {
+        /// 1 to 3.
+        finger: i32,
+        /// Why not.
+        source: Box<HandError>,
     },
     /// A faulted finger whose port another one uses.
     #[error(
@@ -352,6 +381,8 @@ impl HandError {
             Self::NotReconnected(_) | Self::NotOpened(_) => libc::ENODEV,
             Self::Busy(_) | Self::PortInUse { .. } => libc::EBUSY,
             Self::Store { source, .. } | Self::BlackBox { source, .. } => errno(source),
+            Self::Unfit { .. } => libc::EINVAL,
+            Self::NotStored { source, .. } => source.errno(),
             Self::NoRecord { .. } => libc::ENOENT,
             Self::NotSimulated(_) => libc::ENOTSUP,
         }

@@ -66,15 +66,22 @@ pub(super) fn check(configuration: &Configuration) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// A black box must have a folder to be written into before it is needed.
-pub(super) fn check_folder(configuration: &Configuration) -> Result<(), Refusal> {
+/// The folder into which black boxes are written at a fault. It must be there before it is needed, and stays the same one
+/// when the planner goes to another working directory.
+pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<PathBuf>, Refusal> {
     match &configuration.hand.black_box {
         Some(folder) if !Path::new(folder).is_dir() => {
             let reason = format!("{} is no folder: make it (mkdir -p), or name another", Shown(folder));
             Err(Refusal { finger: None, unusable: Unusable { key: "black_box", reason } })
         }
-        _ => Ok(()),
+        folder => Ok(folder.as_ref().map(|folder| from_here(folder.into()))),
     }
+}
+
+/// A path that means the same from every working directory.
+pub(super) fn from_here(path: PathBuf) -> PathBuf {
+    // Where there is no working directory only absolute paths lead anywhere.
+    std::path::absolute(&path).unwrap_or(path)
 }
 
 /// A simulated board behind a pseudo-terminal, for each of these fingers whose port is `simulated`.

@@ -4,14 +4,14 @@ use crate::board::{SimulatedFinger, SimulatedPort};
 use crate::control::calibration::Verdict;
 use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::dispatcher::Dispatcher;
-use crate::hand::opening::{Connected, check, check_folder, reach, simulate};
+use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach, simulate};
 use crate::hand::recovery::Recovery;
 use crate::hand::servo_threads::{Given, PortServo, start};
-use crate::hand::{Configured, Fingers, HandError, configured};
+use crate::hand::{Configured, Fingers, Found, HandError, configured};
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{self, Distribution, now};
 use nalgebra::Vector3;
-use parking_lot::RwLock;
+use parking_lot::{Mutex, RwLock};
 use std::path::PathBuf;
 use std::process::id;
 use std::thread::{JoinHandle, sleep};
@@ -41,6 +41,8 @@ pub struct Hand {
     pub(super) configuration: RwLock<Configuration>,
     /// Where the configuration was read from, and where calibration is stored.
     pub(super) file: Option<PathBuf>,
+    /// What calibration has found since it was last stored.
+    pub(super) found: Mutex<Vec<Found>>,
     pub(super) given: Given,
     /// Within this time, ns, every finger reaches its end state.
     ending: u64,
@@ -120,7 +122,7 @@ impl Hand {
         limp: bool,
     ) -> Result<Self, HandError> {
         check(&configuration)?;
-        check_folder(&configuration)?;
+        let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
         let simulated = simulate(&configuration, fingers)?;
         let Connected { lines, reached, workshops } = reach(&configuration, fingers, &simulated, limp)?;
         let recovery = Recovery::new(workshops);
@@ -129,10 +131,10 @@ impl Hand {
         let configuration = RwLock::new(configuration);
         let servos = Vec::new();
         let given = Given::default();
+        let (found, process) = (Mutex::default(), id());
         let mut hand =
-            Self { dispatcher, servos, recovery, simulated, configuration, file, given, ending, process: id() };
+            Self { dispatcher, servos, recovery, simulated, configuration, file, found, given, ending, process };
         // From here on, dropping the hand closes it.
-        let folder = hand.configuration.read().hand.black_box.clone().map(PathBuf::from);
         let collecting = hand.dispatcher.start_collecting(folder);
         collecting.map_err(|source| HandError::System { doing: "start the thread that collects reports", source })?;
         hand.given = start(&hand.configuration.read(), lines, &mut hand.servos)?;

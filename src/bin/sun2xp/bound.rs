@@ -6,7 +6,7 @@ use serde::de::IntoDeserializer;
 use serde::de::value::{Error, StrDeserializer};
 use std::io::{self, Write};
 use std::path::PathBuf;
-use sun2xp::hand::{self, Fingers};
+use sun2xp::hand::{self, Fingers, Found};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RATES, Scheme};
 use sun2xp::stability::{Limit, Search, StiffnessBound};
@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Which finger; may be given again. Without it: all.
     #[arg(long = "finger", value_name = "N", value_parser = clap::value_parser!(i32).range(1..=FINGERS as i64))]
     fingers: Vec<i32>,
-    /// Writes the bounds into the configuration file, as finger.stiffness.bound.
+    /// Writes the bounds into the configuration file, as finger.N.stiffness.bound, and nothing else.
     #[arg(long, requires = "config", conflicts_with_all = ["scheme", "rate"])]
     write: bool,
     /// Another controller than the configured one: "figure 9", "figure 10", "figure 11" or "state feedback".
@@ -80,10 +80,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         found.push((index, bound));
     }
     let Some(path) = arguments.config.as_ref().filter(|_| arguments.write) else { return Ok(()) };
-    for (index, bound) in found {
-        configuration.fingers[index].stiffness.bound = Some(bound.stiffness);
-    }
-    hand::store(path, &configuration)?;
+    let bounds = found.iter().map(|(index, bound)| Found::bound(bound.stiffness, *index as i32 + 1, &configuration));
+    hand::store(path, &bounds.collect::<Result<Vec<_>, _>>()?)?;
     writeln!(io::stdout(), "written to {}", ShownPath(path))?;
     Ok(())
 }

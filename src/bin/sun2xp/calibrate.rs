@@ -16,10 +16,10 @@ use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 /// motor turns a little, to and fro. Zero: tendons are let out and gauges read, then the encoders are zeroed as
 /// `finger.zeroing.method` says: without it, against the stops of the finger where `finger.zeroing` says where they are, and else at a pose
 /// that you are asked to hold the finger in. A pose that is not held is refused. Identify: the finger goes to its lower stops, moves its joints to and fro and presses. Needs
-/// the room that the joints can reach, and nothing in the hand. Only keys that changed are written; comments stay.
+/// the room that the joints can reach, and nothing in the hand. Only what was found is written; all else in the file stays.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file: read, and rewritten at the end.
+    /// The configuration file: read, and given what was found after each finger.
     #[arg(long, value_name = "FILE")]
     config: PathBuf,
     /// Which finger; may be given again. Without it: all. The ports of the others are not opened.
@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         compare(finger, &before, &hand.calibrated(finger)?)?;
         // After each finger: what was found is kept if the next one is refused.
         if !arguments.dry_run {
-            hand.store_calibration()?;
+            hand.store_calibration(finger)?;
         }
     }
     let mut output = io::stdout().lock();

@@ -3,7 +3,7 @@
 use super::{Header, Recording, RecordingError, VERSION};
 use crate::files::open_regular_file;
 use crate::finger::{ControllerSource, CycleRecord};
-use crate::model::{Shown, ShownPath};
+use crate::model::{Shown, ShownPath, one_line};
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;
@@ -109,13 +109,7 @@ fn told(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let reason = text.rsplit_once(" at line ").map_or(text.as_str(), |(reason, _)| reason);
     // The reason may hold any text of the file.
-    let mut shown = String::new();
-    for character in reason.chars().take(LONGEST_REASON) {
-        match character {
-            '\'' | '"' => shown.push(character),
-            _ => shown.extend(character.escape_debug()),
-        }
-    }
+    let shown = one_line(&reason.chars().take(LONGEST_REASON).collect::<String>());
     format!("{shown} (column {})", error.column())
 }
 

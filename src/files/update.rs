@@ -1,0 +1,214 @@
+//! Changes a file that other processes change too: read, changed and replaced under a lock.
+
+use super::regular::{open, read_text};
+use super::replace::NewFile;
+use std::fs::{File, Metadata, OpenOptions, TryLockError, metadata};
+use std::io::{self, ErrorKind, Write};
+use std::os::unix::fs::MetadataExt;
+use std::path::Path;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// How long an update waits for others. Each of them takes some milliseconds.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// How often it looks whether the lock is free. The system has no wait for this lock that ends in time.
+const LOOKING: Duration = Duration::from_millis(5);
+
+/// Why a file was not updated. It is as it was.
+#[derive(Debug)]
+pub enum UpdateError<E> {
+    /// The system refuses something, or another process does not let go of the file.
+    File(io::Error),
+    /// The change was refused.
+    Change(E),
+}
+
+impl<E> From<io::Error> for UpdateError<E> {
+    fn from(error: io::Error) -> Self {
+        Self::File(error)
+    }
+}
+
+/// Puts what `change` makes of the text of the file at `path` in its place; nothing happens where it makes none.
+///
+/// No other update of the file, by any thread or process, happens between reading and replacing it: they wait for each
+/// other, for 30 seconds at most. A program that changes the file without the lock, such as an editor, is noticed
+/// unless it does so in the last moment, and then `change` is called again with the new text. The file is replaced as
+/// by [`replace_file`](super::replace_file); a symbolic link stays one, and the file behind it is replaced. The lock
+/// belongs to the open file, so it ends with its process.
+///
+/// # Errors
+/// What the system reports; [`io::ErrorKind::InvalidInput`] where the path leads to something other than a regular
+/// file; [`io::ErrorKind::FileTooLarge`] where the file has more than `largest` bytes; [`io::ErrorKind::ResourceBusy`]
+/// where others do not let go of the file in time; what `change` refuses.
+pub fn update_file<E>(
+    path: &Path,
+    largest: u64,
+    mut change: impl FnMut(&str) -> Result<Option<String>, E>,
+) -> Result<(), UpdateError<E>> {
+    let path = &path.canonicalize()?;
+    let deadline = Instant::now() + PATIENCE;
+    loop {
+        // For writing, although it is replaced and not written: who may not write a file shall not replace it, and over
+        // a network only such a file can be locked.
+        let file = Locked::new(open(path, OpenOptions::new().read(true).write(true), largest)?, deadline)?;
+        let old = file.0.metadata()?;
+        // Else another process has replaced it while this one waited for the lock of the old one.
+        if version(&metadata(path)?) == version(&old) {
+            let text = read_text(&mut &file.0, largest)?;
+            let Some(changed) = change(&text).map_err(UpdateError::Change)? else { return Ok(()) };
+            let mut new = NewFile::beside(path, Some(&old))?;
+            new.output.write_all(changed.as_bytes())?;
+            new.flush()?;
+            if version(&metadata(path)?) == version(&old) {
+                return Ok(new.replace(path)?);
+            }
+        }
+        if Instant::now() > deadline {
+            return Err(busy("it is changed again and again by another program").into());
+        }
+    }
+}
+
+/// A file that is locked until it is dropped.
+struct Locked(File);
+
+impl Locked {
+    fn new(file: File, deadline: Instant) -> io::Result<Self> {
+        loop {
+            match file.try_lock() {
+                Ok(()) => return Ok(Self(file)),
+                Err(TryLockError::WouldBlock) if Instant::now() < deadline => sleep(LOOKING),
+                Err(TryLockError::WouldBlock) => {
+                    let seconds = PATIENCE.as_secs();
+                    return Err(busy(&format!("another process has kept it locked for {seconds} s (fuser names it)")));
+                }
+                Err(TryLockError::Error(error)) => return Err(unlockable(error)),
+            }
+        }
+    }
+}
+
+impl Drop for Locked {
+    fn drop(&mut self) {
+        // A child that was forked meanwhile has the file open too, and would keep the lock.
+        let _ = self.0.unlock();
+    }
+}
+
+fn busy(reason: &str) -> io::Error {
+    io::Error::new(ErrorKind::ResourceBusy, reason)
+}
+
+/// Some file systems have no locks. Without one the findings of others could get lost.
+fn unlockable(error: io::Error) -> io::Error {
+    match error.raw_os_error() {
+        Some(libc::ENOLCK | libc::ENOSYS | libc::EOPNOTSUPP) => {
+            let reason = format!("its file system has no locks ({error}): move the file to another one");
+            io::Error::new(ErrorKind::Unsupported, reason)
+        }
+        _ => error,
+    }
+}
+
+/// What differs between a file and the one that takes its place, or that it becomes by being written.
+fn version(file: &Metadata) -> [u64; 5] {
+    [file.dev(), file.ino(), file.size(), file.mtime() as u64, file.mtime_nsec() as u64]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn append(line: &str) -> impl FnMut(&str) -> Result<Option<String>, String> {
+        move |text| Ok(Some(format!("{text}{line}\n")))
+    }
+
+    #[test]
+    fn updates_of_many_threads_are_all_there() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("file");
+        fs::write(&file, "").expect("written");
+        std::thread::scope(|scope| {
+            for thread in 0..4 {
+                let file = &file;
+                scope.spawn(move || {
+                    (0..25).for_each(|turn| {
+                        update_file(file, 10_000, append(&format!("{thread} {turn}"))).expect("updated")
+                    });
+                });
+            }
+        });
+        let text = fs::read_to_string(&file).expect("read");
+        for thread in 0..4 {
+            let own: Vec<_> = text.lines().filter_map(|line| line.strip_prefix(&format!("{thread} "))).collect();
+            assert_eq!(own, (0..25).map(|turn| turn.to_string()).collect::<Vec<_>>());
+        }
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1);
+    }
+
+    #[test]
+    fn what_a_program_without_the_lock_writes_meanwhile_is_read_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (file, other) = (folder.path().join("file"), folder.path().join("other"));
+        fs::write(&file, "old\n").expect("written");
+        let mut seen = Vec::new();
+        let change = |text: &str| {
+            seen.push(text.to_string());
+            if seen.len() == 1 {
+                fs::write(&other, "edited\n").expect("written");
+                fs::rename(&other, &file).expect("renamed");
+            }
+            Ok::<_, String>(Some(format!("{text}new\n")))
+        };
+        update_file(&file, 1000, change).expect("updated");
+        assert_eq!(seen, ["old\n", "edited\n"]);
+        assert_eq!(fs::read_to_string(&file).expect("read"), "edited\nnew\n");
+    }
+
+    #[test]
+    fn a_link_stays_and_the_file_behind_it_is_replaced() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "").expect("written");
+        std::os::unix::fs::symlink("file", &link).expect("made");
+        update_file(&link, 1000, append("new")).expect("updated");
+        assert!(fs::symlink_metadata(&link).expect("there").is_symlink());
+        assert_eq!(fs::read_to_string(&file).expect("read"), "new\n");
+    }
+
+    #[test]
+    fn a_lock_that_is_kept_is_not_waited_for_without_end() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("file");
+        fs::write(&file, "old").expect("written");
+        let kept = File::open(&file).expect("open");
+        kept.lock().expect("locked");
+        let open = || File::open(&file).expect("open");
+        let error = Locked::new(open(), Instant::now()).err().expect("locked already");
+        assert_eq!(error.kind(), ErrorKind::ResourceBusy);
+        assert!(error.to_string().contains("another process"), "{error}");
+        drop(kept);
+        drop(Locked::new(open(), Instant::now()).expect("free"));
+        Locked::new(open(), Instant::now()).expect("free again");
+    }
+
+    #[test]
+    fn a_refused_change_and_none_leave_the_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("file");
+        fs::write(&file, "old").expect("written");
+        let before = version(&metadata(&file).expect("there"));
+        let refused = update_file(&file, 1000, |_| Err("no"));
+        assert!(matches!(refused, Err(UpdateError::Change("no"))));
+        update_file(&file, 1000, |_| Ok::<_, String>(None)).expect("nothing to do");
+        let large = update_file(&file, 2, append("new"));
+        assert!(matches!(large, Err(UpdateError::File(error)) if error.kind() == ErrorKind::FileTooLarge));
+        assert!(matches!(update_file(Path::new("/dev/null"), 2, append("new")), Err(UpdateError::File(_))));
+        assert_eq!(version(&metadata(&file).expect("there")), before);
+        // The lock is free again.
+        File::open(&file).expect("open").try_lock().expect("free");
+    }
+}

@@ -1,0 +1,79 @@
+//! Single values of a TOML document, changed so that everything around them stays.
+
+use crate::hand::found::{Numbers, with_signs};
+use toml_edit::{Array, Formatted, Item, Table, TableLike, Value};
+
+/// Significant digits that are written: more than any routine finds.
+const DIGITS: usize = 6;
+
+/// The values as they are written, and whether in an array. `present`: the numbers that are there.
+pub(super) fn written(numbers: &Numbers, present: &[f64]) -> (Vec<Value>, bool) {
+    match numbers {
+        Numbers::Whole(values) => (values.iter().map(|&value| value.into()).collect(), true),
+        Numbers::Real(values) => (values.iter().map(|&value| rounded(value)).collect(), true),
+        Numbers::One(value) => (vec![rounded(*value)], false),
+        Numbers::SignsOf(signs) => (with_signs(present, *signs).into_iter().map(Value::from).collect(), true),
+    }
+}
+
+/// Puts values at a key that holds the numbers `present`, here or where all fingers share them. Comments and layout
+/// stay where the key stands here.
+pub(super) fn set(section: &mut dyn TableLike, key: &str, values: Vec<Value>, array: bool, present: &[f64]) {
+    if array {
+        match section.get_mut(key).and_then(Item::as_array_mut) {
+            Some(here) if here.len() == values.len() && present.len() == values.len() => {
+                for (place, value) in values.into_iter().enumerate() {
+                    if !is(&value, present[place]) {
+                        here.replace(place, value);
+                    }
+                }
+            }
+            _ => {
+                section.insert(key, Item::Value(Value::Array(values.into_iter().collect::<Array>())));
+            }
+        }
+        return;
+    }
+    for mut value in values {
+        match section.get_mut(key).and_then(Item::as_value_mut) {
+            Some(here) => {
+                *value.decor_mut() = here.decor().clone();
+                *here = value;
+            }
+            None => {
+                section.insert(key, Item::Value(value));
+            }
+        }
+    }
+}
+
+/// To so many significant digits.
+fn rounded(value: f64) -> Value {
+    let digits = DIGITS - 1;
+    // The text of a finite number is one.
+    Value::Float(Formatted::new(format!("{value:.digits$e}").parse().unwrap_or(value)))
+}
+
+/// Whether the values are there already.
+pub(super) fn same(values: &[Value], present: &[f64]) -> bool {
+    values.len() == present.len() && values.iter().zip(present).all(|(value, &number)| is(value, number))
+}
+
+/// Whether a value is this number, which may have been written with more digits.
+fn is(value: &Value, number: f64) -> bool {
+    match value {
+        Value::Integer(whole) => *whole.value() as f64 == number,
+        value => value.as_float() == Some(number) || value.as_float() == rounded(number).as_float(),
+    }
+}
+
+/// The table behind a key; a new one, without a header of its own until it has keys, where there is none.
+pub(super) fn child<'a>(parent: &'a mut dyn TableLike, key: &str) -> Result<&'a mut dyn TableLike, String> {
+    if !parent.contains_key(key) {
+        let mut table = Table::new();
+        table.set_implicit(true);
+        parent.insert(key, Item::Table(table));
+    }
+    let table = parent.get_mut(key).and_then(Item::as_table_like_mut);
+    table.ok_or_else(|| format!("`{key}` is no table"))
+}

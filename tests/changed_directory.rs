@@ -1,0 +1,29 @@
+//! A planner that goes to another working directory, as a daemon does, still has its calibrations and black boxes
+//! written where its configuration said. Alone in its process, whose directory it changes.
+
+use std::env::set_current_dir;
+use std::fs;
+use std::time::{Duration, Instant};
+use sun2xp::hand::{Fingers, Hand, read, stop_all};
+
+#[test]
+fn relative_paths_stay_what_they_were_when_the_hand_was_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    set_current_dir(folder.path()).expect("gone there");
+    fs::create_dir("boxes").expect("made");
+    let file = "[hand]\nrate = 500\nblack_box = \"boxes\"\n[finger]\nport = \"simulated\"\n";
+    fs::write("hand.toml", file).expect("written");
+    let hand = Hand::open_limp(read("hand.toml".as_ref()).expect("usable"), Some("hand.toml".into()), Fingers::ALL)
+        .expect("open");
+    set_current_dir("/").expect("gone there");
+
+    hand.find_signs(1, |_| {}).expect("signs");
+    assert!(hand.store_calibration(1).unwrap_or_else(|error| panic!("{error}")));
+    stop_all();
+    let begun = Instant::now();
+    let boxes = || fs::read_dir(folder.path().join("boxes")).expect("there").flatten();
+    while boxes().filter(|file| file.path().extension().is_some_and(|name| name == "jsonl")).count() < 3 {
+        assert!(begun.elapsed() < Duration::from_secs(20), "no black box was written");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}

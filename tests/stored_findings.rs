@@ -1,0 +1,231 @@
+//! Findings of many processes and threads in one configuration file: each writes what it has found, and none is lost.
+
+use nalgebra::Vector3;
+use std::fs::{self, File, Permissions};
+use std::io::{BufRead, BufReader};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use sun2xp::control::calibration::{Findings, Identified, Zeros};
+use sun2xp::hand::{Found, HandError, read, store};
+use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
+use tempfile::{TempDir, tempdir};
+
+const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500 # slow cable\n\n[finger.encoder]\nzero = [1, 2, 3, 4]\n\n\
+                    [finger.2.tendon]\nstiffness = [ 300.0, 300, # new\n  310.0, 300.0 ] # N/cm\n";
+
+/// Somebody who finds the same thing again and again, and nobody else finds it.
+#[derive(Clone, Copy, Debug)]
+struct Worker {
+    finger: i32,
+    what: What,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum What {
+    Zeros,
+    Friction,
+    Bound,
+}
+
+/// A bound of finger 1 or 3 would not hold with the friction that others find.
+const WORKERS: [Worker; 6] = [
+    Worker { finger: 1, what: What::Zeros },
+    Worker { finger: 1, what: What::Friction },
+    Worker { finger: 2, what: What::Zeros },
+    Worker { finger: 2, what: What::Bound },
+    Worker { finger: 3, what: What::Zeros },
+    Worker { finger: 3, what: What::Friction },
+];
+
+impl Worker {
+    /// What the worker finds at a turn, with a configuration that it has read long ago.
+    fn found(self, turn: i32, configuration: &Configuration) -> Found {
+        let number = f64::from(turn + 1);
+        let findings = match self.what {
+            What::Zeros => Findings::Zeros(Zeros {
+                encoder: [turn; 4],
+                gauge: [number; 4],
+                joint_error: Vector3::zeros(),
+                range_error: None,
+            }),
+            What::Friction => Findings::Identified(Identified {
+                tendon_stiffness: [100.0 + number; 4].into(),
+                travel_residual: 0.0,
+                motor_coulomb: [0.07; 4].into(),
+                conduit: [0.05; 4].into(),
+                gauge_gain: [1.0; 4].into(),
+                motor_ratio: [1.0; 4].into(),
+                joint_coulomb: Vector3::repeat(number),
+                joint_viscous: Vector3::repeat(0.05),
+            }),
+            What::Bound => return Found::bound(10.0 + number, self.finger, configuration).expect("a finger"),
+        };
+        Found::by_calibration(&findings, self.finger, configuration).expect("a finger")
+    }
+
+    /// Whether the file has what was found at a turn.
+    fn is_stored(self, turn: i32, path: &Path) -> bool {
+        let hand = read(path).unwrap_or_else(|error| panic!("{self:?}, turn {turn}: {error}"));
+        let index = self.finger as usize - 1;
+        let ConfiguredFinger { encoder, gauge, tendon, friction, stiffness, .. } = &hand.fingers[index];
+        let number = f64::from(turn + 1);
+        match self.what {
+            What::Zeros => encoder.zero == [turn; 4] && gauge.zero == [number; 4],
+            What::Friction => tendon.stiffness == [100.0 + number; 4] && friction.joint_coulomb == [number; 3],
+            What::Bound => stiffness.bound == Some(10.0 + number),
+        }
+    }
+
+    /// Stores at every turn and looks whether it is there. Prints a line for each.
+    fn work(self, path: &Path, turns: i32) {
+        let configuration = read(path).expect("usable");
+        for turn in 0..turns {
+            let stored = store(path, &[self.found(turn, &configuration)]);
+            stored.unwrap_or_else(|error| panic!("{self:?}, turn {turn}: {error}"));
+            assert!(self.is_stored(turn, path), "{self:?}, turn {turn}: lost");
+            println!("stored {turn}");
+        }
+    }
+}
+
+fn hand() -> (TempDir, PathBuf) {
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("hand.toml");
+    fs::write(&path, FILE).expect("written");
+    (folder, path)
+}
+
+/// The environment variables that tell another process of this program which file to work on, as which worker, and how
+/// often.
+const PATH: &str = "SUN2XP_TEST_FILE";
+const NUMBER: &str = "SUN2XP_TEST_WORKER";
+const TURNS: &str = "SUN2XP_TEST_TURNS";
+
+/// Another process of this program.
+fn process(worker: usize, path: &Path, turns: i32) -> Child {
+    Command::new(std::env::current_exe().expect("this program"))
+        .args(["--exact", "threads_and_processes_store_at_once", "--nocapture"])
+        .envs([(NUMBER, worker.to_string()), (TURNS, turns.to_string())])
+        .env(PATH, path)
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("started")
+}
+
+#[test]
+fn threads_and_processes_store_at_once() {
+    if let Some(path) = std::env::var_os(PATH) {
+        let number = |name| std::env::var(name).expect("set").parse::<usize>().expect("a number");
+        WORKERS[number(NUMBER)].work(Path::new(&path), number(TURNS) as i32);
+        return;
+    }
+    const STORES: i32 = 50;
+    let (folder, path) = hand();
+    let processes = [1, 3, 5].map(|worker| process(worker, &path, STORES));
+    std::thread::scope(|scope| {
+        for worker in [0, 2, 4] {
+            let path = &path;
+            scope.spawn(move || WORKERS[worker].work(path, STORES));
+        }
+    });
+    for process in processes {
+        let output = process.wait_with_output().expect("ended");
+        let stores = String::from_utf8_lossy(&output.stdout).matches("stored").count();
+        assert!(output.status.success() && stores == STORES as usize, "{stores} stores");
+    }
+    assert!(WORKERS.iter().all(|worker| worker.is_stored(STORES - 1, &path)));
+    let text = fs::read_to_string(&path).expect("read");
+    for kept in ["# The hand on the desk.\n[hand]\nrate = 500 # slow cable\n\n", "300, # new\n  310.0, 300.0 ] # N/cm"]
+    {
+        assert!(text.contains(kept), "{text}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "temporary files are left");
+}
+
+#[test]
+fn an_older_reading_reverts_nothing() {
+    let (_folder, path) = hand();
+    let read_before = read(&path).expect("usable");
+    WORKERS[0].work(&path, 1);
+    let worker = WORKERS[2];
+    store(&path, &[worker.found(5, &read_before)]).expect("stored");
+    store(&path, &[WORKERS[3].found(6, &read_before)]).expect("stored");
+    assert!(WORKERS[0].is_stored(0, &path) && worker.is_stored(5, &path) && WORKERS[3].is_stored(6, &path));
+}
+
+/// Kills a process while it stores: the file is whole, its lock is free, and what the process left behind does no harm.
+#[test]
+fn a_killed_process_leaves_a_whole_file_and_no_lock() {
+    let (_folder, path) = hand();
+    for lines in 1..=12 {
+        let mut process = process(0, &path, 1_000_000);
+        let output = BufReader::new(process.stdout.take().expect("piped"));
+        let stored = output.lines().map_while(Result::ok).filter(|line| line.contains("stored")).take(lines).count();
+        process.kill().expect("killed");
+        process.wait().expect("ended");
+        assert_eq!(stored, lines);
+        let turn = 10_000 + lines as i32;
+        store(&path, &[WORKERS[4].found(turn, &read(&path).expect("usable"))]).expect("stored");
+        assert!(WORKERS[4].is_stored(turn, &path));
+    }
+}
+
+#[test]
+fn a_store_waits_for_another_one() {
+    let (_folder, path) = hand();
+    let lock = File::open(&path).expect("open");
+    lock.lock().expect("locked");
+    std::thread::scope(|scope| {
+        let storing = scope.spawn(|| WORKERS[0].work(&path, 1));
+        // It has come to the lock when it has the file open, as this thread has.
+        while fs::read_dir("/proc/self/fd").expect("Linux").flatten().filter(|fd| links_to(&fd.path(), &path)).count()
+            < 2
+        {
+            std::thread::yield_now();
+        }
+        assert!(!storing.is_finished());
+        assert_eq!(fs::read_to_string(&path).expect("read"), FILE);
+        drop(lock);
+    });
+    assert!(WORKERS[0].is_stored(0, &path));
+}
+
+fn links_to(link: &Path, path: &Path) -> bool {
+    fs::read_link(link).is_ok_and(|target| target == path)
+}
+
+/// Runs `body` on a thread without the rights of root. The other threads keep theirs.
+fn as_nobody(body: impl FnOnce() + Send) {
+    std::thread::scope(|scope| {
+        let thread = scope.spawn(|| {
+            // SAFETY: the system call changes the user of the calling thread only, which ends after `body`.
+            let changed = unsafe { libc::syscall(libc::SYS_setresuid, -1, 65_534, -1) };
+            // Who is not root already has no more rights than wanted.
+            assert!(changed == 0 || unsafe { libc::geteuid() } != 0);
+            body();
+        });
+        thread.join().expect("no panic");
+    });
+}
+
+#[test]
+fn what_this_user_may_not_write_is_left_and_named() {
+    let (folder, path) = hand();
+    let found = WORKERS[0].found(7, &read(&path).expect("usable"));
+    let set = |path: &Path, mode| fs::set_permissions(path, Permissions::from_mode(mode)).expect("set");
+    for (folder_mode, file_mode) in [(0o555, 0o666), (0o777, 0o444)] {
+        set(folder.path(), folder_mode);
+        set(&path, file_mode);
+        as_nobody(|| {
+            let error = store(&path, std::slice::from_ref(&found)).expect_err("refused");
+            assert!(matches!(error, HandError::Store { .. }) && error.errno() == libc::EACCES, "{error}");
+            assert!(error.to_string().contains("hand.toml: Permission denied"), "{error}");
+        });
+        assert_eq!(fs::read_to_string(&path).expect("read"), FILE);
+    }
+    set(&path, 0o666);
+    as_nobody(|| store(&path, std::slice::from_ref(&found)).expect("stored"));
+    assert!(WORKERS[0].is_stored(7, &path));
+    assert_eq!(fs::metadata(&path).expect("there").permissions().mode() & 0o777, 0o666);
+}
