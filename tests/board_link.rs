@@ -171,6 +171,24 @@ fn a_stop_during_a_hold_does_not_prolong_it() {
 }
 
 #[test]
+fn a_hold_of_no_torque_is_a_hold_and_a_refused_configure_does_not_end_it() {
+    let mut link = link(&[1]);
+    link.shake_hands(1, &terms(EndState::Hold), 500 * MS).unwrap();
+    cycle(&mut link, 0, pull(0));
+    let deadline = in_time(&mut link, 1);
+    assert!(link.stop(1, deadline).unwrap());
+    let holding = |link: &mut Link<SimulatedCable>| link.transport().board().finger(1).unwrap().status();
+    assert!(holding(&mut link).has(Status::HOLDING));
+    let bad = Configure { version: 1, watchdog_ms: 0, ..Default::default() };
+    let frame = WireFrame::new(&Message { address: 1, sequence: 9, frame: Frame::Configure(bad) });
+    link.transport().write(frame.as_bytes()).unwrap();
+    assert!(holding(&mut link).has(Status::HOLDING));
+    let deadline = in_time(&mut link, 10);
+    link.shake_hands(1, &terms(EndState::Hold), deadline).unwrap();
+    assert!(!holding(&mut link).has(Status::HOLDING));
+}
+
+#[test]
 fn a_command_without_enable_takes_the_torque_off_and_needs_no_new_configure() {
     let mut link = link(&[1]);
     link.shake_hands(1, &terms(EndState::Hold), 500 * MS).unwrap();
@@ -304,6 +322,8 @@ fn a_board_refuses_what_it_does_not_understand() {
     // Versions 2 to 9; a type that is free; a Stop with a body; a third end state.
     assert_eq!(refusal(&[0x11, 77, 2, 9]), Refused { request: 1, reason: Reason::Version, detail: 0x0101 });
     assert_eq!(refusal(&[0x71, 77, 1, 2, 3]), Refused { request: 7, reason: Reason::UnknownFrame, detail: 3 });
+    // A Hello to whoever is there, without its second version.
+    assert_eq!(refusal(&[0x10, 77, 1]), Refused { request: 1, reason: Reason::UnknownFrame, detail: 1 });
     assert_eq!(refusal(&[0x41, 77, 0]), Refused { request: 4, reason: Reason::UnknownFrame, detail: 1 });
     let mut configure = vec![0x21, 77, 1, 20, 0, 2];
     configure.resize(34, 0);

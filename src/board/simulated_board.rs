@@ -3,7 +3,7 @@
 //! on simulated time.
 
 use super::protocol::{
-    ANY_ADDRESS, Decoder, Frame, HIGHEST_ADDRESS, Malformed, Message, Packet, Reason, Refused, WireFrame,
+    ANY_ADDRESS, Decoder, Frame, HIGHEST_ADDRESS, Kind, Malformed, Message, Packet, Reason, Refused, WireFrame,
 };
 use super::simulated_finger::SimulatedFinger;
 use crate::model::TendonsError;
@@ -113,7 +113,7 @@ fn answer(fingers: &mut [SimulatedFinger], now: u64, packet: &Packet, damaged: u
     }
     let addresses = fingers.iter().fold(0, |addresses, finger| addresses | 1 << finger.address());
     let message = Message::read(packet);
-    let greeted_all = packet.address() == ANY_ADDRESS && matches!(message, Ok(Message { frame: Frame::Hello(_), .. }));
+    let greeted_all = packet.address() == ANY_ADDRESS && packet.kind() == Kind::Hello as u8;
     let finger = match greeted_all {
         true => fingers.first_mut(),
         false => fingers.iter_mut().find(|finger| finger.address() == packet.address()),
