@@ -1,4 +1,5 @@
-//! The header in every dialect of C and C++ that planners are written in: no warning, and only arrays of float or double.
+//! The header in every dialect of C and C++ that planners are written in: no warning, and only arrays of float or
+//! double.
 
 #[allow(dead_code)]
 mod c;
@@ -85,8 +86,8 @@ fn own_declarations_compile_with_the_type_named() {
     }
 }
 
-/// Statements in C89 whose last one must not compile: the argument is no array of float or double, or its rows have another length.
-/// A C++ compiler complains only once about a template and a type, so none comes twice.
+/// Statements in C89 whose last one must not compile: the argument is no array of float or double, or its rows have
+/// another length. A C++ compiler complains only once about a template and a type, so none comes twice.
 const WRONG: &[&str] = &[
     "static int Wrong[3]; SendPos(1, Wrong);",
     "static void *Wrong; SendPos(1, Wrong);",

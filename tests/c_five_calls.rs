@@ -1,4 +1,5 @@
-//! A planner that knows only the calls of 1990, and has functions, types and constants of its own under all later names.
+//! A planner that knows only the calls of 1990, and has functions, types and constants of its own under all later
+//! names.
 
 #[allow(dead_code)]
 mod c;

@@ -1,4 +1,5 @@
-//! The header in a planner that has macros of its own: it compiles whatever they are named, and they are left as they were.
+//! The header in a planner that has macros of its own: it compiles whatever they are named, and they are left as they
+//! were.
 
 #[allow(dead_code)]
 mod c;

@@ -80,13 +80,11 @@ fn names(declarations: &str) -> BTreeSet<&str> {
 /// Sets the planner's macros aside, and takes them up again.
 fn shields(names: &BTreeSet<&str>) -> (String, String) {
     let pragmas = |pragma: &str| {
-        let mut lines = vec![String::new()];
+        let mut lines = Vec::<String>::new();
         for name in names {
             let next = format!("_Pragma(\"{pragma}_macro(\\\"{name}\\\")\")");
-            let last = lines.last_mut().expect("there is one");
-            match last.len() + next.len() {
-                0..120 if !last.is_empty() => write!(last, " {next}").expect("a String grows"),
-                _ if last.is_empty() => *last = next,
+            match lines.last_mut() {
+                Some(last) if last.len() + next.len() < 120 => write!(last, " {next}").expect("a String grows"),
                 _ => lines.push(next),
             }
         }

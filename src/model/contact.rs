@@ -193,8 +193,8 @@ fn finite(values: &[f64]) -> Result<(), ContactError> {
     values.iter().find(|value| !value.is_finite()).map_or(Ok(()), |&value| Err(ContactError::NotFinite(value)))
 }
 
-/// The spring and the unit normal of a contact that has a direction. Of several faults the first of this order is reported: a number
-/// that is not finite, a K that is no spring, a normal without length.
+/// The spring and the unit normal of a contact that has a direction. Where several things are wrong, the first of this order
+/// is reported: a normal that is not finite, a K that is no spring, a normal without length.
 fn directed<const D: usize>(
     stiffness: &SMatrix<f64, D, D>,
     normal: Vector3<f64>,

@@ -1,5 +1,6 @@
-/* A planner that has functions, types and numbers of its own named like the library's later calls. It knows the five calls
-   of 1990 and HandError. Where the library took one of these functions for its own, the planner would end here. */
+/* A planner that has functions, types and numbers of its own named like the library's later calls. It knows the five
+   calls of 1990 and HandError. If the library took one of these functions for its own, the planner would
+   abort. */
 #define SUN2XP_FIVE_CALLS
 #include "Sun2Xp.h"
 #include "check.h"

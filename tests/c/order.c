@@ -1,5 +1,5 @@
-/* Calls with several things wrong at once, of which one more is put right each time. Prints a line for each call: its name
-   and what it was refused for. Finger 1 is on a real port, the others are simulated. */
+/* Calls with several things wrong at once, of which one more is put right each time. Prints a line for each call: its
+   name and what it was refused for. Finger 1 is on a real port, the others are simulated. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>

@@ -6,7 +6,8 @@ use std::fs;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 
-/// Every key of a finger in docs/sun2xp.toml, with the value that it has there. Optional keys and tables stand behind a #.
+/// Every key of a finger in docs/sun2xp.toml, with the value that it has there. Optional keys and tables are behind
+/// a number sign.
 fn keys_of_a_finger() -> Vec<String> {
     let page = fs::read_to_string(root().join("docs/sun2xp.toml")).expect("the page");
     let mut table = None;

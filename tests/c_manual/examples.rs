@@ -8,7 +8,8 @@ use std::process::Command;
 /// What chapter 9 promises to examples that are statements.
 const INCLUDED: &[&str] = &["errno.h", "signal.h", "stdio.h", "stdlib.h", "unistd.h"];
 
-/// What is done before an example, or shows afterwards that it has worked. The call whose example it is, and two statements.
+/// What is done before an example, or shows afterwards that it has worked. The call whose example it is, and two
+/// statements.
 const AROUND: &[(&str, &str, &str)] = &[
     (
         "StopHand",
@@ -52,8 +53,9 @@ impl Example {
         let open = if statements.contains("OpenHand()") { "" } else { "if (OpenHand() != 0) return 2;" };
         let included: String = INCLUDED.iter().map(|name| format!("#include <{name}>\n")).collect();
         format!(
-            "{included}#include \"Sun2Xp.h\"\n\n{functions}\nint main(void)\n{{\n    {open}\n    {{ {before} }}\n    {{\n\
-             {statements}    }}\n    {{ {after} }}\n    if (HandError()[0] != '\\0') return 3;\n    return CloseHand();\n}}\n"
+            "{included}#include \"Sun2Xp.h\"\n\n{functions}\nint main(void)\n{{\n    {open}\n\
+             {{ {before} }}\n{{\n{statements}}}\n{{ {after} }}\n\
+             if (HandError()[0] != '\\0') return 3;\n    return CloseHand();\n}}\n"
         )
     }
 }

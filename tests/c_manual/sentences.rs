@@ -31,7 +31,8 @@ fn the_calls_that_signal_handlers_may_make_are_named() {
     assert_eq!(sorted(between(&chapter, "A signal handler may call ", ", and no other")), sorted(safe));
 }
 
-/// The entries of calls for double leave the list to the entries above them; that of IdentifyFinger refers to ZeroFinger's.
+/// The entries of calls for double leave the list to the entries above them; that of IdentifyFinger refers to
+/// ZeroFinger's.
 #[test]
 fn the_calls_that_a_forked_child_may_make_are_named() {
     let manual = Manual::read();
