@@ -1,5 +1,9 @@
 //! The black box: what is recorded while a hand runs is computed again to the last bit, and a changed bit is found.
 
+#[allow(dead_code)]
+#[path = "common/pauses.rs"]
+mod pauses;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -33,6 +37,7 @@ fn own_board(scheme: Scheme, folder: Option<&Path>) -> (SimulatedPort, Hand) {
 
 /// One hand at a time: its servos and boards want the machine.
 fn turn() -> MutexGuard<'static, ()> {
+    pauses::name_pauses();
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }

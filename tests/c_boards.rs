@@ -4,6 +4,9 @@
 #[path = "common/attempts.rs"]
 mod attempts;
 #[allow(dead_code)]
+#[path = "common/pauses.rs"]
+mod pauses;
+#[allow(dead_code)]
 #[path = "common/priority.rs"]
 mod priority;
 #[allow(dead_code)]
@@ -16,7 +19,7 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use attempts::attempts;
-use attempts::pauses::Part;
+use pauses::Part;
 use sun2xp::hand::{Hand, HandError, read};
 use sun2xp::model::configuration::Configuration;
 

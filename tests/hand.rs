@@ -1,5 +1,9 @@
 //! A hand on simulated boards: real threads, real pseudo terminals, real time.
 
+#[allow(dead_code)]
+#[path = "common/pauses.rs"]
+mod pauses;
+
 use std::time::{Duration, Instant};
 use sun2xp::finger::Stage;
 use sun2xp::hand::{Hand, HandError};
@@ -8,6 +12,7 @@ use sun2xp::model::configuration::{Configuration, EndState};
 const TARGET: [f64; 3] = [0.2, 0.6, 1.1];
 
 fn open(configuration: Configuration) -> Hand {
+    pauses::name_pauses();
     Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"))
 }
 

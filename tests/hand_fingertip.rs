@@ -1,5 +1,9 @@
 //! Fingertip set points, contacts and adjustment on a hand with simulated boards, in real time.
 
+#[allow(dead_code)]
+#[path = "common/pauses.rs"]
+mod pauses;
+
 use nalgebra::{Matrix4, Vector3, Vector4};
 use std::time::{Duration, Instant};
 use sun2xp::control::Law;
@@ -8,6 +12,7 @@ use sun2xp::model::Contact;
 use sun2xp::model::configuration::{Configuration, OutOfRange};
 
 fn open(configuration: Configuration) -> Hand {
+    pauses::name_pauses();
     Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"))
 }
 

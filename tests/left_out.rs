@@ -110,7 +110,8 @@ fn what_is_missing_is_named_and_installed() {
     let (passed, told) = run_script(&[CARGO, APT, SUDO, CLANG_AFTER_APT], None);
     assert!(passed, "{told}");
     let lines = [
-        "missing: clang. Installing the Debian packages clang libc6-dev",
+        "missing: clang",
+        "installing the Debian packages clang libc6-dev",
         "install --yes --no-install-recommends clang libc6-dev",
         "CI=true: cargo test --locked --test hand",
     ];

@@ -2,9 +2,12 @@
 
 #[path = "common/attempts.rs"]
 mod attempts;
+#[allow(dead_code)]
+#[path = "common/pauses.rs"]
+mod pauses;
 
-use attempts::pauses::{Part, PauseWatch};
 use attempts::{Tally, Verdict, attempts};
+use pauses::{Part, PauseWatch};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::os::unix::process::CommandExt;

@@ -2,13 +2,16 @@
 //! them where no configuration of the machine can be found.
 
 pub mod board;
+#[allow(dead_code)]
+#[path = "../common/pauses.rs"]
+pub mod pauses;
 #[path = "../common/tools.rs"]
 mod tools;
 
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempDir;
 
@@ -55,6 +58,7 @@ pub struct Bench {
 impl Bench {
     pub fn new() -> Self {
         static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+        pauses::name_pauses();
         let turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = tempfile::tempdir().expect("a scratch folder");
         for name in ["libsun2xp.so", "libsun2xp.so.0"] {
@@ -117,7 +121,10 @@ impl Bench {
         if named.exists() {
             command.env("SUN2XP_CONFIG", named);
         }
-        command.output().expect("the program can be started")
+        let process =
+            command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program can be started");
+        pauses::name_pauses().also(process.id(), pauses::Part::Servo);
+        process.wait_with_output().expect("the program ends")
     }
 }
 

@@ -1,9 +1,6 @@
 //! Attempts at something in real time that a pause of the machine can spoil.
 
-#[path = "pauses.rs"]
-pub mod pauses;
-
-use pauses::PauseWatch;
+use crate::pauses::PauseWatch;
 use std::io::Write;
 use std::time::Duration;
 

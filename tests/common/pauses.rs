@@ -4,14 +4,17 @@
 //! counts for every thread how long it was ready to run and had no core (`/proc/PID/task/TID/schedstat`). A thread that sleeps, waits for
 //! bytes or was stopped by a signal is not ready, so a defect of that kind is no pause.
 
+#[path = "waits.rs"]
+mod waits;
+
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::{self, Display};
 use std::fs::{self, File};
 use std::os::unix::fs::FileExt;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+pub use waits::{Part, Waits};
 
 /// How often the kernel's account is read.
 const INTERVAL: Duration = Duration::from_millis(5);
@@ -19,67 +22,99 @@ const INTERVAL: Duration = Duration::from_millis(5);
 /// After so many readings new threads are looked for.
 const READINGS_A_LOOK: u32 = 10;
 
-/// Threads that take the same part in the way from servo to finger and back. One of them at a time can delay a byte.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Part {
-    /// Servo threads of the library.
-    Servo,
-    /// Whatever plays a board: threads of this process, other processes, an emulator.
-    Board,
-    /// Workers of the kernel, which carry the bytes of pseudo-terminals. The watch itself counts as one, because they are not seen from
-    /// a container, and it waits for a core as they do.
-    Carrier,
-    /// The whole machine: a guest that its host did not run.
-    Machine,
-}
-
-impl Display for Part {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Servo => "a servo",
-            Self::Board => "a board",
-            Self::Carrier => "a carrier of bytes",
-            Self::Machine => "the whole machine",
-        })
-    }
-}
-
 /// A watch over the threads of a hand and its boards.
 pub struct PauseWatch {
-    processes: Arc<Mutex<Vec<(u32, Part)>>>,
-    ended: Arc<AtomicBool>,
-    thread: Option<JoinHandle<Waits>>,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Between the watch and whoever asks it.
+#[derive(Default)]
+struct Shared {
+    /// Other processes that are watched.
+    processes: Mutex<Vec<(u32, Part)>>,
+    waits: Mutex<Waits>,
+    ended: AtomicBool,
+    /// Asked for and done.
+    rests: [AtomicBool; 2],
+}
+
+impl Shared {
+    fn processes(&self) -> MutexGuard<'_, Vec<(u32, Part)>> {
+        self.processes.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn waits(&self) -> MutexGuard<'_, Waits> {
+        self.waits.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 impl PauseWatch {
     /// Watches the servo and board threads of this process, and the kernel's workers.
     pub fn start() -> Self {
-        let (processes, ended) = (Arc::<Mutex<Vec<_>>>::default(), Arc::<AtomicBool>::default());
-        let thread = {
-            let (processes, ended) = (processes.clone(), ended.clone());
-            std::thread::spawn(move || watch(&processes, &ended))
-        };
-        Self { processes, ended, thread: Some(thread) }
+        let shared = Arc::new(Shared::default());
+        let watching = shared.clone();
+        Self { shared, thread: Some(std::thread::spawn(move || watch(&watching))) }
     }
 
-    /// Watches another process too: of a planner the servo threads, else all threads.
+    /// Watches another process too: of a planner the servo and board threads, else all threads.
     pub fn also(&self, process: u32, part: Part) {
-        self.processes.lock().unwrap_or_else(PoisonError::into_inner).push((process, part));
+        self.shared.processes().push((process, part));
+    }
+
+    /// Closes all files and forgets what was measured, until the guard is dropped: for tests that count what the process holds.
+    pub fn rest(&self) -> Rest<'_> {
+        let [asked, done] = &self.shared.rests;
+        asked.store(true, Relaxed);
+        while !done.load(Relaxed) {
+            std::thread::sleep(INTERVAL);
+        }
+        Rest(self)
     }
 
     /// What has been measured.
     pub fn end(mut self) -> Waits {
-        self.ended.store(true, Relaxed);
-        self.thread.take().expect("it ends once").join().expect("the watch does not panic")
+        self.shared.ended.store(true, Relaxed);
+        self.thread.take().expect("it ends once").join().expect("the watch does not panic");
+        std::mem::take(&mut self.shared.waits())
     }
 }
 
 impl Drop for PauseWatch {
     fn drop(&mut self) {
         // A test that fails ends its watch.
-        self.ended.store(true, Relaxed);
+        self.shared.ended.store(true, Relaxed);
     }
 }
+
+/// The watch rests as long as this exists.
+pub struct Rest<'a>(&'a PauseWatch);
+
+impl Drop for Rest<'_> {
+    fn drop(&mut self) {
+        self.0.shared.rests.iter().for_each(|rest| rest.store(false, Relaxed));
+    }
+}
+
+/// From now on every failure in this process names the longest pause of the machine in the seconds before it.
+pub fn name_pauses() -> &'static PauseWatch {
+    static WATCH: OnceLock<PauseWatch> = OnceLock::new();
+    WATCH.get_or_init(|| {
+        let watch = PauseWatch::start();
+        let (shared, report) = (watch.shared.clone(), std::panic::take_hook());
+        std::panic::set_hook(Box::new(move |panic| {
+            report(panic);
+            eprintln!("{}", shared.waits().last(BEFORE_A_FAILURE).told(LONG));
+        }));
+        watch
+    })
+}
+
+/// Which seconds before a failure are looked at.
+const BEFORE_A_FAILURE: Duration = Duration::from_secs(30);
+
+/// Pauses of about this length are named at failures: a hand with the usual watchdog does not bear more.
+const LONG: Duration = Duration::from_millis(15);
 
 /// A thread's account.
 struct Account {
@@ -106,33 +141,39 @@ impl Account {
     }
 }
 
-fn watch(processes: &Mutex<Vec<(u32, Part)>>, ended: &AtomicBool) -> Waits {
+fn watch(shared: &Shared) {
     let begun = Instant::now();
     let mut own = Account::open(Part::Carrier, "/proc/thread-self");
     let mut threads = Threads::default();
-    let mut waits = Waits::default();
     let mut readings = 0;
-    while !ended.load(Relaxed) {
+    while !shared.ended.load(Relaxed) {
+        let [rest, rests] = &shared.rests;
+        if rest.load(Relaxed) {
+            threads = Threads::default();
+            *shared.waits() = Waits::default();
+            rests.store(true, Relaxed);
+            std::thread::sleep(INTERVAL);
+            continue;
+        }
         if readings % READINGS_A_LOOK == 0 {
-            threads.look(&processes.lock().unwrap_or_else(PoisonError::into_inner));
+            threads.look(&shared.processes());
         }
         readings += 1;
         let before = Instant::now();
         std::thread::sleep(INTERVAL);
         let late = before.elapsed().saturating_sub(INTERVAL);
-        let at = begun.elapsed();
         let waited = own.as_mut().and_then(Account::news).unwrap_or_default();
-        waits.note(at, 0, Part::Carrier, waited);
+        let mut waits = shared.waits();
+        waits.lasted = begun.elapsed();
+        waits.note(0, Part::Carrier, waited);
         // A thread that has a core and does not run is paused with the whole machine.
-        waits.note(at, 0, Part::Machine, late.saturating_sub(waited));
+        waits.note(0, Part::Machine, late.saturating_sub(waited));
         threads.accounts.retain(|&thread, account| {
             let news = account.news();
-            waits.note(at, thread, account.part, news.unwrap_or_default());
+            waits.note(thread, account.part, news.unwrap_or_default());
             news.is_some()
         });
     }
-    waits.lasted = begun.elapsed();
-    waits
 }
 
 /// The threads that are watched, by number.
@@ -154,11 +195,10 @@ impl Threads {
             self.add(thread, &format!("/proc/self/task/{thread}"), of_library);
         }
         for &(process, part) in processes {
-            let of_planner = |name: &str| of_library(name).filter(|&other| other == part);
             for thread in numbers(&format!("/proc/{process}/task")) {
                 let folder = format!("/proc/{process}/task/{thread}");
                 match part {
-                    Part::Servo => self.add(thread, &folder, of_planner),
+                    Part::Servo => self.add(thread, &folder, of_library),
                     _ => self.add(thread, &folder, |_| Some(part)),
                 };
             }
@@ -187,83 +227,4 @@ impl Threads {
 fn numbers(folder: &str) -> Vec<u32> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok()).collect()
-}
-
-/// A wait for a core, read from the account of a thread.
-#[derive(Clone, Copy)]
-struct Wait {
-    /// When it was read, since the start.
-    at: Duration,
-    thread: u32,
-    part: Part,
-    /// How long it was.
-    time: Duration,
-}
-
-/// For how long threads waited for a core, and when.
-#[derive(Default)]
-pub struct Waits {
-    noted: Vec<Wait>,
-    lasted: Duration,
-}
-
-impl Waits {
-    fn note(&mut self, at: Duration, thread: u32, part: Part, time: Duration) {
-        if !time.is_zero() {
-            self.noted.push(Wait { at, thread, part, time });
-        }
-    }
-
-    /// The longest time for which the machine kept one servo, one board and one carrier of bytes, one after the other, from running within
-    /// any `span`. A wait that began before the span counts whole.
-    pub fn most_within(&self, span: Duration) -> Duration {
-        self.worst(span).values().sum()
-    }
-
-    /// The same of one part alone, within the worst `span` of all.
-    #[allow(dead_code, reason = "only the test of the watch asks")]
-    pub fn of(&self, part: Part, span: Duration) -> Duration {
-        self.worst(span).get(&part).copied().unwrap_or_default()
-    }
-
-    /// For each part the longest wait of one of its threads, within the worst `span`.
-    fn worst(&self, span: Duration) -> BTreeMap<Part, Duration> {
-        let mut threads = BTreeMap::<(Part, u32), Duration>::new();
-        let mut worst = BTreeMap::new();
-        let mut first = 0;
-        for (index, wait) in self.noted.iter().enumerate() {
-            *threads.entry((wait.part, wait.thread)).or_default() += wait.time;
-            if self.noted.get(index + 1).is_some_and(|next| next.at == wait.at) {
-                continue;
-            }
-            while self.noted[first].at + span < wait.at {
-                let gone = self.noted[first];
-                *threads.entry((gone.part, gone.thread)).or_default() -= gone.time;
-                first += 1;
-            }
-            let mut parts = BTreeMap::new();
-            for ((part, _), &time) in &threads {
-                let longest: &mut Duration = parts.entry(*part).or_default();
-                *longest = time.max(*longest);
-            }
-            if parts.values().sum::<Duration>() > worst.values().sum() {
-                worst = parts;
-            }
-        }
-        worst
-    }
-
-    /// What was measured, for a person.
-    pub fn told(&self, span: Duration) -> String {
-        let milliseconds = |time: Duration| format!("{:.1} ms", 1e3 * time.as_secs_f64());
-        let worst = self.worst(span);
-        let parts: Vec<_> = worst.iter().map(|(part, time)| format!("{part} {}", milliseconds(*time))).collect();
-        format!(
-            "in {:.1} s the machine kept threads from running for at most {} within {} ({})",
-            self.lasted.as_secs_f64(),
-            milliseconds(worst.values().sum()),
-            milliseconds(span),
-            parts.join(", ")
-        )
-    }
 }

@@ -2,9 +2,11 @@
 //! packages. Without a tool the tests that need it pass, and tests/zz_left_out.rs lists them at the end of `cargo test`. With CI=true
 //! they fail.
 
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 use std::{env, fs};
 
 const TOOLS: &str = include_str!("../tools.txt");
@@ -50,8 +52,12 @@ pub fn leave_out(part: &str, reason: &str) {
     note(&format!("{}, {test}, {part}: {reason}", env!("CARGO_CRATE_NAME")));
 }
 
-/// Prints a line, also where the test's output is captured, and keeps it for the list at the end.
+/// Prints a line, also where the test's output is captured, and keeps it for the list at the end. Once for each line.
 fn note(line: &str) {
+    static NOTED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    if !NOTED.lock().unwrap_or_else(PoisonError::into_inner).insert(line.to_owned()) {
+        return;
+    }
     // The streams' own functions are not captured; the printing macros are.
     let _ = writeln!(std::io::stderr(), "left out: {line}");
     let folder = folder_of_runs();

@@ -4,6 +4,9 @@
 #[path = "../common/attempts.rs"]
 mod attempts;
 mod machine;
+#[allow(dead_code)]
+#[path = "../common/pauses.rs"]
+mod pauses;
 #[path = "../common/priority.rs"]
 mod priority;
 #[allow(dead_code)]
@@ -11,8 +14,8 @@ mod priority;
 mod tools;
 
 use attempts::attempts;
-use attempts::pauses::Part;
 use machine::{Asked, Machine, build};
+use pauses::Part;
 use std::path::Path;
 use std::process::{Child, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};

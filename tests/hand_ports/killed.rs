@@ -1,8 +1,8 @@
 //! SIGKILL for a planner: how long its boards' motors go on, by the boards' own clocks.
 
 use crate::attempts::attempts;
-use crate::attempts::pauses::{Part, PauseWatch};
 use crate::c::{Bench, STRICT, c_compiler};
+use crate::pauses::{Part, PauseWatch};
 use crate::rig::{Board, State, turn};
 use std::fmt::Write;
 use std::fs;

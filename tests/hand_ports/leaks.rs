@@ -1,6 +1,7 @@
 //! Everything that can happen to a finger on a port, again and again: it recovers every time, and the process holds no more
 //! than before.
 
+use crate::pauses::name_pauses;
 use crate::recovery::{fault, held};
 use crate::rig::{START, TARGET, close, goes, on_ports, open, turn, wait_until};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -139,6 +140,7 @@ fn suffer(hand: &Hand, benches: &[Bench], troubles: &[Trouble]) {
 #[test]
 fn everything_that_happens_to_a_finger_is_recovered_from_and_nothing_leaks() {
     let _turn = turn();
+    let _rest = name_pauses().rest();
     let rounds = std::env::var("SUN2XP_ROUNDS").map_or(1, |rounds| rounds.parse().expect("a number"));
     let folder = tempfile::tempdir().expect("a folder");
     let benches = [0, 1, 2].map(|index| Bench::new(folder.path(), index));

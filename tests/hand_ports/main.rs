@@ -16,3 +16,5 @@ mod numbers;
 mod opening;
 mod recovery;
 mod rig;
+
+use c::pauses;

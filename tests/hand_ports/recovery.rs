@@ -1,5 +1,6 @@
 //! Stopped, unplugged, powered down: nothing goes on by itself, everything goes on when it is told to.
 
+use crate::pauses::name_pauses;
 use crate::rig::{
     Board, START, TARGET, close, goes, on_boards, on_one_port, on_ports, open, three_boards, turn, wait_until,
 };
@@ -300,6 +301,7 @@ fn a_board_that_is_unplugged_again_and_again_recovers_and_nothing_leaks() {
     configuration.fingers[1].reconnect = true;
     let hand = open(configuration);
     goes(&hand, 2, TARGET);
+    let _rest = name_pauses().rest();
     let before = held();
     for round in 0..rounds {
         second.kill();

@@ -21,6 +21,7 @@ const LIMIT: Duration = Duration::from_secs(20);
 /// One hand at a time: its servos and boards want the machine. To be kept for the length of a test.
 pub fn turn() -> MutexGuard<'static, ()> {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    crate::pauses::name_pauses();
     // A test that failed has left nothing behind.
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,0 +1,116 @@
+//! Waits of threads for a core: which of them add up, and the worst of them.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
+use std::time::Duration;
+
+/// Threads that take the same part in the way from servo to finger and back. One of them at a time can delay a byte.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Part {
+    /// Servo threads of the library.
+    Servo,
+    /// Whatever plays a board: threads of this process, other processes, an emulator.
+    Board,
+    /// Workers of the kernel, which carry the bytes of pseudo-terminals. The watch itself counts as one, because they are not seen from
+    /// a container, and it waits for a core as they do.
+    Carrier,
+    /// The whole machine: a guest that its host did not run.
+    Machine,
+}
+
+impl Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Servo => "a servo",
+            Self::Board => "a board",
+            Self::Carrier => "a carrier of bytes",
+            Self::Machine => "the whole machine",
+        })
+    }
+}
+
+/// A wait for a core, read from the account of a thread.
+#[derive(Clone, Copy)]
+struct Wait {
+    /// When it was read, since the start.
+    at: Duration,
+    thread: u32,
+    part: Part,
+    /// How long it was.
+    time: Duration,
+}
+
+/// For how long threads waited for a core, and when.
+#[derive(Default)]
+pub struct Waits {
+    noted: Vec<Wait>,
+    /// How long it was watched.
+    pub lasted: Duration,
+}
+
+impl Waits {
+    /// Adds a wait that has just been read.
+    pub fn note(&mut self, thread: u32, part: Part, time: Duration) {
+        if !time.is_zero() {
+            self.noted.push(Wait { at: self.lasted, thread, part, time });
+        }
+    }
+
+    /// What was measured in the last seconds.
+    pub fn last(&self, seconds: Duration) -> Self {
+        let recent = |wait: &Wait| wait.at + seconds >= self.lasted;
+        Self { noted: self.noted.iter().copied().filter(recent).collect(), lasted: seconds.min(self.lasted) }
+    }
+
+    /// The longest time for which the machine kept one servo, one board and one carrier of bytes, one after the other, from running within
+    /// any `span`. A wait that began before the span counts whole.
+    pub fn most_within(&self, span: Duration) -> Duration {
+        self.worst(span).values().sum()
+    }
+
+    /// The same of one part alone, within the worst `span` of all.
+    pub fn of(&self, part: Part, span: Duration) -> Duration {
+        self.worst(span).get(&part).copied().unwrap_or_default()
+    }
+
+    /// For each part the longest wait of one of its threads, within the worst `span`.
+    fn worst(&self, span: Duration) -> BTreeMap<Part, Duration> {
+        let mut threads = BTreeMap::<(Part, u32), Duration>::new();
+        let mut worst = BTreeMap::new();
+        let mut first = 0;
+        for (index, wait) in self.noted.iter().enumerate() {
+            *threads.entry((wait.part, wait.thread)).or_default() += wait.time;
+            if self.noted.get(index + 1).is_some_and(|next| next.at == wait.at) {
+                continue;
+            }
+            while self.noted[first].at + span < wait.at {
+                let gone = self.noted[first];
+                *threads.entry((gone.part, gone.thread)).or_default() -= gone.time;
+                first += 1;
+            }
+            let mut parts = BTreeMap::new();
+            for ((part, _), &time) in &threads {
+                let longest: &mut Duration = parts.entry(*part).or_default();
+                *longest = time.max(*longest);
+            }
+            if parts.values().sum::<Duration>() > worst.values().sum() {
+                worst = parts;
+            }
+        }
+        worst
+    }
+
+    /// What was measured, for a person.
+    pub fn told(&self, span: Duration) -> String {
+        let milliseconds = |time: Duration| format!("{:.1} ms", 1e3 * time.as_secs_f64());
+        let worst = self.worst(span);
+        let parts: Vec<_> = worst.iter().map(|(part, time)| format!("{part} {}", milliseconds(*time))).collect();
+        format!(
+            "in {:.1} s the machine kept threads from running for at most {} within {} ({})",
+            self.lasted.as_secs_f64(),
+            milliseconds(worst.values().sum()),
+            milliseconds(span),
+            parts.join(", ")
+        )
+    }
+}
