@@ -273,7 +273,7 @@ fn a_file_comes_back_as_it_was_and_a_damaged_one_is_refused_with_its_reason() {
     assert!(matches!(refusal("{}\n"), RecordingError::Foreign(..)));
     assert!(matches!(refusal(""), RecordingError::Foreign(..)));
     let (status, told) = replayed(&file);
-    assert!(status == Some(1) && told.contains("no black box"), "{told}");
+    assert!(status == Some(1) && told.contains("not a black box"), "{told}");
     assert_eq!(replayed(&folder.path().join("none")).0, Some(1));
 
     let refused = hand.write_black_box(2, &folder.path().join("none/file")).expect_err("no such folder");

@@ -1,4 +1,5 @@
-//! Planners in hostile surroundings: descriptors that are closed behind the library's back, limits of the system, names that steer terminals.
+//! Planners in hostile surroundings: descriptors that are closed behind the library's back, limits of the system,
+//! names that steer terminals.
 
 #[allow(dead_code)]
 mod c;

@@ -1,13 +1,15 @@
 //! Descriptors that other parts of the program may close although they are not theirs.
 //!
-//! A program that makes itself a daemon closes every number from 3 to 255, or to its limit. The system then gives these numbers to the next
-//! files that the program opens. A servo that kept on writing would write its commands into them.
+//! A program that makes itself a daemon closes every number from 3 to 255, or to its limit. The system then gives
+//! these numbers to the next files that the program opens. A servo that kept on writing would write its commands into
+//! them.
 #![allow(unsafe_code, reason = "raw descriptors")]
 
 use std::io;
 use std::os::fd::{AsRawFd, FromRawFd, IntoRawFd, OwnedFd, RawFd};
 
-/// Above the numbers that such programs close by habit, and above those that a program without very many files ever gets.
+/// Above the numbers that such programs close by habit, and above those that a program without very many files ever
+/// gets.
 const LOWEST: RawFd = 512;
 
 /// The part of the descriptors that the process may have which stays below ours, where it may have few.
@@ -17,9 +19,10 @@ const BELOW: (libc::rlim_t, libc::rlim_t) = (3, 4);
 const F_SETSIG: libc::c_int = 10;
 const F_GETSIG: libc::c_int = 11;
 
-/// Marks a file that was opened here: the signal that would announce input, were that asked for, which it never is. Nobody else has a
-/// reason to choose this one. Unlike device and inode, it tells a pseudo-terminal from the next one of the same number, and all
-/// controlling ends from each other, which are all /dev/ptmx; and it costs half as much to look at.
+/// Marks a file that was opened here: the signal that would announce input, were that asked for, which it never is.
+/// Nobody else has a reason to choose this one. Unlike device and inode, it tells a pseudo-terminal from the next one
+/// of the same number, and all controlling ends from each other, which are all /dev/ptmx; and it costs half as much
+/// to look at.
 const MARK: libc::c_int = libc::SIGPWR;
 
 /// An open descriptor that is looked at before it is used.
@@ -29,8 +32,8 @@ pub(super) struct Descriptor {
 }
 
 impl Descriptor {
-    /// Takes the result of a call that opens a file, or returns a negative number and sets errno; marks the file and moves it to a high
-    /// number.
+    /// Takes the result of a call that opens a file, or returns a negative number and sets errno; marks the file and
+    /// moves it to a high number.
     ///
     /// # Errors
     /// What the system reports.

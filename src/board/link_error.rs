@@ -13,8 +13,8 @@ pub enum LinkError {
     Port(#[from] PortError),
     /// Not one byte came.
     #[error(
-        "the board does not answer: not one byte came in {milliseconds} ms. Is it switched on, is the cable in, is this \
-         its port, are transmit and receive crossed?"
+        "the board does not answer: not one byte came in {milliseconds} ms. Check that it is switched on, that its \
+         cable is plugged in, that finger.port is its port and that transmit and receive are not crossed"
     )]
     Silent {
         /// How long it was tried, ms.
@@ -22,8 +22,8 @@ pub enum LinkError {
     },
     /// Bytes came, but no frame.
     #[error(
-        "{bytes} bytes came, but no valid frame ({damaged} damaged): the baud rate differs from the board's, or what is \
-         at this port is no board of this protocol"
+        "{bytes} bytes came, but no valid frame ({damaged} damaged): finger.baud differs from the baud rate of the \
+         board, or the device at this port does not speak this protocol. Check finger.baud and finger.port"
     )]
     Unintelligible {
         /// Bytes that came.
@@ -32,7 +32,10 @@ pub enum LinkError {
         damaged: u64,
     },
     /// Valid frames came, but not the one that was asked for.
-    #[error("finger address {address} does not answer a {request:?} frame, though the board sends valid frames")]
+    #[error(
+        "finger address {address} does not answer a {request:?} frame, although the board sends valid frames: its \
+         firmware is faulty, or several boards share the port. Update the firmware, and connect one board to a port"
+    )]
     Unanswered {
         /// The finger.
         address: u8,
@@ -40,7 +43,8 @@ pub enum LinkError {
         request: Kind,
     },
     /// The board has other fingers.
-    #[error("the board at this port has no finger address {address}, but {}: configure finger.address", listed(*addresses))]
+    #[error("the board at this port has no finger address {address}, but {}: set finger.address to one that it has, or \
+             check finger.port", listed(*addresses))]
     WrongAddress {
         /// The address asked for.
         address: u8,
@@ -49,8 +53,8 @@ pub enum LinkError {
     },
     /// No common protocol version.
     #[error(
-        "the board speaks protocol versions {lowest} to {highest}, this library speaks {VERSION}: update the older of the \
-         two"
+        "the board speaks protocol versions {lowest} to {highest}, this library speaks {VERSION}: update the older of \
+         the two"
     )]
     WrongVersion {
         /// The board's lowest.
@@ -59,10 +63,10 @@ pub enum LinkError {
         highest: u8,
     },
     /// The board cannot keep what is configured.
-    #[error("the board cannot keep what is configured: {0}")]
+    #[error("the board cannot do what is configured: {0}")]
     Terms(#[from] TermsError),
     /// The board said no.
-    #[error("finger address {address} refuses: {refused}")]
+    #[error("the board refuses (finger address {address}): {refused}")]
     Refused {
         /// The finger.
         address: u8,
@@ -70,7 +74,7 @@ pub enum LinkError {
         refused: Refused,
     },
     /// The board confirmed other terms than it was sent.
-    #[error("finger address {address} confirms other terms than it was sent: its firmware is wrong")]
+    #[error("finger address {address} confirms other terms than it was sent: its firmware is faulty. Update it")]
     OtherTerms {
         /// The finger.
         address: u8,
@@ -100,5 +104,5 @@ fn listed(addresses: u16) -> String {
         .filter(|address| addresses & 1 << address != 0)
         .map(|address| address.to_string())
         .collect();
-    if names.is_empty() { "none".into() } else { names.join(", ") }
+    if names.is_empty() { "none at all".into() } else { names.join(", ") }
 }

@@ -1,8 +1,9 @@
 //! A serial port for a servo.
 //!
-//! It is read and written on its raw descriptor: no wait changes the signal mask, so that no signal handler of a planner runs on the servo
-//! thread; nothing allocates; nothing waits past its deadline. Before it is used the descriptor is looked at: should another part of the
-//! program have closed it, its number may mean a file of the planner's by now.
+//! It is read and written on its raw descriptor: no wait changes the signal mask, so that no signal handler of a
+//! planner runs on the servo thread; nothing allocates; nothing waits past its deadline. Before it is used the
+//! descriptor is looked at: should another part of the program have closed it, its number may mean a file of the
+//! planner's by now.
 #![allow(unsafe_code, reason = "the raw descriptor of the port")]
 
 mod opening;
@@ -102,7 +103,8 @@ impl Transport for Port {
                 1.. => return Ok(taken as usize),
                 _ => match self.descriptor.error() {
                     error if error.kind() == io::ErrorKind::Interrupted => {}
-                    // A driver that announces bytes and has none must neither hold anybody past the deadline nor keep a processor busy.
+                    // A driver that announces bytes and has none must neither hold anybody past the deadline nor keep
+                    // a processor busy.
                     error if error.kind() == io::ErrorKind::WouldBlock => sleep(NOTHING_TO_READ),
                     error => return Err(error.into()),
                 },
@@ -135,8 +137,8 @@ impl Transport for Port {
 impl Drop for Port {
     fn drop(&mut self) {
         if self.descriptor.is_own() {
-            // Closing a UART waits up to 30 s for bytes that cannot leave. What mattered was answered long ago. The mark of exclusive use
-            // would outlive the port where somebody else has it open too.
+            // Closing a UART waits up to 30 s for bytes that cannot leave. What mattered was answered long ago. The
+            // mark of exclusive use would outlive the port where somebody else has it open too.
             // SAFETY: neither call takes a pointer.
             unsafe {
                 libc::tcflush(self.descriptor.number(), libc::TCOFLUSH);

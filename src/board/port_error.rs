@@ -10,13 +10,16 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum PortError {
     /// ENOENT.
-    #[error("{} does not exist: check the cable, the board's power and finger.port (ls -l /dev/serial/by-id)", ShownPath(.0))]
+    #[error("{} does not exist: check the cable, the board's power and finger.port (ls -l \
+             /dev/serial/by-id)", ShownPath(.0))]
     Missing(PathBuf),
     /// EACCES.
-    #[error("no permission to open {}: add the user to the port's group (usually dialout) and log in again", ShownPath(.0))]
+    #[error("no permission to open {}: add the user to the port's group (usually dialout) and log in \
+             again", ShownPath(.0))]
     Forbidden(PathBuf),
     /// EBUSY.
-    #[error("{path} is in use by another program: close it (fuser -v {path} names it), or configure another port", path = ShownPath(.0))]
+    #[error("{path} is in use by another program: close it (fuser -v {path} names it), or configure another \
+             port", path = ShownPath(.0))]
     Busy(PathBuf),
     /// ENOTTY.
     #[error("{} is not a serial port: check finger.port", ShownPath(.0))]
@@ -55,13 +58,16 @@ pub enum PortError {
         source: io::Error,
     },
     /// EIO: hang-up.
-    #[error("the port has vanished: the cable was pulled, the adapter lost its power, or the simulated board ended")]
+    #[error(
+        "the port has gone away: the cable was unplugged, the adapter or the board lost its power, or the simulated \
+         board has ended. Plug it in"
+    )]
     Vanished,
     /// EBADF: its descriptor is closed, or means another file by now.
-    #[error("another part of this program has closed the descriptor of the port")]
+    #[error("another part of this program has closed the descriptor of the port. Call CloseHand and OpenHand")]
     Closed,
     /// A read or write failed.
-    #[error("reading or writing the port failed: {0}")]
+    #[error("reading or writing the port failed: {0}. Unplug the adapter and plug it in")]
     Failed(io::Error),
 }
 

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// Both ends of a pseudo-terminal. The host's end stays open here too: with it closed, every hang-up of a host would end in
-/// read errors at the board's end.
+/// Both ends of a pseudo-terminal. The host's end stays open here too: with it closed, every hang-up of a host would
+/// end in read errors at the board's end.
 #[derive(Debug)]
 pub(super) struct PseudoTerminal {
     board_end: Descriptor,
@@ -52,7 +52,8 @@ impl PseudoTerminal {
         &self.path
     }
 
-    /// Waits for bytes, so long at most, and takes what is there. Whatever goes wrong, it does not return without having waited.
+    /// Waits for bytes, so long at most, and takes what is there. Whatever goes wrong, it does not return without
+    /// having waited.
     ///
     /// # Errors
     /// The pseudo-terminal is lost.
@@ -87,8 +88,8 @@ impl PseudoTerminal {
         }
     }
 
-    /// A host that died leaves the port marked as exclusive, and answers that it did not fetch: both outlive it, because the
-    /// host's end is open here too.
+    /// A host that died leaves the port marked as exclusive, and answers that it did not fetch: both outlive it,
+    /// because the host's end is open here too.
     pub fn forget_last_host(&self) {
         if self.host_end.is_own() {
             // SAFETY: neither request takes a pointer.

@@ -15,7 +15,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SimulatedBoardError {
     /// Addresses are 1 to 15, each once.
-    #[error("finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or there twice on one port")]
+    #[error("finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or two fingers of one port have it")]
     Address(u8),
     /// A finger's tendons.
     #[error("finger address {address}: {source}")]

@@ -46,7 +46,7 @@ pub enum TermsError {
         wanted: u16,
     },
     /// *hold* is not there.
-    #[error("it cannot hold its last torques: configure hand.end_state = \"release\"")]
+    #[error("it cannot hold its last torques: set hand.end_state = \"release\"")]
     Hold,
     /// A limit beyond the board's.
     #[error(
@@ -62,12 +62,12 @@ pub enum TermsError {
         wanted: f64,
     },
     /// The board's torque unit is zero.
-    #[error("it names 0 as its torque unit: its firmware is wrong")]
+    #[error("it reports 0 as its torque unit: its firmware is faulty. Update it")]
     TorqueUnit,
     /// The board's torque unit is too coarse for the configured limits.
     #[error(
-        "its torque unit is {unit:.3} N cm, more than 1 % of the torque limit of motor {motor}, {limit:.3} N cm: update its firmware to \
-         a finer unit, or connect the board that the motor is meant for"
+        "its torque unit is {unit:.3} N cm, more than 1 % of the torque limit of motor {motor}, {limit:.3} N cm: \
+         update its firmware to a finer unit, or connect the board that the motor is meant for"
     )]
     CoarseUnit {
         /// The board's unit, N cm.

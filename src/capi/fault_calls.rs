@@ -88,7 +88,7 @@ pub extern "C" fn FaultText(Number: c_int) -> *const c_char {
 static TEXTS: LazyLock<Vec<CString>> = LazyLock::new(|| {
     let text = |kind: &FaultKind| {
         let told = kind.description();
-        let text = format!("{}: {}. Likely {}. {}", told.name, told.text, told.cause, told.remedy);
+        let text = format!("{}: {}", told.name, told.explanation());
         // The table has no zero byte; if it had, the text would be empty.
         CString::new(text).unwrap_or_default()
     };

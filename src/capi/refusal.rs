@@ -17,18 +17,19 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(super) enum Refusal {
     #[error(
-        "this process was forked from one that has called OpenHand: only that one has the servo threads. Call from there, or exec"
+        "this process was forked from one that has called OpenHand, and only that one has the servo threads: make the \
+         call there, or exec first"
     )]
     Forked,
     #[error("{name} is a null pointer: pass {wanted}")]
     Null { name: &'static str, wanted: Wanted },
     #[error("{name}->Size is {size}: set it to sizeof *{name}, at least {least}, before the call")]
     SmallStruct { name: &'static str, size: usize, least: usize },
-    #[error("no hand is open: call OpenHand first, and look at its result")]
+    #[error("no hand is open: call OpenHand first, and check its result")]
     NoHand,
-    #[error("the hand is open already, and goes on: CloseHand comes before another OpenHand")]
+    #[error("the hand is open already, and goes on: call CloseHand before OpenHand")]
     AlreadyOpen,
-    #[error("another thread is opening or closing the hand: wait for it")]
+    #[error("another thread is opening or closing the hand: wait until its call has returned")]
     Busy,
     #[error("the library failed ({0}): a defect of this library, please report it")]
     Panicked(String),

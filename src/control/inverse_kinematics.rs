@@ -27,7 +27,10 @@ pub struct InverseKinematics {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum OutOfReach {
     /// Beyond the outstretched finger.
-    #[error("it is {distance:.3} cm from the axis of joint 1, and the outstretched finger reaches {reach:.3} cm")]
+    #[error(
+        "this point is {distance:.3} cm from the axis of joint 1, and the outstretched finger reaches {reach:.3} cm. \
+         Send a point that is nearer"
+    )]
     TooFar {
         /// From the axis of joint 1 to the tip, cm.
         distance: f64,
@@ -36,7 +39,8 @@ pub enum OutOfReach {
     },
     /// Inside of what the folded finger reaches.
     #[error(
-        "it is {distance:.3} cm from the axis of joint 1, and the folded finger comes no nearer than {least:.3} cm"
+        "this point is {distance:.3} cm from the axis of joint 1, and the folded finger comes no nearer than \
+         {least:.3} cm. Send a point that is farther away"
     )]
     TooNear {
         /// From the axis of joint 1 to the tip, cm.
@@ -46,8 +50,8 @@ pub enum OutOfReach {
     },
     /// Every joint solution is outside the joint limits.
     #[error(
-        "it takes joint {joint} at {value:.4} rad, outside its limits of {low:.4} to {high:.4} rad, and no other solution \
-         is nearer to the limits"
+        "joint {joint} would have to be at {value:.4} rad, outside its limits of {low:.4} to {high:.4} rad, and every \
+         other solution is farther outside. Send another point, or change `finger.joints`"
     )]
     BeyondLimits {
         /// The joint that is farthest outside, 0 to 2, of the solution that is least so.

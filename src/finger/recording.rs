@@ -59,11 +59,12 @@ pub enum RecordingError {
     #[error("cannot read {0}: {1}")]
     Unreadable(String, io::Error),
     /// It is something else.
-    #[error("{0} is no black box of sun2xp: {1}")]
+    #[error("{0} is not a black box of sun2xp: {1}")]
     Foreign(String, String),
     /// Another version of the format.
     #[error(
-        "{file} has version {found} of the format, this program reads {VERSION}: replay it with library {library}, which wrote it"
+        "{file} has version {found} of the format, this program reads {VERSION}: replay it with library {library}, \
+         which wrote it"
     )]
     Version {
         /// The file.

@@ -51,7 +51,9 @@ pub fn save(recording: &Recording, path: &Path) -> Result<(), HandError> {
 pub(super) fn keep(recording: &Recording, folder: &Path) {
     let finger = recording.origin.finger;
     say(&match write_new(recording, folder) {
-        Ok(path) => format!("finger {finger} faulted: its last seconds are in {} (sun2xp replay)", ShownPath(&path)),
+        Ok(path) => {
+            format!("finger {finger} faulted: its last two seconds are in {} (see sun2xp replay)", ShownPath(&path))
+        }
         Err(error) => {
             format!("finger {finger} faulted, and its black box cannot be written into {}: {error}", ShownPath(folder))
         }

@@ -1,9 +1,10 @@
 //! Why a call was refused, and what to do about it.
 
+mod errno;
+
 use crate::board::LinkError;
 use crate::control::OutOfReach;
 use crate::control::calibration::Obstacle;
-use crate::files::errno;
 use crate::finger::{Fault, FaultKind};
 use crate::hand::missing::Missing;
 use crate::model::configuration::Unusable;
@@ -19,7 +20,7 @@ pub enum HandError {
     #[error("there is no finger {0}: fingers are 1, 2 and 3")]
     NoSuchFinger(i32),
     /// A finger of a hand of which only others were opened.
-    #[error("finger {0} is not open: this hand was opened with other fingers only")]
+    #[error("finger {0} is not open, because this hand was opened with other fingers only: open it with this finger")]
     NotOpened(i32),
     /// A stage of a cycle that is not known.
     #[error("there is no stage {0}: stages are TIMING_WAKE_UP to TIMING_AGE, 0 to 7")]
@@ -36,8 +37,8 @@ pub enum HandError {
     },
     /// Pos outside the joint limits.
     #[error(
-        "Pos[{joint}] = {value:.4} rad is outside the limits of finger {finger}, {low:.4} to {high:.4} rad: stay inside, \
-         change `finger.joints`, or set `hand.out_of_range = \"clamp\"`"
+        "Pos[{joint}] = {value:.4} rad is outside the limits of finger {finger}, {low:.4} to {high:.4} rad: send an \
+         angle inside them, change `finger.joints`, or set `hand.out_of_range = \"clamp\"`"
     )]
     BeyondJointLimit {
         /// 1 to 3.
@@ -53,8 +54,8 @@ pub enum HandError {
     },
     /// Kx stiffer than the bound.
     #[error(
-        "Kx of finger {finger} has the eigenvalue {largest:.3} N/cm, above the bound of {bound:.3}: ask for less, or set \
-         `hand.out_of_range = \"clamp\"`"
+        "the largest eigenvalue of Kx of finger {finger} is {largest:.3} N/cm, above the bound of {bound:.3} N/cm: \
+         send a softer Kx, or set `hand.out_of_range = \"clamp\"`"
     )]
     TooStiff {
         /// 1 to 3.
@@ -66,8 +67,8 @@ pub enum HandError {
     },
     /// Kx not symmetric.
     #[error(
-        "Kx of finger {finger} is not symmetric: Kx[{row}][{column}] and Kx[{column}][{row}] differ by {difference:.3e} N/cm, \
-         more than a thousandth of its largest entry. A spring has a symmetric Kx"
+        "Kx of finger {finger} is not symmetric: Kx[{row}][{column}] and Kx[{column}][{row}] differ by \
+         {difference:.3e} N/cm, more than a thousandth of its largest entry. Send a symmetric Kx, as every spring has"
     )]
     NotSymmetric {
         /// 1 to 3.
@@ -81,8 +82,8 @@ pub enum HandError {
     },
     /// Kx with a negative eigenvalue.
     #[error(
-        "Kx of finger {finger} has the negative eigenvalue {smallest:.3e} N/cm: a finger that pushes itself away from its \
-         set point is no spring"
+        "Kx of finger {finger} has the negative eigenvalue {smallest:.3e} N/cm, so the finger would push itself away \
+         from its set point: send a Kx whose eigenvalues are zero or positive"
     )]
     Negative {
         /// 1 to 3.
@@ -101,7 +102,7 @@ pub enum HandError {
         source: OutOfReach,
     },
     /// The stiffness of a contact that is none.
-    #[error("the stiffness of finger {finger}'s contact {source}: a contact is a spring with a direction")]
+    #[error("the contact of finger {finger}: {source}")]
     Contact {
         /// 1 to 3.
         finger: i32,
@@ -110,13 +111,15 @@ pub enum HandError {
     },
     /// A contact of a type that is not known.
     #[error(
-        "there is no contact of {0} dimensions: 1 is a frictionless point, 3 a hard finger with friction, 4 a soft finger"
+        "there is no contact of {0} dimensions: 1 is a frictionless point, 3 a hard finger with friction, 4 a soft \
+         finger"
     )]
     NoSuchContact(i32),
     /// A damping ratio outside its range.
     #[error(
-        "the damping {ratio} of finger {finger} is outside {least:.2} to {most:.2}, the range in which a spring of {stiffness:.4} N/cm \
-         comes to rest: send a ratio inside the range or a softer Kx first, or set `hand.out_of_range = \"clamp\"`"
+        "the damping {ratio} of finger {finger} is outside {least:.2} to {most:.2}, the range in which a spring of \
+         {stiffness:.4} N/cm comes to rest: send a ratio inside the range or a softer Kx first, or set \
+         `hand.out_of_range = \"clamp\"`"
     )]
     Damping {
         /// 1 to 3.
@@ -149,6 +152,18 @@ pub enum HandError {
     /// A finger has stopped by itself.
     #[error("finger {finger} is faulted: {fault} (fault {})", fault.kind.number())]
     Faulted {
+        /// 1 to 3.
+        finger: i32,
+        /// What happened.
+        fault: Fault,
+    },
+    /// A finger has stopped while the hand was being opened.
+    #[error(
+        "finger {finger} faulted while the hand was being opened, and the hand is closed again: {fault} (fault {}). \
+         Call OpenHand where RecoverHand is named",
+        fault.kind.number()
+    )]
+    FaultedAtOpening {
         /// 1 to 3.
         finger: i32,
         /// What happened.
@@ -206,9 +221,10 @@ pub enum HandError {
     },
     /// Boards at two ports that say that they are the same.
     #[error(
-        "fingers {} ({}) and {} ({}) are on boards with one unique number, {number}, so that nobody can tell them apart: give every board a \
-         number of its own in its firmware, the processor's with the finger's address in it for example (fault {code})",
-        fingers[0], ports[0].display(), fingers[1], ports[1].display(), code = FaultKind::SameNumber.number()
+        "the boards of fingers {} ({}) and {} ({}) report the same unique number, {number}, so that they cannot be told \
+         apart: give every board a number of its own in its firmware, for example that of its processor with the \
+         finger's address in it (fault {code})",
+        fingers[0], ShownPath(&ports[0]), fingers[1], ShownPath(&ports[1]), code = FaultKind::SameNumber.number()
     )]
     SameNumber {
         /// 1 to 3.
@@ -249,11 +265,15 @@ pub enum HandError {
     #[error("finger {0} is being opened, calibrated or closed: wait until that is done")]
     Busy(i32),
     /// A servo that takes no order.
-    #[error("finger {0} takes no orders: its hand was closed or opened anew, or its servo does not run")]
+    #[error(
+        "finger {0} does not respond: the hand was closed or opened again during the call, or its servo thread does \
+         not run. GetStatus shows its state; CloseHand and OpenHand start it again"
+    )]
     NoAnswer(i32),
     /// What was found cannot be written.
     #[error(
-        "cannot write into the configuration file {}: {source}. This user must be able to write the file and its folder",
+        "cannot write into the configuration file {}: {source}. This user must be able to write the file and its \
+         folder",
         ShownPath(path)
     )]
     Store {
@@ -264,8 +284,8 @@ pub enum HandError {
     },
     /// What was found holds for something else than the configuration file now says.
     #[error(
-        "what was found does not fit {}: {key} is {} there, and was {} when it was found. Nothing was written: make the two agree and find \
-         it again",
+        "what was found does not belong to {}: {key} is {} there, and was {} when it was found. Nothing was written: \
+         make the two agree and find it again",
         ShownPath(path),
         Shown(is),
         Shown(was)
@@ -290,8 +310,8 @@ pub enum HandError {
     },
     /// A faulted finger whose port another one uses.
     #[error(
-        "finger {finger} shares its port with finger {other}, which runs: they recover together, so stop that one first (StopHand, \
-         CloseHand)"
+        "finger {finger} shares its port with finger {other}, which runs, and fingers on one port recover together: \
+         call StopHand, then RecoverHand"
     )]
     PortInUse {
         /// 1 to 3.
@@ -301,24 +321,27 @@ pub enum HandError {
     },
     /// A servo that does not run, so that it does not lend its port.
     #[error(
-        "the servo thread of finger {0} does not run: free the machine, or permit real time (README), then RecoverHand again"
+        "the servo thread of finger {0} gets no processor time: reduce the load of the machine or permit real time \
+         (README), then call RecoverHand again"
     )]
     ServoStalled(i32),
     /// A faulted finger whose servo thread has ended.
     #[error(
-        "the servo thread of finger {0} has failed (fault {number}), and nothing is left that could run it: CloseHand, then OpenHand",
+        "the servo thread of finger {0} has failed (fault {number}) and cannot be started again: call CloseHand, then \
+         OpenHand",
         number = FaultKind::ServoPanic.number()
     )]
     ServoEnded(i32),
     /// A port that has failed, and is not to be opened again.
     #[error(
-        "the port of finger {0} has failed and is not opened again: CloseHand, OpenHand. With `finger.reconnect = true` a real port is \
-         opened again"
+        "the port of finger {0} has failed and is not opened again: call CloseHand, then OpenHand. With \
+         `finger.reconnect = true` RecoverHand opens a real port again"
     )]
     NotReconnected(i32),
     /// A black box that cannot be written.
     #[error(
-        "cannot write the black box to {}: {source}. Name a file in a folder that this user can write to",
+        "cannot write the black box to {}: {source}. Name a file in a folder that exists, has room and can be written \
+         to by this user",
         ShownPath(path)
     )]
     BlackBox {
@@ -329,7 +352,8 @@ pub enum HandError {
     },
     /// A cycle that is not in the black box.
     #[error(
-        "cycle {cycle} of finger {finger} is not kept: only the last two seconds are, FingerRecord.Oldest to Newest; 0 asks for the newest"
+        "cycle {cycle} of finger {finger} is not kept: ask for one from FingerRecord.Oldest to FingerRecord.Newest, \
+         which span the last two seconds, or for 0, the newest"
     )]
     NoRecord {
         /// 1 to 3.
@@ -339,7 +363,8 @@ pub enum HandError {
     },
     /// A push beyond what any finger bears.
     #[error(
-        "a force of {force:.3e} N on finger {finger} is beyond the {strongest} N that a simulated finger is pushed with at most"
+        "a force of {force:.3e} N on finger {finger} is above {strongest} N, the largest that a simulated finger \
+         takes: push with less"
     )]
     TooMuchForce {
         /// 1 to 3.
@@ -350,43 +375,8 @@ pub enum HandError {
         strongest: f64,
     },
     /// Pushing a finger that is not simulated.
-    #[error("finger {0} is on a real port: only a finger with `port = \"simulated\"` can be pushed by a call")]
+    #[error("finger {0} is on a real port: PushFinger pushes simulated fingers only (`port = \"simulated\"`)")]
     NotSimulated(i32),
-}
-
-impl HandError {
-    /// The nearest errno.
-    pub fn errno(&self) -> i32 {
-        match self {
-            Self::NoSuchFinger(_) | Self::NotFinite { .. } => libc::EINVAL,
-            Self::Configuration { .. } | Self::Unusable { .. } => libc::EINVAL,
-            Self::NoSuchStage(_) | Self::NoSuchContact(_) | Self::Adjustment { .. } => libc::EINVAL,
-            Self::TooMuchForce { .. } | Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
-            Self::OutOfReach { .. } | Self::Damping { .. } => libc::ERANGE,
-            Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
-            Self::Contact { .. } => libc::EDOM,
-            Self::Permanent { .. } => libc::EBUSY,
-            Self::NotSymmetric { .. } | Self::Negative { .. } => libc::EDOM,
-            Self::Faulted { .. } | Self::ServoEnded(_) => libc::EIO,
-            // Without an errno of the system's the file was read, but is no text.
-            Self::ConfigurationFile { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
-            Self::UntrustedEnvironment { .. } => libc::EACCES,
-            Self::System { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
-            Self::NotRealTime { missing } => missing.errno(),
-            Self::Link { source, .. } => source.errno(),
-            Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } => libc::ETIMEDOUT,
-            Self::NoAnswer(_) | Self::ServoStalled(_) => libc::ETIMEDOUT,
-            Self::Calibration { .. } => libc::ECANCELED,
-            Self::SameNumber { .. } => libc::ENOTUNIQ,
-            Self::NotReconnected(_) | Self::NotOpened(_) => libc::ENODEV,
-            Self::Busy(_) | Self::PortInUse { .. } => libc::EBUSY,
-            Self::Store { source, .. } | Self::BlackBox { source, .. } => errno(source),
-            Self::Unfit { .. } => libc::EINVAL,
-            Self::NotStored { source, .. } => source.errno(),
-            Self::NoRecord { .. } => libc::ENOENT,
-            Self::NotSimulated(_) => libc::ENOTSUP,
-        }
-    }
 }
 
 impl From<Refusal> for HandError {

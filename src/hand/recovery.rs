@@ -239,6 +239,6 @@ mod tests {
         // A finger alone, whose servo is kept from running for a while.
         assert!(not_lent(1, None, 2 * LENDING).is_none());
         let text = not_lent(1, None, 2 * TAKING_BACK).expect("too long").to_string();
-        assert!(text.contains("does not run") && text.contains("free the machine"), "{text}");
+        assert!(text.contains("no processor time") && text.contains("reduce the load"), "{text}");
     }
 }

@@ -269,7 +269,7 @@ impl Hand {
             for member in self.dispatcher.members() {
                 match member.mailbox.report().stage {
                     Stage::Faulted(fault) => {
-                        return Err(HandError::Faulted { finger: member.admission.read().finger, fault });
+                        return Err(HandError::FaultedAtOpening { finger: member.admission.read().finger, fault });
                     }
                     stage => opening |= stage == Stage::Opening,
                 }

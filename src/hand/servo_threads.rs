@@ -88,7 +88,9 @@ pub(super) fn start(
     for missing in missing {
         match real_time {
             RealTime::Enforce => return Err(HandError::NotRealTime { missing }),
-            RealTime::Try | RealTime::Ignore => say(&format!("{missing}. It goes on without; cycles may be late")),
+            RealTime::Try | RealTime::Ignore => {
+                say(&format!("{missing}. The hand runs without it, and cycles may be late"))
+            }
         }
     }
     let first = now() + HEAD_START;

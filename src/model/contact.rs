@@ -26,10 +26,13 @@ pub struct Contact(Matrix6<f64>);
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ContactError {
     /// NaN or infinity.
-    #[error("contains {0}: every entry must be a finite number")]
+    #[error("an entry of K or Normal is {0}: every entry must be a finite number")]
     NotFinite(f64),
     /// K[row][column] and K[column][row] differ.
-    #[error("is not symmetric: entries [{row}][{column}] and [{column}][{row}] differ by {difference:.3e}")]
+    #[error(
+        "K is not symmetric: K[{row}][{column}] and K[{column}][{row}] differ by {difference:.3e}, more than a \
+         thousandth of its largest entry. Send a symmetric K, as every spring has"
+    )]
     NotSymmetric {
         /// Row of the first such pair.
         row: usize,
@@ -39,13 +42,13 @@ pub enum ContactError {
         difference: f64,
     },
     /// A negative eigenvalue.
-    #[error("has the negative eigenvalue {smallest:.3e}")]
+    #[error("K has the negative eigenvalue {smallest:.3e}: send a K whose eigenvalues are zero or positive")]
     Negative {
         /// Smallest eigenvalue.
         smallest: f64,
     },
     /// The contact's normal is zero.
-    #[error("has no direction: the contact's normal has the length {0:.3e}")]
+    #[error("the length of Normal is {0:.3e}, so it has no direction: pass a longer vector, such as one of length 1")]
     NoNormal(f64),
 }
 

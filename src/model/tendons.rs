@@ -8,14 +8,14 @@ use thiserror::Error;
 pub enum TendonsError {
     /// R with its ghost row has no inverse.
     #[error(
-        "the tendon matrix R with its ghost row is singular (its smallest singular value is {0:.1e}): no inverse Q (eq. 17). \
-         Is a sign wrong? The report misprints row 2, column 4: -1.09"
+        "the tendon matrix R with its ghost row is singular (its smallest singular value is {0:.1e}) and has no \
+         inverse Q (eq. 17). Check its signs: the report misprints row 2, column 4, where -1.09 is right"
     )]
     Singular(f64),
     /// The fourth column of Q has an entry that is not positive: tendons that all pull cannot hold the finger.
     #[error(
-        "the ghost column of Q must be all positive (eq. 20) but is {0:.3?}: no common pull of the tendons leaves the joints \
-         at rest. Is a sign in R wrong? The report misprints row 2, column 4: -1.09"
+        "the ghost column of Q must be all positive (eq. 20) but is {0:.3?}: the tendons cannot all pull while the \
+         joints are at rest. Check the signs of R: the report misprints row 2, column 4, where -1.09 is right"
     )]
     GhostColumn([f64; 4]),
 }

@@ -28,7 +28,7 @@ impl Configuration {
         for (index, finger) in self.fingers.iter().enumerate() {
             finger.check().map_err(|unusable| Refusal { finger: Some(index), unusable })?;
             if finger.priority == 0 && self.hand.real_time == RealTime::Enforce {
-                let reason = "0 is not real-time, which hand.real_time = \"enforce\" asks for: 1 to 99".into();
+                let reason = "0 is not a real-time priority, but hand.real_time is \"enforce\": set 1 to 99".into();
                 return Err(Refusal { finger: Some(index), unusable: Unusable { key: "priority", reason } });
             }
         }
@@ -51,7 +51,7 @@ impl ConfiguredHand {
         let (least, most) = (*RATES.start(), *RATES.end());
         if self.rate < least {
             let reason = format!(
-                "of {} Hz is under {least} Hz, the least at which every finger is known to be stable: raise it",
+                "{} Hz is below {least} Hz, the lowest rate at which every finger is known to be stable: raise it",
                 self.rate
             );
             return unusable("rate", reason);
@@ -65,7 +65,7 @@ impl ConfiguredHand {
         let period_ms = 1000.0 / self.rate;
         if f64::from(self.watchdog_ms) < 2.0 * period_ms {
             let reason = format!(
-                "{} ms is less than two periods of {period_ms} ms: one lost command would stop the motors",
+                "{} ms is less than two periods of {period_ms} ms: one lost command would stop the motors. Raise it",
                 self.watchdog_ms
             );
             return unusable("watchdog_ms", reason);
@@ -82,7 +82,7 @@ impl ConfiguredFinger {
     /// The first unusable value found.
     pub fn check(&self) -> Result<(), Unusable> {
         if self.port.is_empty() {
-            return unusable("port", "is empty: the path of a serial port, or \"simulated\"".into());
+            return unusable("port", "is empty: set it to the path of a serial port or to \"simulated\"".into());
         }
         path("port", &self.port)?;
         within("baud", self.baud.into(), 9600.0, 12_000_000.0, "baud")?;
@@ -122,7 +122,8 @@ impl ConfiguredFinger {
         let largest = tendons.pretension(self.tendon.minimum).max();
         if self.tendon.maximum <= largest {
             let reason = format!(
-                "{} N leaves no room: with t_min = {} N the null vector of R alone asks {largest:.3} N of one tendon",
+                "{} N is too low: with tendon.minimum = {} N one tendon needs {largest:.3} N for its pretension alone. \
+                 Raise it, or lower tendon.minimum",
                 self.tendon.maximum, self.tendon.minimum
             );
             return unusable("tendon.maximum", reason);
@@ -146,8 +147,11 @@ impl ConfiguredFinger {
             self.tendons().map(|tendons| tendons.pretension(self.tendon.minimum).component_mul(&tendons.radius));
         for (tendon, torque) in pretension.iter().flat_map(|torques| torques.iter().enumerate()) {
             if *torque >= self.motor.torque_limit[tendon] {
-                let reason =
-                    format!("motor {} cannot hold its tendon's pretension, which takes {torque:.3} N cm", tendon + 1);
+                let reason = format!(
+                    "motor {} cannot hold the pretension of its tendon, which takes {torque:.3} N cm: raise the limit, \
+                     or lower tendon.minimum",
+                    tendon + 1
+                );
                 return unusable("motor.torque_limit", reason);
             }
         }
@@ -166,7 +170,7 @@ impl ConfiguredFinger {
         }
         if self.joints.minimum_degrees[2] <= 0.0 {
             let reason = format!(
-                "{} degrees for joint 2 lets the finger straighten, where it is singular: above 0",
+                "{} degrees for joint 2 lets the finger straighten, where it is singular: set it above 0",
                 self.joints.minimum_degrees[2]
             );
             return unusable("joints.minimum_degrees", reason);
@@ -218,7 +222,13 @@ impl ConfiguredFinger {
         for joint in 0..3 {
             let inside = |key, stop: f64, limit: f64| {
                 let (stop, limit) = (stop.to_degrees(), limit.to_degrees());
-                unusable(key, format!("joint {joint}: a stop at {stop:.1} degrees is inside its limit of {limit:.1}"))
+                unusable(
+                    key,
+                    format!(
+                        "joint {joint}: a stop at {stop:.1} degrees is inside the limit of {limit:.1}: set it at the \
+                         limit or beyond"
+                    ),
+                )
             };
             if lower[joint] > low[joint] {
                 return inside("zeroing.lower_stop_degrees", lower[joint], low[joint]);
@@ -253,7 +263,7 @@ impl ConfiguredFinger {
                 each("simulation.surface", &point, -1000.0, 1000.0, "cm")?;
                 each("simulation.surface", &normal, -1e6, 1e6, "")?;
                 if normal.iter().all(|&part| part == 0.0) {
-                    return unusable("simulation.surface", "the wall's normal is zero".into());
+                    return unusable("simulation.surface", "the wall's normal is zero: set its direction".into());
                 }
                 within("simulation.surface", stiffness, 0.0, 1e4, "N/cm")
             }

@@ -2,18 +2,21 @@
 
 use std::io;
 
-/// The remedy for an error of a call that makes a thread, a descriptor or a pseudo-terminal; none where no limit is behind it.
+/// The remedy for an error of a call that makes a thread, a descriptor or a pseudo-terminal; none where no limit is
+/// behind it.
 pub fn remedy(error: &io::Error) -> Option<&'static str> {
     match error.raw_os_error()? {
         libc::EMFILE => Some("this process may not open more files: close some, or raise its limit (ulimit -n)"),
         libc::ENFILE => Some("the system may not open more files: end other programs, or raise fs.file-max (sysctl)"),
         libc::EAGAIN => Some(
-            "this user may not start more threads: end other programs, or raise the limit of the user (ulimit -u), of the service or container \
-             (TasksMax, pids.max) or of the system (kernel.threads-max); after mlockall raise the memlock limit (ulimit -l)",
+            "this user may not start more threads: end other programs, or raise the limit of the user (ulimit -u), of \
+             the service or container (TasksMax, pids.max) or of the system (kernel.threads-max); after mlockall raise \
+             the memlock limit (ulimit -l)",
         ),
         libc::ENOMEM => Some("memory is short: end other programs, or raise the limit of this process (ulimit -v)"),
         libc::ENOSPC => Some(
-            "no pseudo-terminal is free: end programs that hold one, such as terminal windows, or raise kernel.pty.max (sysctl)",
+            "no pseudo-terminal is free: end programs that hold one, such as terminal windows, or raise kernel.pty.max \
+             (sysctl)",
         ),
         _ => None,
     }

@@ -1,6 +1,7 @@
-/* A planner that closes descriptors it has not opened, as old daemons do, and opens files of its own at once, which get the numbers of
-   those that it has closed. Its files stay as they are, no thread spins, a fault says what happened, and CloseHand leaves its files
-   open. The arguments: how many descriptors the process may have, and the highest one that is closed. */
+/* A planner that closes descriptors it has not opened, as old daemons do, and opens files of its own at once, which get
+   the numbers of those that it has closed. Its files stay as they are, no thread spins, a fault says what happened, and
+   CloseHand leaves its files open. The arguments: how many descriptors the process may have, and the highest one that is
+   closed. */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -122,7 +123,7 @@ int main(int count, char **arguments)
             /* A simulated board whose descriptors are closed first ends, and its port with it. */
             CHECK(Fault.Number == FAULT_PORT_CLOSED || Fault.Number == FAULT_PORT_VANISHED);
             CHECK(GetPos(finger, Pos) == -1 && errno == EIO);
-            CHECK(strstr(HandError(), "CloseHand, OpenHand") != NULL);
+            CHECK(strstr(HandError(), "CloseHand and OpenHand") != NULL);
         }
         CHECK(all == (takes > 0));
         CHECK(!all || used < 0.1);

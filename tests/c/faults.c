@@ -36,7 +36,7 @@ int main(int count, char **arguments)
     CHECK(GetFault(2, &Fault) == 0 && Fault.Number == 0);
 
     for (number = 1; number <= FAULT_WARM_MOTOR; number++)
-        CHECK(strstr(FaultText(number), ". Likely ") != NULL);
+        CHECK(strstr(FaultText(number), ". Likely cause: ") != NULL);
     CHECK(FaultText(0)[0] == '\0' && FaultText(-1)[0] == '\0' && FaultText(1000)[0] == '\0');
     CHECK(CloseHand() == 0);
     return 0;

@@ -1,5 +1,6 @@
-/* The system refuses descriptors, threads and pseudo-terminals, one after the other: OpenHand tells the system's errno and the remedy, leaves
-   nothing behind, and succeeds when the limit is gone. The calls that are refused are the planner's own, in front of the system's. */
+/* The system refuses descriptors, threads and pseudo-terminals, one after the other: OpenHand tells the system's errno and
+   the remedy, leaves nothing behind, and succeeds when the limit is gone. The calls that are refused are the planner's
+   own, in front of the system's. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <dlfcn.h>

@@ -82,7 +82,7 @@ int main(void)
     CHECK(SendContact(1, 3, Hard, NULL) == 0);
     REFUSED(SendContact(4, 3, Hard, NULL), EINVAL, "1, 2 and 3");
     REFUSED(SendContact(1, 2, Hard, Normal), EINVAL, "2 dimensions");
-    REFUSED(SendContact(1, 4, &Soft[0][0], Nothing), EDOM, "normal");
+    REFUSED(SendContact(1, 4, &Soft[0][0], Nothing), EDOM, "Normal");
     REFUSED(SendContact(1, 4, &Soft[0][0], Nan), EINVAL, "finite");
     REFUSED(SendContact(1, 3, Skewed, NULL), EDOM, "symmetric");
     Soft[3][3] = -1;

@@ -130,7 +130,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let desk =
         Desk { port: &port, configuration: &configuration, link: arguments.link.as_deref(), seed: arguments.seed };
     for order in &arguments.orders {
-        let order = Order::read(order)?.ok_or("an --order is empty")?;
+        let order = Order::read(order)?.ok_or("an --order is empty: see sun2xp board --help")?;
         let answer = desk.carry_out(&order)?;
         if answer.starts_with("error") {
             return Err(answer.into());
@@ -214,13 +214,13 @@ impl Desk<'_> {
                 }
                 Ok(answer)
             }
-            Order::Quit => Err("quit is no order for the start".into()),
+            Order::Quit => Err("quit cannot be given by --order".into()),
         }
     }
 }
 
 fn rate(text: &str) -> Result<f64, String> {
-    let rate: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
+    let rate: f64 = text.parse().map_err(|_| format!("{text} is not a number"))?;
     let sensible = (1.0..=100_000.0).contains(&rate);
     sensible.then_some(rate).ok_or_else(|| format!("{rate} is not between 1 and 100 000 Hz"))
 }

@@ -44,7 +44,7 @@ impl Trouble {
                 match numbers()?[..] {
                     [chance] => Trouble::Line(fault, probability(chance)?, FOR_EVER),
                     [chance, time] => Trouble::Line(fault, probability(chance)?, nanoseconds(time)?),
-                    _ => return Err(format!("{name} PROBABILITY [MS]")),
+                    _ => return Err(format!("usage: {name} PROBABILITY [MS]")),
                 }
             }
             "delay" => match numbers()?[..] {
@@ -53,19 +53,19 @@ impl Trouble {
                     let fault = LineFault::Delay(nanoseconds(delay)?);
                     Trouble::Line(fault, probability(chance)?, nanoseconds(time)?)
                 }
-                _ => return Err("delay PROBABILITY MS_LATER [MS]".into()),
+                _ => return Err("usage: delay PROBABILITY MS_LATER [MS]".into()),
             },
             "stall" => match numbers()?[..] {
                 [time] => Trouble::Line(LineFault::Stall, 1.0, nanoseconds(time)?),
-                _ => return Err("stall MS".into()),
+                _ => return Err("usage: stall MS".into()),
             },
             "commands" => match Self::read(rest)? {
                 Some(Trouble::Line(fault, probability, time)) => Trouble::LineToBoard(fault, probability, time),
-                _ => return Err("commands drop, corrupt, delay, duplicate, reorder or stall ...".into()),
+                _ => return Err("usage: commands drop, corrupt, delay, duplicate, reorder or stall ...".into()),
             },
             "mend" => match numbers()?[..] {
                 [finger] => Trouble::Mend(whole(finger)?),
-                _ => return Err("mend FINGER".into()),
+                _ => return Err("usage: mend FINGER".into()),
             },
             _ => return Self::read_defect(name, rest),
         };
@@ -93,7 +93,7 @@ impl Trouble {
         let numbers: Vec<f64> = rest.iter().map(|word| number(word)).collect::<Result<_, _>>()?;
         let (finger, numbers) = match numbers[..] {
             [finger, ref numbers @ ..] => (whole(finger)?, numbers),
-            [] => return Err(format!("{name}: of which finger?")),
+            [] => return Err(format!("{name} needs the number of a finger")),
         };
         let part = |part: f64| match whole(part)? {
             part @ 1..=4 => Ok(part),
@@ -158,20 +158,24 @@ impl Trouble {
 
 fn number(word: &str) -> Result<f64, String> {
     let number: Option<f64> = word.parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| format!("{} is no number", Shown(word)))
+    number.ok_or_else(|| format!("{} is not a number", Shown(word)))
 }
 
 fn whole(number: f64) -> Result<u8, String> {
     let fits = number.fract() == 0.0 && (0.0..=255.0).contains(&number);
-    if fits { Ok(number as u8) } else { Err(format!("{number} is no small whole number")) }
+    if fits { Ok(number as u8) } else { Err(format!("{number} is not a whole number from 0 to 255")) }
 }
 
 fn probability(number: f64) -> Result<f64, String> {
-    if (0.0..=1.0).contains(&number) { Ok(number) } else { Err(format!("{number} is no probability: 0 to 1")) }
+    if (0.0..=1.0).contains(&number) { Ok(number) } else { Err(format!("{number} is not a probability from 0 to 1")) }
 }
 
 fn nanoseconds(milliseconds: f64) -> Result<u64, String> {
-    if milliseconds >= 0.0 { Ok((milliseconds * 1e6) as u64) } else { Err(format!("{milliseconds} ms is no time")) }
+    if milliseconds >= 0.0 {
+        Ok((milliseconds * 1e6) as u64)
+    } else {
+        Err(format!("{milliseconds} is not a time of 0 ms or more"))
+    }
 }
 
 #[cfg(test)]
@@ -212,12 +216,12 @@ mod tests {
         for (line, part) in [
             ("cut 1 5", "not between 1 and 4"),
             ("cut 1", "does not take these numbers"),
-            ("cut", "of which finger"),
-            ("cut one 2", "one is no number"),
-            ("drop 1.5", "no probability"),
+            ("cut", "cut needs the number of a finger"),
+            ("cut one 2", "one is not a number"),
+            ("drop 1.5", "not a probability"),
             ("drop", "PROBABILITY [MS]"),
-            ("stall -1", "no time"),
-            ("commands corrupt 2", "no probability"),
+            ("stall -1", "not a time"),
+            ("commands corrupt 2", "not a probability"),
             ("commands mend 1", "commands drop, corrupt"),
             ("commands", "commands drop, corrupt"),
             ("slack 1 2 -3", "does not take these numbers"),

@@ -33,16 +33,16 @@ impl Order {
         let (name, finger, numbers) = match words[..] {
             [] => return Ok(None),
             ["quit"] => return Ok(Some(Order::Quit)),
-            [name] => return Err(format!("{}: of which finger?", Shown(name))),
+            [name] => return Err(format!("{} needs the number of a finger", Shown(name))),
             [name, finger, ref numbers @ ..] => (name, finger, numbers),
         };
-        let finger = finger.parse().map_err(|_| format!("{} is no finger's number", Shown(finger)))?;
+        let finger = finger.parse().map_err(|_| format!("{} is not the number of a finger", Shown(finger)))?;
         Ok(Some(Order::For(finger, Action::new(name, &numbers_in(numbers)?)?)))
     }
 }
 
 fn numbers_in(words: &[&str]) -> Result<Vec<f64>, String> {
-    words.iter().map(|word| word.trim().parse().map_err(|_| format!("{} is no number", Shown(word)))).collect()
+    words.iter().map(|word| word.trim().parse().map_err(|_| format!("{} is not a number", Shown(word)))).collect()
 }
 
 impl Action {
@@ -74,7 +74,7 @@ impl Action {
             ("force" | "wall" | "ball" | "hold" | "free" | "state", _) => {
                 Err(format!("{name} does not take {} numbers; see sun2xp board --help", numbers.len()))
             }
-            _ => Err(format!("no order {}: force, wall, ball, hold, free, state or quit", Shown(name))),
+            _ => Err(format!("there is no order {}: see sun2xp board --help", Shown(name))),
         }
     }
 
@@ -129,14 +129,14 @@ mod tests {
     fn wrong_orders_are_named() {
         for (line, part) in [
             ("force 1 1 2", "does not take 2 numbers"),
-            ("force one 1 2 3", "no finger's number"),
-            ("force 1 1 2 x", "x is no number"),
+            ("force one 1 2 3", "one is not the number of a finger"),
+            ("force 1 1 2 x", "x is not a number"),
             ("force 1 1 2 NaN", "not finite"),
             ("wall 1 0 0 0 0 0 0 10", "no direction"),
             ("wall 1 0 0 0 1 0 0 -10", "negative"),
             ("ball 1 0 0 0 1 -10", "negative"),
             ("shove 1", "no order shove"),
-            ("state", "of which finger"),
+            ("state", "state needs the number of a finger"),
         ] {
             let error = Order::read(line).unwrap_err();
             assert!(error.contains(part), "{line}: {error}");

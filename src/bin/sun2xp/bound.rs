@@ -47,7 +47,7 @@ fn scheme(name: &str) -> Result<Scheme, String> {
 }
 
 fn rate(text: &str) -> Result<f64, String> {
-    let rate = text.parse().map_err(|_| format!("{text} is no number"))?;
+    let rate = text.parse().map_err(|_| format!("{text} is not a number"))?;
     if RATES.contains(&rate) {
         Ok(rate)
     } else {
@@ -104,11 +104,14 @@ fn tell(configuration: &Configuration, index: usize, bound: &StiffnessBound, twi
     let degrees = |pose: nalgebra::Vector3<f64>| format!("{:.0?} degrees", pose.map(f64::to_degrees).as_slice());
     match bound.limit {
         Limit::Unstable(pose) => writeln!(output, "    more is unstable at {}", degrees(pose))?,
-        Limit::Scaled(pose) => writeln!(output, "    of more, less than half could be carried at {}", degrees(pose))?,
+        Limit::Scaled(pose) => {
+            writeln!(output, "    with more, the servo would scale Kx down by more than half at {}", degrees(pose))?
+        }
     }
     writeln!(
         output,
-        "    {} samples stable; {:.1} % of the poses carry less, the softest {:.2} of it: there the servo scales Kx down",
+        "    {} samples stable; {:.1} % of the poses carry less, the softest {:.2} of it: there the servo scales Kx \
+         down",
         bound.samples,
         100.0 * bound.scaled,
         bound.least_scale
@@ -118,7 +121,8 @@ fn tell(configuration: &Configuration, index: usize, bound: &StiffnessBound, twi
         0 => writeln!(output, "    {near} samples with the tip within 3 cm of the axis of joint 0: all stable"),
         _ => writeln!(
             output,
-            "    not covered: of {near} samples with the tip within 3 cm of the axis of joint 0 {unstable} are unstable, up to {distance:.1} cm"
+            "    not covered: of {near} samples with the tip within 3 cm of the axis of joint 0 {unstable} are \
+             unstable, up to {distance:.1} cm"
         ),
     }
 }

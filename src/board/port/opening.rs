@@ -41,7 +41,8 @@ impl Port {
         }
     }
 
-    /// Raw, eight data bits, no parity, one stop bit, no flow control: the rate that the driver offers for `baud`, bits a second.
+    /// Raw, eight data bits, no parity, one stop bit, no flow control: the rate that the driver offers for `baud`,
+    /// bits a second.
     fn configure(&self, baud: u32) -> io::Result<u32> {
         let mut settings = self.settings()?;
         settings.c_iflag &= !(libc::IGNBRK | libc::BRKINT | libc::PARMRK | libc::ISTRIP | libc::INPCK);
@@ -49,7 +50,8 @@ impl Port {
         settings.c_iflag |= libc::IGNPAR;
         settings.c_oflag &= !libc::OPOST;
         settings.c_lflag &= !(libc::ECHO | libc::ECHONL | libc::ICANON | libc::ISIG | libc::IEXTEN);
-        // Without HUPCL: with it, closing the port drops DTR, which resets many boards before they reach their end state.
+        // Without HUPCL: with it, closing the port drops DTR, which resets many boards before they reach their end
+        // state.
         settings.c_cflag &= !(libc::CSIZE | libc::PARENB | libc::PARODD | libc::CSTOPB | libc::CRTSCTS | libc::HUPCL);
         settings.c_cflag &= !(libc::CBAUD | libc::CIBAUD);
         settings.c_cflag |= libc::CS8 | libc::CREAD | libc::CLOCAL | libc::BOTHER;
@@ -79,11 +81,12 @@ impl Port {
         Ok(settings)
     }
 
-    /// FTDI bridges keep bytes back for 16 ms unless asked not to. Drivers that do not know the request refuse it, and need
-    /// not know it; so failure is no error here, and [`Port::latency_timer_ms`] tells what became of it.
+    /// FTDI bridges keep bytes back for 16 ms unless asked not to. Drivers that do not know the request refuse it,
+    /// and need not know it; so failure is no error here, and [`Port::latency_timer_ms`] tells what became of it.
     fn ask_for_low_latency(&self) {
         let mut serial = SerialStruct([0; SERIAL_STRUCT_WORDS]);
-        // SAFETY: the descriptor is open, and `serial` is at least as large and as aligned as the kernel's serial_struct.
+        // SAFETY: the descriptor is open, and `serial` is at least as large and as aligned as the kernel's
+        // serial_struct.
         let known = unsafe { libc::ioctl(self.descriptor.number(), libc::TIOCGSERIAL, &mut serial) } == 0;
         if known {
             serial.0[SERIAL_STRUCT_FLAGS] |= ASYNC_LOW_LATENCY;
@@ -93,8 +96,8 @@ impl Port {
     }
 }
 
-/// The kernel's `struct serial_struct`, of which only `flags` matters here: the fifth int (after type, line, port and irq).
-/// 72 bytes on 64-bit machines; the rest is room.
+/// The kernel's `struct serial_struct`, of which only `flags` matters here: the fifth int (after type, line, port and
+/// irq). 72 bytes on 64-bit machines; the rest is room.
 #[repr(C, align(8))]
 struct SerialStruct([libc::c_int; SERIAL_STRUCT_WORDS]);
 

@@ -80,17 +80,34 @@ impl Reason {
 
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let detail = self.detail;
+        let (request, detail) = (self.request, self.detail);
         match self.reason {
-            Reason::Version => write!(f, "it speaks protocol versions {} to {}", detail & 0xFF, detail >> 8),
-            Reason::Value => write!(f, "it cannot carry out the field at byte {detail}"),
-            Reason::NotConfigured => write!(f, "it is not configured; it was switched on or lost its power since"),
-            Reason::Running => write!(f, "its motors are following commands; another program may be using it"),
+            Reason::Version => write!(
+                f,
+                "it speaks protocol versions {} to {}. Update the older of board and library",
+                detail & 0xFF,
+                detail >> 8
+            ),
+            Reason::Value => write!(
+                f,
+                "it does not accept the value at byte {detail} of frame type {request} (docs/board-protocol.md). \
+                 Update its firmware"
+            ),
+            Reason::NotConfigured => write!(f, "it is not configured, because it has started anew. Check its power"),
+            Reason::Running => write!(f, "its motors follow the commands of another program. End that program"),
             Reason::Fault => {
-                write!(f, "a fault is present (status {detail:#06x}); clear the emergency stop or mend it")
+                write!(
+                    f,
+                    "it reports a fault (status bits {detail:#06x}, docs/board-protocol.md). Release the emergency \
+                     stop or remove the fault"
+                )
             }
-            Reason::UnknownFrame => write!(f, "it does not know this frame type with {detail} bytes"),
-            Reason::Other(number) => write!(f, "reason {number}, which is of a later protocol version"),
+            Reason::UnknownFrame => {
+                write!(f, "it does not know frame type {request} with {detail} bytes. Update its firmware")
+            }
+            Reason::Other(number) => {
+                write!(f, "its reason is number {number}, which this library does not know. Update the library")
+            }
         }
     }
 }

@@ -46,7 +46,7 @@ impl fmt::Display for Fault {
                 write!(f, " ({:.0} {})", self.value, unit(told.quantity))?
             }
         }
-        write!(f, ": {}. Likely {}. {}", told.text, told.cause, told.remedy)
+        write!(f, ": {}", told.explanation())
     }
 }
 
@@ -64,7 +64,7 @@ mod tests {
     fn a_fault_says_what_where_how_much_why_and_what_to_do() {
         let text = Fault { kind: FaultKind::BrokenTendon, part: 3, value: 0.04 }.to_string();
         assert!(text.starts_with("broken tendon, tendon 3 (0.0 N): "), "{text}");
-        assert!(text.contains(". Likely "), "{text}");
+        assert!(text.contains(". Likely cause: "), "{text}");
         let text = Fault { kind: FaultKind::ImpossiblePose, part: 0, value: -170.26 }.to_string();
         assert!(text.starts_with("impossible pose, joint 0 (-170.3 degrees): "), "{text}");
         let text = Fault::of(FaultKind::BoardStopped, 72.0).to_string();

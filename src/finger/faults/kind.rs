@@ -74,6 +74,13 @@ pub struct Description {
     pub remedy: &'static str,
 }
 
+impl Description {
+    /// What is the case, its likely cause and the remedy, in sentences of which the last has no full stop.
+    pub fn explanation(&self) -> String {
+        format!("{}. Likely cause: {}. {}", self.text, self.cause, self.remedy)
+    }
+}
+
 impl FaultKind {
     /// The number, from 1; the same in every version of this library.
     pub fn number(self) -> u8 {

@@ -189,10 +189,10 @@ mod tests {
             ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [2, 1, 1, 1]]\n", Some(2), "singular"),
             ("[finger.1.geometry]\nghost_row = [-1, -1, -1, -1]\n", Some(2), "positive"),
             ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [0, 1, 0, 0]]\n", Some(2), "positive"),
-            ("[finger.3.tendon]\nmaximum = 8\n", Some(2), "null vector"),
+            ("[finger.3.tendon]\nmaximum = 8\n", Some(2), "for its pretension"),
             // The key is a default: the table that makes it impossible.
-            ("[finger.tendon]\n\nminimum = 40\n", Some(1), "null vector"),
-            ("[hand]\nrate = 500\n\n[finger.3.tendon]\nminimum = 40\n", Some(4), "null vector"),
+            ("[finger.tendon]\n\nminimum = 40\n", Some(1), "for its pretension"),
+            ("[hand]\nrate = 500\n\n[finger.3.tendon]\nminimum = 40\n", Some(4), "for its pretension"),
             ("[hand]\nrate = nan\n", Some(2), "outside"),
             ("[hand]\nwatchdog_ms = 3\nrate = 500\n", Some(2), "two periods"),
             ("[finger.2.joints]\nminimum_degrees = [0, 0, -5]\n", Some(2), "singular"),

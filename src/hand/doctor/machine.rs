@@ -40,8 +40,8 @@ fn kernel(version: &str, realtime: bool) -> Finding {
     if realtime || version.contains("PREEMPT_RT") {
         return Finding::good("kernel", format!("Linux {release}, PREEMPT_RT"));
     }
-    let advice = "An ordinary kernel has a good median, but no bound on the worst wake-up. A PREEMPT_RT kernel has: \
-                  apt install linux-image-rt-amd64 on Debian, and boot it";
+    let advice = "An ordinary kernel mostly wakes threads up in time, but its worst wake-up has no bound. Install a \
+                  PREEMPT_RT kernel (Debian: apt install linux-image-rt-amd64) and boot it";
     Finding::new(Verdict::Warning, "kernel", format!("Linux {release}, without PREEMPT_RT"), advice)
 }
 
@@ -55,19 +55,25 @@ fn throttling(runtime: &str, period: &str) -> Finding {
             subject,
             "off",
             format!(
-                "A real-time thread that never sleeps would stop its core for good, and the ports with it. To have it back: {mend}"
+                "A real-time thread that never sleeps would stop its core for good, and the ports with it. Switch the \
+                 throttling on: {mend}"
             ),
         ),
         (Ok(runtime), Ok(period)) if period > 0 => {
             let share = 100 * runtime / period;
             let found = format!("real-time threads get {share} % of the time, {runtime} of {period} us");
             match share {
-                0 => Finding::new(Verdict::Failure, subject, found, format!("No real-time thread runs. {mend}")),
+                0 => Finding::new(
+                    Verdict::Failure,
+                    subject,
+                    found,
+                    format!("Real-time threads get no time at all. Change that: {mend}"),
+                ),
                 1..50 => Finding::new(
                     Verdict::Warning,
                     subject,
                     found,
-                    format!("Servos may be stopped in the middle of a period. {mend}"),
+                    format!("The servos may be stopped in the middle of a period. Change that: {mend}"),
                 ),
                 _ => Finding::good(subject, found),
             }
@@ -89,8 +95,8 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
         return Finding::good(subject, format!("{wanted} is permitted by {by}"));
     }
     let advice = format!(
-        "The servos would have the jitter of ordinary threads. Write `@realtime - rtprio 90` into {LIMITS}, join the group \
-         (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
+        "The servos would have the jitter of ordinary threads. Write `@realtime - rtprio 90` into {LIMITS}, join the \
+         group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
     lacking(configuration, subject, format!("{wanted} is wanted, the rtprio limit is {limit}"), advice)
 }
@@ -104,7 +110,8 @@ fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> F
     }
     let kilobytes = limit.unwrap_or(0) / 1024;
     let advice = format!(
-        "Where memory is short a servo may wait for its own pages. Write `@realtime - memlock unlimited` into {LIMITS} and log in again"
+        "When memory is short, a servo may have to wait for its own pages. Write `@realtime - memlock unlimited` into \
+         {LIMITS}, join the group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
     let found = format!("the memlock limit is {kilobytes} kB, the servos want {} kB", LOCKED / 1024);
     lacking(configuration, subject, found, advice)
@@ -123,7 +130,7 @@ fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -
     }
     if let Some(core) = wanted.iter().find(|core| !isolated.contains(core)) {
         let advice = format!(
-            "Others run on core {core} too, and make the servo late: boot with isolcpus={core} nohz_full={core}"
+            "Other programs run on core {core} too and make the servo late: boot with isolcpus={core} nohz_full={core}"
         );
         return Finding::new(Verdict::Warning, subject, found, advice);
     }
@@ -142,7 +149,8 @@ fn governor(online: &[usize], read: impl Fn(usize) -> Option<String>) -> Finding
     });
     match slow {
         Some((core, governor)) => {
-            let advice = "A core that has slowed down wakes up late: sudo cpupower frequency-set -g performance";
+            let advice = "A core at a low frequency wakes up late. Set it to a high one: sudo cpupower frequency-set \
+                          -g performance";
             Finding::new(Verdict::Warning, subject, format!("{governor} on core {core}"), advice)
         }
         None if online.iter().any(|&core| read(core).is_some()) => Finding::good(subject, "performance"),
@@ -188,7 +196,8 @@ mod tests {
         ("proc/sys/kernel/sched_rt_period_us", "1000000\n"),
         (
             "proc/self/limits",
-            "Limit  Soft Limit  Hard Limit  Units\nMax locked memory   unlimited  unlimited  bytes\nMax realtime priority  90  90\n",
+            "Limit  Soft Limit  Hard Limit  Units\nMax locked memory   unlimited  unlimited  bytes\nMax realtime \
+             priority  90  90\n",
         ),
         ("proc/self/status", "Name:\tx\nCapEff:\t0000000000000000\nCpus_allowed_list:\t0-3\n"),
         ("sys/devices/system/cpu/isolated", "2-3\n"),

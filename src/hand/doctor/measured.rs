@@ -61,8 +61,8 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
         _ => Verdict::Good,
     };
     if verdict > Verdict::Good {
-        let advice = "Something keeps the core from this thread: other real-time threads, a busy or paused virtual machine, power \
-                      saving. Isolate a core for it (finger.core), or lower hand.rate";
+        let advice = "Something keeps this thread from running: other real-time threads, a busy or paused virtual \
+                      machine, power saving. Isolate a core for it (finger.core), or lower hand.rate";
         return Finding::new(verdict, subject, found, advice);
     }
     if let Some(missing) = missing(vec![had]).first() {
@@ -79,8 +79,9 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
     if asked && wake_up.had.scheduling.is_none() {
         return Finding::good(subject, format!("{slack} ns, which a real-time thread does not wait for"));
     }
-    let advice = "The kernel may wake this thread so much too late, and has refused to change it (prctl, PR_SET_TIMERSLACK). Allow that \
-                  call where a sandbox forbids it, or let the thread be real-time: finger.priority";
+    let advice = "The kernel may wake this thread up late by this time, and has refused to change it (prctl, \
+                  PR_SET_TIMERSLACK). Allow that call where a sandbox forbids it, or let the thread be real-time: \
+                  finger.priority";
     Finding::new(Verdict::Warning, subject, format!("{slack} ns"), advice)
 }
 
