@@ -237,7 +237,7 @@ mod tests {
         let error = try_to_store("[hand]\nrate = 500\n", &[bound(2, 7.0)]).expect_err("another rate").to_string();
         assert!(error.contains("hand.rate is 500 there, and was 1000 when"), "{error}");
         for (text, line, reason) in
-            [("[hand]\nrate = \n", Some(2), ""), ("\n[finger.3.tendon]\nmaximum = 8\n", Some(3), "null vector")]
+            [("[hand]\nrate = \n", Some(2), ""), ("\n[finger.3.tendon]\nmaximum = 8\n", Some(3), "for its pretension")]
         {
             match try_to_store(text, &[zeros(1, [5; 4], 0.0)]).expect_err("unusable") {
                 HandError::Configuration { line: found, reason: told, .. } => {
