@@ -83,7 +83,7 @@ pub struct Link<T = Port> {
     input: [u8; 512],
     /// Where in `input` the bytes lie that the decoder has not seen.
     unread: std::ops::Range<usize>,
-    /// Reading has ended while more was to be had.
+    /// Reading stopped at the deadline or at the limit of bytes although the port had more.
     cut_short: bool,
     /// Next outgoing frame follows an incomplete one, or the noise of plugging in.
     delimit_first: bool,

@@ -96,7 +96,7 @@ pub enum RecordingError {
         /// Cycles that the first line tells of.
         expected: usize,
     },
-    /// There are more cycles than the first line tells of, or than any black box has.
+    /// The file has more cycles than its first line announces, or than a black box can have.
     #[error("{file} has more than {most} cycles: it is not a black box as it was written")]
     Long {
         /// The file.

@@ -4,7 +4,7 @@ use crate::hand::HandError;
 use crate::model::configuration::FINGERS;
 
 /// Some fingers of a hand, one at least: those that are opened. The ports of the others are not touched, and calls for them are refused
-/// with [`HandError::NotOpened`]. The configuration is that of the whole hand all the same, and is checked as a whole.
+/// with [`HandError::NotOpened`]. The configuration still describes the whole hand, and all of it is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingers([bool; FINGERS]);
 

@@ -31,7 +31,8 @@ const TAKING_BACK: Duration = Duration::from_secs(5);
 struct Place {
     /// 1 to 3.
     fingers: Vec<i32>,
-    /// How often it was mended and given back: its fingers have recovered as often, or will as soon as their servo takes it back.
+    /// How often the line was repaired and given back to its servo. The recoveries of its fingers reach this number when
+    /// the servo takes it.
     mended: AtomicU32,
     /// Locked while ports are opened and hands shaken, which takes long. None once the hand is closed.
     workshop: Mutex<Option<Workshop>>,

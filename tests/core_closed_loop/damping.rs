@@ -1,24 +1,13 @@
 //! Damping other than the controller's own: all that is admitted comes to rest, and what is refused would not.
 
 use super::rig::{Loop, finger_with, poses_of};
+use super::state_feedback::shifted;
 use nalgebra::{Matrix3, Vector3};
 use sun2xp::control::{Activity, AdmissibleDamping, Law, SetPoint};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
 /// Not the seed of the experiments that the ranges were drawn from.
 const SEED: u64 = 4711;
-
-/// Joint angles with the tip moved by `way`, cm, from where it is at `joints`; none beyond the joint limits or near the straight pose.
-fn moved(finger: &ConfiguredFinger, joints: &Vector3<f64>, way: &Vector3<f64>) -> Option<Vector3<f64>> {
-    let (links, (low, high)) = (finger.links(), finger.joint_limits());
-    let target = links.tip(joints) + way;
-    let mut found = *joints;
-    for _ in 0..50 {
-        found += links.jacobian(&found).try_inverse()? * (target - links.tip(&found));
-    }
-    let within = (0..3).all(|joint| (low[joint]..high[joint]).contains(&found[joint]));
-    ((links.tip(&found) - target).norm() < 1e-9 && within && found[2] > 0.35).then_some(found)
-}
 
 /// Root mean square of the tip's motion, cm, after a step of 5 mm and a tap at the fingertip: the worst over poses.
 fn restlessness(finger: &ConfiguredFinger, rate: f64, stiffness: f64, damping: f64) -> f64 {
@@ -29,7 +18,7 @@ fn restlessness(finger: &ConfiguredFinger, rate: f64, stiffness: f64, damping: f
     let mut worst = 0.0f64;
     for (number, pose) in poses_of(SEED).into_iter().enumerate().step_by(2) {
         let way = Vector3::ith(number % 3, if number % 4 == 0 { 0.5 } else { -0.5 });
-        let Some(goal) = moved(finger, &pose, &way) else { continue };
+        let Some(goal) = shifted(finger, &pose, &way) else { continue };
         let mut finger = finger.clone();
         finger.simulation.start_degrees = pose.map(f64::to_degrees).into();
         let mut servo = Loop::new(&finger, rate);

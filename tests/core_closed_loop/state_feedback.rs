@@ -28,7 +28,7 @@ fn exact(joints: Vector3<f64>, stiffness: f64) -> Activity {
 }
 
 /// Joint angles with the tip `way` (cm) from where it is at `joints`, by Newton; none beyond the joint limits or near to straight.
-fn shifted(finger: &ConfiguredFinger, joints: &Vector3<f64>, way: &Vector3<f64>) -> Option<Vector3<f64>> {
+pub fn shifted(finger: &ConfiguredFinger, joints: &Vector3<f64>, way: &Vector3<f64>) -> Option<Vector3<f64>> {
     let (links, (low, high)) = (finger.links(), finger.joint_limits());
     let target = links.tip(joints) + way;
     let mut found = *joints;
