@@ -1,7 +1,7 @@
 //! What the timing figures cost a cycle of one finger: the readings of the clock, the notes and the ring, as in `Servo::cycle`.
 
 use divan::{Bencher, black_box};
-use rtrb::RingBuffer;
+use sun2xp::realtime::ring;
 use sun2xp::realtime::{CycleTiming, Stage, now};
 
 fn main() {
@@ -11,7 +11,7 @@ fn main() {
 /// The goal is below 400 ns.
 #[divan::bench]
 fn of_a_cycle(bencher: Bencher) {
-    let (mut timings, mut arriving) = RingBuffer::new(4096);
+    let (mut timings, mut arriving) = ring(4096);
     let mut beginning = now();
     bencher.bench_local(|| {
         let mut timing = CycleTiming::default();

@@ -5,6 +5,7 @@
 mod c;
 
 use c::{Bench, STRICT, c_compiler, said};
+use std::fs;
 use std::process::Command;
 
 /// A scratch folder whose configuration has ZeroFinger read the pose that the finger is in, which takes a second: a search for the
@@ -12,7 +13,7 @@ use std::process::Command;
 fn bench() -> Bench {
     let bench = Bench::new();
     let configuration = "[finger]\nport = \"simulated\"\n[finger.zeroing]\nmethod = \"pose\"\n";
-    std::fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
+    fs::write(bench.path().join("named.toml"), configuration).expect("a configuration file");
     bench
 }
 
@@ -34,7 +35,7 @@ fn a_cancelled_thread_ends_after_its_call() {
 /// are computed again to the last bit by the replay, nor what the calls compute.
 #[test]
 fn the_floating_point_environment_of_a_planner_is_its_own() {
-    let bench = Bench::new();
+    let bench = bench();
     let program = bench.build(c_compiler(), STRICT, &["rounding.c"]);
     for way in ["default", "upward", "flushed", "trapping"] {
         let file = bench.path().join(format!("{way}.jsonl"));
@@ -66,7 +67,7 @@ fn a_call_that_was_jumped_out_of_goes_on_to_its_end() {
 
 #[test]
 fn the_process_ends_with_the_last_thread_of_the_planner() {
-    let bench = Bench::new();
+    let bench = bench();
     let program = bench.build(c_compiler(), STRICT, &["last_thread.c"]);
     for (way, last_words) in [("main", "closed: 0\n"), ("other", "the last thread ends\nclosed: 0\n")] {
         let mut command = Command::new("timeout");
@@ -75,4 +76,18 @@ fn the_process_ends_with_the_last_thread_of_the_planner() {
         assert!(run.status.success(), "{way}: {}\n{}", run.status, said(&run));
         assert_eq!(String::from_utf8_lossy(&run.stdout), last_words, "{way}");
     }
+}
+
+#[test]
+fn locked_memory_is_what_the_readme_says_and_is_unlocked_at_close() {
+    let readme = fs::read_to_string(c::root().join("README.md")).expect("README.md");
+    let (before, _) =
+        readme.split_once(" MiB\n   in all at 1000 Hz until CloseHand").expect("README.md tells how much");
+    let mebibytes = before.rsplit(' ').next().expect("a number");
+    let bench = bench();
+    let program = bench.build(c_compiler(), STRICT, &["locked_memory.c"]);
+    let mut command = Command::new(&program);
+    command.arg(mebibytes);
+    let run = bench.run(command);
+    assert!(run.status.success(), "{}\n{}", run.status, said(&run));
 }

@@ -167,7 +167,7 @@ impl Rig {
         let mut link = Link::new(End(world.clone()));
         let (identity, configured) = link.shake_hands(1, &Terms::new(hand, finger), 500 * MS).expect("a handshake");
         let (recorder, black_box) = BlackBox::new(configuration, 0);
-        let (timings, _) = rtrb::RingBuffer::new(1);
+        let (timings, _) = sun2xp::realtime::ring(1);
         let stiffness = finger.initial_stiffness();
         let (finger, mailbox) =
             FingerServo::new(configuration, 0, stiffness, &identity, &configured, timings, recorder).expect("a finger");

@@ -4,7 +4,6 @@ use nalgebra::Vector3;
 use rand_distr::{Distribution, Exp};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng;
-use rtrb::{Consumer, RingBuffer};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -12,6 +11,7 @@ use sun2xp::board::{Link, Pace, PacedTime, PortError, SimulatedBoard, Terms, Tra
 use sun2xp::finger::{BlackBox, Fault, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleTiming, Schedule};
+use sun2xp::realtime::{Consumer, ring};
 
 /// Nothing happens between two multiples of this, ns.
 const STEP: u64 = 50_000;
@@ -153,7 +153,7 @@ impl Rig {
         let mut link = Link::new(Here(world.clone()));
         let terms = Terms::new(&configuration.hand, finger);
         let (identity, configured) = link.shake_hands(1, &terms, 1000 * MILLISECOND).expect("the board answers");
-        let (producer, timings) = RingBuffer::new(16);
+        let (producer, timings) = ring(16);
         let (recorder, black_box) = BlackBox::new(&configuration, 0);
         let stiffness = finger.initial_stiffness();
         let (finger, mailbox) =

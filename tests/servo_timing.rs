@@ -1,13 +1,13 @@
 //! Periods of a servo on simulated time: what is late is counted and skipped, the age of the feedback, and the board's clock.
 
 use nalgebra::Matrix3;
-use rtrb::{Consumer, RingBuffer};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, Terms, Transport};
 use sun2xp::finger::{BlackBox, FingerServo, Mailbox, ServedPort, Servo};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleTiming, Distribution, Histograms, Schedule, Stage};
+use sun2xp::realtime::{Consumer, ring};
 
 const PERIOD: u64 = 1_000_000;
 
@@ -103,7 +103,7 @@ impl Rig {
         let mut link = Link::new(Here(world.clone()));
         let terms = Terms::new(&configuration.hand, &configuration.fingers[0]);
         let (identity, configured) = link.shake_hands(1, &terms, FIRST).expect("the board answers");
-        let (producer, timings) = RingBuffer::new(100_000);
+        let (producer, timings) = ring(100_000);
         let stiffness = Matrix3::from_diagonal_element(3.0);
         // Nobody reads it.
         let (recorder, _) = BlackBox::new(&configuration, 0);
@@ -125,7 +125,7 @@ impl Rig {
     /// Of the cycles since the last call.
     fn age(&mut self) -> Distribution {
         let mut histograms = Histograms::new();
-        while let Ok(timing) = self.timings.pop() {
+        while let Some(timing) = self.timings.pop() {
             histograms.record(&timing);
         }
         histograms.distribution(Stage::Age)

@@ -1,10 +1,10 @@
 //! Fingers on simulated boards behind pseudo-terminals, to be served on a clock of the caller's choice.
 
 use crate::Failure;
-use rtrb::{Consumer, RingBuffer};
 use sun2xp::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms};
 use sun2xp::finger::{BlackBox, FingerServo, Mailbox, ServedPort};
 use sun2xp::model::configuration::{Configuration, FINGERS};
+use sun2xp::realtime::{Consumer, ring};
 use sun2xp::realtime::{CycleTiming, Priority, Schedule, now};
 
 /// One finger: what its planner, its servo thread and its board have.
@@ -30,7 +30,7 @@ pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> 
         let terms = Terms::new(&configuration.hand, finger);
         let deadline = now() + 10_000_000_000;
         let (identity, configured) = link.shake_hands(configuration.address(index), &terms, deadline)?;
-        let (producer, timings) = RingBuffer::new(16);
+        let (producer, timings) = ring(16);
         let stiffness = finger.initial_stiffness();
         let (recorder, black_box) = BlackBox::new(configuration, index);
         let (servo, mailbox) =

@@ -9,9 +9,8 @@ use crate::control::{Command, Feedback, Report, State};
 use crate::finger::recording::{Origin, Recording};
 use crate::finger::{ControlInput, Stage};
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
-use crate::realtime::{CycleTiming, Memory};
+use crate::realtime::{Consumer, CycleTiming, Memory, Producer, ring};
 use nalgebra::Vector3;
-use rtrb::{Consumer, Producer, RingBuffer};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, VecDeque};
 
@@ -118,9 +117,8 @@ impl BlackBox {
         let (hand, finger) = (&configuration.hand, configuration.fingers[index].clone());
         let cycles = |seconds: f64| (seconds * hand.rate).ceil() as usize;
         let apart = cycles(1.0 / KEYFRAMES);
-        let (mut records, mut arriving) = RingBuffer::new(cycles(UNCOLLECTED));
-        let (keyframes, keyframes_arriving) = RingBuffer::new(cycles(UNCOLLECTED).div_ceil(apart) + 1);
-        touch(&mut records, &mut arriving);
+        let (records, arriving) = ring(cycles(UNCOLLECTED));
+        let (keyframes, keyframes_arriving) = ring(cycles(UNCOLLECTED).div_ceil(apart) + 1);
         let recorder = Recorder { records, keyframes, apart: apart as u64 };
         let black_box = Self {
             arriving,
@@ -164,7 +162,7 @@ impl BlackBox {
 
     /// Takes in what the servo has left, and forgets what is too old.
     pub fn collect(&mut self) {
-        while let Ok(record) = self.arriving.pop() {
+        while let Some(record) = self.arriving.pop() {
             self.faulted |= matches!(record.stage, Stage::Faulted(_));
             // A gap: nobody collected for too long, or the finger was faulted. What was before cannot be replayed across it.
             if self.records.back().is_some_and(|last| last.cycle + 1 != record.cycle) {
@@ -176,7 +174,7 @@ impl BlackBox {
             self.records.push_back(record);
         }
         // After the records: a keyframe is left before the record of its cycle.
-        while let Ok(keyframe) = self.keyframes_arriving.pop() {
+        while let Some(keyframe) = self.keyframes_arriving.pop() {
             self.keyframes.push_back(keyframe);
         }
         self.forget();
@@ -235,12 +233,10 @@ impl Recorder {
     }
 
     /// What its end of the rings touches.
-    pub fn memory(&mut self) -> Memory {
+    pub fn memory(&self) -> Memory {
         let mut memory = Memory::default();
-        memory.add(self.records.buffer());
-        memory.add(self.keyframes.buffer());
-        add_room(&mut self.records, &mut memory);
-        add_room(&mut self.keyframes, &mut memory);
+        self.records.add_to(&mut memory);
+        self.keyframes.add_to(&mut memory);
         memory
     }
 
@@ -256,28 +252,4 @@ impl CycleRecord {
         let Self { cycle, began, stage, timing, feedback, status, control } = *self;
         CycleRecord { cycle, began, stage: stage.to_string(), timing, feedback, status, control }
     }
-}
-
-fn add_room<T>(ring: &mut Producer<T>, memory: &mut Memory) {
-    let every = ring.slots();
-    if let Ok(mut room) = ring.write_chunk_uninit(every) {
-        let (first, second) = room.as_mut_slices();
-        memory.add(first);
-        memory.add(second);
-    }
-}
-
-/// Writes to every page of a ring: the servo shall not be the first to.
-fn touch(records: &mut Producer<CycleRecord>, arriving: &mut Consumer<CycleRecord>) {
-    let blank = CycleRecord {
-        cycle: 0,
-        began: 0,
-        stage: Stage::Opening,
-        timing: CycleTiming::default(),
-        feedback: None,
-        status: 0,
-        control: None,
-    };
-    while records.push(blank).is_ok() {}
-    while arriving.pop().is_ok() {}
 }

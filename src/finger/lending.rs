@@ -4,7 +4,7 @@
 use crate::board::Link;
 use crate::board::protocol::Configured;
 use crate::model::configuration::FINGERS;
-use rtrb::{Consumer, Producer, RingBuffer};
+use crate::realtime::{Consumer, Producer, ring};
 
 /// A link that no finger uses any more.
 pub struct Lent<T> {
@@ -40,7 +40,7 @@ pub struct Borrower<T> {
 
 /// Both ends.
 pub fn lending<T>() -> (Lender<T>, Borrower<T>) {
-    let (lend, lent) = RingBuffer::new(1);
-    let (to_servo, from_mender) = RingBuffer::new(1);
+    let (lend, lent) = ring(1);
+    let (to_servo, from_mender) = ring(1);
     (Lender { lend, mended: from_mender }, Borrower { lent, mended: to_servo })
 }

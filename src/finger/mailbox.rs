@@ -6,35 +6,12 @@
 
 use crate::control::calibration::{Calibration, Verdict};
 use crate::control::{Controller, Report, SetPoint};
-use crate::finger::{Fault, Losses, Warnings};
-use crate::realtime::Memory;
+use crate::finger::{Fault, Losses, Stage, Warnings};
+use crate::realtime::{Input, Memory, Output, Pages, SharedPages, triple_buffer};
 use nalgebra::Vector3;
 use parking_lot::Mutex;
 use std::convert::Infallible;
-use std::fmt;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use triple_buffer::{Input, Output, triple_buffer};
-
-/// Where a finger is between open and close.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Stage {
-    /// Tendons are brought under tension.
-    #[default]
-    Opening,
-    /// The motors are off: opened that way, or after a calibration.
-    Limp,
-    /// A calibration moves the finger.
-    Calibrating,
-    /// The fingertip is a spring.
-    Running,
-    /// On the way to the configured end state.
-    Closing,
-    /// The board is in its end state.
-    Closed,
-    /// Stopped by itself.
-    Faulted(Fault),
-}
 
 /// What a finger is asked for besides set points. Plain values: the servo neither allocates nor frees.
 #[allow(clippy::large_enum_variant)]
@@ -102,27 +79,13 @@ pub struct Adjustable {
     pub pose: (Vector3<f64>, Vector3<f64>),
 }
 
-impl fmt::Display for Stage {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Stage::Opening => "opening",
-            Stage::Limp => "limp",
-            Stage::Calibrating => "calibrating",
-            Stage::Running => "running",
-            Stage::Closing => "closing",
-            Stage::Closed => "closed",
-            Stage::Faulted(fault) => return write!(f, "faulted: {fault}"),
-        })
-    }
-}
-
 // A servo copies it out of a buffer: nothing may be allocated or freed then.
 const _: () = assert!(!std::mem::needs_drop::<Adjustable>());
 
 /// The planners' end.
 pub struct Mailbox {
     planners: Mutex<PlannersEnd>,
-    closing: Arc<AtomicBool>,
+    closing: SharedPages<AtomicBool>,
 }
 
 struct PlannersEnd {
@@ -149,7 +112,7 @@ pub(super) struct ServoEnd {
     adjustments: Output<Adjustable>,
     orders: Output<Order>,
     reports: Input<FingerReport>,
-    closing: Arc<AtomicBool>,
+    closing: SharedPages<AtomicBool>,
 }
 
 /// A mailbox whose both ends hold `report`, with its set point, and `adjustable`; and the memory that they share.
@@ -160,8 +123,8 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
     let (adjustments_in, adjustments_out) = shared(adjustable, &mut memory);
     let (reports_in, reports_out) = shared(&report, &mut memory);
     let (orders_in, orders_out) = shared(&Order::Nothing, &mut memory);
-    let closing = Arc::new(AtomicBool::new(false));
-    memory.add(&*closing);
+    let closing = SharedPages::from(Pages::new(AtomicBool::new(false)));
+    memory.add_shared(&closing);
     let planners = PlannersEnd {
         sent,
         set_points: set_points_in,
@@ -182,14 +145,9 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
 
 /// A triple buffer, and where it is.
 fn shared<T: Clone + Send>(initial: &T, memory: &mut Memory) -> (Input<T>, Output<T>) {
-    let (mut input, mut output) = triple_buffer(initial);
-    // Its three buffers take turns at the input. It ends as it began, with nothing new in it.
-    for _ in 0..3 {
-        memory.add(input.input_buffer());
-        input.publish();
-        output.update();
-    }
-    (input, output)
+    let ends = triple_buffer(initial);
+    ends.0.add_to(memory);
+    ends
 }
 
 impl Mailbox {

@@ -12,6 +12,7 @@ mod recording;
 mod replay;
 mod servo;
 mod single;
+mod stage;
 mod watching;
 
 pub use alarm::{Alarm, stop_all, stop_calls};
@@ -21,8 +22,9 @@ pub use faults::{Description, Fault, FaultKind, Part, Quantity, Severity, Warnin
 pub use lending::{Borrower, Lender, Lent, Mended, lending};
 pub use link_watch::Fading;
 pub use losses::Losses;
-pub use mailbox::{Adjustable, CalibrationRun, FingerReport, Mailbox, Order, Stage};
+pub use mailbox::{Adjustable, CalibrationRun, FingerReport, Mailbox, Order};
 pub use recording::{Origin, Recording, RecordingError};
 pub use replay::{Difference, NotReplayable, Replayed};
 pub use servo::{REPLY_WINDOW, ServedPort, Servo};
 pub use single::FingerServo;
+pub use stage::Stage;

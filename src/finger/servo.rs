@@ -3,8 +3,7 @@
 use crate::board::{Allowance, Link, LinkCounters, LinkError, OutgoingCommand, Transport};
 use crate::finger::{Fault, FaultKind, FingerServo, Lender, Lent, Mended};
 use crate::model::configuration::FINGERS;
-use crate::realtime::{Clock, Follower, Memory, Schedule, Stage};
-use rtrb::PushError;
+use crate::realtime::{Clock, Follower, Memory, Pages, Schedule, Stage};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The part of a period, from the thread's awakening, in which replies are awaited; the rest is for computing.
@@ -17,7 +16,7 @@ pub struct ServedPort<T> {
     /// The port has failed.
     failed: bool,
     lender: Option<Lender<T>>,
-    fingers: Vec<FingerServo>,
+    fingers: Pages<[FingerServo]>,
     /// What was heard on links before this one.
     heard_before: LinkCounters,
 }
@@ -25,7 +24,13 @@ pub struct ServedPort<T> {
 impl<T: Transport> ServedPort<T> {
     /// `fingers` have shaken hands over `link`.
     pub fn new(link: Link<T>, fingers: Vec<FingerServo>) -> Self {
-        Self { link: Some(link), failed: false, lender: None, fingers, heard_before: LinkCounters::default() }
+        Self {
+            link: Some(link),
+            failed: false,
+            lender: None,
+            fingers: fingers.into(),
+            heard_before: LinkCounters::default(),
+        }
     }
 
     /// The same port, whose link is lent when all of its fingers have faulted, to be mended.
@@ -43,7 +48,7 @@ pub struct Servo<T, C> {
     clock: C,
     schedule: Schedule,
     reply_window: u64,
-    ports: Vec<ServedPort<T>>,
+    ports: Pages<[ServedPort<T>]>,
     follower: Option<Follower>,
 }
 
@@ -51,7 +56,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     /// A servo whose first cycle begins at the start of `schedule`.
     pub fn new(clock: C, schedule: Schedule, ports: Vec<ServedPort<T>>) -> Self {
         let reply_window = (schedule.period() as f64 * REPLY_WINDOW) as u64;
-        Self { clock, schedule, reply_window, ports, follower: None }
+        Self { clock, schedule, reply_window, ports: ports.into(), follower: None }
     }
 
     /// The same servo with its schedule so much later, ns.
@@ -69,9 +74,9 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     /// What the servo touches and is not in this value itself.
     pub fn memory(&self) -> Memory {
         let mut memory = Memory::default();
-        memory.add(&self.ports[..]);
-        for port in &self.ports {
-            memory.add(&port.fingers[..]);
+        memory.add(&self.ports);
+        for port in self.ports.iter() {
+            memory.add(&port.fingers);
             port.fingers.iter().for_each(|finger| memory.append(finger.memory()));
         }
         memory
@@ -94,7 +99,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
 
     /// Whether every finger is closed, or faulted and asked to close.
     pub fn finished(&self) -> bool {
-        self.ports.iter().flat_map(|port| &port.fingers).all(FingerServo::finished)
+        self.ports.iter().flat_map(|port| port.fingers.iter()).all(FingerServo::finished)
     }
 
     /// One period: wait, commands out, replies in, compute, report. Nothing here allocates, locks or blocks beyond the
@@ -103,33 +108,33 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         let beginning = self.schedule.next();
         self.clock.sleep_until(beginning);
         let began = self.clock.now();
-        for port in &mut self.ports {
+        for port in self.ports.iter_mut() {
             port.exchange();
             port.fingers.iter_mut().for_each(FingerServo::listen);
         }
         self.send_stops();
         let mut sending = began;
-        for port in &mut self.ports {
+        for port in self.ports.iter_mut() {
             port.send();
             let sent = self.clock.now();
             port.note(Stage::WakeUp, beginning, began);
             port.note(Stage::Write, sending, sent);
             sending = sent;
         }
-        for port in &mut self.ports {
+        for port in self.ports.iter_mut() {
             port.receive(began + self.reply_window, sending, &self.clock);
         }
         let mut computing = self.clock.now();
         let skipped = self.schedule.advance(computing);
         let overrun = (computing > self.schedule.next()).then_some(skipped);
         if let Some(follower) = &mut self.follower {
-            let first = self.ports.iter().flat_map(|port| &port.fingers).next();
+            let first = self.ports.iter().flat_map(|port| port.fingers.iter()).next();
             let reading = first.and_then(FingerServo::sampled_at);
             self.schedule.shift(follower.correction(reading, 1 + skipped));
         }
-        for port in &mut self.ports {
+        for port in self.ports.iter_mut() {
             let heard = port.heard();
-            for finger in &mut port.fingers {
+            for finger in port.fingers.iter_mut() {
                 finger.end(began, overrun, &heard);
                 let computed = self.clock.now();
                 finger.note(Stage::Compute, computing, computed);
@@ -145,9 +150,9 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         // Whoever would mend a port learns that nobody is left to run it.
         self.ports.iter_mut().for_each(|port| port.lender = None);
         let now = self.clock.now();
-        for port in &mut self.ports {
+        for port in self.ports.iter_mut() {
             let heard = port.heard();
-            for finger in &mut port.fingers {
+            for finger in port.fingers.iter_mut() {
                 finger.fault(Fault::new(FaultKind::ServoPanic));
                 finger.end(now, None, &heard);
                 finger.tell();
@@ -160,10 +165,10 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     /// yet. Nothing else is left to do in time, so this waits.
     fn confirm_stops(&mut self) {
         self.send_stops();
-        for port in &mut self.ports {
+        for port in self.ports.iter_mut() {
             // A link that was lent has stopped its boards before.
             let Some(link) = &mut port.link else { continue };
-            for finger in &port.fingers {
+            for finger in port.fingers.iter() {
                 let deadline = self.clock.now() + CONFIRMATION;
                 while self.clock.now() < deadline && matches!(link.stop(finger.address(), deadline), Ok(false)) {}
             }
@@ -171,8 +176,8 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     }
 
     fn send_stops(&mut self) {
-        for port in &mut self.ports {
-            for finger in &mut port.fingers {
+        for port in self.ports.iter_mut() {
+            for finger in port.fingers.iter_mut() {
                 if let (true, Some(link)) = (finger.stopping(), &mut port.link) {
                     // Where nobody is left to tell, the board's watchdog does the rest.
                     port.failed |= matches!(link.stop(finger.address(), 0), Err(LinkError::Port(_)));
@@ -190,10 +195,10 @@ impl<T: Transport> ServedPort<T> {
         if let Some(link) = self.link.take_if(|_| all_at_rest) {
             self.heard_before = self.heard_before.plus(&link.counters());
             // There is room: it is the only link.
-            if let Err(PushError::Full(lent)) = lender.lend.push(Lent { link, failed: self.failed }) {
+            if let Err(lent) = lender.lend.push(Lent { link, failed: self.failed }) {
                 self.link = Some(lent.link);
             }
-        } else if let Ok(Mended { link, configured, stop_calls }) = lender.mended.pop() {
+        } else if let Some(Mended { link, configured, stop_calls }) = lender.mended.pop() {
             self.failed = false;
             // Of the same link, or of a new one: it goes on from what was counted.
             self.heard_before = self.heard_before.less(&link.counters());

@@ -14,9 +14,8 @@ use crate::finger::mailbox::{Adjustable, ServoEnd};
 use crate::finger::watching::Watching;
 use crate::finger::{Alarm, ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage};
 use crate::model::configuration::EndState;
-use crate::realtime::{self, CycleTiming, Memory};
+use crate::realtime::{self, CycleTiming, Memory, Producer};
 use calibrating::Calibrating;
-use rtrb::Producer;
 
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
@@ -96,6 +95,7 @@ impl FingerServo {
 
     /// The same finger, to be stopped by this alarm.
     pub fn with(mut self, alarm: Alarm) -> Self {
+        alarm.add_to(&mut self.memory);
         self.alarm = alarm;
         self
     }

@@ -7,11 +7,10 @@ use crate::hand::black_box::keep;
 use crate::hand::opening::Reached;
 use crate::hand::{Fingers, HandError};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
-use crate::realtime::{CycleTiming, Distribution, Histograms, PlannerWatch, Priority, Stage, spawn};
+use crate::realtime::{Consumer, CycleTiming, Distribution, Histograms, PlannerWatch, Priority, Stage, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use nalgebra::Vector3;
 use parking_lot::{Mutex, MutexGuard, RwLock};
-use rtrb::Consumer;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -47,7 +46,7 @@ struct Collected {
 
 impl Collected {
     fn collect(&mut self) {
-        while let Ok(timing) = self.arriving.pop() {
+        while let Some(timing) = self.arriving.pop() {
             self.histograms.record(&timing);
         }
         self.black_box.collect();

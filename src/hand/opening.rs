@@ -13,16 +13,15 @@ use crate::hand::identities::Identities;
 use crate::hand::workshop::{KnownBoard, Workshop};
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
 use crate::model::{Refusal, Shown, ShownPath};
-use crate::realtime::{CycleTiming, Priority, now};
+use crate::realtime::{Consumer, CycleTiming, Priority, now, ring};
 use nalgebra::Matrix3;
-use rtrb::{Consumer, RingBuffer};
 use std::path::{Path, PathBuf};
 
 /// Simulated boards run below every servo: they stand for something outside the machine.
 const SIMULATED_BOARD_PRIORITY: u8 = 20;
 
-/// Cycles whose timings a servo can leave before they are collected: almost a second at the highest rate.
-const TIMINGS: usize = 4096;
+/// How long, s, timings of a servo wait to be collected before some are lost.
+const UNCOLLECTED: f64 = 0.8;
 
 /// A finger that has been reached: its servo side is in a [`ServedPort`].
 pub(super) struct Reached {
@@ -209,7 +208,7 @@ fn shake_hands(
         return Err(unusable(Unusable { key: "encoder.counts_per_revolution", reason }));
     }
     let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;
-    let (producer, timings) = RingBuffer::new(TIMINGS);
+    let (producer, timings) = ring((UNCOLLECTED * hand.rate).ceil() as usize);
     let (recorder, black_box) = BlackBox::new(configuration, index);
     let (servo, mailbox) =
         FingerServo::new(configuration, index, stiffness, &identity, &configured, producer, recorder)

@@ -7,7 +7,7 @@ use crate::hand::announcement::say;
 use crate::hand::missing::{Missing, missing};
 use crate::hand::opening::Line;
 use crate::model::configuration::{Configuration, FINGERS, PeriodClock, RealTime};
-use crate::realtime::{MonotonicClock, Priority, Realtime, Schedule, lock_stack, now, spawn, touch_stack};
+use crate::realtime::{LockedStack, MonotonicClock, Priority, Realtime, Schedule, now, spawn, touch_stack};
 use crossbeam_channel::bounded;
 use std::thread::JoinHandle;
 
@@ -59,8 +59,10 @@ pub(super) fn start(
         let (told, begun) = (told.clone(), begun.clone());
         let handle = spawn(&format!("sun2xp servo {thread}"), priority(configuration, thread), move |mut had| {
             touch_stack();
+            let mut locked = None;
             if real_time != RealTime::Ignore {
-                had.memory = lock_stack().and_then(|()| servo.memory().lock()).err();
+                let stack = LockedStack::lock().map(|stack| locked = Some(stack));
+                had.memory = stack.and_then(|()| servo.memory().lock()).err();
             }
             // Whoever starts the threads waits for this; has it given up meanwhile, it will not say when to begin either.
             let _ = told.send(had);
@@ -68,6 +70,7 @@ pub(super) fn start(
                 servo = servo.later(first);
                 servo.run();
             }
+            drop(locked);
             servo
         });
         servos.push(handle.map_err(|source| HandError::System { doing: "start a servo thread", source })?);

@@ -47,7 +47,7 @@ impl Workshop {
 
     /// Takes the link, if the servo has lent it.
     pub fn fetch(&mut self) -> bool {
-        if let Ok(lent) = self.borrower.lent.pop() {
+        if let Some(lent) = self.borrower.lent.pop() {
             (self.lent, self.checked) = (true, false);
             self.link = (!lent.failed).then_some(lent.link);
         }

@@ -1,23 +1,28 @@
 //! Memory that a thread touches in real time: there before the first period, and kept from being taken away.
 //!
 //! `mlockall` is not for a library: with MCL_FUTURE every later allocation of a planner with a small memlock limit would fail.
-#![allow(unsafe_code)]
+#![allow(unsafe_code, reason = "locks of pages")]
 
+use super::pages::{Pages, SharedPages};
 use std::io;
 use std::ops::Range;
 
 /// Places in memory, to be locked together.
 ///
-/// They stay locked as long as they are mapped. Locks do not nest, and what a page holds besides may be the planner's, who may have
-/// locked it too: to unlock it would be to unlock that.
+/// Each has pages of its own, and stays locked until the value is dropped. Locks do not nest: what shared a page with the planner's
+/// data could not be unlocked without unlocking those.
 #[derive(Clone, Debug, Default)]
 pub struct Memory(Vec<Range<usize>>);
 
 impl Memory {
-    /// Adds what `place` refers to. What that owns on the heap is not in it.
-    pub fn add<T: ?Sized>(&mut self, place: &T) {
-        let start = std::ptr::from_ref(place).addr();
-        self.0.push(start..start + size_of_val(place));
+    /// Adds the pages of a value. What that owns elsewhere is not in them.
+    pub fn add<T: ?Sized>(&mut self, pages: &Pages<T>) {
+        self.0.push(pages.range());
+    }
+
+    /// The same for a value with several owners. It is unlocked when the last one is gone.
+    pub fn add_shared<T: ?Sized>(&mut self, pages: &SharedPages<T>) {
+        self.0.push(pages.range());
     }
 
     /// Adds all places of another.
@@ -30,8 +35,18 @@ impl Memory {
     /// # Errors
     /// What the system says: EPERM without any right to lock, ENOMEM beyond the memlock limit. Some may be locked then.
     pub fn lock(&self) -> io::Result<()> {
-        self.0.iter().filter(|place| !place.is_empty()).try_for_each(lock)
+        self.0.iter().try_for_each(lock)
     }
+}
+
+/// Whether the planner has every page locked that comes (mlockall with MCL_FUTURE).
+pub(super) fn every_page_is_locked() -> bool {
+    let new = Pages::new(0u8);
+    let place = new.range();
+    // SAFETY: the page of a value that is not used any more. The system refuses to drop the contents of a locked page.
+    let dropped =
+        unsafe { libc::madvise(std::ptr::without_provenance_mut(place.start), place.len(), libc::MADV_DONTNEED) };
+    dropped != 0
 }
 
 fn lock(place: &Range<usize>) -> io::Result<()> {
@@ -52,14 +67,16 @@ mod tests {
     }
 
     #[test]
-    fn what_was_added_is_locked() {
-        let room = vec![0u8; 1 << 20];
+    fn what_was_added_is_locked_until_it_is_dropped() {
+        let room = Pages::new([0u8; 1 << 20]);
         let mut memory = Memory::default();
-        memory.add(&room[..]);
-        memory.add(&[0u8; 0]);
+        memory.add(&room);
+        let before = locked_kilobytes();
         memory.lock().expect("a mebibyte is within every usual limit");
-        // Other tests lock too, but none unlocks.
-        assert!(locked_kilobytes() >= 1024);
+        // No other test of this process locks or unlocks.
+        assert_eq!(locked_kilobytes(), before + 1024);
+        drop(room);
+        assert_eq!(locked_kilobytes(), before);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::floating_point::use_default_environment;
+use super::memory::every_page_is_locked;
 use super::signals::SignalsBlocked;
 use parking_lot::Mutex;
 use std::io;
@@ -96,24 +97,46 @@ impl Drop for OwnThread {
     }
 }
 
-/// Locks the stack of the calling thread, all of it, and so faults it in.
-///
-/// # Errors
-/// What the system says: EPERM without any right to lock, ENOMEM beyond the memlock limit.
-pub fn lock_stack() -> io::Result<()> {
-    let mut attributes = MaybeUninit::uninit();
-    let (mut lowest, mut bytes) = (std::ptr::null_mut(), 0);
-    // SAFETY: the calling thread; the attributes are initialised before they are looked at, and destroyed once.
-    unsafe {
-        match libc::pthread_getattr_np(libc::pthread_self(), attributes.as_mut_ptr()) {
-            0 => {}
-            error => return Err(io::Error::from_raw_os_error(error)),
+/// The locked stack of the thread that has it, which drops it before it ends: the C library keeps the stacks of threads that have
+/// ended for others.
+#[derive(Debug)]
+pub struct LockedStack {
+    lowest: *mut libc::c_void,
+    bytes: usize,
+}
+
+impl LockedStack {
+    /// Locks the stack of the calling thread, all of it, and so faults it in.
+    ///
+    /// # Errors
+    /// What the system says: EPERM without any right to lock, ENOMEM beyond the memlock limit.
+    pub fn lock() -> io::Result<Self> {
+        let mut attributes = MaybeUninit::uninit();
+        let (mut lowest, mut bytes) = (std::ptr::null_mut(), 0);
+        // SAFETY: the calling thread; the attributes are initialised before they are looked at, and destroyed once.
+        unsafe {
+            match libc::pthread_getattr_np(libc::pthread_self(), attributes.as_mut_ptr()) {
+                0 => {}
+                error => return Err(io::Error::from_raw_os_error(error)),
+            }
+            libc::pthread_attr_getstack(attributes.as_ptr(), &mut lowest, &mut bytes);
+            libc::pthread_attr_destroy(attributes.as_mut_ptr());
         }
-        libc::pthread_attr_getstack(attributes.as_ptr(), &mut lowest, &mut bytes);
-        libc::pthread_attr_destroy(attributes.as_mut_ptr());
+        // Made first: a refused lock may have locked a part.
+        let locked = Self { lowest, bytes };
+        // SAFETY: locking changes no contents.
+        if unsafe { libc::mlock(lowest, bytes) } == 0 { Ok(locked) } else { Err(io::Error::last_os_error()) }
     }
-    // SAFETY: locking changes no contents.
-    if unsafe { libc::mlock(lowest, bytes) } == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
+}
+
+impl Drop for LockedStack {
+    fn drop(&mut self) {
+        // A planner that has locked all of its memory has locked this too.
+        if !every_page_is_locked() {
+            // SAFETY: unlocking changes no contents.
+            unsafe { libc::munlock(self.lowest, self.bytes) };
+        }
+    }
 }
 
 /// Faults in half of the stack of a thread that [`spawn`] has started: for where it cannot be locked.

@@ -3,7 +3,6 @@
 use nalgebra::{Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
-use rtrb::RingBuffer;
 use std::cell::RefCell;
 use std::rc::Rc;
 use sun2xp::board::protocol::Identity;
@@ -13,6 +12,7 @@ use sun2xp::finger::{
     BlackBox, Borrower, Fault, FingerServo, Lent, Mailbox, Mended, ServedPort, Servo, Stage, lending, stop_calls,
 };
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
+use sun2xp::realtime::ring;
 use sun2xp::realtime::{Clock, Schedule};
 
 pub const MICROSECOND: u64 = 1000;
@@ -149,7 +149,7 @@ impl Bench {
         let mut link = Link::new(world.clone());
         let deadline = Transport::now(&world) + 1000 * MILLISECOND;
         let (identity, configured) = link.shake_hands(1, &terms, deadline).expect("a board answers");
-        let (timings, _) = RingBuffer::new(1);
+        let (timings, _) = ring(1);
         let stiffness = finger.initial_stiffness();
         // Nobody reads it.
         let (recorder, _) = BlackBox::new(&configuration, 0);
@@ -324,7 +324,7 @@ impl Bench {
         self.pause(200 * MILLISECOND);
         let lent = (0..10).find_map(|_| {
             self.servo.cycle();
-            self.borrower.lent.pop().ok()
+            self.borrower.lent.pop()
         });
         let Lent { link, failed } = lent.expect("the servo lends its link");
         let mut link = if failed { Link::new(self.world.clone()) } else { link };

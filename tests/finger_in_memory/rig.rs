@@ -1,7 +1,6 @@
 //! A finger with its servo, its link and its board in memory, on simulated time, and a link that can be mended after a fault.
 
 use nalgebra::Vector3;
-use rtrb::RingBuffer;
 use std::cell::RefCell;
 use std::rc::Rc;
 use sun2xp::board::protocol::{Frame, Message, WireFrame};
@@ -11,6 +10,7 @@ use sun2xp::finger::{
     lending, stop_calls,
 };
 use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::ring;
 use sun2xp::realtime::{Clock, Schedule};
 
 pub const MILLISECOND: u64 = 1_000_000;
@@ -124,7 +124,7 @@ impl Bench {
         let mut link = Link::new(world.clone());
         let (identity, configured) =
             link.shake_hands(1, &Terms::new(hand, finger), 1000 * MILLISECOND).expect("a board answers");
-        let (timings, _) = RingBuffer::new(1);
+        let (timings, _) = ring(1);
         // Nobody reads it.
         let (recorder, _) = BlackBox::new(&configuration, 0);
         let (finger, mailbox) =
@@ -245,7 +245,7 @@ impl Bench {
 
     /// The link in other hands, which shake hands with the board and give it back: the finger takes up slack.
     pub fn mend(&mut self) {
-        self.until("at rest", |bench| bench.borrower.lent.slots() > 0);
+        self.until("at rest", |bench| !bench.borrower.lent.is_empty());
         let mut link = self.borrower.lent.pop().expect("lent").link;
         let terms = Terms::new(&self.configuration.hand, &self.configuration.fingers[0]);
         let deadline = Transport::now(&self.world) + 1000 * MILLISECOND;

@@ -8,9 +8,8 @@ use crate::finger::mailbox::{Adjustable, Mailbox, mailbox};
 use crate::finger::watching::Watching;
 use crate::finger::{Alarm, FingerReport, Losses, Recorder, Stage, stop_calls};
 use crate::model::configuration::{Configuration, Unusable};
-use crate::realtime::CycleTiming;
+use crate::realtime::{CycleTiming, Producer};
 use nalgebra::{Matrix3, Vector3};
-use rtrb::Producer;
 
 /// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
 const TENSION_SETTLED: f64 = 0.02;
@@ -49,8 +48,8 @@ impl FingerServo {
         stiffness: Matrix3<f64>,
         identity: &Identity,
         configured: &Configured,
-        mut timings: Producer<CycleTiming>,
-        mut black_box: Recorder,
+        timings: Producer<CycleTiming>,
+        black_box: Recorder,
     ) -> Result<(Self, Mailbox), Unusable> {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
         let address = configuration.address(index);
@@ -77,14 +76,7 @@ impl FingerServo {
         };
         let (planners, servo, mut memory) = mailbox(report, &adjustable);
         memory.append(&black_box.memory());
-        memory.add(timings.buffer());
-        let every = timings.slots();
-        if let Ok(mut room) = timings.write_chunk(every) {
-            // Nothing is sent: the room is written to, so that it is there.
-            let (first, second) = room.as_mut_slices();
-            memory.add(first);
-            memory.add(second);
-        }
+        timings.add_to(&mut memory);
         let this = Self {
             adjustable,
             state,

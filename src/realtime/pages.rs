@@ -1,0 +1,207 @@
+//! Values in memory pages of their own. A servo's are locked, and a lock counts for whole pages: in a page of the heap it would lock
+//! what the planner has there too, and unlocking it would unlock what the planner has locked. Pages of their own are given back to
+//! the system when the value is dropped, and are unlocked by that.
+#![allow(unsafe_code, reason = "mappings")]
+
+use std::alloc::{Layout, handle_alloc_error};
+use std::ops::{Deref, DerefMut, Range};
+use std::ptr::NonNull;
+use std::sync::Arc;
+
+/// A value, or a slice of values, in pages of its own. Every page is there from the beginning: no first touch is left.
+pub struct Pages<T: ?Sized> {
+    place: NonNull<T>,
+    mapping: Mapping,
+}
+
+/// The same for several owners. Reaching the value touches its own pages only, and not those where the owners are counted.
+pub struct SharedPages<T: ?Sized> {
+    place: NonNull<T>,
+    owner: Arc<Pages<T>>,
+}
+
+// SAFETY: it owns its value as a Box does.
+unsafe impl<T: ?Sized + Send> Send for Pages<T> {}
+// SAFETY: as above.
+unsafe impl<T: ?Sized + Sync> Sync for Pages<T> {}
+// SAFETY: it shares its value as an Arc does.
+unsafe impl<T: ?Sized + Send + Sync> Send for SharedPages<T> {}
+// SAFETY: as above.
+unsafe impl<T: ?Sized + Send + Sync> Sync for SharedPages<T> {}
+
+impl<T> Pages<T> {
+    /// Moves a value into pages of its own.
+    pub fn new(value: T) -> Self {
+        let mapping = Mapping::new(Layout::new::<T>());
+        let place = mapping.start.cast();
+        // SAFETY: the mapping has room for the value, and nothing is in it.
+        unsafe { place.write(value) };
+        Self { place, mapping }
+    }
+}
+
+impl<T> Pages<[T]> {
+    /// As many values as `make` is called for, with their numbers from 0.
+    pub fn from_fn(count: usize, mut make: impl FnMut(usize) -> T) -> Self {
+        let mapping = Mapping::for_many::<T>(count);
+        let first: NonNull<T> = mapping.start.cast();
+        // Where `make` panics the values before it are not dropped, and their pages are given back.
+        for index in 0..count {
+            // SAFETY: the mapping has room for `count` values; nothing is in this place.
+            unsafe { first.add(index).write(make(index)) };
+        }
+        Self { place: NonNull::slice_from_raw_parts(first, count), mapping }
+    }
+}
+
+impl<T> From<Vec<T>> for Pages<[T]> {
+    fn from(mut values: Vec<T>) -> Self {
+        let count = values.len();
+        let mapping = Mapping::for_many::<T>(count);
+        let first: NonNull<T> = mapping.start.cast();
+        // SAFETY: the mapping has room for `count` values, and nothing is in it. The vector has them no more.
+        unsafe {
+            first.copy_from_nonoverlapping(NonNull::from(&mut values[..]).cast(), count);
+            values.set_len(0);
+        }
+        Self { place: NonNull::slice_from_raw_parts(first, count), mapping }
+    }
+}
+
+impl<T: ?Sized> Pages<T> {
+    /// Where the pages are.
+    pub(super) fn range(&self) -> Range<usize> {
+        let start = self.mapping.start.addr().get();
+        start..start + self.mapping.bytes
+    }
+}
+
+impl<T: ?Sized> Deref for Pages<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        // SAFETY: the value is there as long as this, and borrowed with it.
+        unsafe { self.place.as_ref() }
+    }
+}
+
+impl<T: ?Sized> DerefMut for Pages<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        // SAFETY: as above; nobody else has it.
+        unsafe { self.place.as_mut() }
+    }
+}
+
+impl<T: ?Sized> Drop for Pages<T> {
+    fn drop(&mut self) {
+        // SAFETY: the value is there, and is not used again. Its mapping goes after it.
+        unsafe { self.place.drop_in_place() };
+    }
+}
+
+impl<T: ?Sized> SharedPages<T> {
+    /// Whether nobody else has it any more.
+    pub(super) fn is_alone(&self) -> bool {
+        Arc::strong_count(&self.owner) == 1
+    }
+
+    /// Where the pages are.
+    pub(super) fn range(&self) -> Range<usize> {
+        self.owner.range()
+    }
+}
+
+impl<T: ?Sized> From<Pages<T>> for SharedPages<T> {
+    fn from(pages: Pages<T>) -> Self {
+        Self { place: pages.place, owner: Arc::new(pages) }
+    }
+}
+
+impl<T: ?Sized> Clone for SharedPages<T> {
+    fn clone(&self) -> Self {
+        Self { place: self.place, owner: self.owner.clone() }
+    }
+}
+
+impl<T: ?Sized> Deref for SharedPages<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        // SAFETY: the owner keeps the value as long as this, and nobody has it to himself.
+        unsafe { self.place.as_ref() }
+    }
+}
+
+/// Pages from the system.
+struct Mapping {
+    start: NonNull<u8>,
+    bytes: usize,
+}
+
+impl Mapping {
+    fn for_many<T>(count: usize) -> Self {
+        match Layout::array::<T>(count) {
+            Ok(layout) => Self::new(layout),
+            Err(_) => handle_alloc_error(Layout::new::<T>()),
+        }
+    }
+
+    /// Room for a value, every page of it written to.
+    fn new(layout: Layout) -> Self {
+        let bytes = layout.size().max(1).next_multiple_of(page_size());
+        assert!(layout.align() <= page_size(), "a page is aligned to its size");
+        let protection = libc::PROT_READ | libc::PROT_WRITE;
+        let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_POPULATE;
+        // SAFETY: a new mapping, where the system finds room.
+        let start = unsafe { libc::mmap(std::ptr::null_mut(), bytes, protection, kind, -1, 0) };
+        match NonNull::new(start.cast()).filter(|_| start != libc::MAP_FAILED) {
+            Some(start) => Self { start, bytes },
+            None => handle_alloc_error(layout),
+        }
+    }
+}
+
+impl Drop for Mapping {
+    fn drop(&mut self) {
+        // SAFETY: this mapping, which nothing refers to any more.
+        unsafe { libc::munmap(self.start.as_ptr().cast(), self.bytes) };
+    }
+}
+
+fn page_size() -> usize {
+    // SAFETY: no pointers. Every system has a page size.
+    usize::try_from(unsafe { libc::sysconf(libc::_SC_PAGESIZE) }).unwrap_or(4096)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::rc::Rc;
+
+    #[test]
+    fn values_are_dropped_with_their_pages() {
+        let witness = Rc::new(());
+        let one = Pages::new(witness.clone());
+        let several: Pages<[Rc<()>]> = vec![witness.clone(); 1000].into();
+        assert_eq!((several.len(), Rc::strong_count(&one)), (1000, 1002));
+        drop((one, several));
+        assert_eq!(Rc::strong_count(&witness), 1);
+    }
+
+    #[test]
+    fn pages_are_shared_until_the_last_owner_goes() {
+        let first: SharedPages<[usize]> = Pages::from_fn(3, |index| 10 * index).into();
+        let second = first.clone();
+        assert!(!first.is_alone());
+        assert_eq!(first.range(), second.range());
+        drop(first);
+        assert!(second.is_alone());
+        assert_eq!(*second, [0, 10, 20]);
+    }
+
+    #[test]
+    fn nothing_is_room_enough_for_nothing() {
+        let nothing: Pages<[u64]> = Vec::new().into();
+        assert!(nothing.is_empty() && nothing.range().len() == page_size());
+    }
+}

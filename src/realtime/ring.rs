@@ -1,0 +1,174 @@
+//! Values in their order from one thread to another, wait-free on both sides: a ring in pages of its own.
+#![allow(unsafe_code, reason = "places that two threads take turns at")]
+
+use super::Memory;
+use super::pages::{Pages, SharedPages};
+use std::cell::UnsafeCell;
+use std::mem::MaybeUninit;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The writer's end.
+pub struct Producer<T>(SharedPages<Ring<T>>);
+
+/// The reader's end.
+pub struct Consumer<T>(SharedPages<Ring<T>>);
+
+/// Both numbers count to twice the number of places and begin again: so a full ring differs from an empty one. From `taken` to
+/// `left` the places have values.
+struct Ring<T> {
+    left: Line<AtomicUsize>,
+    taken: Line<AtomicUsize>,
+    places: Pages<[UnsafeCell<MaybeUninit<T>>]>,
+}
+
+/// In cache lines of its own.
+#[repr(align(128))]
+struct Line<T>(T);
+
+// SAFETY: a place is reached by the writer until it is counted as left, and by the reader until it is counted as taken.
+unsafe impl<T: Send> Sync for Ring<T> {}
+
+/// Both ends of a ring with room for `capacity` values, one at least.
+pub fn ring<T>(capacity: usize) -> (Producer<T>, Consumer<T>) {
+    let ring = Ring {
+        left: Line(AtomicUsize::new(0)),
+        taken: Line(AtomicUsize::new(0)),
+        places: Pages::from_fn(capacity.max(1), |_| UnsafeCell::new(MaybeUninit::uninit())),
+    };
+    let ring = SharedPages::from(Pages::new(ring));
+    (Producer(ring.clone()), Consumer(ring))
+}
+
+impl<T> Ring<T> {
+    fn place(&self, number: usize) -> *mut MaybeUninit<T> {
+        let count = self.places.len();
+        self.places[if number < count { number } else { number - count }].get()
+    }
+
+    fn after(&self, number: usize) -> usize {
+        if number + 1 == 2 * self.places.len() { 0 } else { number + 1 }
+    }
+
+    /// How many values there are from one number to another.
+    fn count(&self, taken: usize, left: usize) -> usize {
+        if left >= taken { left - taken } else { left + 2 * self.places.len() - taken }
+    }
+}
+
+impl<T> Producer<T> {
+    /// Leaves a value.
+    ///
+    /// # Errors
+    /// The value, where there is no room for it.
+    pub fn push(&mut self, value: T) -> Result<(), T> {
+        let ring = &*self.0;
+        // Only this end writes it.
+        let left = ring.left.0.load(Ordering::Relaxed);
+        if ring.count(ring.taken.0.load(Ordering::Acquire), left) == ring.places.len() {
+            return Err(value);
+        }
+        // SAFETY: the reader has taken what was there, and comes here when it is counted.
+        unsafe { (*ring.place(left)).write(value) };
+        ring.left.0.store(ring.after(left), Ordering::Release);
+        Ok(())
+    }
+
+    /// Adds its pages.
+    pub fn add_to(&self, memory: &mut Memory) {
+        memory.add_shared(&self.0);
+        memory.add(&self.0.places);
+    }
+}
+
+impl<T> Consumer<T> {
+    /// Takes the oldest value; none where there is none.
+    pub fn pop(&mut self) -> Option<T> {
+        let ring = &*self.0;
+        // Only this end writes it.
+        let taken = ring.taken.0.load(Ordering::Relaxed);
+        if taken == ring.left.0.load(Ordering::Acquire) {
+            return None;
+        }
+        // SAFETY: the writer has left a value there, and comes back when it is counted as taken.
+        let value = unsafe { (*ring.place(taken)).assume_init_read() };
+        ring.taken.0.store(ring.after(taken), Ordering::Release);
+        Some(value)
+    }
+
+    /// Whether there is nothing to take.
+    pub fn is_empty(&self) -> bool {
+        self.0.taken.0.load(Ordering::Relaxed) == self.0.left.0.load(Ordering::Acquire)
+    }
+
+    /// Whether the other end is gone.
+    pub fn is_abandoned(&self) -> bool {
+        self.0.is_alone()
+    }
+}
+
+impl<T> Drop for Ring<T> {
+    fn drop(&mut self) {
+        let (mut taken, left) = (*self.taken.0.get_mut(), *self.left.0.get_mut());
+        while taken != left {
+            // SAFETY: both ends are gone; the value was left and not taken.
+            unsafe { (*self.place(taken)).assume_init_drop() };
+            taken = self.after(taken);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use std::thread;
+
+    #[test]
+    fn a_full_ring_gives_the_value_back() {
+        let (mut producer, mut consumer) = ring(2);
+        assert_eq!(consumer.pop(), None);
+        assert_eq!([producer.push(1), producer.push(2), producer.push(3)], [Ok(()), Ok(()), Err(3)]);
+        assert_eq!(consumer.pop(), Some(1));
+        assert_eq!(producer.push(4), Ok(()));
+        assert_eq!([consumer.pop(), consumer.pop(), consumer.pop()], [Some(2), Some(4), None]);
+    }
+
+    #[test]
+    fn what_nobody_took_is_dropped_with_the_ring() {
+        let witness = Arc::new(());
+        let (mut producer, mut consumer) = ring(4);
+        for _ in 0..4 {
+            producer.push(witness.clone()).expect("room");
+        }
+        drop(consumer.pop());
+        assert!(!consumer.is_abandoned());
+        drop(producer);
+        assert!(consumer.is_abandoned());
+        assert_eq!(Arc::strong_count(&witness), 4);
+        drop(consumer);
+        assert_eq!(Arc::strong_count(&witness), 1);
+    }
+
+    #[test]
+    fn every_value_comes_whole_and_in_order() {
+        const LAST: u64 = 200_000;
+        let (mut producer, mut consumer) = ring(13);
+        let writer = thread::spawn(move || {
+            for number in 1..=LAST {
+                while producer.push([number; 32]).is_err() {
+                    thread::yield_now();
+                }
+            }
+        });
+        for number in 1..=LAST {
+            let value = loop {
+                match consumer.pop() {
+                    Some(value) => break value,
+                    None => thread::yield_now(),
+                }
+            };
+            assert_eq!(value, [number; 32]);
+        }
+        writer.join().expect("no panic");
+    }
+}

@@ -1,0 +1,68 @@
+/* Locked memory: while a hand is open no more than the mebibytes of the first argument, and none after CloseHand, whatever
+   thread opens and closes; what the planner has locked stays locked. */
+#include <pthread.h>
+#include <string.h>
+#include <sys/mman.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+#define OPENINGS 50
+#define OWN_KILOBYTES 64
+
+/* VmLck of this process, kB. */
+static long locked(void)
+{
+    char line[256];
+    long kilobytes = -1;
+    FILE *status = fopen("/proc/self/status", "r");
+    CHECK(status != NULL);
+    while (fgets(line, sizeof line, status) != NULL)
+        if (sscanf(line, "VmLck: %ld kB", &kilobytes) == 1)
+            break;
+    fclose(status);
+    CHECK(kilobytes >= 0);
+    return kilobytes;
+}
+
+static long most;
+
+static void *open_and_close(void *unused)
+{
+    struct FingerStatus Status;
+    char *own = malloc(1000);
+    Status.Size = sizeof Status;
+    CHECK(own != NULL);
+    CHECK(OpenHand() == 0);
+    CHECK(GetStatus(1, &Status) == 0);
+    /* Where nothing can be locked this would show nothing. */
+    CHECK(Status.MemoryLocked == 1);
+    CHECK(locked() > 100);
+    if (locked() > most)
+        most = locked();
+    CHECK(CloseHand() == 0);
+    free(own);
+    return unused;
+}
+
+int main(int count, char **arguments)
+{
+    pthread_t thread;
+    int round;
+    long before, limit;
+    char *own;
+
+    CHECK(count == 2);
+    limit = atol(arguments[1]) * 1024;
+    /* A page of the heap, between what the library will allocate, and some of the planner's own. */
+    own = malloc(OWN_KILOBYTES * 1024);
+    CHECK(own != NULL && mlock(own, OWN_KILOBYTES * 1024) == 0);
+    before = locked();
+    for (round = 0; round < OPENINGS; round++) {
+        CHECK(pthread_create(&thread, NULL, open_and_close, NULL) == 0);
+        CHECK(pthread_join(thread, NULL) == 0);
+        CHECK(locked() == before);
+    }
+    printf("%ld kB locked while a hand is open\n", most - before);
+    CHECK(most - before <= limit);
+    return 0;
+}
