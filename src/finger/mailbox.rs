@@ -10,7 +10,6 @@ use crate::finger::{Fault, Losses, Stage, Warnings};
 use crate::realtime::{Input, Memory, Output, Pages, SharedPages, triple_buffer};
 use nalgebra::Vector3;
 use parking_lot::Mutex;
-use std::convert::Infallible;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a finger is asked for besides set points. Plain values: the servo neither allocates nor frees.
@@ -174,24 +173,20 @@ impl Mailbox {
     /// # Errors
     /// The fault; nothing is sent then.
     pub fn send(&self, change: impl FnOnce(&mut SetPoint)) -> Result<(), Fault> {
-        let sent = self.try_send(|set_point| {
-            change(set_point);
-            Ok::<_, Infallible>(())
-        });
-        sent.map(|Ok(())| ())
+        let planners = &mut *self.planners.lock();
+        planners.begin()?;
+        change(&mut planners.sent.set_point);
+        planners.set_points.write(planners.sent);
+        Ok(())
     }
 
-    /// The same with a change that may refuse the set point that it starts from.
+    /// The same with a change that may refuse the set point that it starts from. It is made in a copy, which takes longer.
     ///
     /// # Errors
     /// The fault, or inside it what the change refuses; nothing is sent then.
     pub fn try_send<E>(&self, change: impl FnOnce(&mut SetPoint) -> Result<(), E>) -> Result<Result<(), E>, Fault> {
         let planners = &mut *self.planners.lock();
-        let report = planners.reports.read();
-        if let Stage::Faulted(fault) = report.stage {
-            return Err(fault);
-        }
-        planners.sent.begin_with(report);
+        planners.begin()?;
         let next = planners.set_points.input_buffer_mut();
         *next = planners.sent;
         if let Err(refusal) = change(&mut next.set_point) {
@@ -255,6 +250,16 @@ impl SentSetPoint {
 }
 
 impl PlannersEnd {
+    /// Makes what was sent last what the next change starts from.
+    fn begin(&mut self) -> Result<(), Fault> {
+        let report = self.reports.read();
+        if let Stage::Faulted(fault) = report.stage {
+            return Err(fault);
+        }
+        self.sent.begin_with(report);
+        Ok(())
+    }
+
     /// What is handed over goes first: a servo that has the order has that too.
     fn order(&mut self, order: Order, adjustable: Option<Adjustable>) -> Result<Option<u32>, Fault> {
         let report = *self.reports.read();

@@ -91,13 +91,11 @@ impl Dispatcher {
 
     /// theta_d, rad.
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
-        self.send(finger, |admission| {
-            let (joints, law) = (admission.joints(joints)?, admission.law);
-            Ok(move |set_point: &mut SetPoint| {
-                (set_point.joints, set_point.law) = (joints, law);
-                Ok(())
-            })
-        })
+        let member = self.member(finger)?;
+        let admission = member.admission.read();
+        let (joints, law) = (admission.joints(joints)?, admission.law);
+        let sent = member.mailbox.send(|set_point| (set_point.joints, set_point.law) = (joints, law));
+        sent.map_err(|fault| HandError::Faulted { finger, fault })
     }
 
     /// Kx, N/cm, row by row.
