@@ -121,6 +121,25 @@ fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
     }
 }
 
+/// The command that is printed to go on leaves the signs out: the file must have them.
+#[test]
+fn signs_are_stored_before_a_zero_that_is_refused() {
+    let links = tempfile::tempdir().expect("a folder");
+    let link = links.path().join("board");
+    let _board = Board::start(&link);
+    let desk = Desk::new(&format!(
+        "[hand]\nrate = 500\n[finger.1]\nport = \"{}\"\n[finger.1.encoder]\nsign = [-1, 1, 1, 1]\n\
+         [finger.1.zeroing]\npose_degrees = [0.0, -10.0, 60.0]\n\
+         [finger.2]\nport = \"simulated\"\n[finger.3]\nport = \"simulated\"\n",
+        link.display()
+    ));
+    let output = desk.calibrate(&["--finger", "1"], "");
+    assert_eq!(output.status.code(), Some(1));
+    contains(&said(&output), &["nobody has pressed Enter"]);
+    let stored = fs::read_to_string(desk.file()).expect("there");
+    contains(&stored, &["[finger.1.encoder]\nsign = [1, 1, 1, 1]"]);
+}
+
 #[test]
 fn a_finger_whose_stops_are_known_is_zeroed_against_them() {
     let desk = Desk::new(

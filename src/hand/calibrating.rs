@@ -3,6 +3,7 @@
 use crate::control::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
 use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
 use crate::hand::calibration_file::store;
+use crate::hand::opening::check;
 use crate::hand::{Found, Hand, HandError};
 use crate::model::Refusal;
 use crate::model::configuration::ConfiguredFinger;
@@ -101,6 +102,7 @@ impl Calibrating {
                 let mut configuration = hand.configuration.write();
                 let mut changed = configuration.clone();
                 found.apply(&mut changed.fingers[index]);
+                check(&changed)?;
                 let adjustable = Adjustable::new(&changed, index).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = matches!(found, Findings::Signs(_));
                 let to_store = Found::by_calibration(&found, finger, &changed)?;

@@ -19,7 +19,7 @@ use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 /// the room that the joints can reach, and nothing in the hand. Only what was found is written; all else in the file stays.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file: read, and given what was found after each finger.
+    /// The configuration file. The tool reads it, and writes what it has found into it after each task.
     #[arg(long, value_name = "FILE")]
     config: PathBuf,
     /// Which finger; may be given again. Without it: all. The ports of the others are not opened.
@@ -74,12 +74,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 format!("{error}\n{}", arguments.to_go_on(finger, &tasks[done..], &rest.collect::<Vec<_>>()))
             })?;
             tell(found)?;
+            // After each task: the file keeps these findings if the next task is refused.
+            if !arguments.dry_run {
+                hand.store_calibration(finger)?;
+            }
         }
         compare(finger, &before, &hand.calibrated(finger)?)?;
-        // After each finger: what was found is kept if the next one is refused.
-        if !arguments.dry_run {
-            hand.store_calibration(finger)?;
-        }
     }
     let mut output = io::stdout().lock();
     match arguments.dry_run {

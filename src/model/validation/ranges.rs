@@ -25,7 +25,8 @@ pub(super) fn within(key: &'static str, value: f64, low: f64, high: f64, unit: &
     if value >= low && value <= high {
         return Ok(());
     }
-    unusable(key, format!("{value} is outside {low} to {high} {unit}").trim_end().into())
+    // {:?} writes 1e308 with its exponent, where {} would write 309 digits.
+    unusable(key, format!("{value:?} is outside {low} to {high} {unit}").trim_end().into())
 }
 
 pub(super) fn each(key: &'static str, values: &[f64], low: f64, high: f64, unit: &str) -> Result<(), Unusable> {
