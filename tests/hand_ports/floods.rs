@@ -1,5 +1,6 @@
 //! A board that sends valid frames without end: OpenHand refuses it, its finger faults, and nobody else is held up.
 
+use crate::priority::run_first;
 use crate::rig::{TARGET, close, goes, on_ports, open, three_boards, turn, wait_until};
 use serialport::{SerialPort, TTYPort};
 use std::io::{Read, Write};
@@ -37,6 +38,7 @@ impl FloodingBoard {
         let thread = {
             let (flooding, ended) = (flooding.clone(), ended.clone());
             std::thread::spawn(move || {
+                run_first();
                 // Open here too, so that the host may come and go.
                 let _port = port;
                 let mut board = SimulatedBoard::new(&Configuration::default(), &[1]).expect("a board");

@@ -14,6 +14,9 @@ mod leaks;
 mod motion;
 mod numbers;
 mod opening;
+#[allow(dead_code)]
+#[path = "../common/priority.rs"]
+mod priority;
 mod recovery;
 mod rig;
 
