@@ -6,6 +6,7 @@
 #![warn(missing_docs)]
 
 pub mod board;
+pub mod calibration;
 mod capi;
 pub mod control;
 pub mod files;
@@ -14,4 +15,5 @@ pub mod hand;
 pub mod model;
 pub mod plant;
 pub mod realtime;
+pub mod simulated;
 pub mod stability;

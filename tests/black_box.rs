@@ -10,12 +10,12 @@ use std::process::{Command, Output};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
-use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
-use sun2xp::control::calibration::{Progress, Task};
+use sun2xp::calibration::{Progress, Task};
 use sun2xp::finger::{CycleRecord, Recording, RecordingError};
 use sun2xp::hand::{Calibrating, Hand, Standing};
 use sun2xp::model::configuration::{Configuration, Scheme, ZeroingMethod};
 use sun2xp::realtime::Priority;
+use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 const RATE: f64 = 500.0;
 

@@ -6,6 +6,7 @@ use sun2xp::board::protocol::Command;
 use sun2xp::board::*;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
 use sun2xp::realtime::{Priority, now};
+use sun2xp::simulated::*;
 
 const MS: u64 = 1_000_000;
 

@@ -1,8 +1,9 @@
 //! A board that sends valid frames without end: every deadline of the link holds all the same.
 
 use sun2xp::board::protocol::*;
-use sun2xp::board::{Link, LinkError, PortError, SimulatedBoard, Terms, Transport};
+use sun2xp::board::{Link, LinkError, PortError, Terms, Transport};
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
+use sun2xp::simulated::SimulatedBoard;
 
 const MS: u64 = 1_000_000;
 

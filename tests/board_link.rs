@@ -4,6 +4,7 @@ use nalgebra::Vector4;
 use sun2xp::board::protocol::*;
 use sun2xp::board::*;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, EndState};
+use sun2xp::simulated::*;
 
 const MS: u64 = 1_000_000;
 

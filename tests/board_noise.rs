@@ -5,6 +5,7 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::board::protocol::*;
 use sun2xp::board::*;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
+use sun2xp::simulated::*;
 
 const MS: u64 = 1_000_000;
 

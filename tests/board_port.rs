@@ -8,6 +8,7 @@ use sun2xp::board::protocol::*;
 use sun2xp::board::*;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
 use sun2xp::realtime::{self, Priority};
+use sun2xp::simulated::*;
 
 const MS: u64 = 1_000_000;
 

@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use sun2xp::control::{InverseKinematics, OutOfReach};
 use sun2xp::model::Links;
 use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::model::{InverseKinematics, OutOfReach};
 
 const LINKS: Links = Links([3.556, 5.080, 4.000]);
 

@@ -4,9 +4,10 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-use sun2xp::board::{Pace, Port, SimulatedBoard, SimulatedPort};
+use sun2xp::board::Port;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
+use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 /// Runs it with a configuration, and checks that exit status, `pass` and the verdicts agree; the findings.
 fn examined(configuration: &str) -> Vec<Value> {

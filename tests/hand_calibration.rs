@@ -1,7 +1,7 @@
 //! Calibration of an open hand on a simulated board: real threads, a real pseudo terminal, real time.
 
 use std::fs;
-use sun2xp::control::calibration::{Findings, Obstacle, Step, Zeros};
+use sun2xp::calibration::{Findings, Obstacle, Step, Zeros};
 use sun2xp::finger::Stage;
 use sun2xp::hand::{Calibrating, Fingers, Found, Hand, HandError, read, store};
 
@@ -63,8 +63,8 @@ fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
     configuration.fingers[0].zeroing.method = Some(sun2xp::model::configuration::ZeroingMethod::Stops);
     configuration.fingers[0].zeroing.time_limit_s = 1.0;
     let hand = Hand::open(configuration.clone()).expect("open");
-    let mut calibrating = Calibrating::begin(&hand, 1, sun2xp::control::calibration::Task::Zero).expect("begun");
-    let second = Calibrating::begin(&hand, 1, sun2xp::control::calibration::Task::Zero);
+    let mut calibrating = Calibrating::begin(&hand, 1, sun2xp::calibration::Task::Zero).expect("begun");
+    let second = Calibrating::begin(&hand, 1, sun2xp::calibration::Task::Zero);
     assert!(matches!(second, Err(HandError::Busy(1))), "{second:?}");
     let refused = loop {
         match calibrating.poll(&hand) {

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
 use sun2xp::finger::Stage;
 use sun2xp::hand::{Fingers, Hand, HandError, Recovering};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
+use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 /// Nothing is there.
 const NOWHERE: &str = "/dev/sun2xp-no-such-port";

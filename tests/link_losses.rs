@@ -8,10 +8,11 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 use sun2xp::board::protocol::Status;
-use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, Terms, Transport};
+use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::finger::{BlackBox, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage};
 use sun2xp::model::configuration::{Configuration, EndState, Scheme};
 use sun2xp::realtime::{Clock, Schedule};
+use sun2xp::simulated::{SimulatedBoard, SimulatedCable};
 
 const MS: u64 = 1_000_000;
 const PERIOD: u64 = MS;

@@ -3,11 +3,12 @@
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use sun2xp::board::protocol::Status;
-use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, Terms, Transport};
+use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::finger::{BlackBox, Borrower, Fault, FaultKind, FingerServo, Mailbox, ServedPort, Servo, Stage, lending};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleTiming, Schedule};
 use sun2xp::realtime::{Consumer, ring};
+use sun2xp::simulated::{SimulatedBoard, SimulatedCable};
 
 const PERIOD: u64 = 1_000_000;
 

@@ -7,11 +7,12 @@ use rand_pcg::rand_core::SeedableRng;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
-use sun2xp::board::{Link, Pace, PacedTime, PortError, SimulatedBoard, Terms, Transport};
+use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::finger::{BlackBox, Fault, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleTiming, Schedule};
 use sun2xp::realtime::{Consumer, ring};
+use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
 
 /// Nothing happens between two multiples of this, ns.
 const STEP: u64 = 50_000;

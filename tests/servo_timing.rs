@@ -3,11 +3,12 @@
 use nalgebra::Matrix3;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
-use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, Terms, Transport};
+use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::finger::{BlackBox, FingerServo, Mailbox, ServedPort, Servo};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, CycleTiming, Distribution, Histograms, Schedule, Stage};
 use sun2xp::realtime::{Consumer, ring};
+use sun2xp::simulated::{SimulatedBoard, SimulatedCable};
 
 const PERIOD: u64 = 1_000_000;
 

@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use sun2xp::control::calibration::{Findings, Identified, Zeros};
+use sun2xp::calibration::{Findings, Identified, Zeros};
 use sun2xp::hand::{Found, HandError, read, store};
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use tempfile::{TempDir, tempdir};

@@ -1,11 +1,12 @@
 //! Fingers on simulated boards behind pseudo-terminals, to be served on a clock of the caller's choice.
 
 use crate::Failure;
-use sun2xp::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms};
+use sun2xp::board::{Link, Port, Terms};
 use sun2xp::finger::{BlackBox, FingerServo, Mailbox, ServedPort};
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{Consumer, ring};
 use sun2xp::realtime::{CycleTiming, Priority, Schedule, now};
+use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 /// One finger: what its planner, its servo thread and its board have.
 pub struct Finger {

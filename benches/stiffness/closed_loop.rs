@@ -4,9 +4,8 @@ use crate::cases::{Case, Friction};
 use nalgebra::{Matrix3, Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
-use sun2xp::control::{
-    Activity, Command, Controller, Feedback, InverseKinematics, Law, Measured, Report, SetPoint, State,
-};
+use sun2xp::control::{Activity, Command, Controller, Feedback, Law, Measured, Report, SetPoint, State};
+use sun2xp::model::InverseKinematics;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 

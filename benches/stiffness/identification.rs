@@ -2,7 +2,7 @@
 
 use crate::cases::{Case, Friction, stiffen};
 use nalgebra::Vector3;
-use sun2xp::control::calibration::{Calibration, Obstacle, Sample, Task, Verdict};
+use sun2xp::calibration::{Calibration, Obstacle, Sample, Task, Verdict};
 use sun2xp::control::{Activity, Command, Controller, Feedback, Report};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};

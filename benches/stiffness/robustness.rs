@@ -6,7 +6,7 @@ use crate::identification;
 use crate::parallel::{each, worst};
 use crate::statics::{self, Fidelity};
 use nalgebra::Matrix3;
-use sun2xp::control::calibration::Obstacle;
+use sun2xp::calibration::Obstacle;
 use sun2xp::model::configuration::ConfiguredFinger;
 
 /// The apparent stiffness where the true finger is not what the controller believes. No friction, exact sensors: what

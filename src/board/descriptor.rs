@@ -27,7 +27,7 @@ const MARK: libc::c_int = libc::SIGPWR;
 
 /// An open descriptor that is looked at before it is used.
 #[derive(Debug)]
-pub(super) struct Descriptor {
+pub(crate) struct Descriptor {
     number: RawFd,
 }
 
@@ -86,7 +86,7 @@ fn lowest() -> RawFd {
 }
 
 /// The result of a system call, or what errno says.
-pub(super) fn check(result: libc::c_int) -> io::Result<libc::c_int> {
+pub(crate) fn check(result: libc::c_int) -> io::Result<libc::c_int> {
     if result < 0 { Err(io::Error::last_os_error()) } else { Ok(result) }
 }
 

@@ -3,9 +3,9 @@
 // Named like the calls of 1990.
 #![allow(non_snake_case)]
 
+use crate::calibration::Task;
 use crate::capi::boundary::delegated;
 use crate::capi::default_hand;
-use crate::control::calibration::Task;
 use std::ffi::c_int;
 
 /// ZeroFinger - find the zeros of a finger's gauges and encoders

@@ -1,8 +1,8 @@
 //! The one hand that the C calls work on.
 
+use crate::calibration::Task;
 use crate::capi::process;
 use crate::capi::refusal::{self, Refusal};
-use crate::control::calibration::Task;
 use crate::hand::{self, Calibrating, Hand, Recovering, Standing};
 use parking_lot::{Mutex, RwLock};
 use std::thread::sleep;

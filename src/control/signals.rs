@@ -33,7 +33,7 @@ pub struct SetPoint {
     /// K of [`Contact::stiffness`](crate::model::Contact::stiffness) in the finger's frame; symmetric: rows and columns 0 to
     /// 2 translation, N/cm, 3 to 5 rotation, N cm/rad.
     pub stiffness: Matrix6<f64>,
-    /// Damping relative to what the controller chooses from the stiffness: 1 is that. [`AdmissibleDamping`](super::AdmissibleDamping)
+    /// Damping relative to what the controller chooses from the stiffness: 1 is that. [`AdmissibleDamping`](crate::control::AdmissibleDamping)
     /// has the range.
     pub damping: f64,
 }

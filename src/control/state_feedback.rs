@@ -4,21 +4,26 @@
 //! damped by what the loops do not measure: here it is observed, and every motor is made a force source of little inertia.
 
 mod construction;
+mod damping_design;
+mod dither;
+mod friction_feed_forward;
 mod numbers;
+mod observer;
+mod reference;
 
-use super::damping_design::DampingDesign;
-use super::dither::{Dither, DitherState};
-use super::friction_feed_forward::FrictionFeedForward;
-use super::gravity_compensation::GravityCompensation;
-use super::joint_stiffness::JointStiffness;
-use super::reference::{Reference, ReferenceState};
-use super::signals::Measured;
-use super::slew::Slew;
-use super::soft_limits::SoftLimits;
-use super::spring_transition::Spring;
-use super::tendon_observer::{TendonEstimate, TendonMotion, TendonObserver};
-use super::tension_distribution::{BoundedDistribution, Distribution};
-use super::transition::Transition;
+use crate::control::signals::Measured;
+use crate::control::spring::gravity_compensation::GravityCompensation;
+use crate::control::spring::joint_stiffness::JointStiffness;
+use crate::control::spring::slew::Slew;
+use crate::control::spring::soft_limits::SoftLimits;
+use crate::control::spring::spring_transition::Spring;
+use crate::control::state_feedback::damping_design::DampingDesign;
+use crate::control::state_feedback::dither::{Dither, DitherState};
+use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
+use crate::control::state_feedback::observer::{TendonEstimate, TendonMotion, TendonObserver};
+use crate::control::state_feedback::reference::{Reference, ReferenceState};
+use crate::control::tendons::bumpless_transfer::Transition;
+use crate::control::tendons::tension_distribution::{BoundedDistribution, Distribution};
 use crate::model::LinkDynamics;
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
 use serde::{Deserialize, Serialize};

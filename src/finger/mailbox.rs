@@ -4,7 +4,7 @@
 //! inheritance), and a channel is not lock-free when a real-time thread shares a core with a preempted sender. The planners'
 //! own side is locked among themselves only.
 
-use crate::control::calibration::{Calibration, Verdict};
+use crate::calibration::{Calibration, Verdict};
 use crate::control::{Controller, Report, SetPoint};
 use crate::finger::{Fault, Losses, Stage, Warnings};
 use crate::realtime::{Input, Memory, Output, Pages, SharedPages, triple_buffer};

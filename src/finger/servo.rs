@@ -1,271 +1,269 @@
-//! A servo thread: periods by absolute deadlines, one transaction a finger and period.
+//! One finger in its servo thread: from reply to command, and from open to close.
 
-use crate::board::{Allowance, Link, LinkCounters, LinkError, OutgoingCommand, Transport};
-use crate::finger::{Fault, FaultKind, FingerServo, Lender, Lent, Mended};
-use crate::model::configuration::FINGERS;
-use crate::realtime::{Clock, Follower, Memory, Pages, Schedule, Stage};
-use std::panic::{AssertUnwindSafe, catch_unwind};
+mod calibrating;
+mod construction;
+mod exchange;
+mod life;
 
-/// The part of a period, from the thread's awakening, in which replies are awaited; the rest is for computing.
-pub const REPLY_WINDOW: f64 = 0.85;
+use crate::board::LinkCounters;
+use crate::board::protocol::{Identity, Status};
+use crate::calibration::Verdict;
+use crate::control::{Activity, Command, Feedback, SetPoint, State};
+use crate::finger::link_watch::LinkWatch;
+use crate::finger::mailbox::{Adjustable, ServoEnd};
+use crate::finger::supervision::Watching;
+use crate::finger::{Alarm, ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage};
+use crate::model::configuration::EndState;
+use crate::realtime::{self, CycleTiming, Memory, Producer};
+use calibrating::Calibrating;
 
-/// A port with the fingers behind it.
-pub struct ServedPort<T> {
-    /// None while it is lent.
-    link: Option<Link<T>>,
-    /// The port has failed.
-    failed: bool,
-    lender: Option<Lender<T>>,
-    fingers: Pages<[FingerServo]>,
-    /// What was heard on links before this one.
-    heard_before: LinkCounters,
+/// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
+const STOPS_AFTER_FAULT: u8 = 3;
+
+/// One finger: its controller, its place in the protocol, its mailbox.
+pub struct FingerServo {
+    adjustable: Adjustable,
+    state: State,
+    activity: Activity,
+    calibration: Option<Calibrating>,
+    /// Of the newest reply.
+    status: Status,
+    feedback: Feedback,
+    /// The state is to be made anew from the feedback.
+    anew: bool,
+    command: Command,
+    mailbox: ServoEnd,
+    timing: CycleTiming,
+    timings: Producer<CycleTiming>,
+    black_box: Recorder,
+    /// What this cycle leaves in the black box; none of a finger that was faulted or closed before.
+    record: Option<CycleRecord>,
+    /// Whether the last cycle left something there.
+    recording: bool,
+    report: FingerReport,
+    address: u8,
+    /// Knows the torque of one count of a command.
+    board: Identity,
+    sequence: u8,
+    toggle: bool,
+    answered: bool,
+    /// Sequence number of the reply that was taken last.
+    last_answer: u8,
+    link: LinkWatch,
+    watching: Watching,
+    alarm: Alarm,
+    /// The board's clock at the last measurement, us modulo 65 536; none before the first.
+    sampled_at: Option<u16>,
+    /// Periods from that measurement to this cycle.
+    sample_age: u64,
+    limits: Limits,
+    settled_cycles: u32,
+    /// Cycles since the stage began.
+    stage_cycles: u32,
+    /// When the finger began to take up slack, ns; none: in the next cycle.
+    opening_since: Option<u64>,
+    stops_left: u8,
+    /// How the finger holds the pose that it finds at open.
+    initial: SetPoint,
+    end_state: EndState,
+    /// What of the finger is on the heap.
+    memory: Memory,
 }
 
-impl<T: Transport> ServedPort<T> {
-    /// `fingers` have shaken hands over `link`.
-    pub fn new(link: Link<T>, fingers: Vec<FingerServo>) -> Self {
-        Self {
-            link: Some(link),
-            failed: false,
-            lender: None,
-            fingers: fingers.into(),
-            heard_before: LinkCounters::default(),
+/// Times of the configuration, in cycles where nothing else is said.
+struct Limits {
+    period_ms: f64,
+    /// How long the finger may take to become a spring, ms.
+    opening_ms: f64,
+    settled: u32,
+    ramp: u32,
+    /// How long a warning stays.
+    warning: u32,
+}
+
+impl FingerServo {
+    /// The same finger with its motors off until it is told to take up slack.
+    pub fn limp(mut self) -> Self {
+        self.go_limp();
+        self
+    }
+
+    /// What of the finger its servo touches and is not in this value itself.
+    pub fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    /// The same finger, to be stopped by this alarm.
+    pub fn with(mut self, alarm: Alarm) -> Self {
+        alarm.add_to(&mut self.memory);
+        self.alarm = alarm;
+        self
+    }
+
+    /// Begins a period: stops where an emergency stop was called for, or another finger has faulted.
+    pub fn listen(&mut self) {
+        if let Some(kind) = self.alarm.heard() {
+            self.fault(Fault::new(kind));
         }
     }
 
-    /// The same port, whose link is lent when all of its fingers have faulted, to be mended.
-    pub fn lent_through(mut self, lender: Lender<T>) -> Self {
-        self.lender = Some(lender);
-        self
-    }
-}
-
-/// How long a board may take to confirm its end state, ns: two attempts. Without it the watchdog does the same.
-const CONFIRMATION: u64 = 100_000_000;
-
-/// One to three fingers on one to three ports, run by one thread.
-pub struct Servo<T, C> {
-    clock: C,
-    schedule: Schedule,
-    reply_window: u64,
-    ports: Pages<[ServedPort<T>]>,
-    follower: Option<Follower>,
-}
-
-impl<T: Transport, C: Clock> Servo<T, C> {
-    /// A servo whose first cycle begins at the start of `schedule`.
-    pub fn new(clock: C, schedule: Schedule, ports: Vec<ServedPort<T>>) -> Self {
-        let reply_window = (schedule.period() as f64 * REPLY_WINDOW) as u64;
-        Self { clock, schedule, reply_window, ports: ports.into(), follower: None }
+    /// Whether the finger has faulted, and its board been told.
+    pub fn at_rest(&self) -> bool {
+        matches!(self.report.stage, Stage::Faulted(_)) && self.stops_left == 0 && !self.mailbox.closing()
     }
 
-    /// The same servo with its schedule so much later, ns.
-    pub fn later(mut self, by: u64) -> Self {
-        self.schedule.shift(by.cast_signed());
-        self
+    /// The address of the finger on its port.
+    pub fn address(&self) -> u8 {
+        self.address
     }
 
-    /// The same servo, with periods by the clock of its first board.
-    pub fn following_board(mut self) -> Self {
-        self.follower = Some(Follower::new(self.schedule.period()));
-        self
-    }
-
-    /// What the servo touches and is not in this value itself.
-    pub fn memory(&self) -> Memory {
-        let mut memory = Memory::default();
-        memory.add(&self.ports);
-        for port in self.ports.iter() {
-            memory.add(&port.fingers);
-            port.fingers.iter().for_each(|finger| memory.append(finger.memory()));
-        }
-        memory
-    }
-
-    /// Runs until every finger is closed, or faulted and asked to close. A panic is a defect, but it must not leave the last torque
-    /// on the motors: it faults every finger, and every board is told to stop.
-    pub fn run(&mut self) {
-        let cycles = || {
-            while !self.finished() {
-                self.cycle();
-            }
-            self.confirm_stops();
-        };
-        if catch_unwind(AssertUnwindSafe(cycles)).is_err() {
-            // If even this panics, the board's watchdog is left.
-            let _ = catch_unwind(AssertUnwindSafe(|| self.fail()));
-        }
-    }
-
-    /// Whether every finger is closed, or faulted and asked to close.
+    /// Whether the finger has nothing more to tell its board.
     pub fn finished(&self) -> bool {
-        self.ports.iter().flat_map(|port| port.fingers.iter()).all(FingerServo::finished)
+        match self.report.stage {
+            Stage::Closed => true,
+            Stage::Faulted(_) => self.mailbox.closing(),
+            _ => false,
+        }
     }
 
-    /// One period: wait, commands out, replies in, compute, report. Nothing here allocates, locks or blocks beyond the
-    /// deadline.
-    pub fn cycle(&mut self) {
-        let beginning = self.schedule.next();
-        self.clock.sleep_until(beginning);
-        let began = self.clock.now();
-        for port in self.ports.iter_mut() {
-            port.exchange();
-            port.fingers.iter_mut().for_each(FingerServo::listen);
+    /// Ends a cycle: computes the next command. `overrun`: the next cycle should have begun already, and so many periods are
+    /// skipped.
+    pub fn end(&mut self, began: u64, overrun: Option<u64>, heard: &LinkCounters) {
+        let skipped = overrun.unwrap_or(0);
+        self.sample_age += 1 + skipped;
+        let losses = &mut self.report.losses;
+        losses.cycles += 1;
+        losses.overruns += u64::from(overrun.is_some());
+        losses.skipped_periods += skipped;
+        (losses.damaged_frames, losses.foreign_frames) = (heard.damaged, heard.foreign);
+        self.report.last = began;
+        if losses.cycles == 1 {
+            self.report.first = began;
         }
-        self.send_stops();
-        let mut sending = began;
-        for port in self.ports.iter_mut() {
-            port.send();
-            let sent = self.clock.now();
-            port.note(Stage::WakeUp, beginning, began);
-            port.note(Stage::Write, sending, sent);
-            sending = sent;
+        if self.under_control()
+            // A machine that is busy is no noise on the line.
+            && let Some(fault) =
+                self.watching.note_period(self.answered || self.link.in_step(), skipped, heard.damaged)
+        {
+            self.fault(fault);
         }
-        for port in self.ports.iter_mut() {
-            port.receive(began + self.reply_window, sending, &self.clock);
+        if self.under_control() {
+            self.count_replies();
         }
-        let mut computing = self.clock.now();
-        let skipped = self.schedule.advance(computing);
-        let overrun = (computing > self.schedule.next()).then_some(skipped);
-        if let Some(follower) = &mut self.follower {
-            let first = self.ports.iter().flat_map(|port| port.fingers.iter()).next();
-            let reading = first.and_then(FingerServo::sampled_at);
-            self.schedule.shift(follower.correction(reading, 1 + skipped));
+        let recorded = self.recording || self.under_control();
+        if self.under_control() {
+            self.black_box.keyframe(self.report.losses.cycles, &self.state, !self.recording);
         }
-        for port in self.ports.iter_mut() {
-            let heard = port.heard();
-            for finger in port.fingers.iter_mut() {
-                finger.end(began, overrun, &heard);
-                let computed = self.clock.now();
-                finger.note(Stage::Compute, computing, computed);
-                finger.note(Stage::Whole, beginning, computed);
-                finger.tell();
-                computing = computed;
+        self.limit_opening(began);
+        let controls = self.under_control() && (self.answered || !self.link.in_step());
+        let control = controls.then(|| self.control(skipped));
+        if recorded {
+            self.record = Some(CycleRecord {
+                cycle: self.report.losses.cycles,
+                began,
+                stage: self.report.stage,
+                timing: CycleTiming::default(),
+                feedback: self.answered.then_some(self.feedback),
+                status: self.status.0,
+                control,
+            });
+        }
+        self.recording = self.under_control();
+        self.report.controller = self.adjustable.number;
+    }
+
+    /// Computes the next command.
+    fn control(&mut self, skipped: u64) -> ControlRecord {
+        let previous = self.take_commands();
+        let previous = self.calibrate().or(previous);
+        let input = ControlInput {
+            anew_from: std::mem::take(&mut self.anew).then_some(self.feedback),
+            activity: self.activity,
+            skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.most().into()) },
+            fading: self.link.fading(),
+        };
+        let Adjustable { controller, number, .. } = match &self.calibration {
+            Some(calibration) => calibration.computes_with(),
+            None => &self.adjustable,
+        };
+        let feedback = self.answered.then_some(&self.feedback);
+        let before = previous.as_ref().map(|previous| &previous.controller);
+        let adjusted = before.is_some();
+        let (command, report) = input.run(controller, before, &mut self.state, feedback);
+        (self.command, self.report.cycle) = (command, report);
+        let previous = previous.map_or(*number, |previous| previous.number);
+        let record = ControlRecord { controller: *number, previous, input, command, report };
+        self.watch(adjusted);
+        self.move_on();
+        record
+    }
+
+    /// Notes when a stage of this cycle began and ended, ns.
+    pub fn note(&mut self, stage: realtime::Stage, from: u64, to: u64) {
+        self.timing.note(stage, from, to);
+    }
+
+    /// Leaves the timing and the record of this cycle to whoever collects them, and then reports: who knows the report of a cycle
+    /// finds its record.
+    pub fn tell(&mut self) {
+        let timing = std::mem::take(&mut self.timing);
+        if let Some(record) = self.record.take() {
+            self.black_box.record(CycleRecord { timing, ..record });
+        }
+        self.mailbox.publish(self.report);
+        // After the report: no more timings than cycles are ever counted. A full ring means that nobody collects: the cycle is worth
+        // more than its figure.
+        let _ = self.timings.push(timing);
+    }
+
+    /// Stops the finger for a reason.
+    pub fn fault(&mut self, fault: Fault) {
+        if self.under_control() {
+            self.alarm.raise(fault.kind);
+            self.enter(Stage::Faulted(fault));
+        }
+    }
+
+    fn under_control(&self) -> bool {
+        !matches!(self.report.stage, Stage::Closed | Stage::Faulted(_))
+    }
+
+    /// The monitors of a finger that is a spring.
+    fn watch(&mut self, adjusted: bool) {
+        if adjusted {
+            self.watching.adjusted();
+        }
+        let spring = match &self.calibration {
+            Some(calibration) => calibration.spring(),
+            None => (self.report.stage == Stage::Running).then_some(&self.adjustable),
+        };
+        if let Some(Adjustable { controller, .. }) = spring {
+            let feedback = self.answered.then_some(&self.feedback);
+            if let Some(fault) = self.watching.spring(controller, &self.state, feedback) {
+                self.fault(fault);
             }
         }
-    }
-
-    /// The last thing to do when a cycle panicked: every finger faulted, every board told to stop.
-    fn fail(&mut self) {
-        // Whoever would mend a port learns that nobody is left to run it.
-        self.ports.iter_mut().for_each(|port| port.lender = None);
-        let now = self.clock.now();
-        for port in self.ports.iter_mut() {
-            let heard = port.heard();
-            for finger in port.fingers.iter_mut() {
-                finger.fault(Fault::new(FaultKind::ServoPanic));
-                finger.end(now, None, &heard);
-                finger.tell();
+        let failed = match self.report.calibration {
+            Some(Verdict::Refused(_)) if self.report.stage == Stage::Limp => {
+                Some(Fault::new(FaultKind::CalibrationFailed))
             }
-        }
-        self.confirm_stops();
+            _ => None,
+        };
+        self.report.warnings.note(failed.or(self.watching.warning()), self.limits.warning);
     }
 
-    /// Tells every board to stop, until it confirms that or the line fails: closing a port throws away what has not left it
-    /// yet. Nothing else is left to do in time, so this waits.
-    fn confirm_stops(&mut self) {
-        self.send_stops();
-        for port in self.ports.iter_mut() {
-            // A link that was lent has stopped its boards before.
-            let Some(link) = &mut port.link else { continue };
-            for finger in port.fingers.iter() {
-                let deadline = self.clock.now() + CONFIRMATION;
-                while self.clock.now() < deadline && matches!(link.stop(finger.address(), deadline), Ok(false)) {}
+    fn count_replies(&mut self) {
+        if self.answered {
+            if self.link.answered() {
+                self.anew = true;
+                self.watching.begin();
             }
+            return;
         }
-    }
-
-    fn send_stops(&mut self) {
-        for port in self.ports.iter_mut() {
-            for finger in port.fingers.iter_mut() {
-                if let (true, Some(link)) = (finger.stopping(), &mut port.link) {
-                    // Where nobody is left to tell, the board's watchdog does the rest.
-                    port.failed |= matches!(link.stop(finger.address(), 0), Err(LinkError::Port(_)));
-                }
-            }
+        self.report.losses.lost_replies += 1;
+        if let Some(lost) = self.link.missed() {
+            let milliseconds = f64::from(lost) * self.limits.period_ms;
+            self.fault(self.watching.silence(milliseconds));
         }
-    }
-}
-
-impl<T: Transport> ServedPort<T> {
-    /// Lends the link when no finger uses it any more, and takes back a mended one.
-    fn exchange(&mut self) {
-        let Some(lender) = &mut self.lender else { return };
-        let all_at_rest = self.fingers.iter().all(FingerServo::at_rest);
-        if let Some(link) = self.link.take_if(|_| all_at_rest) {
-            self.heard_before = self.heard_before.plus(&link.counters());
-            // There is room: it is the only link.
-            if let Err(lent) = lender.lend.push(Lent { link, failed: self.failed }) {
-                self.link = Some(lent.link);
-            }
-        } else if let Some(Mended { link, configured, stop_calls }) = lender.mended.pop() {
-            self.failed = false;
-            // Of the same link, or of a new one: it goes on from what was counted.
-            self.heard_before = self.heard_before.less(&link.counters());
-            self.link = Some(link);
-            for (finger, configured) in self.fingers.iter_mut().zip(configured) {
-                configured.into_iter().for_each(|configured| finger.recover(&configured, stop_calls));
-            }
-        }
-    }
-
-    /// What was heard since open.
-    fn heard(&self) -> LinkCounters {
-        self.link.as_ref().map_or(self.heard_before, |link| self.heard_before.plus(&link.counters()))
-    }
-
-    /// All commands of the port back to back, so that replies overlap the commands that follow.
-    fn send(&mut self) {
-        let mut commands = [OutgoingCommand::default(); FINGERS];
-        let mut count = 0;
-        for (command, place) in self.fingers.iter_mut().filter_map(FingerServo::begin).zip(&mut commands) {
-            *place = command;
-            count += 1;
-        }
-        let Some(link) = &mut self.link else { return };
-        if let Err(error) = link.send(&commands[..count]) {
-            self.fail(&error);
-        }
-    }
-
-    fn receive(&mut self, deadline: u64, sent: u64, clock: &impl Clock) {
-        // One for all replies of the period: a board that sends without end must not hold the thread.
-        let mut allowance = Allowance::for_replies(deadline);
-        while self.fingers.iter().any(FingerServo::waiting) {
-            let Some(link) = &mut self.link else { return };
-            match link.receive_within(&mut allowance) {
-                Ok(Some(received)) => {
-                    let mut addressed = self.fingers.iter_mut().find(|finger| finger.address() == received.address);
-                    let Some(finger) = addressed.take_if(|finger| finger.awaits(&received)) else {
-                        addressed.into_iter().for_each(|finger| finger.pass_over(&received));
-                        continue;
-                    };
-                    finger.take(&received);
-                    let (ready, read) = link.arrival();
-                    finger.note(Stage::Wire, sent, ready);
-                    finger.note(Stage::Read, ready, read);
-                    finger.note(Stage::Decode, read, clock.now());
-                }
-                Ok(None) => break,
-                // The other fingers of the board may be as they were.
-                Err(LinkError::Refused { address, refused }) => {
-                    let addressed = self.fingers.iter_mut().filter(|finger| finger.address() == address);
-                    addressed.for_each(|finger| finger.fault((&refused).into()));
-                }
-                Err(error) => {
-                    self.fail(&error);
-                    break;
-                }
-            }
-        }
-    }
-
-    fn note(&mut self, stage: Stage, from: u64, to: u64) {
-        self.fingers.iter_mut().for_each(|finger| finger.note(stage, from, to));
-    }
-
-    fn fail(&mut self, error: &LinkError) {
-        self.failed |= matches!(error, LinkError::Port(_));
-        self.fingers.iter_mut().for_each(|finger| finger.fault(error.into()));
     }
 }

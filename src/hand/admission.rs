@@ -1,8 +1,8 @@
 //! What a planner may ask of a finger: the checks between a call and the servo. Nothing that fails one reaches it.
 
-use crate::control::InverseKinematics;
 use crate::hand::HandError;
 use crate::hand::damping_admission::DampingAdmission;
+use crate::model::InverseKinematics;
 use crate::model::configuration::{Law, OutOfRange};
 use crate::model::{Contact, ContactError, Links, spring};
 use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};

@@ -1,6 +1,6 @@
 //! Calibrating a finger of an open hand: asks its servo, waits for the verdict, puts what was found in force.
 
-use crate::control::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
+use crate::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
 use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
 use crate::hand::calibration_file::store;
 use crate::hand::opening::check;

@@ -100,7 +100,7 @@ fn numbers_at(finger: &ConfiguredFinger, section: &str, key: &str) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::control::calibration::{Findings, Identified, Signs, Zeros};
+    use crate::calibration::{Findings, Identified, Signs, Zeros};
     use nalgebra::Vector3;
     use std::fs;
 

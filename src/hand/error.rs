@@ -3,10 +3,10 @@
 mod errno;
 
 use crate::board::LinkError;
-use crate::control::OutOfReach;
-use crate::control::calibration::Obstacle;
+use crate::calibration::Obstacle;
 use crate::finger::{Fault, FaultKind};
 use crate::hand::missing::Missing;
+use crate::model::OutOfReach;
 use crate::model::configuration::Unusable;
 use crate::model::{ContactError, Refusal, Shown, ShownPath};
 use crate::realtime::with_remedy;

@@ -1,6 +1,6 @@
 //! What one run has found of a finger: keys of the configuration with their values, and what they were found with.
 
-use crate::control::calibration::Findings;
+use crate::calibration::Findings;
 use crate::hand::HandError;
 use crate::model::configuration::{Configuration, FINGERS};
 use std::collections::BTreeMap;
@@ -198,7 +198,7 @@ fn collect(key: &str, item: &Item, leaves: &mut BTreeMap<String, String>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::control::calibration::{Signs, Zeros};
+    use crate::calibration::{Signs, Zeros};
     use nalgebra::Vector3;
 
     fn zeros() -> Findings {

@@ -1,8 +1,8 @@
 //! From a configuration to ports with fingers behind them: everything that happens before a servo thread runs.
 
 use crate::board::protocol::Status;
-use crate::board::{Link, Pace, Port, SimulatedBoard, SimulatedPort, Terms, capacity};
-use crate::control::{AdmissibleDamping, InverseKinematics};
+use crate::board::{Link, Port, Terms, capacity};
+use crate::control::AdmissibleDamping;
 use crate::finger::{Alarm, BlackBox, FingerServo, Mailbox, ServedPort, lending, stop_calls};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
@@ -11,9 +11,11 @@ use crate::hand::damping_admission::DampingAdmission;
 use crate::hand::fingers::Fingers;
 use crate::hand::identities::Identities;
 use crate::hand::workshop::{KnownBoard, Workshop};
+use crate::model::InverseKinematics;
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
 use crate::model::{Refusal, Shown, ShownPath};
 use crate::realtime::{Consumer, CycleTiming, Priority, now, ring};
+use crate::simulated::{Pace, SimulatedBoard, SimulatedPort};
 use nalgebra::Matrix3;
 use std::path::{Path, PathBuf};
 

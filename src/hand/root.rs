@@ -1,7 +1,6 @@
 //! Root: opens and closes a hand, owns its threads and ports, reports its status.
 
-use crate::board::{SimulatedFinger, SimulatedPort};
-use crate::control::calibration::Verdict;
+use crate::calibration::Verdict;
 use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach, simulate};
@@ -10,6 +9,7 @@ use crate::hand::servo_threads::{Given, PortServo, start};
 use crate::hand::{Configured, Fingers, Found, HandError, configured};
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{self, Distribution, now};
+use crate::simulated::{SimulatedFinger, SimulatedPort};
 use nalgebra::Vector3;
 use parking_lot::{Mutex, RwLock};
 use std::path::PathBuf;

@@ -4,6 +4,7 @@
 mod calibrated;
 pub mod configuration;
 mod contact;
+mod inverse_kinematics;
 mod kinematics;
 mod link_dynamics;
 mod mechanics;
@@ -13,6 +14,7 @@ mod tendons;
 mod validation;
 
 pub use contact::{Contact, ContactError, spring};
+pub use inverse_kinematics::{InverseKinematics, OutOfReach};
 pub use kinematics::Links;
 pub use link_dynamics::LinkDynamics;
 pub use mechanics::{ConfiguredFriction, ConfiguredLinks};

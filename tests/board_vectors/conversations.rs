@@ -2,9 +2,9 @@
 
 use super::frames::sealed;
 use super::json::{hex, list, object, text};
-use sun2xp::board::SimulatedBoard;
 use sun2xp::board::protocol::*;
 use sun2xp::model::configuration::{Configuration, EndState};
+use sun2xp::simulated::SimulatedBoard;
 
 /// What is done to the board, and what must follow.
 enum Step {

@@ -1,7 +1,7 @@
 //! A finger and a controller that believes something else of it, with a calibration in charge.
 
 use nalgebra::{Vector3, Vector4};
-use sun2xp::control::calibration::{Calibration, Findings, Obstacle, Sample, Task, Verdict};
+use sun2xp::calibration::{Calibration, Findings, Obstacle, Sample, Task, Verdict};
 use sun2xp::control::{Activity, Command, Controller, Feedback, Report, SetPoint, State};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};

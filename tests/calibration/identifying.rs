@@ -1,7 +1,7 @@
 //! Friction and stiffness.
 
 use crate::bench::Bench;
-use sun2xp::control::calibration::{Findings, Identified, Task};
+use sun2xp::calibration::{Findings, Identified, Task};
 use sun2xp::model::configuration::{ConfiguredFinger, GaugeReference};
 
 pub fn identified(bench: &mut Bench) -> Identified {

@@ -4,7 +4,7 @@ use crate::bench::Bench;
 use nalgebra::{Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
-use sun2xp::control::calibration::{Findings, Obstacle, Task};
+use sun2xp::calibration::{Findings, Obstacle, Task};
 use sun2xp::control::{Activity, SetPoint};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme, ZeroingMethod};
 use sun2xp::plant::Plant;

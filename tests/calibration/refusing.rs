@@ -1,7 +1,7 @@
 //! What stands in the way is named.
 
 use crate::bench::Bench;
-use sun2xp::control::calibration::{Obstacle, Task};
+use sun2xp::calibration::{Obstacle, Task};
 use sun2xp::model::Surface;
 use sun2xp::model::configuration::{ConfiguredFinger, ZeroingMethod};
 

@@ -1,7 +1,7 @@
 //! Which way things count.
 
 use crate::bench::Bench;
-use sun2xp::control::calibration::{Findings, Task};
+use sun2xp::calibration::{Findings, Task};
 use sun2xp::model::configuration::ConfiguredFinger;
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::bench::Bench;
 use crate::identifying::identified;
 use nalgebra::Vector3;
-use sun2xp::control::calibration::{Findings, Task, Zeros};
+use sun2xp::calibration::{Findings, Task, Zeros};
 use sun2xp::control::{Activity, Law, SetPoint};
 use sun2xp::model::configuration::{ConfiguredFinger, ZeroingMethod};
 

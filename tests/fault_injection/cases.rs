@@ -3,9 +3,9 @@
 use crate::rig::{Bench, MICROSECOND, MILLISECOND, Truth};
 use nalgebra::{Vector3, Vector4};
 use std::f64::consts::TAU;
-use sun2xp::board::{Defect, LineFault};
 use sun2xp::finger::FaultKind;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
+use sun2xp::simulated::{Defect, LineFault};
 
 /// Something that goes wrong.
 pub struct Case {

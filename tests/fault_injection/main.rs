@@ -6,9 +6,9 @@ mod rig;
 
 use cases::{Case, Injected, line, of_the_finger, of_the_line, warnings};
 use rig::{Bench, MICROSECOND, MILLISECOND};
-use sun2xp::board::LineFault;
 use sun2xp::finger::Losses;
 use sun2xp::model::configuration::{Configuration, Scheme};
+use sun2xp::simulated::LineFault;
 
 /// The motors are in their end state so long, ms, after a fault can be known.
 const WITHIN: f64 = 20.0;

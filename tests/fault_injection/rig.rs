@@ -6,7 +6,7 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::cell::RefCell;
 use std::rc::Rc;
 use sun2xp::board::protocol::Identity;
-use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, SimulatedFinger, Terms, Transport};
+use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::control::Law;
 use sun2xp::finger::{
     BlackBox, Borrower, Fault, FingerServo, Lent, Mailbox, Mended, ServedPort, Servo, Stage, lending, stop_calls,
@@ -14,6 +14,7 @@ use sun2xp::finger::{
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::realtime::ring;
 use sun2xp::realtime::{Clock, Schedule};
+use sun2xp::simulated::{SimulatedBoard, SimulatedCable, SimulatedFinger};
 
 pub const MICROSECOND: u64 = 1000;
 pub const MILLISECOND: u64 = 1000 * MICROSECOND;

@@ -2,7 +2,7 @@
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
-use sun2xp::control::calibration::{Calibration, Findings, Obstacle, Task, Verdict};
+use sun2xp::calibration::{Calibration, Findings, Obstacle, Task, Verdict};
 use sun2xp::finger::{Adjustable, CalibrationRun, Order, Stage};
 use sun2xp::model::configuration::{Configuration, Scheme, ZeroingMethod};
 
@@ -61,7 +61,8 @@ fn a_push_is_refused_and_the_finger_stays_the_spring_that_it_was() {
         let before = bench.report().set_point;
         order(&bench, scheme);
         bench.cycles(100);
-        let push = |force| move |finger: &mut sun2xp::board::SimulatedFinger| finger.plant().set_external_force(force);
+        let push =
+            |force| move |finger: &mut sun2xp::simulated::SimulatedFinger| finger.plant().set_external_force(force);
         bench.with_finger(push(Vector3::new(1.0, 0.0, 0.0)));
         // Sent while it is calibrated: without effect, now and later.
         bench.mailbox.send(|set_point| set_point.joints = Vector3::new(0.0, 0.5, 0.5)).expect("not faulted");

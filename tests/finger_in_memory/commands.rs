@@ -2,8 +2,8 @@
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::{Vector3, Vector4};
-use sun2xp::board::LineFault;
 use sun2xp::finger::Stage;
+use sun2xp::simulated::LineFault;
 
 impl Bench {
     /// N cm.

@@ -5,10 +5,11 @@ use crate::rig::{Bench, MILLISECOND, TARGET};
 use nalgebra::Vector3;
 use std::io;
 use sun2xp::board::protocol::{Frame, Kind, Reason, Refused, Status, Stop};
-use sun2xp::board::{Defect, LineFault, PortError, Transport};
-use sun2xp::control::calibration::{Calibration, Task};
+use sun2xp::board::{PortError, Transport};
+use sun2xp::calibration::{Calibration, Task};
 use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
 use sun2xp::model::configuration::Configuration;
+use sun2xp::simulated::{Defect, LineFault};
 
 #[test]
 fn a_joint_that_is_pushed_beyond_its_limit_is_said_to_be_at_its_stop() {

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use std::cell::RefCell;
 use std::rc::Rc;
 use sun2xp::board::protocol::{Frame, Message, WireFrame};
-use sun2xp::board::{Link, PortError, SimulatedBoard, SimulatedCable, SimulatedFinger, Terms, Transport};
+use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::finger::{
     BlackBox, Borrower, Fault, FaultKind, FingerReport, FingerServo, Mailbox, Mended, ServedPort, Servo, Stage,
     lending, stop_calls,
@@ -12,6 +12,7 @@ use sun2xp::finger::{
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::ring;
 use sun2xp::realtime::{Clock, Schedule};
+use sun2xp::simulated::{SimulatedBoard, SimulatedCable, SimulatedFinger};
 
 pub const MILLISECOND: u64 = 1_000_000;
 

@@ -2,10 +2,10 @@
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
-use sun2xp::board::Defect;
-use sun2xp::control::calibration::{Calibration, Task, Verdict};
+use sun2xp::calibration::{Calibration, Task, Verdict};
 use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
 use sun2xp::model::configuration::{Configuration, ZeroingMethod};
+use sun2xp::simulated::Defect;
 
 /// What SendKx sends.
 fn soften(bench: &Bench) {

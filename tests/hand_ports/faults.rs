@@ -2,11 +2,11 @@
 
 use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three_boards, turn, wait_until};
 use sun2xp::board::protocol::Status;
-use sun2xp::board::{Pace, SimulatedBoard, SimulatedFinger, SimulatedPort};
 use sun2xp::finger::{Fault, FaultKind};
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
+use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedFinger, SimulatedPort};
 
 /// Waits for the fault of a finger, and returns what its calls say then.
 fn fault_text(hand: &Hand, finger: i32) -> String {

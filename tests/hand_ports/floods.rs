@@ -9,11 +9,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::{Frame, Message, Reply, Stopped, WireFrame};
-use sun2xp::board::{Pace, PacedTime, SimulatedBoard};
 use sun2xp::finger::{FaultKind, Stage};
 use sun2xp::hand::{Hand, stop_all};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
+use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
 
 /// No call may take longer because a board sends without end. A busy machine needs most of this; before reads had a bound, a flood held a
 /// servo for longer.

@@ -10,10 +10,10 @@ use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::{Duration, Instant};
-use sun2xp::board::{Defect, LineFault, Pace, SimulatedBoard, SimulatedPort};
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
+use sun2xp::simulated::{Defect, LineFault, Pace, SimulatedBoard, SimulatedPort};
 
 /// Bytes on the heap.
 static ALLOCATED: AtomicI64 = AtomicI64::new(0);

@@ -1,10 +1,10 @@
 //! The unique numbers of boards: no two ports of a hand have the same.
 
 use crate::rig::{START, TARGET, close, goes, on_ports, open, turn};
-use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
+use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 fn start(board: SimulatedBoard) -> SimulatedPort {
     SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a pseudo-terminal")

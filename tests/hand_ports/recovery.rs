@@ -7,11 +7,11 @@ use crate::rig::{
 use std::fs::{self, read_dir};
 use std::path::Path;
 use sun2xp::board::protocol::Status;
-use sun2xp::board::{Defect, Pace, SimulatedBoard, SimulatedPort};
 use sun2xp::finger::{FaultKind, Stage};
 use sun2xp::hand::{Hand, HandError, Recovering, stop_all};
 use sun2xp::model::configuration::{Configuration, OnFault};
 use sun2xp::realtime::Priority;
+use sun2xp::simulated::{Defect, Pace, SimulatedBoard, SimulatedPort};
 
 pub fn fault(hand: &Hand, finger: i32) -> Option<FaultKind> {
     match hand.report(finger).expect("a report").stage {

@@ -7,11 +7,11 @@ use std::io::{self, BufRead, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use sun2xp::board::protocol::check;
-use sun2xp::board::{Pace, SimulatedBoard, SimulatedPort};
 use sun2xp::hand;
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::model::{ShownPath, one_line};
 use sun2xp::realtime::Priority;
+use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 /// Runs a simulated board behind a serial port of its own.
 ///

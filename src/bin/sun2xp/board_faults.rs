@@ -1,7 +1,7 @@
 //! Orders of `sun2xp board` that break things.
 
-use sun2xp::board::{Defect, LineFault, SimulatedPort};
 use sun2xp::model::Shown;
+use sun2xp::simulated::{Defect, LineFault, SimulatedPort};
 
 /// What an order does to the board or its cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,7 +122,7 @@ impl Trouble {
 
     /// Makes it happen, and answers. `address`: of a finger, by its number.
     pub fn happen(&self, port: &SimulatedPort, seed: u64, address: impl Fn(u8) -> Option<u8>) -> String {
-        let finger = |number: u8, act: &dyn Fn(&mut sun2xp::board::SimulatedFinger)| {
+        let finger = |number: u8, act: &dyn Fn(&mut sun2xp::simulated::SimulatedFinger)| {
             let found = address(number).and_then(|address| port.with_finger(address, |finger| act(finger)));
             found.map_or_else(|| format!("error this board has no finger {number}"), |()| "ok".into())
         };
@@ -131,7 +131,7 @@ impl Trouble {
                 // The part was looked at when the order was read.
                 finger.suffer(&defect);
             }),
-            Trouble::Mend(number) => finger(number, &sun2xp::board::SimulatedFinger::mend),
+            Trouble::Mend(number) => finger(number, &sun2xp::simulated::SimulatedFinger::mend),
             Trouble::Line(fault, probability, time) => {
                 port.inject(fault, probability, time, seed);
                 "ok".into()

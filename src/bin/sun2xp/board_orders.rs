@@ -2,8 +2,8 @@
 
 use crate::board_faults::Trouble;
 use nalgebra::Vector3;
-use sun2xp::board::SimulatedFinger;
 use sun2xp::model::{Shown, Surface};
+use sun2xp::simulated::SimulatedFinger;
 
 /// A line of standard input.
 #[derive(Debug, PartialEq)]

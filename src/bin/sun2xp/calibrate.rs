@@ -5,7 +5,7 @@ use crate::calibrate_pose::{ask_to_hold, ask_to_let_go};
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
-use sun2xp::control::calibration::{Findings, Progress, Step, Task};
+use sun2xp::calibration::{Findings, Progress, Step, Task};
 use sun2xp::hand::{Configured, Fingers, Hand};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};

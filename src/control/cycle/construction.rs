@@ -1,24 +1,24 @@
 //! What a finger's controller is made from: the numbers of its configuration.
 
 use super::Controller;
-use crate::control::admissible_stiffness::AdmissibleStiffness;
-use crate::control::gains::Gains;
-use crate::control::gravity_compensation::GravityCompensation;
-use crate::control::joint_positions::JointPositions;
-use crate::control::joint_stiffness::JointStiffness;
-use crate::control::low_pass::LowPass;
 use crate::control::monitors::Monitors;
-use crate::control::motor_heating::MotorHeating;
-use crate::control::motor_torque::MotorTorque;
-use crate::control::sensors::Sensors;
-use crate::control::slack::SlackTakeUp;
-use crate::control::slew::Slew;
-use crate::control::soft_limits::SoftLimits;
-use crate::control::spring_transition::SpringTransition;
+use crate::control::motors::motor_heating::MotorHeating;
+use crate::control::motors::motor_torque::MotorTorque;
+use crate::control::number_checks::positive;
+use crate::control::sensing::joint_positions::JointPositions;
+use crate::control::sensing::sensors::Sensors;
+use crate::control::spring::admissible_stiffness::AdmissibleStiffness;
+use crate::control::spring::gravity_compensation::GravityCompensation;
+use crate::control::spring::joint_stiffness::JointStiffness;
+use crate::control::spring::slew::Slew;
+use crate::control::spring::soft_limits::SoftLimits;
+use crate::control::spring::spring_transition::SpringTransition;
 use crate::control::state_feedback::StateFeedback;
-use crate::control::tendon_controller::TendonController;
-use crate::control::tension_distribution::TensionDistribution;
-use crate::control::usable::positive;
+use crate::control::take_up::slack::SlackTakeUp;
+use crate::control::tendons::gains::Gains;
+use crate::control::tendons::low_pass::LowPass;
+use crate::control::tendons::tendon_controller::TendonController;
+use crate::control::tendons::tension_distribution::TensionDistribution;
 use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
 use nalgebra::{Vector3, Vector4};
 

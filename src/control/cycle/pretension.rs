@@ -2,8 +2,8 @@
 
 use super::pulls::open_loop;
 use super::{Controller, Doing, State};
-use crate::control::slack::{Slackness, TakeUp};
-use crate::control::tension_distribution::Distribution;
+use crate::control::take_up::slack::{Slackness, TakeUp};
+use crate::control::tendons::tension_distribution::Distribution;
 use nalgebra::{Vector3, Vector4};
 
 impl Controller {

@@ -1,9 +1,9 @@
 //! What the motors pull: for desired tensions, without tension feedback, and on the way to nothing.
 
 use super::{Controller, Doing, State};
-use crate::control::release::Release;
-use crate::control::tension_distribution::BoundedDistribution;
-use crate::control::tension_integral::{TendonInput, TendonState};
+use crate::control::tendons::release::Release;
+use crate::control::tendons::tension_distribution::BoundedDistribution;
+use crate::control::tendons::tension_integral::{TendonInput, TendonState};
 use nalgebra::{Vector3, Vector4};
 
 /// Below this part of its desired tension a tendon counts as slack while slack is taken up: well under what a motor with

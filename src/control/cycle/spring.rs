@@ -2,10 +2,10 @@
 
 use super::{Controller, Doing, State};
 use crate::control::signals::{Report, SetPoint};
-use crate::control::soft_limits::Push;
-use crate::control::spring_transition::Spring;
+use crate::control::spring::soft_limits::Push;
+use crate::control::spring::spring_transition::Spring;
 use crate::control::state_feedback::Decision;
-use crate::control::tension_distribution::Distribution;
+use crate::control::tendons::tension_distribution::Distribution;
 use nalgebra::Matrix3;
 
 /// Damping over stiffness of the soft limits with the figures of the report, s.

@@ -15,8 +15,8 @@ mod tension_lost;
 
 pub use line_quality::LineQuality;
 
-use super::sensors::Sensors;
-use super::signals::{Feedback, Measured, Report};
+use crate::control::sensing::sensors::Sensors;
+use crate::control::signals::{Feedback, Measured, Report};
 use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use agreement::Agreement;

@@ -1,7 +1,7 @@
 //! Motors that do not turn although something should turn them.
 
 use super::{Alarm, Sample, Symptom, first_of};
-use crate::control::motor_friction::MotorFriction;
+use crate::control::motors::motor_friction::MotorFriction;
 use crate::model::Tendons;
 use crate::model::configuration::ConfiguredFinger;
 

@@ -2,15 +2,15 @@
 
 use super::StateFeedback;
 use super::numbers::Numbers;
-use crate::control::damping_design::DampingDesign;
-use crate::control::dither::Dither;
-use crate::control::friction_feed_forward::FrictionFeedForward;
-use crate::control::joint_stiffness::JointStiffness;
-use crate::control::motor_friction::MotorFriction;
-use crate::control::reference::Reference;
-use crate::control::slew::Slew;
-use crate::control::tendon_observer::{ElasticTendon, ObserverDesign, TendonObserver};
-use crate::control::usable::positive;
+use crate::control::motors::motor_friction::MotorFriction;
+use crate::control::number_checks::positive;
+use crate::control::spring::joint_stiffness::JointStiffness;
+use crate::control::spring::slew::Slew;
+use crate::control::state_feedback::damping_design::DampingDesign;
+use crate::control::state_feedback::dither::Dither;
+use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
+use crate::control::state_feedback::observer::{ElasticTendon, ObserverDesign, TendonObserver};
+use crate::control::state_feedback::reference::Reference;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::model::{LinkDynamics, Tendons};
 use nalgebra::{Matrix4x3, Vector3, Vector4};

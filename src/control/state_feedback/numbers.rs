@@ -4,8 +4,8 @@
 //! and a bandwidth. What remains has no unit, or is one in cycles, and was searched on the eigenvalues of the exact one-cycle
 //! map of the default finger, never for a pose.
 
-use crate::control::gains::{Row, at};
-use crate::control::usable::{not_negative, positive};
+use crate::control::number_checks::{not_negative, positive};
+use crate::control::tendons::gains::{Row, at};
 use crate::model::configuration::{ConfiguredController, Unusable};
 
 /// Frequencies are those of `rate`, and scale with the rate of the finger.

@@ -1,7 +1,7 @@
 //! The ports of a hand: whether they can be opened, hold bytes back, and how long a round trip to the board takes.
 
 use crate::board::protocol::Command;
-use crate::board::{Allowance, Link, LinkError, OutgoingCommand, Port, PortError, SimulatedPort, Terms};
+use crate::board::{Allowance, Link, LinkError, OutgoingCommand, Port, PortError, Terms};
 use crate::finger::REPLY_WINDOW;
 use crate::hand::doctor::{Finding, Verdict};
 use crate::hand::opening::ports;
@@ -10,6 +10,7 @@ use crate::hand::{Fingers, HandError};
 use crate::model::ShownPath;
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{Clock, CycleTiming, Distribution, Histograms, MonotonicClock, Schedule, Stage, now, spawn};
+use crate::simulated::SimulatedPort;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! The errno of a refused call.
 
 use super::HandError;
-use crate::control::calibration::Obstacle;
+use crate::calibration::Obstacle;
 use crate::files::errno;
 use crate::model::ContactError;
 

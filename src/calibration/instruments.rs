@@ -1,0 +1,102 @@
+//! What every routine reads its finger with: the configured sensors and tendons.
+
+use crate::control::sensing::sensors::Sensors;
+use crate::control::signals::Feedback;
+use crate::control::spring::joint_hold::JointHold;
+use crate::control::tendons::tension_distribution::TensionDistribution;
+use crate::model::Tendons;
+use crate::model::configuration::{ConfiguredFinger, Unusable};
+use nalgebra::{Vector3, Vector4};
+
+/// The finger as it is configured, and the gauge offsets that have been found so far.
+#[derive(Clone, Debug)]
+pub(super) struct Instruments {
+    sensors: Sensors,
+    pub tendons: Tendons,
+    pub distribution: TensionDistribution,
+    /// N.
+    pub pretension: Vector4<f64>,
+    /// 1/k, cm/N.
+    compliance: Vector4<f64>,
+    pub newton_per_count: Vector4<f64>,
+    pub gauge_zero: Vector4<f64>,
+    /// Radians of a count, signed.
+    pub radians_per_count: Vector4<f64>,
+    /// cm of tendon for a radian of the motor.
+    pub radius: Vector4<f64>,
+    /// The same with the sign of the motor's command, cm.
+    pub signed_radius: Vector4<f64>,
+    /// Largest pull of the weakest motor, N.
+    pub strongest: f64,
+    /// What the configured gauge zero makes the tensions too high by, N.
+    pub offset: Vector4<f64>,
+    /// What the configured tensions must be multiplied by, as far as it is known.
+    pub gain: Vector4<f64>,
+    /// t_min, t_max, N.
+    pub minimum: f64,
+    pub maximum: f64,
+    /// What leads the joints.
+    pub hold: JointHold,
+    /// Seconds of a cycle.
+    pub period: f64,
+}
+
+impl Instruments {
+    pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
+        let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
+        let sensors = Sensors::new(finger)?;
+        let count = |motor: usize| {
+            f64::from(finger.encoder.sign[motor]) * std::f64::consts::TAU
+                / f64::from(finger.encoder.counts_per_revolution[motor])
+        };
+        Ok(Self {
+            distribution: TensionDistribution::new(
+                &tendons,
+                finger.tendon.minimum,
+                Vector4::repeat(finger.tendon.maximum),
+            )?,
+            pretension: tendons.pretension(finger.tendon.minimum),
+            compliance: Vector4::from(finger.tendon.stiffness).map(f64::recip),
+            newton_per_count: finger.gauge.newton_per_count.into(),
+            gauge_zero: finger.gauge.zero.into(),
+            radians_per_count: Vector4::from_fn(|motor, _| count(motor)),
+            radius: tendons.radius,
+            signed_radius: tendons.radius.component_mul(&Vector4::from(finger.motor.sign.map(f64::from))),
+            strongest: Vector4::from(finger.motor.torque_limit).component_div(&tendons.radius).min(),
+            offset: Vector4::zeros(),
+            gain: Vector4::repeat(1.0),
+            minimum: finger.tendon.minimum,
+            maximum: finger.tendon.maximum,
+            hold: JointHold::new(finger.links()),
+            period: 1.0 / rate,
+            tendons,
+            sensors,
+        })
+    }
+
+    /// Travel of each motor at the tendon, cm, from the configured zero; positive pulls in.
+    pub fn travel(&self, feedback: &Feedback) -> Vector4<f64> {
+        self.sensors.motor_angles(feedback).component_mul(&self.radius)
+    }
+
+    /// Tensions with the gauge offsets and gains known so far, N.
+    pub fn tensions(&self, feedback: &Feedback) -> Vector4<f64> {
+        (self.sensors.tensions(feedback) - self.offset).component_mul(&self.gain)
+    }
+
+    /// theta, rad: eq. 27 with the stretch taken out.
+    pub fn joints(&self, travel: &Vector4<f64>, tensions: &Vector4<f64>) -> Vector3<f64> {
+        let stretch = (tensions - self.pretension).component_mul(&self.compliance);
+        self.tendons.joints_from_travel() * (travel - stretch)
+    }
+
+    /// Travel, cm, of the motors at joint angles `joints` and `tensions`, from the true zero: the way back.
+    pub fn travel_at(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>) -> Vector4<f64> {
+        self.tendons.r.tr_mul(joints) + (tensions - self.pretension).component_mul(&self.compliance)
+    }
+
+    /// What the tendon controller, which knows nothing of the offsets and gains yet, must be asked for.
+    pub fn ask(&self, tensions: Vector4<f64>) -> Vector4<f64> {
+        tensions.component_div(&self.gain) + self.offset
+    }
+}

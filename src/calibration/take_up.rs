@@ -1,0 +1,48 @@
+//! Pretension without joint torque, with the gauge offsets that are known by now.
+
+use super::instruments::Instruments;
+use super::obstacle::Obstacle;
+use super::step::Sample;
+use crate::control::sensing::stillness::Stillness;
+use crate::control::signals::Activity;
+use nalgebra::Vector4;
+
+/// A tendon counts as tight from this part of t_min on.
+const TIGHT: f64 = 0.8;
+/// s.
+const SETTLED: f64 = 0.3;
+const LIMIT: f64 = 5.0;
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TakeUp {
+    seconds: f64,
+    settled: f64,
+    stillness: Stillness,
+}
+
+impl TakeUp {
+    pub fn new() -> Self {
+        Self { seconds: 0.0, settled: 0.0, stillness: Stillness::new(Vector4::zeros()) }
+    }
+
+    /// The activity; none when every tendon has been under tension at rest for a while.
+    pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> Result<Option<Activity>, Obstacle> {
+        self.seconds += instruments.period;
+        let tensions = instruments.tensions(sample.feedback);
+        let angles = instruments.travel(sample.feedback).component_div(&instruments.radius);
+        self.stillness.note(&angles, instruments.period);
+        if tensions.min() >= TIGHT * instruments.minimum && self.stillness.at_rest() {
+            self.settled += instruments.period;
+        } else {
+            self.settled = 0.0;
+        }
+        if self.settled >= SETTLED {
+            return Ok(None);
+        }
+        if self.seconds > LIMIT {
+            let tendon = sample.report.slackest;
+            return Err(Obstacle::Slack { tendon: tendon as u8 + 1, newton: tensions[tendon] });
+        }
+        Ok(Some(Activity::Tighten(instruments.offset)))
+    }
+}

@@ -1,0 +1,45 @@
+//! The box (RM)^-T: joint angles from motor angles, eqs. 26-29, corrected for the stretch of the tendons.
+
+use crate::control::number_checks::positive;
+use crate::model::Tendons;
+use crate::model::configuration::{ConfiguredFinger, Unusable};
+use nalgebra::{Matrix3x4, Vector3, Vector4};
+
+/// theta = R^-T (r m - (t - t_home) / k), upper three rows.
+///
+/// Without the second term this is eq. 27. The encoders sit on the motors, though, and do not see a tendon stretch: at
+/// 3 N/cm the fingertip would be 28 % too soft.
+#[derive(Clone, Debug)]
+pub(crate) struct JointPositions {
+    /// (RM)^-T: motor angle, rad, to joint angle, rad.
+    from_motors: Matrix3x4<f64>,
+    /// Tension above the homing pretension, N, to joint angle, rad.
+    from_tensions: Matrix3x4<f64>,
+    /// Tensions at which the encoders are zeroed, N.
+    home: Vector4<f64>,
+}
+
+impl JointPositions {
+    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons) -> Result<Self, Unusable> {
+        positive("tendon.stiffness", &finger.tendon.stiffness)?;
+        let from_travel = tendons.joints_from_travel();
+        let scaled =
+            |factors: Vector4<f64>| Matrix3x4::from_fn(|joint, tendon| from_travel[(joint, tendon)] * factors[tendon]);
+        Ok(Self {
+            from_motors: scaled(tendons.radius),
+            from_tensions: scaled(Vector4::from(finger.tendon.stiffness).map(|stiffness| -1.0 / stiffness)),
+            home: tendons.pretension(finger.tendon.minimum),
+        })
+    }
+
+    /// theta, rad. `tensions` must be low-passed: the correction closes a positive feedback around the tendon controller,
+    /// which is stable only where it is slow.
+    pub fn joints(&self, motor_angles: &Vector4<f64>, tensions: &Vector4<f64>) -> Vector3<f64> {
+        self.from_motors * motor_angles + self.from_tensions * (tensions - self.home)
+    }
+
+    /// theta_dot, rad/s, as far as the motors show it.
+    pub fn joint_rates(&self, motor_speeds: &Vector4<f64>) -> Vector3<f64> {
+        self.from_motors * motor_speeds
+    }
+}

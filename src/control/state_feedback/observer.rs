@@ -1,0 +1,293 @@
+//! What the encoder and the gauge of one tendon do not show: speeds of motor and joint side, and the motor's disturbance.
+
+use nalgebra::{Matrix2, Matrix2x6, Matrix6, Matrix6x2, Vector2, Vector6};
+use serde::{Deserialize, Serialize};
+
+/// Steps of the Riccati recursion at most, and the relative change of the gain that ends it.
+const MOST_STEPS: usize = 20_000;
+const STEADY: f64 = 1e-10;
+
+/// After a lost reply so many samples have gains of their own.
+const RECOVERY: usize = 8;
+
+/// One tendon between its motor and the joints, in SI units at the tendon: J/r^2 is a mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ElasticTendon {
+    /// kg.
+    pub mass: f64,
+    /// N s/m.
+    pub viscous: f64,
+    /// N/m.
+    pub stiffness: f64,
+    /// Tension at which the encoder is zeroed, N.
+    pub home: f64,
+}
+
+/// How fast an observer follows, and how well its sensors measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ObserverDesign {
+    /// rad/s, of the joints' side.
+    pub link: f64,
+    /// rad/s, of the disturbance.
+    pub disturbance: f64,
+    /// Size of an encoder count, m of tendon.
+    pub encoder_step: f64,
+    /// Size of a gauge count, N.
+    pub gauge_step: f64,
+    /// N rms.
+    pub gauge_noise: f64,
+}
+
+/// A Kalman filter with a fixed gain for x = (mu, v, lambda, w, d, a):
+///
+/// mu' = v, v' = (u - t_home + d - k (mu - lambda) - b v) / m, lambda' = w, w' = a, a' = jerk + noise, d' = noise,
+///
+/// measured: mu and t - t_home = k (mu - lambda). mu is the travel of the motor r m, lambda that of the joints R^T theta, d
+/// what acts on the motor beyond the command.
+///
+/// The links are a triple integrator without a model: any share of their dynamics would read an external force as motion,
+/// and the damper would answer it for ever. Without the state a, lambda lags, and k times the lag acts as mass.
+#[derive(Clone, Debug)]
+pub(crate) struct TendonObserver {
+    tendon: ElasticTendon,
+    transition: Matrix6<f64>,
+    from_force: Vector6<f64>,
+    from_jerk: Vector6<f64>,
+    gain: Matrix6x2<f64>,
+    /// Gains of the samples that follow a lost reply.
+    recovery: [Matrix6x2<f64>; RECOVERY],
+}
+
+/// What an observer believes.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+pub(crate) struct TendonEstimate {
+    x: Vector6<f64>,
+    /// Samples since the last lost reply, at most [`RECOVERY`].
+    since_loss: usize,
+}
+
+/// Motion of a tendon, SI.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct TendonMotion {
+    /// Tension, N.
+    pub tension: f64,
+    /// v: speed of the motor's side, m/s.
+    pub motor_speed: f64,
+    /// lambda, m.
+    pub travel: f64,
+    /// w: speed of the joints' side, m/s.
+    pub speed: f64,
+    /// d, N.
+    pub disturbance: f64,
+}
+
+impl TendonObserver {
+    /// Discretises over `period` (s) and iterates the Riccati equation to its fixed point. None where the numbers are so far
+    /// apart that it has none.
+    pub fn new(tendon: ElasticTendon, design: &ObserverDesign, period: f64) -> Option<Self> {
+        let ElasticTendon { mass, viscous, stiffness, .. } = tendon;
+        let mut rates = Matrix6::zeros();
+        (rates[(0, 1)], rates[(2, 3)], rates[(3, 5)]) = (1.0, 1.0, 1.0);
+        rates[(1, 0)] = -stiffness / mass;
+        rates[(1, 1)] = -viscous / mass;
+        rates[(1, 2)] = stiffness / mass;
+        rates[(1, 4)] = 1.0 / mass;
+        let (transition, integral) = exponential(&rates, period);
+        let (half, _) = exponential(&rates, period / 2.0);
+        let measured = Matrix2x6::new(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, stiffness, 0.0, -stiffness, 0.0, 0.0, 0.0);
+
+        // A uniform distribution has the variance width^2 / 12.
+        let encoder = design.encoder_step.powi(2) / 12.0;
+        let gauge = design.gauge_step.powi(2) / 12.0 + design.gauge_noise.powi(2);
+        let noise = Matrix2::new(encoder, 0.0, 0.0, gauge);
+        // For n integrators in a row a bandwidth w needs the noise density w^2n r T.
+        let mut density = Matrix6::zeros();
+        density[(5, 5)] = design.link.powi(6) * (encoder + gauge / (stiffness * stiffness)) * period;
+        density[(4, 4)] = design.disturbance.powi(2) * gauge * period;
+        // Over one period, by Simpson's rule.
+        let middle = half * density * half.transpose() * 4.0;
+        let driven = (density + middle + transition * density * transition.transpose()) * (period / 6.0);
+
+        let gain_of = |covariance: &Matrix6<f64>| {
+            let innovation = measured * covariance * measured.transpose() + noise;
+            covariance * measured.transpose() * inverse(&innovation)
+        };
+        let predicted = |covariance: &Matrix6<f64>| {
+            let next = transition * covariance * transition.transpose() + driven;
+            (next + next.transpose()) * 0.5
+        };
+        let mut covariance = driven * 100.0;
+        let mut gain = gain_of(&covariance);
+        for _ in 0..MOST_STEPS {
+            covariance = predicted(&(covariance - gain * measured * covariance));
+            let next = gain_of(&covariance);
+            let changed = (next - gain).zip_map(&next, |change, value| change.abs() - STEADY * value.abs()).max();
+            gain = next;
+            if changed <= 0.0 {
+                break;
+            }
+        }
+        // One update missed.
+        covariance = predicted(&covariance);
+        let recovery = std::array::from_fn(|_| {
+            let gain = gain_of(&covariance);
+            covariance = predicted(&(covariance - gain * measured * covariance));
+            gain
+        });
+        let from_force = integral.column(1) / mass;
+        let finite = |gain: &Matrix6x2<f64>| gain.iter().all(|entry| entry.is_finite());
+        let usable = finite(&gain) && recovery.iter().all(finite);
+        let from_jerk = integral.column(5).into();
+        usable.then_some(Self { tendon, transition, from_force, from_jerk, gain, recovery })
+    }
+
+    /// A tendon at rest. Travel of the motor, m; tension, N.
+    pub fn start(&self, motor_travel: f64, tension: f64) -> TendonEstimate {
+        let stretch = (tension - self.tendon.home) / self.tendon.stiffness;
+        let x = Vector6::new(motor_travel, 0.0, motor_travel - stretch, 0.0, 0.0, 0.0);
+        TendonEstimate { x, since_loss: RECOVERY }
+    }
+
+    /// Goes on from the estimate of another observer of the same tendon, whose motor travels `ratio` times less: position and
+    /// tension stay, whatever the two believe of stiffness and homing pretension.
+    pub fn take_over(&self, previous: &Self, estimate: &mut TendonEstimate, ratio: f64) {
+        let tension = previous.tension(&estimate.x);
+        estimate.x[0] *= ratio;
+        estimate.x[1] *= ratio;
+        estimate.x[2] = estimate.x[0] - (tension - self.tendon.home) / self.tendon.stiffness;
+    }
+
+    /// Takes in what was measured: travel of the motor, m; tension, N.
+    pub fn correct(&self, estimate: &mut TendonEstimate, motor_travel: f64, tension: f64) {
+        let error = Vector2::new(motor_travel - estimate.x[0], tension - self.tension(&estimate.x));
+        let gain = self.recovery.get(estimate.since_loss).unwrap_or(&self.gain);
+        estimate.x += gain * error;
+        estimate.since_loss = estimate.since_loss.saturating_add(1).min(RECOVERY);
+    }
+
+    /// Nothing was measured. An acceleration is too uncertain to be carried on.
+    pub fn miss(&self, estimate: &mut TendonEstimate) {
+        estimate.x[5] = 0.0;
+        estimate.since_loss = 0;
+    }
+
+    /// Goes on to the next sample under the pull (N) that acts until then and the expected jerk of the travel, m/s^3.
+    pub fn predict(&self, estimate: &mut TendonEstimate, pull: f64, jerk: f64) {
+        estimate.x = self.transition * estimate.x + self.from_force * (pull - self.tendon.home) + self.from_jerk * jerk;
+    }
+
+    /// The motion `ahead` seconds after the estimate, under the same pull.
+    pub fn motion(&self, estimate: &TendonEstimate, pull: f64, ahead: f64) -> TendonMotion {
+        let x = &estimate.x;
+        let force = pull + x[4] - self.tension(x);
+        let motor_acceleration = force / self.tendon.mass;
+        let motor_travel = x[0] + ahead * (x[1] + 0.5 * ahead * motor_acceleration);
+        let travel = x[2] + ahead * (x[3] + 0.5 * ahead * x[5]);
+        TendonMotion {
+            tension: self.tendon.home + self.tendon.stiffness * (motor_travel - travel),
+            motor_speed: x[1] + ahead * motor_acceleration,
+            travel,
+            speed: x[3] + ahead * x[5],
+            disturbance: x[4],
+        }
+    }
+
+    /// lambda at the estimate, m.
+    pub fn travel(&self, estimate: &TendonEstimate) -> f64 {
+        estimate.x[2]
+    }
+
+    fn tension(&self, x: &Vector6<f64>) -> f64 {
+        self.tendon.home + self.tendon.stiffness * (x[0] - x[2])
+    }
+}
+
+/// e^(A T) and the integral of e^(A s) over s from 0 to T: Taylor's series over a part of T that is short for the fastest motion
+/// in A, doubled until it is T.
+fn exponential(rates: &Matrix6<f64>, time: f64) -> (Matrix6<f64>, Matrix6<f64>) {
+    // The fastest motion is the motor on its tendon: A(1, 0) = - omega^2.
+    let turns = time * rates[(1, 0)].abs().sqrt();
+    let doublings = (turns * 16.0).log2().ceil().clamp(6.0, 60.0) as i32;
+    let part = time * 0.5f64.powi(doublings);
+    let (mut whole, mut integral) = (Matrix6::identity(), Matrix6::identity() * part);
+    let mut term = Matrix6::identity();
+    for order in 1..12 {
+        term = term * rates * (part / f64::from(order));
+        whole += term;
+        integral += term * (part / f64::from(order + 1));
+    }
+    for _ in 0..doublings {
+        integral += whole * integral;
+        whole *= whole;
+    }
+    (whole, integral)
+}
+
+/// Of a positive definite matrix: measurement noise keeps the determinant above zero.
+fn inverse(matrix: &Matrix2<f64>) -> Matrix2<f64> {
+    Matrix2::new(matrix.m22, -matrix.m12, -matrix.m21, matrix.m11) / matrix.determinant()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TENDON: ElasticTendon = ElasticTendon { mass: 2.66, viscous: 8.9, stiffness: 3e4, home: 5.0 };
+
+    fn design(disturbance: f64) -> ObserverDesign {
+        ObserverDesign { link: 2000.0, disturbance, encoder_step: 1.5e-6, gauge_step: 0.024, gauge_noise: 0.03 }
+    }
+
+    /// A motor that pulls a resting joint with 20 N, of which friction takes 3: tension and d that the observer finds. Integrated
+    /// by small steps, not by the observer's own matrices.
+    fn found(disturbance: f64) -> (f64, f64) {
+        let observer = TendonObserver::new(TENDON, &design(disturbance), 1e-3).expect("an observer");
+        let (mut travel, mut speed) = (0.0f64, 0.0f64);
+        let mut estimate = observer.start(0.0, TENDON.home);
+        for _ in 0..1000 {
+            let tension = TENDON.home + TENDON.stiffness * travel;
+            observer.correct(&mut estimate, travel, tension);
+            observer.predict(&mut estimate, 20.0, 0.0);
+            for _ in 0..1000 {
+                let tension = TENDON.home + TENDON.stiffness * travel;
+                // More viscous than the observer knows, so that it comes to rest.
+                speed += 1e-6 * (20.0 - 3.0 - tension - 200.0 * speed) / TENDON.mass;
+                travel += 1e-6 * speed;
+            }
+        }
+        let motion = observer.motion(&estimate, 20.0, 0.0);
+        (motion.tension, motion.disturbance)
+    }
+
+    #[test]
+    fn what_the_motor_does_not_give_is_found() {
+        let (tension, disturbance) = found(200.0);
+        assert!((tension - 17.0).abs() < 1e-3, "{tension}");
+        assert!((disturbance + 3.0).abs() < 1e-2, "{disturbance}");
+        // Without the state d the friction is taken for tension.
+        let (tension, disturbance) = found(0.0);
+        assert!((tension - 17.0).abs() > 0.01 && disturbance.abs() < 1e-6, "{tension} {disturbance}");
+    }
+
+    #[test]
+    fn the_gain_after_a_lost_reply_goes_back_to_the_steady_one() {
+        let observer = TendonObserver::new(TENDON, &design(200.0), 1e-3).expect("an observer");
+        let apart = |gain: &Matrix6x2<f64>| (gain - observer.gain).component_div(&observer.gain).amax();
+        assert!(apart(&observer.recovery[0]) > 0.1);
+        assert!(apart(&observer.recovery[RECOVERY - 1]) < 0.1 * apart(&observer.recovery[0]));
+    }
+
+    #[test]
+    fn constant_motion_is_followed_without_lag() {
+        let observer = TendonObserver::new(TENDON, &design(200.0), 1e-3).expect("an observer");
+        let mut estimate = observer.start(0.0, TENDON.home);
+        for cycle in 0..2000 {
+            let travel = 0.05 * 1e-3 * f64::from(cycle);
+            observer.correct(&mut estimate, travel, TENDON.home);
+            observer.predict(&mut estimate, TENDON.home + TENDON.viscous * 0.05, 0.0);
+        }
+        let motion = observer.motion(&estimate, TENDON.home + TENDON.viscous * 0.05, 0.0);
+        assert!((motion.speed - 0.05).abs() < 1e-6 && (motion.motor_speed - 0.05).abs() < 1e-6, "{motion:?}");
+        assert!((motion.travel - 0.1).abs() < 1e-7);
+    }
+}

@@ -1,0 +1,21 @@
+//! Figure 9: an integral on the tension error.
+
+use crate::control::tendons::tension_integral::{TendonInput, TendonState, TensionIntegral};
+use nalgebra::Vector4;
+
+/// t_d + K_TI/s (t_d - t) - K_delta v.
+///
+/// Feed-forward and damper are not in the figure, but with the integral alone the loop is unstable at every rate.
+#[derive(Clone, Debug)]
+pub(crate) struct Figure9 {
+    pub integral: TensionIntegral,
+    /// K_delta, N s/m at the tendon.
+    pub motor_damping: f64,
+}
+
+impl Figure9 {
+    pub fn pulls(&self, state: &mut TendonState, input: &TendonInput) -> Vector4<f64> {
+        let rest = input.desired - input.speed * self.motor_damping;
+        self.integral.complete(state, input, &rest)
+    }
+}

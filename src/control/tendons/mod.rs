@@ -1,0 +1,12 @@
+//! The tendons: from joint torques to tensions, and from tensions to pulls of the motors.
+
+pub(crate) mod bumpless_transfer;
+pub(crate) mod figure10;
+pub(crate) mod figure11;
+pub(crate) mod figure9;
+pub(crate) mod gains;
+pub(crate) mod low_pass;
+pub(crate) mod release;
+pub(crate) mod tendon_controller;
+pub(crate) mod tension_distribution;
+pub(crate) mod tension_integral;

@@ -1,0 +1,109 @@
+//! The box R^-1: tensions that give the joint torque, eqs. 18-20, within a lower and an upper bound.
+
+use crate::model::Tendons;
+use crate::model::configuration::Unusable;
+use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
+
+/// Tensions for a joint torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distribution {
+    /// N, each within the bounds: R `tensions` = `scale` tau.
+    pub tensions: Vector4<f64>,
+    /// The part of the torque that the bounds let through, 0 to 1: the largest possible.
+    pub scale: f64,
+}
+
+/// t = Q (tau, tau_g) with the least tau_g that keeps t >= t_min, and a tau scaled down where t would exceed t_max.
+#[derive(Clone, Debug)]
+pub struct TensionDistribution {
+    /// Q_i of eq. 17: joint torque, N cm, to tension, N.
+    from_torque: Matrix4x3<f64>,
+    /// q_i4 of eq. 17, positive.
+    ghost: Vector4<f64>,
+    /// 1 / q_i4.
+    inverse_ghost: Vector4<f64>,
+    /// q_i4 / q_j4.
+    ratio: Matrix4<f64>,
+    /// t_min q_i4 / q_j4, N: tendon i without torque while tendon j is at t_min.
+    idle: Matrix4<f64>,
+    /// The tensions of a finger without torque, N.
+    at_rest: Vector4<f64>,
+    minimum: f64,
+    maximum: Vector4<f64>,
+}
+
+/// A distribution within the upper bounds of one cycle.
+pub struct BoundedDistribution<'a> {
+    of: &'a TensionDistribution,
+    maximum: Vector4<f64>,
+}
+
+impl TensionDistribution {
+    /// Bounds in N: `minimum` of all tendons, `maximum` of each, by its own strength and its motor's. Refused unless there are tensions within them that leave the joints without torque.
+    pub fn new(tendons: &Tendons, minimum: f64, maximum: Vector4<f64>) -> Result<Self, Unusable> {
+        crate::control::number_checks::positive("tendon.minimum", &[minimum])?;
+        crate::control::number_checks::positive("tendon.maximum", maximum.as_slice())?;
+        let at_rest = tendons.pretension(minimum);
+        if let Some(tendon) = (0..4).find(|&tendon| maximum[tendon] <= at_rest[tendon]) {
+            let reason = format!(
+                "allows tendon {} {:.2} N, but with no tendon under {minimum} N a finger without joint torque already has \
+                 {:.2} N there: raise tendon.maximum or motor.torque_limit, or lower tendon.minimum",
+                tendon + 1,
+                maximum[tendon],
+                at_rest[tendon]
+            );
+            return Err(Unusable { key: "tendon.maximum", reason });
+        }
+        let ghost: Vector4<f64> = tendons.q.column(3).into_owned();
+        let ratio = Matrix4::from_fn(|i, j| ghost[i] / ghost[j]);
+        let idle = ratio * minimum;
+        Ok(Self {
+            from_torque: tendons.q.fixed_columns::<3>(0).into_owned(),
+            ghost,
+            inverse_ghost: ghost.map(f64::recip),
+            ratio,
+            at_rest: Vector4::from_fn(|i, _| idle.row(i).max()),
+            idle,
+            minimum,
+            maximum,
+        })
+    }
+
+    /// Within the bounds and with no more than `limit`, N, in any tendon: what its motor can give now. A limit under what the tendon of
+    /// a finger without torque has counts as that: then no torque is let through that would raise it.
+    pub fn below(&self, limit: &Vector4<f64>) -> BoundedDistribution<'_> {
+        BoundedDistribution { of: self, maximum: self.maximum.inf(limit).sup(&self.at_rest) }
+    }
+
+    /// [`BoundedDistribution::distribute`] with motors that give what the bounds ask for.
+    pub fn distribute(&self, torques: &Vector3<f64>) -> Distribution {
+        self.below(&self.maximum).distribute(torques)
+    }
+}
+
+impl BoundedDistribution<'_> {
+    /// The least tensions for tau, N cm, in eq. 20's sense.
+    ///
+    /// With the tau_g of eq. 20 some tendon j is at t_min, and tendon i then has s (A_i - A_j q_i/q_j) + t_min q_i/q_j,
+    /// A = Q tau. That tau_g is the largest over j, so t_i <= t_max for all j is what bounds the scale s.
+    pub fn distribute(&self, torques: &Vector3<f64>) -> Distribution {
+        let Self { of, maximum } = self;
+        let wanted = of.from_torque * torques;
+        let mut scale: f64 = 1.0;
+        for i in 0..4 {
+            for j in 0..4 {
+                let added = wanted[i] - of.ratio[(i, j)] * wanted[j];
+                // Not negative, as no bound is below the tensions at rest.
+                let headroom = maximum[i] - of.idle[(i, j)];
+                if added * scale > headroom {
+                    scale = headroom / added;
+                }
+            }
+        }
+        let wanted = wanted * scale;
+        let ghost_torque = (Vector4::repeat(of.minimum) - wanted).component_mul(&of.inverse_ghost).max();
+        // Eq. 20 leaves one tendon at t_min but for rounding, which must not put it below.
+        let tensions = (wanted + of.ghost * ghost_torque).map(|tension| tension.max(of.minimum));
+        Distribution { tensions, scale }
+    }
+}

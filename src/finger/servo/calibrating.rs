@@ -1,0 +1,75 @@
+//! A finger that is being calibrated: whether its routine is in charge, and what becomes of the finger afterwards.
+
+use super::FingerServo;
+use crate::board::protocol::Status;
+use crate::calibration::{Sample, Verdict};
+use crate::finger::Stage;
+use crate::finger::mailbox::{Adjustable, CalibrationRun};
+
+/// A calibration, and what the finger goes on with until the routine takes over.
+pub(super) struct Calibrating {
+    run: CalibrationRun,
+    before: Option<Before>,
+}
+
+/// What the finger was before its calibration.
+struct Before {
+    stage: Stage,
+    adjustable: Adjustable,
+}
+
+impl Calibrating {
+    /// What this cycle is computed with.
+    pub fn computes_with(&self) -> &Adjustable {
+        self.before.as_ref().map_or(&self.run.adjustable, |before| &before.adjustable)
+    }
+
+    /// What the finger is a spring with, if it still is one.
+    pub fn spring(&self) -> Option<&Adjustable> {
+        self.before.as_ref().filter(|before| before.stage == Stage::Running).map(|before| &before.adjustable)
+    }
+}
+
+impl FingerServo {
+    pub(super) fn begin_calibration(&mut self, run: CalibrationRun) {
+        let before = Before { stage: self.report.stage, adjustable: self.adjustable.clone() };
+        self.calibration = Some(Calibrating { run, before: Some(before) });
+        self.report.calibration = None;
+        self.enter(Stage::Calibrating);
+    }
+
+    /// One step of the calibration, if there is one: it decides what the finger does. What the finger was computed with until now, if
+    /// the routine takes over in this cycle.
+    pub(super) fn calibrate(&mut self) -> Option<Adjustable> {
+        let Calibrating { run, before } = self.calibration.as_mut()?;
+        if !self.answered {
+            return None;
+        }
+        let zero_valid = self.status.has(Status::ZERO_VALID);
+        let sample = Sample { feedback: &self.feedback, report: &self.report.cycle, zero_valid };
+        let (activity, verdict) = run.calibration.cycle(&sample);
+        self.report.calibration = Some(verdict);
+        let mut previous = None;
+        if let Some(activity) = activity {
+            self.activity = activity;
+            previous = before.take().map(|before| before.adjustable);
+        }
+        if !matches!(verdict, Verdict::Going(_)) {
+            let untouched = before.take();
+            self.calibration = None;
+            match untouched {
+                Some(before) => return self.go_on_from(before),
+                None => self.go_limp(),
+            }
+        }
+        previous
+    }
+
+    /// Nothing was done to the finger. What it was computed with until now, if planners have changed that meanwhile.
+    fn go_on_from(&mut self, before: Before) -> Option<Adjustable> {
+        // The set points that planners have sent meanwhile had no effect. They must not come into force with the next one either.
+        self.report.springs += u32::from(before.stage == Stage::Running);
+        self.enter(before.stage);
+        (before.adjustable.number != self.adjustable.number).then_some(before.adjustable)
+    }
+}

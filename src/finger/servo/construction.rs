@@ -1,0 +1,124 @@
+//! A finger's servo as its configuration and its board's answers make it.
+
+use super::{FingerServo, Limits, STOPS_AFTER_FAULT};
+use crate::board::protocol::{Configured, Identity};
+use crate::control::{Activity, Command, Controller, Feedback, SetPoint};
+use crate::finger::link_watch::LinkWatch;
+use crate::finger::mailbox::{Adjustable, Mailbox, mailbox};
+use crate::finger::supervision::Watching;
+use crate::finger::{Alarm, FingerReport, Losses, Recorder, Stage, stop_calls};
+use crate::model::configuration::{Configuration, Unusable};
+use crate::realtime::{CycleTiming, Producer};
+use nalgebra::{Matrix3, Vector3};
+
+/// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
+const TENSION_SETTLED: f64 = 0.02;
+
+/// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
+const BEYOND_LIMITS: f64 = 0.5;
+
+/// So long, ms, a warning stays after it was last given.
+const WARNING_MS: f64 = 1000.0;
+
+impl Adjustable {
+    /// What the configuration says, with the number of a finger's first controller.
+    ///
+    /// # Errors
+    /// A configuration that no controller can be made from.
+    pub fn new(configuration: &Configuration, index: usize) -> Result<Self, Unusable> {
+        let finger = &configuration.fingers[index];
+        let (low, high) = finger.joint_limits();
+        let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
+        let controller = Controller::in_gravity(finger, &configuration.gravity(index), configuration.hand.rate)?;
+        Ok(Self { number: 0, controller, pose })
+    }
+}
+
+impl FingerServo {
+    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`, records
+    /// of its cycles to `black_box`; those that nobody collects are dropped.
+    ///
+    /// `stiffness` is the Kx that it will hold its pose with, already admitted.
+    ///
+    /// # Errors
+    /// A configuration that no controller can be made from.
+    pub fn new(
+        configuration: &Configuration,
+        index: usize,
+        stiffness: Matrix3<f64>,
+        identity: &Identity,
+        configured: &Configured,
+        timings: Producer<CycleTiming>,
+        black_box: Recorder,
+    ) -> Result<(Self, Mailbox), Unusable> {
+        let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
+        let address = configuration.address(index);
+        let adjustable = Adjustable::new(configuration, index)?;
+        let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
+        let state = adjustable.controller.start(&feedback);
+        let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
+        let link = LinkWatch::new(hand, finger.simulated());
+        let law = finger.controller.law;
+        let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
+        let report = FingerReport {
+            stage: Stage::Opening,
+            set_point: initial,
+            springs: 0,
+            controller: 0,
+            cycle: Default::default(),
+            orders: 0,
+            calibration: None,
+            losses: Losses::default(),
+            recoveries: 0,
+            warnings: Default::default(),
+            first: 0,
+            last: 0,
+        };
+        let (planners, servo, mut memory) = mailbox(report, &adjustable);
+        memory.append(&black_box.memory());
+        timings.add_to(&mut memory);
+        let this = Self {
+            adjustable,
+            state,
+            activity: Activity::TakeUpSlack,
+            calibration: None,
+            status: configured.status,
+            feedback,
+            anew: false,
+            command: Command::default(),
+            mailbox: servo,
+            timing: CycleTiming::default(),
+            timings,
+            black_box,
+            record: None,
+            recording: false,
+            report,
+            address,
+            board: *identity,
+            sequence: 0,
+            toggle: false,
+            answered: true,
+            last_answer: 0,
+            watching: Watching::new(hand.rate, link.most(), identity.gauge_bits),
+            link,
+            alarm: Alarm::new(false, stop_calls()),
+            sampled_at: None,
+            sample_age: 0,
+            limits: Limits {
+                period_ms: 1000.0 / hand.rate,
+                opening_ms: hand.open_timeout_ms.into(),
+                settled: cycles(TENSION_SETTLED * 1e3),
+                ramp: cycles(hand.release_ramp_ms.into()),
+                warning: cycles(WARNING_MS),
+            },
+            settled_cycles: 0,
+            stage_cycles: 0,
+            opening_since: None,
+            stops_left: STOPS_AFTER_FAULT,
+            initial,
+            end_state: hand.end_state,
+            memory,
+        };
+        Ok((this, planners))
+    }
+}

@@ -1,0 +1,139 @@
+//! A board without hardware: bytes in, bytes out, and the physics of its fingers in between. It has no clock and no thread;
+//! [`SimulatedPort`](crate::simulated::SimulatedPort) puts it behind a serial port, [`SimulatedCable`](crate::simulated::SimulatedCable) runs it
+//! on simulated time.
+
+use crate::board::protocol::{
+    ANY_ADDRESS, Decoder, Frame, HIGHEST_ADDRESS, Kind, Malformed, Message, Packet, Reason, Refused, WireFrame,
+};
+use crate::model::TendonsError;
+use crate::model::configuration::Configuration;
+use crate::plant::PLANT_STEP_SECONDS;
+use crate::simulated::finger::SimulatedFinger;
+use thiserror::Error;
+
+/// Why a simulated board cannot be built.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SimulatedBoardError {
+    /// Addresses are 1 to 15, each once.
+    #[error("finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or two fingers of one port have it")]
+    Address(u8),
+    /// A finger's tendons.
+    #[error("finger address {address}: {source}")]
+    Tendons {
+        /// Which finger.
+        address: u8,
+        /// What is wrong.
+        source: TendonsError,
+    },
+}
+
+/// A board with its fingers, as far as its port can tell. A command takes effect when its last byte arrives, and its reply
+/// says what was measured at that instant.
+#[derive(Debug)]
+pub struct SimulatedBoard {
+    decoder: Decoder,
+    /// In the order of their addresses.
+    fingers: Vec<SimulatedFinger>,
+    /// Where the physics has got to, ns; none before the first call.
+    time: Option<u64>,
+}
+
+/// One step of the physics, ns.
+const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
+const _: () = assert!(STEP == 100_000, "the conversion to whole nanoseconds lost something");
+
+impl SimulatedBoard {
+    /// A board with these `fingers` (0 to 2) of a hand at their configured addresses, braked at their start poses. Every finger
+    /// has noise of its own.
+    pub fn new(hand: &Configuration, fingers: &[usize]) -> Result<Self, SimulatedBoardError> {
+        let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), time: None };
+        for &index in fingers {
+            let address = hand.address(index);
+            let mut configured = hand.fingers[index].clone();
+            configured.simulation.seed = configured.simulation.seed.wrapping_add(index as u64);
+            if !(1..=HIGHEST_ADDRESS).contains(&address) || board.finger(address).is_some() {
+                return Err(SimulatedBoardError::Address(address));
+            }
+            let finger = SimulatedFinger::new(index, address, &configured, hand.gravity(index))
+                .map_err(|source| SimulatedBoardError::Tendons { address, source })?;
+            board.fingers.push(finger);
+        }
+        board.fingers.sort_by_key(SimulatedFinger::address);
+        Ok(board)
+    }
+
+    /// The same board with its own number in the unique numbers of its fingers: no two boards of one hand may have the same fingers
+    /// and the same number.
+    pub fn numbered(mut self, number: u32) -> Self {
+        self.fingers.iter_mut().for_each(|finger| finger.set_board_number(number));
+        self
+    }
+
+    /// The finger at this address.
+    pub fn finger(&mut self, address: u8) -> Option<&mut SimulatedFinger> {
+        self.fingers.iter_mut().find(|finger| finger.address() == address)
+    }
+
+    /// All fingers, in the order of their addresses.
+    pub fn fingers(&mut self) -> &mut [SimulatedFinger] {
+        &mut self.fingers
+    }
+
+    /// Lets time pass until `now`, ns. The first call sets the board's clock; time does not run backward.
+    pub fn advance(&mut self, now: u64) {
+        let time = self.time.get_or_insert(now);
+        while *time + STEP <= now {
+            *time += STEP;
+            for finger in &mut self.fingers {
+                finger.step(*time);
+            }
+        }
+    }
+
+    /// Takes bytes that arrive at `now`, ns, and gives each answer to `send`, whole.
+    pub fn receive(&mut self, now: u64, mut bytes: &[u8], send: &mut dyn FnMut(&[u8])) {
+        self.advance(now);
+        // A fraction of a step may be left; the physics has not got further than this.
+        let now = self.time.unwrap_or(now);
+        loop {
+            let damaged = self.decoder.counters().damaged;
+            let Some(packet) = self.decoder.next(&mut bytes) else { break };
+            if let Some(answer) = answer(&mut self.fingers, now, &packet, damaged) {
+                send(WireFrame::new(&answer).as_bytes());
+            }
+        }
+    }
+}
+
+/// None: not meant for this board, or no request.
+fn answer(fingers: &mut [SimulatedFinger], now: u64, packet: &Packet, damaged: u64) -> Option<Message> {
+    const ANSWER: u8 = 0x8;
+    if packet.kind() & ANSWER != 0 {
+        return None;
+    }
+    let addresses = fingers.iter().fold(0, |addresses, finger| addresses | 1 << finger.address());
+    let message = Message::read(packet);
+    let greeted_all = packet.address() == ANY_ADDRESS && packet.kind() == Kind::Hello as u8;
+    let finger = match greeted_all {
+        true => fingers.first_mut(),
+        false => fingers.iter_mut().find(|finger| finger.address() == packet.address()),
+    }?;
+    let refuse = |reason, detail| Frame::Refused(Refused { request: packet.kind(), reason, detail });
+    let frame = match message {
+        Ok(Message { frame: Frame::Hello(hello), .. }) => finger.greet(&hello, addresses),
+        Ok(Message { frame: Frame::Configure(terms), .. }) => finger.configure(&terms),
+        Ok(Message { frame: Frame::Command(command), .. }) => finger.command(now, &command, damaged),
+        Ok(Message { frame: Frame::Stop(_), .. }) => finger.stop(now),
+        // It has no tactile sensors, and does not name the capability.
+        Ok(Message { frame: Frame::TactileRequest(_), .. }) => refuse(Reason::UnknownFrame, packet.body().len() as u16),
+        // Answers were sorted out above.
+        Ok(_) => return None,
+        Err(Malformed::Value { offset, .. }) => {
+            finger.refuses_any_terms().unwrap_or_else(|| refuse(Reason::Value, u16::from(offset)))
+        }
+        Err(Malformed::UnknownKind(_) | Malformed::Length { .. }) => {
+            refuse(Reason::UnknownFrame, packet.body().len() as u16)
+        }
+    };
+    Some(Message { address: finger.address(), sequence: packet.sequence(), frame })
+}

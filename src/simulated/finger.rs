@@ -1,0 +1,296 @@
+//! One finger of a simulated board: the board's side of the protocol over the physics of a finger.
+
+mod greeting;
+
+use crate::board::protocol::{Command, Configure, Configured, Frame, Reason, Refused, Reply, Status, Stopped, VERSION};
+use crate::model::TendonsError;
+use crate::model::configuration::{ConfiguredFinger, EndState};
+use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
+use nalgebra::{Vector3, Vector4};
+
+const SHORTEST_WATCHDOG_MS: u16 = 2;
+
+const MILLISECOND: u64 = 1_000_000;
+
+/// The state diagram of `docs/board-protocol.md`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// As after power-up.
+    Idle,
+    /// Terms are agreed, motors off.
+    Ready,
+    /// The motors follow.
+    Enabled,
+    /// Until the next Configure.
+    Ended {
+        /// When *hold* lets go, ns; none: the motors are off.
+        holds_until: Option<u64>,
+    },
+}
+
+/// One finger of a [`SimulatedBoard`](crate::simulated::SimulatedBoard).
+#[derive(Debug)]
+pub struct SimulatedFinger {
+    address: u8,
+    unique_number: [u8; 12],
+    plant: Plant,
+    sensors: Sensors,
+    state: State,
+    /// Where its physics has got to, ns.
+    clock: u64,
+    /// When the last Command that was obeyed came, and when silence or a Stop last ended that, ns; none: not since the last Configure.
+    commanded_at: Option<u64>,
+    ended_at: Option<u64>,
+    terms: Configure,
+    /// What the motors give, torque units.
+    torques: [i16; 4],
+    /// Faults that are there now.
+    present: Status,
+    /// What is remembered until the next Configure.
+    latched: Status,
+    torque_unit: u32,
+    torque_limit: u16,
+    counts_per_revolution: u32,
+    /// Damaged frames on the port when this finger last replied.
+    damaged_before: u64,
+    zero_valid: bool,
+}
+
+impl SimulatedFinger {
+    /// `index`: 0 to 2, of the finger in its hand. Gravity in the finger's frame, m/s^2.
+    pub(super) fn new(
+        index: usize,
+        address: u8,
+        finger: &ConfiguredFinger,
+        gravity: Vector3<f64>,
+    ) -> Result<Self, TendonsError> {
+        let strongest = finger.motor.torque_limit.into_iter().fold(0.0, f64::max);
+        // The finest unit, in whole nN m, in which the strongest motor's limit is 30 000 units at most. 1 N cm = 1e7 nN m.
+        let torque_unit = (strongest * 1e7 / 30_000.0).ceil().max(1.0);
+        let counts = finger.encoder.counts_per_revolution;
+        Ok(Self {
+            address,
+            unique_number: greeting::unique_number(index, address),
+            plant: Plant::new(finger, gravity)?,
+            sensors: Sensors::new(finger),
+            state: State::Idle,
+            clock: 0,
+            commanded_at: None,
+            ended_at: None,
+            terms: Configure::default(),
+            torques: [0; 4],
+            present: Status::default(),
+            latched: Status::default(),
+            torque_unit: torque_unit as u32,
+            torque_limit: (strongest * 1e7 / torque_unit).ceil() as u16,
+            counts_per_revolution: if counts.iter().all(|&count| count == counts[0]) { counts[0] } else { 0 },
+            damaged_before: 0,
+            zero_valid: true,
+        })
+    }
+
+    /// Its address.
+    pub fn address(&self) -> u8 {
+        self.address
+    }
+
+    /// The truth behind the sensors, and the place to push and to put things in the way.
+    pub fn plant(&mut self) -> &mut Plant {
+        &mut self.plant
+    }
+
+    /// Whether the motors follow Commands.
+    pub fn enabled(&self) -> bool {
+        self.state == State::Enabled
+    }
+
+    /// The board's clock, ns.
+    pub fn clock(&self) -> u64 {
+        self.clock
+    }
+
+    /// When the last Command that was obeyed came, by the board's clock, ns; none: not since the last Configure.
+    pub fn commanded_at(&self) -> Option<u64> {
+        self.commanded_at
+    }
+
+    /// When silence or a Stop led to the end state, by the board's clock, ns; none: not since the last Configure.
+    pub fn ended_at(&self) -> Option<u64> {
+        self.ended_at
+    }
+
+    /// What the motors are told right now, N cm.
+    pub fn motor_torques(&self) -> Vector4<f64> {
+        Vector4::from(self.torques.map(f64::from)) * (f64::from(self.torque_unit) * 1e-7)
+    }
+
+    /// What a Reply would say now.
+    pub fn status(&self) -> Status {
+        let state = match self.state {
+            State::Idle => Status::default(),
+            State::Ready => Status::CONFIGURED,
+            State::Enabled => Status::CONFIGURED | Status::ENABLED,
+            State::Ended { holds_until: None } => Status::CONFIGURED | Status::ENDED,
+            State::Ended { holds_until: Some(_) } => Status::CONFIGURED | Status::ENDED | Status::HOLDING,
+        };
+        let zero = if self.zero_valid { Status::ZERO_VALID } else { Status::default() };
+        state | zero | self.latched
+    }
+
+    /// Faults that are present from now on: bits of [`Status::FAULTS`]. They take the torque off at once.
+    pub fn set_faults(&mut self, faults: Status) {
+        self.present = Status(faults.0 & Status::FAULTS.0);
+        self.latched |= self.present;
+        if self.present != Status::default() {
+            self.torques = [0; 4];
+            if self.state != State::Idle {
+                self.state = State::Ended { holds_until: None };
+            }
+        }
+    }
+
+    /// Faults beside those that are present already.
+    pub(super) fn add_faults(&mut self, faults: Status) {
+        self.set_faults(self.present | faults);
+    }
+
+    pub(super) fn set_zero_valid(&mut self, valid: bool) {
+        self.zero_valid = valid;
+    }
+
+    pub(super) fn sensors(&mut self) -> &mut Sensors {
+        &mut self.sensors
+    }
+
+    /// As after the loss of power: nothing is remembered, the motors are off. The encoders are absolute.
+    pub fn reset(&mut self) {
+        self.state = State::Idle;
+        self.torques = [0; 4];
+        self.latched = self.present;
+    }
+
+    /// One step of the physics, which ends at `now`, ns.
+    pub(super) fn step(&mut self, now: u64) {
+        self.clock = now;
+        match self.state {
+            State::Enabled => {
+                let silence = now - self.commanded_at.unwrap_or(now);
+                if silence > u64::from(self.terms.watchdog_ms) * MILLISECOND {
+                    self.latched |= Status::WATCHDOG_TRIPPED;
+                    self.end(now);
+                }
+            }
+            State::Ended { holds_until: Some(until) } if now >= until => {
+                self.torques = [0; 4];
+                self.state = State::Ended { holds_until: None };
+            }
+            State::Idle | State::Ready | State::Ended { .. } => {}
+        }
+        let newton_metres = self.motor_torques() * 0.01;
+        self.plant.step(newton_metres.into());
+        self.sensors.pass(PLANT_STEP_SECONDS);
+    }
+
+    pub(super) fn configure(&mut self, terms: &Configure) -> Frame {
+        if let Some(refusal) = self.refuses_any_terms() {
+            return refusal;
+        }
+        let refuse = |reason, detail| Frame::Refused(Refused { request: 0x2, reason, detail });
+        if terms.version != VERSION {
+            return refuse(Reason::Value, 2);
+        }
+        if terms.watchdog_ms < SHORTEST_WATCHDOG_MS {
+            return refuse(Reason::Value, 3);
+        }
+        if let Some(motor) = terms.torque_limits.iter().position(|&limit| limit > self.torque_limit) {
+            return refuse(Reason::Value, 10 + 2 * motor as u16);
+        }
+        self.terms = *terms;
+        self.torques = [0; 4];
+        self.latched = Status::default();
+        (self.commanded_at, self.ended_at) = (None, None);
+        self.state = State::Ready;
+        let (encoders, gauges) = self.sensors.read(&self.plant);
+        Frame::Configured(Configured { terms: *terms, encoders, gauges, status: self.status() })
+    }
+
+    /// What goes before a look at the terms, also at those that the codec cannot read.
+    pub(super) fn refuses_any_terms(&self) -> Option<Frame> {
+        let refuse = |reason, detail| Some(Frame::Refused(Refused { request: 0x2, reason, detail }));
+        if self.enabled() {
+            return refuse(Reason::Running, 0);
+        }
+        if self.present != Status::default() {
+            return refuse(Reason::Fault, self.present.0);
+        }
+        None
+    }
+
+    /// `damaged`: damaged frames on the port so far.
+    pub(super) fn command(&mut self, now: u64, command: &Command, damaged: u64) -> Frame {
+        let mut clipped = false;
+        match (self.state, command.enable) {
+            (State::Idle, _) => {
+                return Frame::Refused(Refused { request: 0x3, reason: Reason::NotConfigured, detail: 0 });
+            }
+            (State::Ended { .. }, _) => {}
+            (State::Ready | State::Enabled, true) => {
+                self.plant.release_brake();
+                (self.state, self.commanded_at) = (State::Enabled, Some(now));
+                self.torques = within(command.torques, self.terms.torque_limits);
+                clipped = self.torques != command.torques;
+            }
+            (State::Ready | State::Enabled, false) => {
+                self.state = State::Ready;
+                self.torques = [0; 4];
+            }
+        }
+        let (encoders, gauges) = self.sensors.read(&self.plant);
+        let mut status = self.status();
+        if clipped {
+            status |= Status::TORQUE_CLIPPED;
+        }
+        if damaged != self.damaged_before {
+            status |= Status::DAMAGED_INPUT;
+            self.damaged_before = damaged;
+        }
+        Frame::Reply(Reply {
+            status,
+            encoders: encoders.map(|count| count as u16),
+            gauges,
+            sampled_at: (now / 1000) as u16,
+        })
+    }
+
+    pub(super) fn stop(&mut self, now: u64) -> Frame {
+        match self.state {
+            State::Enabled => self.end(now),
+            State::Ready => self.state = State::Ended { holds_until: None },
+            // Holding goes on for its time: a Stop sent twice does not prolong it.
+            State::Idle | State::Ended { .. } => {}
+        }
+        Frame::Stopped(Stopped { status: self.status() })
+    }
+
+    fn end(&mut self, now: u64) {
+        let holds_until = match self.terms.end_state {
+            EndState::Hold if self.terms.hold_time_ms > 0 => {
+                self.torques = within(self.torques, [self.terms.hold_torque_limit; 4]);
+                Some(now + u64::from(self.terms.hold_time_ms) * MILLISECOND)
+            }
+            EndState::Release | EndState::Hold => {
+                self.torques = [0; 4];
+                None
+            }
+        };
+        (self.state, self.ended_at) = (State::Ended { holds_until }, Some(now));
+    }
+}
+
+/// Each torque clipped to plus or minus its limit.
+fn within(torques: [i16; 4], limits: [u16; 4]) -> [i16; 4] {
+    std::array::from_fn(|motor| {
+        let limit = limits[motor].min(i16::MAX as u16) as i16;
+        torques[motor].clamp(-limit, limit)
+    })
+}

@@ -1,0 +1,55 @@
+//! Who a simulated finger says that it is.
+
+use super::{SHORTEST_WATCHDOG_MS, SimulatedFinger};
+use crate::board::protocol::{Capabilities, FirmwareVersion, Frame, Hello, Identity, Reason, Refused, VERSION};
+
+/// In [`Identity::board_kind`].
+const SIMULATED_BOARD: u16 = 1;
+
+/// As of the 12-bit converter in [`Sensors`](crate::plant::Sensors).
+const GAUGE_BITS: u8 = 12;
+
+/// Where the number of the board is in the unique number.
+const BOARD_NUMBER: std::ops::Range<usize> = 6..10;
+
+/// Of a finger, 0 to 2, with this address. Two built-in boards may have one address, so it has both.
+pub(super) fn unique_number(index: usize, address: u8) -> [u8; 12] {
+    let mut number = *b"sun2xp\0\0\0\0\0\0";
+    // The index is at most 2.
+    number[BOARD_NUMBER.end..].copy_from_slice(&[index as u8 + 1, address]);
+    number
+}
+
+impl SimulatedFinger {
+    /// Makes the unique number another one than that of the same finger on other simulated boards.
+    pub(in crate::simulated) fn set_board_number(&mut self, number: u32) {
+        self.unique_number[BOARD_NUMBER].copy_from_slice(&number.to_be_bytes());
+    }
+
+    pub(in crate::simulated) fn greet(&self, hello: &Hello, addresses: u16) -> Frame {
+        if !(hello.lowest_version..=hello.highest_version).contains(&VERSION) {
+            let detail = u16::from_le_bytes([VERSION, VERSION]);
+            return Frame::Refused(Refused { request: 0x1, reason: Reason::Version, detail });
+        }
+        let part = |text: &str| text.parse().unwrap_or(0);
+        Frame::Identity(Identity {
+            version: VERSION,
+            addresses,
+            board_kind: SIMULATED_BOARD,
+            unique_number: self.unique_number,
+            firmware: FirmwareVersion([
+                part(env!("CARGO_PKG_VERSION_MAJOR")),
+                part(env!("CARGO_PKG_VERSION_MINOR")),
+                part(env!("CARGO_PKG_VERSION_PATCH")),
+            ]),
+            counts_per_revolution: self.counts_per_revolution,
+            gauge_bits: GAUGE_BITS,
+            torque_unit: self.torque_unit,
+            torque_limit: self.torque_limit,
+            shortest_watchdog_ms: SHORTEST_WATCHDOG_MS,
+            capabilities: Capabilities(
+                Capabilities::HOLD.0 | Capabilities::KEEPS_ZERO.0 | Capabilities::EMERGENCY_STOP.0,
+            ),
+        })
+    }
+}

@@ -1,0 +1,19 @@
+//! Boards made of physics: a simulated board answers the board protocol for fingers that are computed, behind a
+//! pseudo-terminal in real time or in memory on simulated time.
+
+mod board;
+mod cable;
+mod defects;
+mod finger;
+mod line;
+mod pace;
+mod port;
+mod pseudo_terminal;
+
+pub use board::{SimulatedBoard, SimulatedBoardError};
+pub use cable::SimulatedCable;
+pub use defects::Defect;
+pub use finger::SimulatedFinger;
+pub use line::LineFault;
+pub use pace::{Pace, PacedTime};
+pub use port::SimulatedPort;

@@ -1,0 +1,114 @@
+//! A pseudo-terminal: the port of a simulated board.
+#![allow(unsafe_code, reason = "raw descriptors")]
+
+use crate::board::descriptor::{Descriptor, check};
+use std::ffi::CStr;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::Duration;
+
+/// Both ends of a pseudo-terminal. The host's end stays open here too: with it closed, every hang-up of a host would
+/// end in read errors at the board's end.
+#[derive(Debug)]
+pub(super) struct PseudoTerminal {
+    board_end: Descriptor,
+    host_end: Descriptor,
+    path: PathBuf,
+}
+
+/// Another part of the program has closed a descriptor of the pseudo-terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Closed;
+
+impl PseudoTerminal {
+    pub fn open() -> io::Result<Self> {
+        const FLAGS: libc::c_int = libc::O_RDWR | libc::O_NOCTTY | libc::O_CLOEXEC;
+        // SAFETY: only an integer is passed.
+        let board_end = Descriptor::opened(unsafe { libc::posix_openpt(FLAGS) })?;
+        // SAFETY: both calls take nothing but the descriptor.
+        check(unsafe { libc::grantpt(board_end.number()) })?;
+        // SAFETY: as above.
+        check(unsafe { libc::unlockpt(board_end.number()) })?;
+        let mut name = [0u8; 64];
+        // SAFETY: `name` is writable for the length that is passed.
+        match unsafe { libc::ptsname_r(board_end.number(), name.as_mut_ptr().cast(), name.len()) } {
+            0 => {}
+            error => return Err(io::Error::from_raw_os_error(error)),
+        }
+        let name = CStr::from_bytes_until_nul(&name).map_err(io::Error::other)?;
+        // SAFETY: `name` is a C string.
+        let host_end = Descriptor::opened(unsafe { libc::open(name.as_ptr(), FLAGS) })?;
+        // Raw before anyone learns the path: until then the terminal echoes, and eats some byte values.
+        make_raw(&host_end)?;
+        // SAFETY: the command takes an integer.
+        check(unsafe { libc::fcntl(board_end.number(), libc::F_SETFL, libc::O_RDWR | libc::O_NONBLOCK) })?;
+        let path = PathBuf::from(name.to_string_lossy().into_owned());
+        Ok(Self { board_end, host_end, path })
+    }
+
+    /// The host's end, to be opened.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Waits for bytes, so long at most, and takes what is there. Whatever goes wrong, it does not return without
+    /// having waited.
+    ///
+    /// # Errors
+    /// The pseudo-terminal is lost.
+    pub fn read(&self, buffer: &mut [u8], timeout: Duration) -> Result<usize, Closed> {
+        let mut poll = libc::pollfd { fd: self.board_end.number(), events: libc::POLLIN, revents: 0 };
+        // SAFETY: one pollfd, alive during the call.
+        let ready = unsafe { libc::poll(&mut poll, 1, timeout.as_millis() as libc::c_int) };
+        if !self.board_end.is_own() {
+            return Err(Closed);
+        }
+        if ready == 0 {
+            return Ok(0);
+        }
+        // SAFETY: `buffer` is writable for its length.
+        let taken = unsafe { libc::read(self.board_end.number(), buffer.as_mut_ptr().cast(), buffer.len()) };
+        if taken > 0 {
+            return Ok(taken as usize);
+        }
+        // Without the host's end the system reports a hang-up at once, again and again.
+        if !self.host_end.is_own() {
+            return Err(Closed);
+        }
+        sleep(timeout);
+        Ok(0)
+    }
+
+    /// As a UART does, this does not wait: bytes that nobody fetches are lost.
+    pub fn write(&self, bytes: &[u8]) {
+        if self.board_end.is_own() {
+            // SAFETY: `bytes` is readable for its length.
+            unsafe { libc::write(self.board_end.number(), bytes.as_ptr().cast(), bytes.len()) };
+        }
+    }
+
+    /// A host that died leaves the port marked as exclusive, and answers that it did not fetch: both outlive it,
+    /// because the host's end is open here too.
+    pub fn forget_last_host(&self) {
+        if self.host_end.is_own() {
+            // SAFETY: neither request takes a pointer.
+            unsafe {
+                libc::ioctl(self.host_end.number(), libc::TIOCNXCL);
+                libc::tcflush(self.host_end.number(), libc::TCIFLUSH);
+            }
+        }
+    }
+}
+
+fn make_raw(terminal: &Descriptor) -> io::Result<()> {
+    // SAFETY: all zeros is a valid termios; tcgetattr fills it in before it is used.
+    let mut settings: libc::termios = unsafe { std::mem::zeroed() };
+    // SAFETY: the descriptor is open, and `settings` is a termios.
+    check(unsafe { libc::tcgetattr(terminal.number(), &mut settings) })?;
+    // SAFETY: as above.
+    unsafe { libc::cfmakeraw(&mut settings) };
+    // SAFETY: as above.
+    check(unsafe { libc::tcsetattr(terminal.number(), libc::TCSANOW, &settings) })?;
+    Ok(())
+}
