@@ -17,3 +17,6 @@ pub mod plant;
 pub mod realtime;
 pub mod simulated;
 pub mod stability;
+
+/// The matrices of the public signatures.
+pub use nalgebra;

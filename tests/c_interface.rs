@@ -139,7 +139,7 @@ fn a_black_box_is_written_and_replayed() {
     command.arg(&file);
     let run = bench.run(command);
     assert!(run.status.success(), "{}", said(&run));
-    let run = Command::new(env!("CARGO_BIN_EXE_sun2xp")).arg("replay").arg(&file).output().expect("the tool runs");
+    let run = Command::new(c::tool()).arg("replay").arg(&file).output().expect("the tool runs");
     assert!(run.status.success() && said(&run).contains("the same to the last bit"), "{}", said(&run));
 }
 

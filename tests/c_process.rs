@@ -43,7 +43,7 @@ fn the_floating_point_environment_of_a_planner_is_its_own() {
         command.arg(way).arg(&file);
         let run = bench.run(command);
         assert!(run.status.success(), "{way}: {}\n{}", run.status, said(&run));
-        let run = Command::new(env!("CARGO_BIN_EXE_sun2xp")).arg("replay").arg(&file).output().expect("the tool runs");
+        let run = Command::new(c::tool()).arg("replay").arg(&file).output().expect("the tool runs");
         assert!(run.status.success() && said(&run).contains("the same to the last bit"), "{way}: {}", said(&run));
     }
 }

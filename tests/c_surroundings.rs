@@ -113,7 +113,7 @@ fn a_black_box_with_a_hostile_name_is_told_in_one_line() {
 #[test]
 fn tools_tell_hostile_names_in_one_line() {
     let run = |arguments: &[&OsStr]| {
-        let run = Command::new(env!("CARGO_BIN_EXE_sun2xp")).args(arguments).output().expect("the tool runs");
+        let run = Command::new(c::tool()).args(arguments).output().expect("the tool runs");
         assert_eq!(run.status.code(), Some(1), "{}", said(&run));
         assert_one_line(&printed(&run).1, "sun2xp: ");
     };

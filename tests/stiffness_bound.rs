@@ -1,12 +1,9 @@
-//! The bound of Kx: what the search finds, that it can fail, that the default is right for every controller and rate, and that the
-//! tool stores it.
+//! The bound of Kx: what the search finds, that it can fail, and that the default is right for every controller and rate.
 
 use nalgebra::{Matrix3, Vector3};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
-use std::process::Command;
 use sun2xp::control::AdmissibleDamping;
-use sun2xp::hand;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 use sun2xp::stability::{Limit, OneCycleMap, Rest, Search};
 
@@ -115,38 +112,6 @@ fn a_loop_with_too_much_gain_or_no_damper_is_found_out() {
     undamped.controller.motor_damping = Some(0.0);
     undamped.controller.rate_time = Some(0.0);
     assert_eq!(SEARCH.bound(&undamped, 1000.0).unwrap_err().key, "controller");
-}
-
-#[test]
-fn the_tool_stores_the_bound_and_keeps_the_rest_of_the_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("hand.toml");
-    let text = "# Mine.\n[finger.stiffness]\nbound = 5.5 # by hand\n[finger.controller]\nscheme = \"state feedback\"\n";
-    std::fs::write(&path, text).unwrap();
-    let run = |arguments: &[&str]| {
-        let config = path.to_str().unwrap();
-        let mut program = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
-        program.args(["bound", "--config", config, "--samples", "40"]).args(arguments).output().unwrap()
-    };
-    let looked = run(&[]);
-    assert!(looked.status.success(), "{looked:?}");
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
-    // Of one finger, for which alone it is looked.
-    let one = run(&["--finger", "2", "--write"]);
-    let said = String::from_utf8(one.stdout).unwrap();
-    assert!(said.contains("finger 2:") && !said.contains("finger 1:") && !said.contains("finger 3:"), "{said}");
-    let bounds = hand::read(&path).unwrap().fingers.map(|finger| finger.stiffness.bound.unwrap());
-    assert!(bounds[0] == 5.5 && bounds[1] >= 6.0 && bounds[2] == 5.5, "{bounds:?}");
-    std::fs::write(&path, text).unwrap();
-    let written = run(&["--write"]);
-    assert!(written.status.success(), "{written:?}");
-    let after = std::fs::read_to_string(&path).unwrap();
-    assert!(after.starts_with(text), "{after}");
-    let hand = hand::read(&path).unwrap();
-    let bound = hand.fingers[2].stiffness_bound(1000.0);
-    assert!(bound >= 6.0, "{bound}");
-    assert!(String::from_utf8(written.stdout).unwrap().contains(&format!("finger 3: {bound:.1} N/cm")));
-    assert!(!run(&["--write", "--rate", "500"]).status.success(), "a bound for another rate must not be stored");
 }
 
 /// Fingers of another build: their masses, motors, tendons and lengths are those of the default finger times these.

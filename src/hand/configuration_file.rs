@@ -12,8 +12,8 @@ use crate::model::ShownPath;
 use crate::model::configuration::{Configuration, FINGERS};
 use std::path::{Path, PathBuf};
 pub(super) use text::overlay;
-pub(super) use values::deserialize;
-pub(super) use wrong::Wrong;
+pub use values::deserialize;
+pub use wrong::Wrong;
 
 /// The largest configuration file that is read, bytes: more than sixty times docs/sun2xp.toml, which names every key.
 pub(super) const LARGEST: u64 = 1 << 20;

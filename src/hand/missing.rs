@@ -31,7 +31,7 @@ impl Missing {
 }
 
 /// What is missing to any of the threads, one of a kind.
-pub(super) fn missing(had: Vec<Realtime>) -> Vec<Missing> {
+pub fn missing(had: Vec<Realtime>) -> Vec<Missing> {
     let (mut scheduling, mut memory, mut core) = (None, None, None);
     for had in had {
         scheduling = scheduling.or(had.scheduling);

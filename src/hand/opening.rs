@@ -57,7 +57,7 @@ pub(super) struct Line {
 }
 
 /// Everything about a configuration that can be refused without a port: values, the initial stiffness, what the lines carry.
-pub(super) fn check(configuration: &Configuration) -> Result<(), Refusal> {
+pub fn check(configuration: &Configuration) -> Result<(), Refusal> {
     configuration.check()?;
     for index in 0..FINGERS {
         let refused = |unusable| Refusal { finger: Some(index), unusable };
@@ -86,7 +86,7 @@ pub(super) fn from_here(path: PathBuf) -> PathBuf {
 }
 
 /// A simulated board behind a pseudo-terminal, for each of these fingers whose port is `simulated`.
-pub(super) fn simulate(
+pub fn simulate(
     configuration: &Configuration,
     fingers: Fingers,
 ) -> Result<[Option<SimulatedPort>; FINGERS], HandError> {
@@ -153,7 +153,7 @@ pub(super) fn reach(
 }
 
 /// Every port of these fingers, with those that are on it, 0 to 2, one at least.
-pub(super) fn ports(
+pub fn ports(
     configuration: &Configuration,
     fingers: Fingers,
     simulated: &[Option<SimulatedPort>; FINGERS],

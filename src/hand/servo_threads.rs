@@ -105,7 +105,7 @@ pub(super) fn start(
 }
 
 /// The priority and core of a servo thread, 1 to 3.
-pub(super) fn priority(configuration: &Configuration, thread: u8) -> Priority {
+pub fn priority(configuration: &Configuration, thread: u8) -> Priority {
     if configuration.hand.real_time == RealTime::Ignore {
         return Priority::default();
     }

@@ -15,7 +15,7 @@ pub struct Board {
 impl Board {
     /// Starts a board that carries finger 1, and configures the bench for it. Both sides forgive a busy machine.
     pub fn start(bench: &Bench) -> Self {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+        let mut command = Command::new(super::tool());
         command.args(["board", "--finger", "1", "--patient", "1000"]).stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = command.spawn().expect("the board can be started");
         let orders = process.stdin.take().expect("standard input is a pipe");

@@ -5,8 +5,14 @@ pub mod board;
 #[allow(dead_code)]
 #[path = "../common/pauses.rs"]
 pub mod pauses;
+#[allow(dead_code)]
+#[path = "../common/tool.rs"]
+mod tool;
 #[path = "../common/tools.rs"]
 mod tools;
+
+#[allow(unused_imports)]
+pub use tool::tool;
 
 use std::env;
 use std::fs;

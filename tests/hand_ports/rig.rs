@@ -66,7 +66,7 @@ impl Board {
     }
 
     pub fn start_with(options: &[&str], fingers: &[&str]) -> Self {
-        let mut program = Program::new(env!("CARGO_BIN_EXE_sun2xp"));
+        let mut program = Program::new(crate::c::tool());
         program
             .args(["board", "--priority", "20"])
             .args(options)

@@ -15,7 +15,7 @@ use std::ops::Range;
 use toml_edit::{Item, Table, TableLike, Value};
 
 /// Turns a table into a type of the configuration. Keys of the table that the type does not have are refused.
-pub(in crate::hand) fn deserialize<T: DeserializeOwned>(table: &Table) -> Result<T, Wrong> {
+pub fn deserialize<T: DeserializeOwned>(table: &Table) -> Result<T, Wrong> {
     T::deserialize(Node { content: Content::Table(table), span: table.span() })
 }
 

@@ -8,7 +8,7 @@ use toml_edit::TomlError;
 
 /// Text that is no TOML, a key that a table cannot have, or a value that a key cannot have.
 #[derive(Debug)]
-pub(in crate::hand) struct Wrong {
+pub struct Wrong {
     /// Dotted path of the key, as far as it is known.
     pub path: String,
     /// Where it stands in the text.
@@ -18,12 +18,13 @@ pub(in crate::hand) struct Wrong {
 }
 
 impl Wrong {
-    pub(in crate::hand) fn at(span: Option<Range<usize>>, reason: String) -> Self {
+    /// A reason that stands at this place.
+    pub fn at(span: Option<Range<usize>>, reason: String) -> Self {
         Self { path: String::new(), span, reason }
     }
 
     /// Text that is no TOML. The parser's messages hold nothing of the text.
-    pub(in crate::hand) fn in_syntax(error: TomlError) -> Self {
+    pub fn in_syntax(error: TomlError) -> Self {
         match error.span() {
             None => Self::at(None, "a key of 80 parts or more, which no configuration has".into()),
             span => Self::at(span, error.message().into()),
@@ -31,23 +32,25 @@ impl Wrong {
     }
 
     /// The same, standing here unless its place is known better.
-    pub(super) fn or_at(mut self, span: Option<Range<usize>>) -> Self {
+    pub fn or_at(mut self, span: Option<Range<usize>>) -> Self {
         self.span = self.span.or(span);
         self
     }
 
-    pub(in crate::hand) fn in_key(mut self, key: &str) -> Self {
+    /// The same inside of this key.
+    pub fn in_key(mut self, key: &str) -> Self {
         let point = if self.path.is_empty() || self.path.starts_with('[') { "" } else { "." };
         self.path = format!("{key}{point}{}", self.path);
         self
     }
 
-    pub(super) fn in_entry(self, index: usize) -> Self {
+    /// The same inside of this entry of an array, counted from 0.
+    pub fn in_entry(self, index: usize) -> Self {
         self.in_key(&format!("[{index}]"))
     }
 
     /// The line of `text` where it stands, counted from 1.
-    pub(in crate::hand) fn line(&self, text: &str) -> Option<usize> {
+    pub fn line(&self, text: &str) -> Option<usize> {
         let before = text.get(..self.span.as_ref()?.start)?;
         Some(before.matches('\n').count() + 1)
     }
@@ -86,7 +89,7 @@ impl Error for Wrong {
 }
 
 /// The names of which one is to be chosen.
-pub(super) fn one_of(names: &[&str]) -> String {
+pub fn one_of(names: &[&str]) -> String {
     let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match names.len() {
         0..3 => names.join(" or "),

@@ -1,9 +1,9 @@
 //! What the files of /proc and /sys say of the kernel, its limits and its cores.
 
-use crate::hand::doctor::{Finding, Verdict, lacking};
-use crate::model::configuration::Configuration;
+use super::finding::{Finding, Verdict, lacking};
 use std::fs::read_to_string;
 use std::path::Path;
+use sun2xp::model::configuration::Configuration;
 
 /// What three servo threads lock, with room, bytes: stacks, timings on their way, mailboxes.
 const LOCKED: u64 = 4 << 20;
@@ -185,8 +185,8 @@ fn listed(list: &str) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::configuration::RealTime;
     use std::fs;
+    use sun2xp::model::configuration::RealTime;
     use tempfile::TempDir;
 
     /// A machine as it should be.

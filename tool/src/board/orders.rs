@@ -1,8 +1,8 @@
 //! What `sun2xp board` can be told.
 
-use crate::board_faults::Trouble;
-use nalgebra::Vector3;
+use super::faults::Trouble;
 use sun2xp::model::{Shown, Surface};
+use sun2xp::nalgebra::Vector3;
 use sun2xp::simulated::SimulatedFinger;
 
 /// A line of standard input.

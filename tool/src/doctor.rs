@@ -1,12 +1,20 @@
 //! `sun2xp doctor`: whether this machine can run the hand as it is configured.
 
-use crate::board::Failure;
+mod examination;
+mod finding;
+mod machine;
+mod measured;
+mod ports;
+
+use crate::failure::Failure;
+use examination::examine;
+use finding::{Finding, Verdict};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
-use sun2xp::hand::{self, Configured, Finding, Fingers, Verdict};
+use sun2xp::hand::{self, Configured, Fingers};
 
 /// Looks at kernel, limits, cores and ports, measures wake-ups and round trips, and says what to change. Motors stay off.
 ///
@@ -37,8 +45,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => hand::configured()?,
     };
     configured.announce(Fingers::ALL);
-    let findings =
-        hand::examine(&configured.configuration, Path::new("/"), Duration::from_secs_f64(arguments.seconds))?;
+    let findings = examine(&configured.configuration, Path::new("/"), Duration::from_secs_f64(arguments.seconds))?;
     let pass = findings.iter().all(|finding| finding.verdict < Verdict::Failure);
     let mut output = io::stdout().lock();
     if arguments.json {

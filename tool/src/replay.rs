@@ -1,6 +1,6 @@
 //! `sun2xp replay`: computes again what a black box has recorded.
 
-use crate::board::Failure;
+use crate::failure::Failure;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::PathBuf;

@@ -3,12 +3,10 @@
 #![deny(unsafe_code)]
 
 mod board;
-mod board_faults;
-mod board_orders;
 mod bound;
 mod calibrate;
-mod calibrate_pose;
 mod doctor;
+mod failure;
 mod replay;
 mod schedule;
 

@@ -1,13 +1,16 @@
 //! `sun2xp schedule`: whether every cycle of a configured hand ends in time, at which rate that ends, and what another sensor
 //! would cost.
 
-use crate::board::Failure;
+mod off_line;
+
+use crate::failure::Failure;
+use off_line::{Costs, Limit, Scheduled, Sensor, fastest_rate, off_line_schedule};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 use sun2xp::files::read_regular_file;
-use sun2xp::hand::{self, Costs, Hand, Limit, Scheduled, Sensor, fastest_rate, off_line_schedule};
+use sun2xp::hand::{self, Hand};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, RATES};
 use sun2xp::realtime::{Distribution, Stage};

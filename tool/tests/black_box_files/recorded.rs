@@ -1,12 +1,12 @@
 //! Recordings to work with.
 
-use nalgebra::Vector4;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 use sun2xp::control::Activity;
 use sun2xp::finger::{Fading, Recording};
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::{Configuration, Scheme};
+use sun2xp::nalgebra::Vector4;
 
 /// Recordings of one finger of a hand.
 pub struct Recorded {

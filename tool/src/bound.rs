@@ -1,6 +1,6 @@
 //! `sun2xp bound`: how stiff a finger may be, into the configuration file.
 
-use crate::board::Failure;
+use crate::failure::Failure;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error, StrDeserializer};
@@ -101,7 +101,8 @@ fn tell(configuration: &Configuration, index: usize, bound: &StiffnessBound, twi
     if let Some(twin) = twin {
         return writeln!(output, "    like finger {}", twin + 1);
     }
-    let degrees = |pose: nalgebra::Vector3<f64>| format!("{:.0?} degrees", pose.map(f64::to_degrees).as_slice());
+    let degrees =
+        |pose: sun2xp::nalgebra::Vector3<f64>| format!("{:.0?} degrees", pose.map(f64::to_degrees).as_slice());
     match bound.limit {
         Limit::Unstable(pose) => writeln!(output, "    more is unstable at {}", degrees(pose))?,
         Limit::Scaled(pose) => {

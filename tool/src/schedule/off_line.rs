@@ -1,12 +1,12 @@
 //! Whether every cycle of a configured hand ends in time, found off-line, as section 6.2 of the report wants: from worst cases,
 //! the times on the lines, and which finger is on which thread, core and port.
 
-use crate::board::{USABLE_SHARE, exchange_microseconds};
-use crate::finger::REPLY_WINDOW;
-use crate::hand::configuration_file::{Wrong, deserialize};
-use crate::model::configuration::{Configuration, FINGERS};
-use crate::realtime::{PeriodicThread, response_times};
 use serde::Deserialize;
+use sun2xp::board::{USABLE_SHARE, exchange_microseconds};
+use sun2xp::finger::REPLY_WINDOW;
+use sun2xp::hand::{Wrong, deserialize};
+use sun2xp::model::configuration::{Configuration, FINGERS};
+use sun2xp::realtime::{PeriodicThread, response_times};
 use toml_edit::Document;
 
 /// Worst cases of one machine, us.

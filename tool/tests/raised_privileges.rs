@@ -1,7 +1,7 @@
 //! A program with more rights than its caller takes no configuration from the caller.
 
 #[allow(dead_code)]
-#[path = "common/tools.rs"]
+#[path = "../../tests/common/tools.rs"]
 mod tools;
 
 use std::fs::{Permissions, copy, create_dir_all, set_permissions, write};

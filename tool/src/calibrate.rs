@@ -1,7 +1,9 @@
 //! `sun2xp calibrate`: signs, zeros, friction and stiffness of the fingers, into the configuration file.
 
-use crate::board::Failure;
-use crate::calibrate_pose::{ask_to_hold, ask_to_let_go};
+mod pose;
+
+use crate::failure::Failure;
+use pose::{ask_to_hold, ask_to_let_go};
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;

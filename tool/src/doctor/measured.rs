@@ -1,12 +1,12 @@
 //! Wake-ups of threads like the servo's, against the period.
 
-use crate::hand::HandError;
-use crate::hand::doctor::{Finding, Verdict, lacking};
-use crate::hand::missing::missing;
-use crate::hand::servo_threads::priority;
-use crate::model::configuration::{Configuration, FINGERS};
-use crate::realtime::{Schedule, WakeUp, measure_wake_up, now};
+use super::finding::{Finding, Verdict, lacking};
 use std::time::Duration;
+use sun2xp::hand::HandError;
+use sun2xp::hand::missing;
+use sun2xp::hand::priority;
+use sun2xp::model::configuration::{Configuration, FINGERS};
+use sun2xp::realtime::{Schedule, WakeUp, measure_wake_up, now};
 
 /// Threads are ready after this, ns.
 const HEAD_START: u64 = 10_000_000;
@@ -88,7 +88,7 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::realtime::{Distribution, Realtime};
+    use sun2xp::realtime::{Distribution, Realtime};
 
     #[test]
     fn wake_ups_are_judged_by_the_period() {

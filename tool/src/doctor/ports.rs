@@ -1,19 +1,19 @@
 //! The ports of a hand: whether they can be opened, hold bytes back, and how long a round trip to the board takes.
 
-use crate::board::protocol::Command;
-use crate::board::{Allowance, Link, LinkError, OutgoingCommand, Port, PortError, Terms};
-use crate::finger::REPLY_WINDOW;
-use crate::hand::doctor::{Finding, Verdict};
-use crate::hand::opening::ports;
-use crate::hand::servo_threads::priority;
-use crate::hand::{Fingers, HandError};
-use crate::model::ShownPath;
-use crate::model::configuration::{Configuration, FINGERS};
-use crate::realtime::{Clock, CycleTiming, Distribution, Histograms, MonotonicClock, Schedule, Stage, now, spawn};
-use crate::simulated::SimulatedPort;
+use super::finding::{Finding, Verdict};
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::time::Duration;
+use sun2xp::board::protocol::Command;
+use sun2xp::board::{Allowance, Link, LinkError, OutgoingCommand, Port, PortError, Terms};
+use sun2xp::finger::REPLY_WINDOW;
+use sun2xp::hand::ports;
+use sun2xp::hand::priority;
+use sun2xp::hand::{Fingers, HandError};
+use sun2xp::model::ShownPath;
+use sun2xp::model::configuration::{Configuration, FINGERS};
+use sun2xp::realtime::{Clock, CycleTiming, Distribution, Histograms, MonotonicClock, Schedule, Stage, now, spawn};
+use sun2xp::simulated::SimulatedPort;
 
 /// Round trips longer than this part of the reply window, 99 of 100, leave little room for a bad day.
 const LONG: f64 = 0.75;

@@ -1,7 +1,7 @@
 //! The black box: what is recorded while a hand runs is computed again to the last bit, and a changed bit is found.
 
 #[allow(dead_code)]
-#[path = "common/pauses.rs"]
+#[path = "../../tests/common/pauses.rs"]
 mod pauses;
 
 use std::fs;

@@ -1,6 +1,6 @@
 //! The person beside a finger that is zeroed at a pose: what to hold, and when to let go.
 
-use crate::board::Failure;
+use crate::failure::Failure;
 use std::io::{self, Write};
 use sun2xp::model::configuration::ConfiguredFinger;
 

@@ -1,8 +1,11 @@
 //! `sun2xp board`: a simulated board as a program of its own.
 
-use crate::board_faults::Trouble;
-use crate::board_orders::{Action, Order};
-use std::error::Error;
+mod faults;
+mod orders;
+
+use crate::failure::Failure;
+use faults::Trouble;
+use orders::{Action, Order};
 use std::io::{self, BufRead, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
@@ -102,8 +105,6 @@ pub struct Arguments {
     #[arg(long, value_name = "RATE", value_parser = rate)]
     patient: Option<f64>,
 }
-
-pub type Failure = Box<dyn Error>;
 
 /// Starts the board, and carries out orders until `quit`.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {

@@ -1,0 +1,22 @@
+//! Whether this machine and its ports can run a hand as it is configured, and what to change where not.
+
+use super::finding::Finding;
+use super::{machine, measured, ports};
+use std::path::Path;
+use std::time::Duration;
+use sun2xp::hand::{Fingers, HandError, check, simulate};
+use sun2xp::model::configuration::Configuration;
+
+/// Looks at the machine, whose files are below `root` (`/`, but for tests), and at the ports of a hand, which must be closed. Measures for
+/// about `duration`. Motors stay off.
+///
+/// # Errors
+/// A configuration that cannot be used, a system that refuses a thread or a pseudo-terminal.
+pub fn examine(configuration: &Configuration, root: &Path, duration: Duration) -> Result<Vec<Finding>, HandError> {
+    check(configuration)?;
+    let mut findings = machine::findings(configuration, root);
+    findings.extend(measured::wake_ups(configuration, duration / 2)?);
+    let simulated = simulate(configuration, Fingers::ALL)?;
+    findings.extend(ports::findings(configuration, &simulated, root, duration / 2)?);
+    Ok(findings)
+}

@@ -1,0 +1,36 @@
+//! `sun2xp bound` finds the bound of Kx and stores it.
+
+use std::process::Command;
+use sun2xp::hand;
+
+#[test]
+fn the_tool_stores_the_bound_and_keeps_the_rest_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hand.toml");
+    let text = "# Mine.\n[finger.stiffness]\nbound = 5.5 # by hand\n[finger.controller]\nscheme = \"state feedback\"\n";
+    std::fs::write(&path, text).unwrap();
+    let run = |arguments: &[&str]| {
+        let config = path.to_str().unwrap();
+        let mut program = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+        program.args(["bound", "--config", config, "--samples", "40"]).args(arguments).output().unwrap()
+    };
+    let looked = run(&[]);
+    assert!(looked.status.success(), "{looked:?}");
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+    // Of one finger, for which alone it is looked.
+    let one = run(&["--finger", "2", "--write"]);
+    let said = String::from_utf8(one.stdout).unwrap();
+    assert!(said.contains("finger 2:") && !said.contains("finger 1:") && !said.contains("finger 3:"), "{said}");
+    let bounds = hand::read(&path).unwrap().fingers.map(|finger| finger.stiffness.bound.unwrap());
+    assert!(bounds[0] == 5.5 && bounds[1] >= 6.0 && bounds[2] == 5.5, "{bounds:?}");
+    std::fs::write(&path, text).unwrap();
+    let written = run(&["--write"]);
+    assert!(written.status.success(), "{written:?}");
+    let after = std::fs::read_to_string(&path).unwrap();
+    assert!(after.starts_with(text), "{after}");
+    let hand = hand::read(&path).unwrap();
+    let bound = hand.fingers[2].stiffness_bound(1000.0);
+    assert!(bound >= 6.0, "{bound}");
+    assert!(String::from_utf8(written.stdout).unwrap().contains(&format!("finger 3: {bound:.1} N/cm")));
+    assert!(!run(&["--write", "--rate", "500"]).status.success(), "a bound for another rate must not be stored");
+}
