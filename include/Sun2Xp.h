@@ -155,7 +155,9 @@
    Broken pipes: where nobody reads standard error, lines of the library are lost. The
    planner gets no SIGPIPE for them.
 
-   Stack: a call needs up to 16 KiB of the stack of its thread.
+   Stack: a call needs up to 16 KiB of the stack of its thread. The thread-local data of
+   the planner (__thread) are in the library's threads too. They make its stacks larger,
+   and with hand.real_time they add to the locked memory of each servo.
 
    Slow calls: OpenHand, CloseHand, RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger
    and WriteBlackBox work in a thread of the library, for which the planner's waits. A

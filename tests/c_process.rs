@@ -27,6 +27,15 @@ fn a_refusal_on_a_closed_pipe_leaves_the_planner_alive() {
 }
 
 #[test]
+fn a_planner_may_have_much_thread_local_data() {
+    let bench = bench();
+    for kibibytes in [96, 1024] {
+        let size = format!("-DKIBIBYTES={kibibytes}");
+        bench.succeed(&[STRICT, &[&size]].concat(), &["thread_local.c"]);
+    }
+}
+
+#[test]
 fn a_cancelled_thread_ends_after_its_call() {
     succeed(&["cancelled.c"]);
 }

@@ -15,6 +15,7 @@ mod response_time;
 mod ring;
 mod signals;
 mod standard_error;
+mod thread_local_data;
 mod threads;
 mod timing;
 mod triple_buffer;

@@ -4,12 +4,14 @@
 use super::floating_point::use_default_environment;
 use super::memory::every_page_is_locked;
 use super::signals::SignalsBlocked;
+use super::thread_local_data::taken_by_the_c_library;
 use parking_lot::Mutex;
 use std::io;
 use std::mem::MaybeUninit;
 use std::thread::{Builder, JoinHandle};
 
-/// Small, so that a planner that locks its memory (mlockall) locks little of ours; many times what a servo cycle uses.
+/// Small, so that a planner that locks its memory (mlockall) locks little of ours; many times what a servo cycle uses. Every thread
+/// gets this beside the part of its stack that the C library takes.
 const STACK_BYTES: usize = 256 * 1024;
 
 /// Opening a hand takes 290 KiB.
@@ -67,6 +69,7 @@ fn start<T: Send + 'static>(
 ) -> io::Result<JoinHandle<T>> {
     // The new thread inherits the mask.
     let _blocked = SignalsBlocked::all();
+    let stack = stack + taken_by_the_c_library();
     Builder::new().name(name.into()).stack_size(stack).spawn(|| {
         let _own = OwnThread::begin();
         use_default_environment();
