@@ -152,8 +152,8 @@
    other call. One that calls exit, which C does not promise to work, ends the program;
    where it broke into a call the boards end the motion instead of CloseHand.
 
-   Broken pipes: where nobody reads standard error, lines of the library are lost. The
-   planner gets no SIGPIPE for them.
+   Standard error: where nobody reads it, and where it is a file that may not grow, lines
+   of the library are lost. The planner gets no SIGPIPE and no SIGXFSZ for them.
 
    Stack: a call needs up to 16 KiB of the stack of its thread. The thread-local data of
    the planner (__thread) are in the library's threads too. They make its stacks larger,

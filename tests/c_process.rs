@@ -27,6 +27,11 @@ fn a_refusal_on_a_closed_pipe_leaves_the_planner_alive() {
 }
 
 #[test]
+fn a_refusal_into_a_file_of_the_largest_size_leaves_the_planner_alive() {
+    succeed(&["full_file.c"]);
+}
+
+#[test]
 fn a_planner_may_have_much_thread_local_data() {
     let bench = bench();
     for kibibytes in [96, 1024] {
