@@ -152,6 +152,9 @@
    other call. One that calls exit, which C does not promise to work, ends the program;
    where it broke into a call the boards end the motion instead of CloseHand.
 
+   The planner's arrays, structs and texts may lie in pages that its own handler of SIGSEGV
+   or SIGBUS makes accessible when a call first touches them.
+
    Standard error: where nobody reads it, and where it is a file that may not grow, lines
    of the library are lost. The planner gets no SIGPIPE and no SIGXFSZ for them.
 

@@ -32,6 +32,11 @@ fn a_refusal_into_a_file_of_the_largest_size_leaves_the_planner_alive() {
 }
 
 #[test]
+fn arguments_may_lie_in_pages_that_a_handler_makes_accessible() {
+    succeed(&["pages_on_demand.c"]);
+}
+
+#[test]
 fn a_planner_may_have_much_thread_local_data() {
     let bench = bench();
     for kibibytes in [96, 1024] {

@@ -34,7 +34,8 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
     uncancelled(|| {
         let blocked = SignalsBlocked::all();
         waited_for(name, &blocked, || {
-            let call = prepare()?;
+            // With the signals of faults let in: it reads the planner's memory.
+            let call = blocked.faults_let_in(prepare)?;
             let start = |source| HandError::System { doing: "start a thread for this call", source };
             let errand = Errand::begin(&blocked, || caught(call)).map_err(start)?;
             errand.wait(&blocked, process::is_forked_child).unwrap_or(Err(Refusal::Forked))
