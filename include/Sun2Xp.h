@@ -180,7 +180,10 @@
 
    Fork: a child has no servo threads. Once a process has called OpenHand, every call
    in a child forked from it is refused with EPERM, except HandError, FaultText and
-   StopHand; the parent is undisturbed. A child that calls exec starts afresh.
+   StopHand; the parent is undisturbed. That holds for children of fork, _Fork and the
+   system calls fork and clone, and in handlers of pthread_atfork; before Linux 4.14 for
+   those of fork only, after such handlers. A child that shares the memory of its parent
+   (vfork) may only call exec. A child that calls exec starts afresh.
 
    Descriptors: become a daemon first, then call OpenHand. The library's descriptors
    close at exec. They have numbers from 512 on where the limit (ulimit -n) permits it,

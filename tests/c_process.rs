@@ -37,6 +37,11 @@ fn arguments_may_lie_in_pages_that_a_handler_makes_accessible() {
 }
 
 #[test]
+fn a_child_that_ran_no_handler_of_the_library_is_refused_too() {
+    succeed(&["forked_raw.c"]);
+}
+
+#[test]
 fn a_planner_may_have_much_thread_local_data() {
     let bench = bench();
     for kibibytes in [96, 1024] {

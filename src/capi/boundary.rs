@@ -4,6 +4,7 @@
 //! A quick call runs in the planner's thread. A slow one runs in a thread of its own, for which the planner's waits: it needs little
 //! of the planner's stack then, and a signal handler that jumps out of it (siglongjmp) leaves nothing locked. The call goes on.
 
+use crate::capi::forked::is_forked_child;
 use crate::capi::process;
 use crate::capi::refusal::{Refusal, refuse};
 use crate::hand::HandError;
@@ -38,7 +39,7 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
             let call = blocked.faults_let_in(prepare)?;
             let start = |source| HandError::System { doing: "start a thread for this call", source };
             let errand = Errand::begin(&blocked, || caught(call)).map_err(start)?;
-            errand.wait(&blocked, process::is_forked_child).unwrap_or(Err(Refusal::Forked))
+            errand.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked))
         })
     })
 }
@@ -49,7 +50,7 @@ pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<()
     uncancelled(|| {
         let blocked = SignalsBlocked::all();
         waited_for(name, &blocked, || match Errand::begin(&blocked, move || caught(call)) {
-            Ok(errand) => errand.wait(&blocked, process::is_forked_child).unwrap_or(Err(Refusal::Forked)),
+            Ok(errand) => errand.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked)),
             Err(_) => {
                 let _whole = NoCancellation::begin();
                 let environment = Environment::enter_default();
@@ -100,7 +101,7 @@ unsafe extern "C" fn contained<R, F: FnOnce() -> R>(call: &mut ManuallyDrop<F>) 
 
 /// What becomes of a call, which is refused in a forked child.
 fn admitted(call: impl FnOnce() -> Result<(), Refusal>) -> Result<(), Refusal> {
-    if process::is_forked_child() { Err(Refusal::Forked) } else { caught(call) }
+    if is_forked_child() { Err(Refusal::Forked) } else { caught(call) }
 }
 
 fn caught(call: impl FnOnce() -> Result<(), Refusal>) -> Result<(), Refusal> {

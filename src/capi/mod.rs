@@ -16,6 +16,7 @@ mod calls;
 mod default_hand;
 mod fault_calls;
 mod fingertip_calls;
+mod forked;
 mod memory;
 mod process;
 mod recovery_calls;

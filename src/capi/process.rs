@@ -2,18 +2,10 @@
 
 use crate::capi::default_hand;
 use crate::capi::fault_calls::compose_texts;
+use crate::capi::forked::{is_forked_child, mark_forked_child, mark_this_process};
 use std::ffi::c_int;
 use std::panic::catch_unwind;
 use std::sync::Once;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-static FORKED: AtomicBool = AtomicBool::new(false);
-
-/// Whether this process was forked from one that has called OpenHand. An atomic, because asking for the process number
-/// costs 200 ns a call.
-pub(super) fn is_forked_child() -> bool {
-    FORKED.load(Ordering::Relaxed)
-}
 
 /// Watches for fork and exit from now on, and keeps ports away from the standard descriptors. To be called at every open: a
 /// planner may have closed one since the last.
@@ -23,6 +15,7 @@ pub(super) fn watch() {
     static WATCH: Once = Once::new();
     WATCH.call_once(|| {
         compose_texts();
+        mark_this_process();
         // SAFETY: both handlers are functions of this library, which stays loaded (`-z nodelete`), and no panic leaves
         // them. Out of memory is the only failure; then a planner's exit is what its death is: the boards' watchdogs act.
         unsafe {
@@ -50,7 +43,7 @@ fn keep_standard_descriptors() {
 }
 
 extern "C" fn in_forked_child() {
-    FORKED.store(true, Ordering::Relaxed);
+    mark_forked_child();
 }
 
 extern "C" fn at_exit() {
