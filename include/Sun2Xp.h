@@ -185,6 +185,9 @@
    those of fork only, after such handlers. A child that shares the memory of its parent
    (vfork) may only call exec. A child that calls exec starts afresh.
 
+   CloseHand frees the ports also while forked children live. Where the planner ends
+   without CloseHand, its ports stay locked until those children have ended too.
+
    Descriptors: become a daemon first, then call OpenHand. The library's descriptors
    close at exec. They have numbers from 512 on where the limit (ulimit -n) permits it,
    so a planner that closes those up to 255 keeps its hand. One that closes all of them

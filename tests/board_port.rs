@@ -51,6 +51,34 @@ fn cycles_over_a_pseudo_terminal() {
     assert_eq!(board.with_finger(4, |finger| finger.enabled()), None);
 }
 
+/// A child that lives has the same open file, and with it the lock of the port.
+#[test]
+fn a_port_that_was_closed_opens_again_while_a_forked_child_lives() {
+    let board = board();
+    let port = Port::open(&board.path(), 1_000_000).unwrap();
+    // SAFETY: the child only waits for its end.
+    let child = unsafe { libc::fork() };
+    if child == 0 {
+        loop {
+            // SAFETY: no arguments.
+            unsafe { libc::pause() };
+        }
+    }
+    assert!(child > 0);
+    assert!(
+        matches!(Port::open(&board.path(), 1_000_000), Err(PortError::Busy(_))),
+        "the port is locked while it is open"
+    );
+    drop(port);
+    let opened = Port::open(&board.path(), 1_000_000);
+    // SAFETY: a child of this process, which has not been waited for.
+    unsafe {
+        libc::kill(child, libc::SIGKILL);
+        libc::waitpid(child, std::ptr::null_mut(), 0);
+    }
+    opened.expect("the port is free");
+}
+
 #[test]
 fn a_deadline_is_kept_when_nothing_comes() {
     let board = board();

@@ -27,6 +27,8 @@ pub struct Port {
     path: PathBuf,
     /// When there was last something to read, ns.
     ready_at: u64,
+    /// The process that has opened it. A forked child inherits this value and the open file.
+    process: u32,
 }
 
 impl Port {
@@ -136,13 +138,15 @@ impl Transport for Port {
 
 impl Drop for Port {
     fn drop(&mut self) {
-        if self.descriptor.is_own() {
+        if self.process == std::process::id() && self.descriptor.is_own() {
             // Closing a UART waits up to 30 s for bytes that cannot leave. What mattered was answered long ago. The
-            // mark of exclusive use would outlive the port where somebody else has it open too.
-            // SAFETY: neither call takes a pointer.
+            // mark of exclusive use would outlive the port where somebody else has it open too, and the lock where a
+            // forked child lives on.
+            // SAFETY: no call takes a pointer.
             unsafe {
                 libc::tcflush(self.descriptor.number(), libc::TCOFLUSH);
                 libc::ioctl(self.descriptor.number(), libc::TIOCNXCL);
+                libc::flock(self.descriptor.number(), libc::LOCK_UN);
             }
         }
     }

@@ -14,7 +14,7 @@ impl Port {
     /// # Errors
     /// A path without a serial port that this user may open and nobody else has, a port that cannot run at this rate.
     pub fn open(path: &Path, baud: u32) -> Result<Self, PortError> {
-        let port = Self { descriptor: open(path)?, path: path.to_owned(), ready_at: 0 };
+        let port = Self { descriptor: open(path)?, path: path.to_owned(), ready_at: 0, process: std::process::id() };
         port.lock()?;
         let set_up = |source| PortError::SetUp { path: path.to_owned(), source };
         let offered = port.configure(baud).map_err(set_up)?;
