@@ -10,6 +10,9 @@ use std::fs;
 use std::os::unix::ffi::OsStrExt;
 use std::process::{Command, Output};
 
+/// What a program exits with where the system does not permit what it shows.
+const NOT_PERMITTED: i32 = 77;
+
 fn strict<'a>(flags: &[&'a str]) -> Vec<&'a str> {
     [STRICT, flags].concat()
 }
@@ -45,6 +48,17 @@ fn closes_descriptors(limit: &str, highest: &str) {
 #[test]
 fn limits_of_the_system_are_told_with_their_remedy_and_leave_nothing_behind() {
     Bench::new().succeed(&strict(&[]), &["limits.c"]);
+}
+
+#[test]
+fn a_planner_under_sched_deadline_is_told_what_its_threads_need() {
+    let bench = Bench::new();
+    let program = bench.build(c_compiler(), &strict(&[]), &["deadline.c"]);
+    let run = bench.run(Command::new(program));
+    if run.status.code() == Some(NOT_PERMITTED) {
+        return c::leave_out("SCHED_DEADLINE", "the system does not permit it: run as root, not in a container");
+    }
+    assert!(run.status.success(), "{}\n{}", run.status, said(&run));
 }
 
 /// Names that break lines, clear the screen, turn the direction of writing around, are no text, or are long.

@@ -1,11 +1,27 @@
 //! What to do when the system refuses a thread, a descriptor or a pseudo-terminal because a limit has been reached.
+#![allow(unsafe_code, reason = "the scheduling policy of the calling thread")]
 
+use std::ffi::c_int;
 use std::io;
+
+/// SCHED_DEADLINE of every Linux.
+const DEADLINE: c_int = 6;
 
 /// The remedy for an error of a call that makes a thread, a descriptor or a pseudo-terminal; none where no limit is
 /// behind it.
 pub fn remedy(error: &io::Error) -> Option<&'static str> {
+    // SAFETY: no pointers; 0 is the calling thread, which is the one that was refused.
+    remedy_under(unsafe { libc::sched_getscheduler(0) }, error)
+}
+
+/// The remedy for a thread with this scheduling policy.
+fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
     match error.raw_os_error()? {
+        // The policy has another bit where the thread has SCHED_FLAG_RESET_ON_FORK.
+        libc::EAGAIN if policy == DEADLINE => Some(
+            "the calling thread runs under SCHED_DEADLINE, and the system lets such a thread start others only with \
+             SCHED_FLAG_RESET_ON_FORK: set that flag (sched_setattr), or make this call in an ordinary thread",
+        ),
         libc::EMFILE => Some("this process may not open more files: close some, or raise its limit (ulimit -n)"),
         libc::ENFILE => Some("the system may not open more files: end other programs, or raise fs.file-max (sysctl)"),
         libc::EAGAIN => Some(
@@ -45,6 +61,10 @@ mod tests {
             (libc::ENOSPC, "kernel.pty.max"),
         ] {
             assert!(told(errno).contains(word), "{}", told(errno));
+        }
+        let refused = io::Error::from_raw_os_error(libc::EAGAIN);
+        for (policy, word) in [(DEADLINE, "SCHED_FLAG_RESET_ON_FORK"), (libc::SCHED_FIFO, "ulimit -u")] {
+            assert!(remedy_under(policy, &refused).expect("a remedy").contains(word));
         }
         assert_eq!(told(libc::EACCES), "Permission denied (os error 13)");
         assert_eq!(with_remedy(&io::Error::other("no number")), "no number");

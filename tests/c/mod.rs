@@ -13,6 +13,8 @@ mod tools;
 
 #[allow(unused_imports)]
 pub use tool::tool;
+#[allow(unused_imports)]
+pub use tools::leave_out;
 
 use std::env;
 use std::fs;
