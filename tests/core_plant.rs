@@ -165,8 +165,10 @@ fn surfaces_push_along_their_normal_as_deep_as_the_tip_is() {
     let mut plant = Plant::new(&frictionless(), Vector3::zeros()).unwrap();
     let tip = plant.tip();
     let point = (tip + Vector3::new(0.0, 0.02, 0.0)).into();
-    plant.set_surface(Some(Surface::Wall { point, normal: [0.0, 5.0, 0.0], stiffness: 100.0 }));
-    assert!((plant.contact_force() - Vector3::new(0.0, 2.0, 0.0)).amax() < 1e-9);
+    for length in [5.0, 1e-320, 1e-200, 1e200, f64::MAX] {
+        plant.set_surface(Some(Surface::Wall { point, normal: [0.0, length, 0.0], stiffness: 100.0 }));
+        assert!((plant.contact_force() - Vector3::new(0.0, 2.0, 0.0)).amax() < 1e-9, "a normal of length {length:e}");
+    }
     plant.set_surface(Some(Surface::Wall { point, normal: [0.0, -1.0, 0.0], stiffness: 100.0 }));
     assert_eq!(plant.contact_force(), Vector3::zeros());
     let centre = (tip - Vector3::new(0.99, 0.0, 0.0)).into();

@@ -77,7 +77,7 @@ impl Admission {
                 HandError::NotSymmetric { finger, row, column, difference }
             }
             ContactError::Negative { smallest } => HandError::Negative { finger, smallest },
-            ContactError::NoNormal(_) => HandError::Contact { finger, source: error },
+            ContactError::NoNormal => HandError::Contact { finger, source: error },
         }
     }
 

@@ -1,5 +1,6 @@
 //! What a fingertip may exchange with an object, section 4.2: D x D springs of every contact type as one spatial stiffness.
 
+use crate::model::direction;
 use nalgebra::allocator::Allocator;
 use nalgebra::{Const, DefaultAllocator, DimDiff, DimSub, Matrix3, Matrix4, Matrix6, SMatrix, U1, Vector3};
 use thiserror::Error;
@@ -7,9 +8,6 @@ use thiserror::Error;
 /// K may be asymmetric, or have a negative eigenvalue, by so much of its largest entry or eigenvalue: the rounding of a
 /// planner that works in `float`.
 const ROUNDING: f64 = 1e-3;
-
-/// A normal shorter than this has no direction.
-const SHORTEST_NORMAL: f64 = 1e-6;
 
 /// The spring of a contact, as a symmetric, positive semi-definite 6 x 6 stiffness at the tip, in the axes of the finger's
 /// frame: rows and columns 0 to 2 translation (N/cm), 3 to 5 rotation (N cm/rad), between them N/rad.
@@ -48,8 +46,8 @@ pub enum ContactError {
         smallest: f64,
     },
     /// The contact's normal is zero.
-    #[error("the length of Normal is {0:.3e}, so it has no direction: pass a longer vector, such as one of length 1")]
-    NoNormal(f64),
+    #[error("Normal is zero, so it has no direction: pass a vector of any other length, such as 1")]
+    NoNormal,
 }
 
 impl Contact {
@@ -197,7 +195,7 @@ fn finite(values: &[f64]) -> Result<(), ContactError> {
 }
 
 /// The spring and the unit normal of a contact that has a direction. Where several things are wrong, the first of this order
-/// is reported: a normal that is not finite, a K that is no spring, a normal without length.
+/// is reported: a normal that is not finite, a K that is no spring, a normal that is zero.
 fn directed<const D: usize>(
     stiffness: &SMatrix<f64, D, D>,
     normal: Vector3<f64>,
@@ -208,7 +206,7 @@ where
 {
     finite(normal.as_slice())?;
     let (checked, _) = spring(stiffness)?;
-    Ok((checked, normal.try_normalize(SHORTEST_NORMAL).ok_or(ContactError::NoNormal(normal.norm()))?))
+    Ok((checked, direction(&normal).ok_or(ContactError::NoNormal)?))
 }
 
 fn translation() -> SMatrix<f64, 3, 6> {
@@ -218,6 +216,34 @@ fn translation() -> SMatrix<f64, 3, 6> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// From the smallest number of a double to the largest: only the direction of a normal counts.
+        #[test]
+        fn the_length_of_a_normal_does_not_matter(
+            mantissa in 1.0..1.7f64, exponent in -300..=308i32,
+            direction in proptest::array::uniform3(-1.0..1.0f64).prop_filter("no direction", |d| d.iter().any(|x| x.abs() > 0.1)),
+        ) {
+            let unit = Vector3::from(direction).normalize();
+            let long = unit * format!("{mantissa}e{exponent}").parse::<f64>().expect("a number");
+            let soft = Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 2.0, 1.0, 1e6));
+            let (point, soft) = (
+                |normal| Contact::frictionless_point(3.0, normal).expect("a spring"),
+                |normal| Contact::soft_finger(soft, normal).expect("a spring"),
+            );
+            prop_assert!((point(long).stiffness() - point(unit).stiffness()).amax() < 1e-13);
+            prop_assert!((soft(long).stiffness() - soft(unit).stiffness()).amax() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn the_shortest_normal_has_a_direction() {
+        for length in [5e-324, -5e-324, 1e-310, f64::MIN_POSITIVE, f64::MAX] {
+            let point = Contact::frictionless_point(3.0, Vector3::new(0.0, length, 0.0)).expect("a spring");
+            assert_eq!(point.stiffness()[(1, 1)], 3.0, "{length}");
+        }
+    }
 
     #[test]
     fn every_contact_feels_what_its_selection_says() {
@@ -252,7 +278,7 @@ mod tests {
         let skewed = Matrix3::new(3.0, 0.5, 0.0, 0.4, 2.0, 0.0, 0.0, 0.0, 1.0);
         assert!(matches!(Contact::hard_finger(skewed), Err(ContactError::NotSymmetric { row: 0, column: 1, .. })));
         assert!(matches!(Contact::frictionless_point(-1.0, Vector3::x()), Err(ContactError::Negative { .. })));
-        assert!(matches!(Contact::frictionless_point(1.0, Vector3::zeros()), Err(ContactError::NoNormal(_))));
+        assert!(matches!(Contact::frictionless_point(1.0, Vector3::zeros()), Err(ContactError::NoNormal)));
         assert!(matches!(Contact::frictionless_point(f64::NAN, Vector3::x()), Err(ContactError::NotFinite(_))));
         let infinite = Vector3::new(0.0, f64::INFINITY, 0.0);
         assert!(matches!(Contact::soft_finger(Matrix4::identity(), infinite), Err(ContactError::NotFinite(_))));

@@ -48,7 +48,7 @@ pub enum Surface {
     Wall {
         /// A point of the wall, cm.
         point: [f64; 3],
-        /// Outward normal; of any length.
+        /// Outward normal, of any length but zero.
         normal: [f64; 3],
         /// N/cm.
         stiffness: f64,

@@ -261,7 +261,10 @@ impl ConfiguredFinger {
             None => Ok(()),
             Some(Surface::Wall { point, normal, stiffness }) => {
                 each("simulation.surface", &point, -1000.0, 1000.0, "cm")?;
-                each("simulation.surface", &normal, -1e6, 1e6, "")?;
+                if let Some(part) = normal.iter().find(|part| !part.is_finite()) {
+                    let reason = format!("the wall's normal has the component {part}: set finite numbers");
+                    return unusable("simulation.surface", reason);
+                }
                 if normal.iter().all(|&part| part == 0.0) {
                     return unusable("simulation.surface", "the wall's normal is zero: set its direction".into());
                 }

@@ -1,6 +1,6 @@
 //! The fingertip against something that does not move: elastic, frictionless.
 
-use crate::model::Surface;
+use crate::model::{Surface, direction};
 use nalgebra::Vector3;
 
 /// Force on the tip, N, finger frame. `tip` in cm.
@@ -21,17 +21,17 @@ pub(super) fn energy(surface: &Surface, tip: &Vector3<f64>) -> f64 {
 fn touch(surface: &Surface, tip: &Vector3<f64>) -> (f64, Vector3<f64>, f64) {
     let (height, outward, stiffness) = match *surface {
         Surface::Wall { point, normal, stiffness } => {
-            let outward = unit(Vector3::from(normal));
+            let outward = direction_or_zero(&Vector3::from(normal));
             (outward.dot(&(tip - Vector3::from(point))), outward, stiffness)
         }
         Surface::Ball { centre, radius, stiffness } => {
             let from_centre = tip - Vector3::from(centre);
-            (from_centre.norm() - radius, unit(from_centre), stiffness)
+            (from_centre.norm() - radius, direction_or_zero(&from_centre), stiffness)
         }
     };
     ((-height).max(0.0), outward, stiffness)
 }
 
-fn unit(vector: Vector3<f64>) -> Vector3<f64> {
-    vector.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
+fn direction_or_zero(vector: &Vector3<f64>) -> Vector3<f64> {
+    direction(vector).unwrap_or_else(Vector3::zeros)
 }

@@ -37,6 +37,7 @@ int main(void)
     double Soft[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
     double Hard[9] = {3, 0.5, 0, 0.5, 3, 0, 0, 0, 3}, Skewed[9] = {3, 0.5, 0, 0, 3, 0, 0, 0, 3};
     double Normal[3] = {0, -2, 0}, Nothing[3] = {0, 0, 0}, Nan[3] = {0, 0, 0}, Point = 3.0, Force[3] = {0, 0, -1};
+    double Lengths[9] = {-1, 1e-323, 1e-170, -1e-150, 1e-7, 1e154, 1e160, -1e200, 1.7e308};
     int byte, tries, refused;
 
     Nan[1] = strtod("nan", NULL);
@@ -88,7 +89,11 @@ int main(void)
     Soft[3][3] = -1;
     REFUSED(SendContact(1, 4, &Soft[0][0], Normal), EDOM, "eigenvalue");
     Soft[3][3] = 1000;
-    REFUSED(SendContact(1, 4, &Soft[0][0], Normal), ERANGE, "bound");
+    for (tries = 0; tries < 9; tries++) {
+        Normal[1] = Lengths[tries];
+        CHECK(SendContact(1, 1, &Point, Normal) == 0);
+        REFUSED(SendContact(1, 4, &Soft[0][0], Normal), ERANGE, "bound");
+    }
 
     CHECK(SendDamping(1, 0.8) == 0);
     CHECK(SendDamping(1, 1.5) == 0);

@@ -1,0 +1,30 @@
+//! The direction of a vector, whatever its length.
+
+use nalgebra::Vector3;
+
+/// The unit vector along a vector of finite components; none for the zero vector.
+///
+/// Every length from the smallest positive number to the largest has a direction. The squares of such components may be
+/// infinite or zero, so the vector is divided by its largest component first.
+pub fn direction(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
+    let largest = vector.amax();
+    // A subnormal number has no finite reciprocal, so each component is divided.
+    (largest > 0.0).then(|| vector.map(|component| component / largest).normalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_vector_but_zero_has_a_direction_of_length_one() {
+        for length in [5e-324, 1e-310, 1e-200, 1.0, 1e200, f64::MAX] {
+            let diagonal = Vector3::new(-length, length, length);
+            assert!(
+                (direction(&diagonal).expect("a direction") - Vector3::new(-1.0, 1.0, 1.0) / 3f64.sqrt()).amax()
+                    < 1e-15
+            );
+        }
+        assert_eq!(direction(&Vector3::new(0.0, -0.0, 0.0)), None);
+    }
+}
