@@ -1,22 +1,88 @@
 //! The parallel stiffness controller of the Stanford/JPL hand (COINS TR 90-48, 1990) as a library.
 //!
-//! C planners use `include/Sun2Xp.h`; this is the Rust side of the same house. Start reading at [`hand`].
+//! C planners use `include/Sun2Xp.h`. Rust planners open a [`Hand`], whose fingers are numbered 1 to 3, and send set points to it.
+//! Each fingertip is then a spring of the stiffness that it was told. Lengths are in cm, forces in N, torques in N cm,
+//! angles in rad and stiffnesses in N/cm.
+//!
+//! ```no_run
+#![doc = include_str!("../examples/spring.rs")]
+//! ```
+//!
+//! # Features
+//!
+//! `internals` exports the modules behind the types of this page: the pure core, the board protocol, the simulated boards, the physics
+//! and the search for the bound of Kx. Benchmarks, tools and simulators outside of this project use them. They change without notice.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
+#![cfg_attr(not(feature = "internals"), warn(clippy::missing_errors_doc))]
+#![cfg_attr(
+    not(feature = "internals"),
+    allow(dead_code, unused_imports, reason = "benchmarks, tools and tests use them")
+)]
 
+#[cfg(not(feature = "internals"))]
+mod board;
+#[cfg(feature = "internals")]
 pub mod board;
+#[cfg(not(feature = "internals"))]
+mod calibration;
+#[cfg(feature = "internals")]
 pub mod calibration;
 mod capi;
+#[cfg(not(feature = "internals"))]
+mod control;
+#[cfg(feature = "internals")]
 pub mod control;
+#[cfg(not(feature = "internals"))]
+mod files;
+#[cfg(feature = "internals")]
 pub mod files;
+#[cfg(not(feature = "internals"))]
+mod finger;
+#[cfg(feature = "internals")]
 pub mod finger;
+#[cfg(not(feature = "internals"))]
+mod hand;
+#[cfg(feature = "internals")]
 pub mod hand;
+#[cfg(not(feature = "internals"))]
+mod model;
+#[cfg(feature = "internals")]
 pub mod model;
+#[cfg(not(feature = "internals"))]
+mod plant;
+#[cfg(feature = "internals")]
 pub mod plant;
+#[cfg(not(feature = "internals"))]
+mod realtime;
+#[cfg(feature = "internals")]
 pub mod realtime;
+#[cfg(not(feature = "internals"))]
+mod simulated;
+#[cfg(feature = "internals")]
 pub mod simulated;
+#[cfg(not(feature = "internals"))]
+mod stability;
+#[cfg(feature = "internals")]
 pub mod stability;
+
+pub use calibration::{Findings, Identified, Obstacle, Progress, Signs, Step, Task, Zeros};
+pub use finger::{
+    Difference, Fault, FaultKind, Losses, NotReplayable, Part, Quantity, Recording, RecordingError, Replayed, Severity,
+    Stage, stop_all,
+};
+pub use hand::{
+    Calibrating, Configured, FingerFault, FingerStatus, FingerTip, Fingers, Hand, HandError, Recovering, Standing,
+};
+pub use model::configuration::{
+    Configuration, ConfiguredController, ConfiguredEncoder, ConfiguredFinger, ConfiguredFriction, ConfiguredGauge,
+    ConfiguredGeometry, ConfiguredHand, ConfiguredJoints, ConfiguredLinks, ConfiguredMotor, ConfiguredSimulation,
+    ConfiguredStiffness, ConfiguredTendon, ConfiguredZeroing, EndState, GaugeReference, Law, OnFault, OutOfRange,
+    PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
+};
+pub use model::{Contact, ContactError};
+pub use realtime::Distribution;
 
 /// The matrices of the public signatures.
 pub use nalgebra;

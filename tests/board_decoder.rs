@@ -124,7 +124,7 @@ fn frames_of_other_types_and_lengths_are_told_apart() {
         Message::read(&decoder.next(&mut &sealed(content)[..]).unwrap())
     };
     assert_eq!(read(&[0xF1, 0, 1, 2, 3]), Err(Malformed::UnknownKind(0xF)));
-    assert_eq!(read(&[0x41, 0, 9]), Err(Malformed::Length { kind: Kind::Stop, found: 1 }));
+    assert_eq!(read(&[0x41, 0, 9]), Err(Malformed::Length { kind: Kind::Stop, expected: 0, found: 1 }));
 }
 
 #[test]

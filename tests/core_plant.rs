@@ -5,8 +5,8 @@ mod core_lagrange;
 use core_lagrange::IndependentFinger;
 use nalgebra::{Vector3, Vector4};
 use proptest::prelude::*;
-use sun2xp::model::Surface;
 use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::model::configuration::Surface;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
 fn frictionless() -> ConfiguredFinger {

@@ -5,7 +5,7 @@ use crate::closed_loop::ClosedLoop;
 use crate::parallel::{each, worst};
 use nalgebra::{Matrix3, Vector3};
 use sun2xp::control::Law;
-use sun2xp::model::Surface;
+use sun2xp::model::configuration::Surface;
 
 /// N/cm.
 pub const WALLS: [f64; 3] = [30.0, 100.0, 300.0];

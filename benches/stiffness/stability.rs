@@ -8,8 +8,8 @@ use crate::parallel::{each, worst};
 use nalgebra::{DVector, Matrix3, Vector3};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng;
-use sun2xp::model::Surface;
 use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::model::configuration::Surface;
 
 /// A finger as it is left to itself.
 pub struct Sample {

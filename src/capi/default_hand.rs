@@ -26,7 +26,7 @@ pub(super) fn open() -> Result<(), Refusal> {
     if HAND.read().is_some() {
         return Err(Refusal::AlreadyOpen);
     }
-    process::watch();
+    process::watch(close_at_exit);
     let configured = hand::configured()?;
     refusal::set_printing(configured.configuration.hand.print_refusals);
     let hand = Hand::open_as(configured)?;
@@ -42,7 +42,7 @@ pub(super) fn close() -> Result<(), Refusal> {
     Ok(())
 }
 
-pub(super) fn close_at_exit() {
+fn close_at_exit() {
     let Some(_closing) = LIFE.try_lock_for(PATIENCE_AT_EXIT) else { return };
     // Ended and not closed: a signal handler may have called exit in the middle of malloc, and then freeing would wait for ever.
     if let Some(hand) = HAND.try_read_for(PATIENCE_AT_EXIT)

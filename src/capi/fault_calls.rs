@@ -4,11 +4,11 @@
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::{guarded, uncancelled};
+use crate::capi::fault_texts::TEXTS;
 use crate::capi::memory::{fill, size_up_to};
-use crate::finger::{self, FaultKind};
+use crate::finger;
 use crate::hand::FingerFault;
-use std::ffi::{CString, c_char, c_int, c_uint, c_ulong};
-use std::sync::LazyLock;
+use std::ffi::{c_char, c_int, c_uint, c_ulong};
 
 /// What GetFault tells of a finger. Set Size = sizeof (struct Fault) before the call:
 /// later versions add members at the end.
@@ -83,21 +83,6 @@ pub extern "C" fn FaultText(Number: c_int) -> *const c_char {
         let index = usize::try_from(Number).ok().and_then(|number| number.checked_sub(1));
         index.and_then(|index| TEXTS.get(index)).map_or(c"".as_ptr(), |text| text.as_ptr())
     })
-}
-
-static TEXTS: LazyLock<Vec<CString>> = LazyLock::new(|| {
-    let text = |kind: &FaultKind| {
-        let told = kind.description();
-        let text = format!("{}: {}", told.name, told.explanation());
-        // The table has no zero byte; if it had, the text would be empty.
-        CString::new(text).unwrap_or_default()
-    };
-    FaultKind::ALL.iter().map(text).collect()
-});
-
-/// Composes the texts, before the process forks: a child may find the lock of a thread that composes them taken for ever.
-pub(super) fn compose_texts() {
-    LazyLock::force(&TEXTS);
 }
 
 fn told(told: &FingerFault) -> Fault {

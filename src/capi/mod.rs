@@ -15,6 +15,7 @@ mod calibration_calls;
 mod calls;
 mod default_hand;
 mod fault_calls;
+mod fault_texts;
 mod fingertip_calls;
 mod forked;
 mod memory;

@@ -1,19 +1,20 @@
 //! What the process around the hand does: fork, exit and errno.
 
-use crate::capi::default_hand;
-use crate::capi::fault_calls::compose_texts;
+use crate::capi::fault_texts::compose_texts;
 use crate::capi::forked::{is_forked_child, mark_forked_child, mark_this_process};
 use std::ffi::c_int;
 use std::panic::catch_unwind;
-use std::sync::Once;
+use std::sync::OnceLock;
+
+/// What exit calls; set with the first open.
+static CLOSE: OnceLock<fn()> = OnceLock::new();
 
 /// Watches for fork and exit from now on, and keeps ports away from the standard descriptors. To be called at every open: a
-/// planner may have closed one since the last.
-pub(super) fn watch() {
+/// planner may have closed one since the last. `close`: what exit calls.
+pub(super) fn watch(close: fn()) {
     keep_standard_descriptors();
     // Neither handler can be taken back.
-    static WATCH: Once = Once::new();
-    WATCH.call_once(|| {
+    CLOSE.get_or_init(|| {
         compose_texts();
         mark_this_process();
         // SAFETY: both handlers are functions of this library, which stays loaded (`-z nodelete`), and no panic leaves
@@ -22,6 +23,7 @@ pub(super) fn watch() {
             libc::pthread_atfork(None, None, Some(in_forked_child));
             libc::atexit(at_exit);
         }
+        close
     });
 }
 
@@ -47,9 +49,11 @@ extern "C" fn in_forked_child() {
 }
 
 extern "C" fn at_exit() {
-    if !is_forked_child() {
+    if !is_forked_child()
+        && let Some(&close) = CLOSE.get()
+    {
         // Whatever goes wrong here, the process ends, and the boards' watchdogs see to the motors.
-        let _ = catch_unwind(default_hand::close_at_exit);
+        let _ = catch_unwind(close);
     }
 }
 

@@ -5,13 +5,12 @@
 //! records that are kept begin at such a keyframe. Rejected: the state in every record, which takes three times the memory; a second
 //! controller that follows two seconds behind, which computes everything twice.
 
-use crate::control::{Command, Feedback, Report, State};
+use crate::control::State;
 use crate::finger::recording::{Origin, Recording};
-use crate::finger::{ControlInput, Stage};
+use crate::finger::{ControllerSource, CycleRecord, KeptRecord, Stage};
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
-use crate::realtime::{Consumer, CycleTiming, Memory, Producer, ring};
+use crate::realtime::{Consumer, Memory, Producer, ring};
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, VecDeque};
 
 /// How much is kept, s.
@@ -23,66 +22,10 @@ const UNCOLLECTED: f64 = 0.5;
 /// Keyframes in a second.
 const KEYFRAMES: f64 = 8.0;
 
-/// One cycle of one finger. `S` is its [`Stage`], in a file the words for it.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
-pub struct CycleRecord<S = Stage> {
-    /// Counted from open, the first is 1.
-    pub cycle: u64,
-    /// When it began, ns of the monotonic clock.
-    pub began: u64,
-    /// Where the finger was between open and close when it ended.
-    pub stage: S,
-    /// Where its time went, ns.
-    pub timing: CycleTiming,
-    /// What the reply measured; none: it was lost.
-    pub feedback: Option<Feedback>,
-    /// Status bits of the newest reply.
-    pub status: u16,
-    /// What the controller did; none where the finger faulted before it could.
-    pub control: Option<ControlRecord>,
-}
-
-/// What the controller was given, and what it made of it.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
-pub struct ControlRecord {
-    /// Number of the controller.
-    pub controller: u32,
-    /// Number of the controller from which it took over in this cycle; else its own.
-    pub previous: u32,
-    /// What it was told.
-    pub input: ControlInput,
-    /// What the motors were told in the next cycle.
-    pub command: Command,
-    /// What it found and decided.
-    pub report: Report,
-}
-
-/// One of the records that are kept.
-#[derive(Clone, Copy, Debug)]
-pub struct KeptRecord {
-    /// It.
-    pub record: CycleRecord,
-    /// The first cycle that is kept.
-    pub oldest: u64,
-    /// The last one.
-    pub newest: u64,
-}
-
 /// The state before a cycle.
 struct Keyframe {
     cycle: u64,
     state: State,
-}
-
-/// What a controller was made from.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub struct ControllerSource {
-    /// Counted from open, the first is 0.
-    pub number: u32,
-    /// In the finger's frame, m/s^2.
-    pub gravity: Vector3<f64>,
-    /// Everything else.
-    pub finger: ConfiguredFinger,
 }
 
 /// The servo's end. Nothing here waits or allocates.
@@ -243,13 +186,5 @@ impl Recorder {
     /// Leaves a record.
     pub fn record(&mut self, record: CycleRecord) {
         let _ = self.records.push(record);
-    }
-}
-
-impl CycleRecord {
-    /// The stage in words.
-    fn in_words(&self) -> CycleRecord<String> {
-        let Self { cycle, began, stage, timing, feedback, status, control } = *self;
-        CycleRecord { cycle, began, stage: stage.to_string(), timing, feedback, status, control }
     }
 }

@@ -3,6 +3,7 @@
 mod alarm;
 mod black_box;
 mod control_input;
+mod cycle_record;
 mod faults;
 mod link_handover;
 mod link_watch;
@@ -16,8 +17,9 @@ mod stage;
 mod supervision;
 
 pub use alarm::{Alarm, stop_all, stop_calls};
-pub use black_box::{BlackBox, ControlRecord, ControllerSource, CycleRecord, KeptRecord, Recorder};
+pub use black_box::{BlackBox, Recorder};
 pub use control_input::ControlInput;
+pub use cycle_record::{ControlRecord, ControllerSource, CycleRecord, KeptRecord};
 pub use faults::{Description, Fault, FaultKind, Part, Quantity, Severity, Warnings};
 pub use link_handover::{Borrower, Lender, Lent, Mended, lending};
 pub use link_watch::Fading;

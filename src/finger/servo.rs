@@ -1,6 +1,7 @@
 //! One finger in its servo thread: from reply to command, and from open to close.
 
 mod calibrating;
+mod calibration;
 mod construction;
 mod exchange;
 mod life;
@@ -15,7 +16,7 @@ use crate::finger::supervision::Watching;
 use crate::finger::{Alarm, ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage};
 use crate::model::configuration::EndState;
 use crate::realtime::{self, CycleTiming, Memory, Producer};
-use calibrating::Calibrating;
+use calibration::Calibrating;
 
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
 const STOPS_AFTER_FAULT: u8 = 3;

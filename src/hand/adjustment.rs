@@ -144,7 +144,7 @@ mod tests {
         // Upon an earlier change, and with an optional table that is set.
         expected.geometry.ghost_row = Some([1.0; 4]);
         expected.simulation.surface =
-            Some(crate::model::Surface::Ball { centre: [0.0, 1.0, 9.0], radius: 2.0, stiffness: 30.0 });
+            Some(crate::model::configuration::Surface::Ball { centre: [0.0, 1.0, 9.0], radius: 2.0, stiffness: 30.0 });
         let mut again = adjusted(1, &expected, "tendon.maximum = 50", 1000.0).expect("usable");
         assert_eq!(again.tendon.maximum, 50.0);
         again.tendon.maximum = 60.0;

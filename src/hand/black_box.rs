@@ -1,16 +1,9 @@
-//! The black boxes of an open hand: kept at all times, written to a file at a fault where that is configured, and when asked.
+//! The black boxes of an open hand, which are kept at all times.
 
-use crate::files::create_file;
 use crate::finger::{KeptRecord, Recording};
-use crate::hand::announcement::say;
+use crate::hand::black_box_file::save;
 use crate::hand::{Hand, HandError};
-use crate::model::ShownPath;
-use std::io;
-use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
-
-/// Files of one finger in one second.
-const MOST: u32 = 100;
+use std::path::Path;
 
 impl Hand {
     /// The last two seconds of finger 1, 2 or 3; of a faulted one the last two before the fault.
@@ -37,31 +30,4 @@ impl Hand {
     pub fn write_black_box(&self, finger: i32, path: &Path) -> Result<(), HandError> {
         save(&self.recording(finger)?, path)
     }
-}
-
-/// Writes a recording that was taken while there was a hand: writing may take longer than the hand is open.
-///
-/// # Errors
-/// A file that cannot be written.
-pub fn save(recording: &Recording, path: &Path) -> Result<(), HandError> {
-    recording.save(path).map_err(|source| HandError::BlackBox { path: path.to_path_buf(), source })
-}
-
-/// Writes the recording of a fault into `folder`, as a new file, and says so; or why not.
-pub(super) fn keep(recording: &Recording, folder: &Path) {
-    let finger = recording.origin.finger;
-    say(&match write_new(recording, folder) {
-        Ok(path) => {
-            format!("finger {finger} faulted: its last two seconds are in {} (see sun2xp replay)", ShownPath(&path))
-        }
-        Err(error) => {
-            format!("finger {finger} faulted, and its black box cannot be written into {}: {error}", ShownPath(folder))
-        }
-    });
-}
-
-fn write_new(recording: &Recording, folder: &Path) -> io::Result<PathBuf> {
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let names = (1..=MOST).map(|count| format!("finger-{}-{seconds}-{count}.jsonl", recording.origin.finger));
-    create_file(folder, names, |output| recording.write(output))
 }

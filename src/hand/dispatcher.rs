@@ -3,7 +3,7 @@
 use crate::control::{SetPoint, spatial};
 use crate::finger::{self, Adjustable, BlackBox, FingerReport, KeptRecord, Losses, Mailbox, Recording};
 use crate::hand::admission::Admission;
-use crate::hand::black_box::keep;
+use crate::hand::black_box_file::keep;
 use crate::hand::opening::Reached;
 use crate::hand::{Fingers, HandError};
 use crate::model::configuration::{Configuration, ConfiguredFinger};

@@ -4,19 +4,12 @@
 //! happen on the planner's thread, in a recover call, and before that on a thread of their own where `finger.reconnect` asks for it.
 
 use crate::finger::{Stage, stop_calls};
-use crate::hand::workshop::Workshop;
+use crate::hand::reconnection::Place;
 use crate::hand::{Hand, HandError};
-use crate::realtime::{Priority, spawn};
-use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
-use parking_lot::Mutex;
-use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::thread::{JoinHandle, sleep};
+use std::sync::atomic::Ordering;
+use std::thread::sleep;
 use std::time::{Duration, Instant};
-
-/// How often a port that is gone is looked for.
-const LOOKING_FOR_PORTS: Duration = Duration::from_millis(100);
 
 /// A servo lends its link so long after the last of its fingers faulted, at most. It may be about to fault too.
 const LENDING: Duration = Duration::from_millis(500);
@@ -26,77 +19,6 @@ const LOOKING: Duration = Duration::from_millis(2);
 
 /// A servo lends or takes back a link within some cycles. One that has not after so long does not run.
 const TAKING_BACK: Duration = Duration::from_secs(5);
-
-/// A port that may have to be mended. It outlives its hand where somebody is at work on it.
-struct Place {
-    /// 1 to 3.
-    fingers: Vec<i32>,
-    /// How often the line was repaired and given back to its servo. The recoveries of its fingers reach this number when
-    /// the servo takes it.
-    mended: AtomicU32,
-    /// Locked while ports are opened and hands shaken, which takes long. None once the hand is closed.
-    workshop: Mutex<Option<Workshop>>,
-}
-
-/// Every port of a hand, and the thread that looks for those that are gone.
-pub(super) struct Recovery {
-    places: Vec<Arc<Place>>,
-    reconnecting: Option<(Sender<()>, JoinHandle<()>)>,
-}
-
-impl Recovery {
-    pub fn new(workshops: Vec<Workshop>) -> Self {
-        let place = |workshop: Workshop| {
-            let fingers = workshop.boards.iter().map(|board| board.finger).collect();
-            Arc::new(Place { fingers, mended: AtomicU32::new(0), workshop: Mutex::new(Some(workshop)) })
-        };
-        Self { places: workshops.into_iter().map(place).collect(), reconnecting: None }
-    }
-
-    /// Starts that thread, where a port asks for it.
-    pub fn start(&mut self) -> io::Result<()> {
-        let asks = |place: &Arc<Place>| place.workshop.lock().as_ref().is_some_and(|workshop| workshop.reconnect);
-        if !self.places.iter().any(asks) {
-            return Ok(());
-        }
-        let (stop, stopped) = bounded(0);
-        let places = self.places.clone();
-        let thread = spawn("sun2xp ports", Priority::default(), move |_| reconnect(&places, &stopped))?;
-        self.reconnecting = Some((stop, thread));
-        Ok(())
-    }
-
-    /// In a forked child, which has no such thread.
-    pub fn forget(&mut self) {
-        std::mem::forget(self.reconnecting.take());
-    }
-
-    /// Ends that thread, and closes the ports that the servos have lent: waits for whoever is at work on one.
-    pub fn end(&mut self) {
-        if let Some((stop, thread)) = self.reconnecting.take() {
-            drop(stop);
-            // A panic has ended it before.
-            let _ = thread.join();
-        }
-        self.places.iter().for_each(|place| *place.workshop.lock() = None);
-    }
-}
-
-fn reconnect(places: &[Arc<Place>], stopped: &Receiver<()>) {
-    while stopped.recv_timeout(LOOKING_FOR_PORTS) == Err(RecvTimeoutError::Timeout) {
-        for place in places {
-            if let Some(workshop) = &mut *place.workshop.lock()
-                && workshop.reconnect
-                && !workshop.servo_ended()
-                && workshop.fetch()
-                && !workshop.checked
-            {
-                // Whoever recovers the finger is told what is wrong.
-                let _ = workshop.mend();
-            }
-        }
-    }
-}
 
 /// A recovery under way, in three steps, of which only the second takes long, and needs no hand.
 pub struct Recovering {

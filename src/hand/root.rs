@@ -4,7 +4,7 @@ use crate::calibration::Verdict;
 use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach, simulate};
-use crate::hand::recovery::Recovery;
+use crate::hand::reconnection::Recovery;
 use crate::hand::servo_threads::{Given, PortServo, start};
 use crate::hand::{Configured, Fingers, Found, HandError, configured};
 use crate::model::configuration::{Configuration, FINGERS};

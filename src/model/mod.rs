@@ -1,16 +1,13 @@
 //! What a finger is: geometry, kinematics, tendons and the types of its configuration. Lengths in cm, forces in N,
 //! torques in N cm, angles in rad, as in the report, unless a name says otherwise.
 
-mod calibrated;
 pub mod configuration;
 mod contact;
 mod direction;
 mod inverse_kinematics;
 mod kinematics;
 mod link_dynamics;
-mod mechanics;
 mod shown;
-mod simulation;
 mod tendons;
 mod validation;
 
@@ -19,8 +16,6 @@ pub use direction::direction;
 pub use inverse_kinematics::{InverseKinematics, OutOfReach};
 pub use kinematics::Links;
 pub use link_dynamics::LinkDynamics;
-pub use mechanics::{ConfiguredFriction, ConfiguredLinks};
 pub use shown::{Shown, ShownPath, one_line};
-pub use simulation::{ConfiguredSimulation, Surface};
 pub use tendons::{Tendons, TendonsError};
 pub use validation::Refusal;

@@ -3,10 +3,11 @@
 mod ranges;
 mod sharing;
 
+use crate::model::TendonsError;
+use crate::model::configuration::Surface;
 use crate::model::configuration::{
     Configuration, ConfiguredFinger, ConfiguredHand, FINGERS, RATES, RealTime, Unusable,
 };
-use crate::model::{Surface, TendonsError};
 use ranges::{each, path, unusable, within};
 
 /// A configuration that cannot be used: which finger's, or the hand's, and why.

@@ -1,6 +1,7 @@
 //! The fingertip against something that does not move: elastic, frictionless.
 
-use crate::model::{Surface, direction};
+use crate::model::configuration::Surface;
+use crate::model::direction;
 use nalgebra::Vector3;
 
 /// Force on the tip, N, finger frame. `tip` in cm.

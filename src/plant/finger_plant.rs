@@ -7,7 +7,8 @@ use super::joint_stops::JointStops;
 use super::motors::Motors;
 use super::tendon::ElasticTendons;
 use crate::model::configuration::ConfiguredFinger;
-use crate::model::{LinkDynamics, Links, Surface, TendonsError};
+use crate::model::configuration::Surface;
+use crate::model::{LinkDynamics, Links, TendonsError};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// Simulated time of one [`Plant::step`], s, unless another is chosen.

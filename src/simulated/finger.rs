@@ -1,14 +1,14 @@
 //! One finger of a simulated board: the board's side of the protocol over the physics of a finger.
 
 mod greeting;
+mod identity;
 
 use crate::board::protocol::{Command, Configure, Configured, Frame, Reason, Refused, Reply, Status, Stopped, VERSION};
 use crate::model::TendonsError;
 use crate::model::configuration::{ConfiguredFinger, EndState};
 use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
+use identity::SHORTEST_WATCHDOG_MS;
 use nalgebra::{Vector3, Vector4};
-
-const SHORTEST_WATCHDOG_MS: u16 = 2;
 
 const MILLISECOND: u64 = 1_000_000;
 
@@ -70,7 +70,7 @@ impl SimulatedFinger {
         let counts = finger.encoder.counts_per_revolution;
         Ok(Self {
             address,
-            unique_number: greeting::unique_number(index, address),
+            unique_number: identity::unique_number(index, address),
             plant: Plant::new(finger, gravity)?,
             sensors: Sensors::new(finger),
             state: State::Idle,

@@ -2,7 +2,7 @@
 
 use crate::bench::Bench;
 use sun2xp::calibration::{Obstacle, Task};
-use sun2xp::model::Surface;
+use sun2xp::model::configuration::Surface;
 use sun2xp::model::configuration::{ConfiguredFinger, ZeroingMethod};
 
 fn with_stops() -> ConfiguredFinger {

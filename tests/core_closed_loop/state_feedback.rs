@@ -3,7 +3,7 @@
 use super::rig::{Loop, finger_with, poses_of, spring};
 use nalgebra::{Matrix3, Vector3};
 use sun2xp::control::{Activity, Law, SetPoint};
-use sun2xp::model::Surface;
+use sun2xp::model::configuration::Surface;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
 /// Not the seed of anything that the controller was designed on.

@@ -55,7 +55,7 @@ struct Board(Child);
 impl Board {
     fn start(link: &Path) -> Self {
         let mut board = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
-        board.args(["board", "--finger", "1", "--patient", "500", "--link"]).arg(link);
+        board.args(["board", "--finger", "1", "--patient", "500", "--priority", "20", "--link"]).arg(link);
         let mut board = board.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().expect("the board runs");
         let mut line = String::new();
         BufReader::new(board.stdout.take().expect("a pipe")).read_line(&mut line).expect("its port");

@@ -1,6 +1,6 @@
 //! Bytes from the wire into frames.
 
-use super::wire::MAX_FRAME;
+use super::packet::MAX_FRAME;
 use super::{MAX_WIRE, Packet};
 
 /// What came in, in all.

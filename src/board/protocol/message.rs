@@ -1,51 +1,13 @@
-//! What a frame says: its kind, whom it concerns, and its fields.
+//! A frame with its header and its fields.
 
 use super::fields::{FieldReader, FieldWriter};
+use super::packet::{CHECK, PREFIX, WIRE_OVERHEAD};
 use super::{
-    Command, Configure, Configured, Hello, Identity, Packet, Refused, Reply, Stop, Stopped, TactileEvent,
-    TactileRequest,
+    Command, Configure, Configured, Hello, Identity, Kind, Malformed, Packet, Refused, Reply, Stop, Stopped,
+    TactileEvent, TactileRequest,
 };
-use thiserror::Error;
-
-/// Frame types; the high half of the header. A request has the top bit clear, an answer has it set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-#[allow(missing_docs, reason = "each is the type of the same name")]
-pub enum Kind {
-    Hello = 0x1,
-    Configure = 0x2,
-    Command = 0x3,
-    Stop = 0x4,
-    TactileRequest = 0x6,
-    Identity = 0x9,
-    Configured = 0xA,
-    Reply = 0xB,
-    Stopped = 0xC,
-    Refused = 0xD,
-    TactileEvent = 0xE,
-}
 
 impl Kind {
-    /// Every type in use. 0x0, 0x7, 0x8 and 0xF are free; 0x5 as well, but its answer could only be a Refused.
-    pub const ALL: [Kind; 11] = [
-        Kind::Hello,
-        Kind::Configure,
-        Kind::Command,
-        Kind::Stop,
-        Kind::TactileRequest,
-        Kind::Identity,
-        Kind::Configured,
-        Kind::Reply,
-        Kind::Stopped,
-        Kind::Refused,
-        Kind::TactileEvent,
-    ];
-
-    /// None where the number is free or kept.
-    pub fn from_number(number: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|&kind| kind as u8 == number)
-    }
-
     /// Length of the body, bytes. Each kind has one length only.
     pub const fn body_length(self) -> usize {
         match self {
@@ -65,7 +27,7 @@ impl Kind {
 
     /// Length on the wire, with check, byte stuffing and delimiter.
     pub const fn wire_length(self) -> usize {
-        super::wire::PREFIX + self.body_length() + super::wire::CHECK + super::WIRE_OVERHEAD
+        PREFIX + self.body_length() + CHECK + WIRE_OVERHEAD
     }
 }
 
@@ -95,30 +57,6 @@ pub struct Message {
     pub sequence: u8,
     /// What is said.
     pub frame: Frame,
-}
-
-/// Why a frame whose check holds cannot be read.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-pub enum Malformed {
-    /// Nothing in this version has this number.
-    #[error("unknown frame type {0:#x}")]
-    UnknownKind(u8),
-    /// Another version of the protocol, or not this protocol.
-    #[error("a {kind:?} body has {expected} bytes, not {found}", expected = kind.body_length())]
-    Length {
-        /// The frame's type.
-        kind: Kind,
-        /// Bytes found in its body.
-        found: usize,
-    },
-    /// A field holds a number that means nothing.
-    #[error("the field at byte {offset} of a {kind:?} has no such value")]
-    Value {
-        /// The frame's type.
-        kind: Kind,
-        /// Where the field begins, counted from the header.
-        offset: u8,
-    },
 }
 
 impl Frame {
@@ -161,7 +99,7 @@ impl Message {
     pub fn read(packet: &Packet) -> Result<Self, Malformed> {
         let kind = Kind::from_number(packet.kind()).ok_or(Malformed::UnknownKind(packet.kind()))?;
         if packet.body().len() != kind.body_length() {
-            return Err(Malformed::Length { kind, found: packet.body().len() });
+            return Err(Malformed::Length { kind, expected: kind.body_length(), found: packet.body().len() });
         }
         let fields = &mut FieldReader::new(packet.body());
         let frame = match kind {

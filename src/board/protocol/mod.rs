@@ -5,7 +5,9 @@ mod configure;
 mod decoder;
 mod fields;
 mod hello;
+mod kind;
 mod message;
+mod packet;
 mod refused;
 mod reply;
 mod status;
@@ -17,13 +19,15 @@ pub use command::Command;
 pub use configure::{Configure, Configured};
 pub use decoder::{Decoder, DecoderCounters};
 pub use hello::{Capabilities, FirmwareVersion, Hello, Identity};
-pub use message::{Frame, Kind, Malformed, Message};
+pub use kind::{Kind, Malformed};
+pub use message::{Frame, Message};
+pub use packet::{MAX_FRAME, MAX_WIRE, Packet, WIRE_OVERHEAD, check};
 pub use refused::{Reason, Refused};
 pub use reply::Reply;
 pub use status::Status;
 pub use stop::{Stop, Stopped};
 pub use tactile::{TactileChange, TactileEvent, TactileRequest};
-pub use wire::{MAX_FRAME, MAX_WIRE, Packet, WIRE_OVERHEAD, WireFrame, check};
+pub use wire::WireFrame;
 
 /// The protocol version that this library speaks.
 pub const VERSION: u8 = 1;

@@ -6,7 +6,8 @@
 //! whatever the joints do, or with three tendons the tension of the fourth, t = k (r m - R^T theta) + t_home. What it is
 //! when watching begins is taken for zero: encoders that were never zeroed are no reason to stop a finger.
 
-use super::{Alarm, Sample, Symptom};
+use super::alarm::{Alarm, Symptom};
+use super::sample::Sample;
 use crate::model::Tendons;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;

@@ -1,6 +1,7 @@
 //! Encoders that move farther than their motors can.
 
-use super::{Alarm, Sample, Symptom, first_of};
+use super::alarm::{Alarm, Symptom, first_of};
+use super::sample::Sample;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 use std::f64::consts::TAU;

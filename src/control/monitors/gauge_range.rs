@@ -1,6 +1,7 @@
 //! Gauges at the end of their range, and tendons pulled beyond theirs.
 
-use super::{Alarm, Sample, Symptom, first_of};
+use super::alarm::{Alarm, Symptom, first_of};
+use super::sample::Sample;
 use crate::model::configuration::ConfiguredFinger;
 
 /// A tendon may exceed t_max by this factor: commands keep t_max, but blows and steps overshoot it.

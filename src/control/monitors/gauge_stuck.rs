@@ -1,7 +1,8 @@
 //! A gauge that shows the same count for ever. A live one flickers in its last bits: how much, each gauge has shown before. Gauges
 //! without noise are all still at rest: one is judged only while others flicker.
 
-use super::{Alarm, Sample, Symptom, first_of};
+use super::alarm::{Alarm, Symptom, first_of};
+use super::sample::Sample;
 use crate::model::configuration::ConfiguredFinger;
 
 /// Part of the way that the mean of the flicker goes in a sample.

@@ -1,6 +1,7 @@
 //! Joints at their mechanical stops.
 
-use super::{Alarm, Sample, Symptom};
+use super::alarm::{Alarm, Symptom};
+use super::sample::Sample;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 

@@ -1,6 +1,7 @@
 //! Motors that are warm, by the square of their torque over time.
 
-use super::{Alarms, Sample, Symptom, first_of};
+use super::alarm::{Alarms, Symptom, first_of};
+use super::sample::Sample;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 

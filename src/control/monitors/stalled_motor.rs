@@ -1,6 +1,7 @@
 //! Motors that do not turn although something should turn them.
 
-use super::{Alarm, Sample, Symptom, first_of};
+use super::alarm::{Alarm, Symptom, first_of};
+use super::sample::Sample;
 use crate::control::motors::motor_friction::MotorFriction;
 use crate::model::Tendons;
 use crate::model::configuration::ConfiguredFinger;

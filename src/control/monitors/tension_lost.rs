@@ -5,8 +5,9 @@
 //! it grew while the gauge still showed tension, a gauge drifts, and its controller keeps the tendon at what the gauge shows; that is
 //! for `agreement` to say.
 
+use super::alarm::{Alarm, Alarms, Symptom, first_of};
 use super::gauge_stuck::{self, Flicker};
-use super::{Alarm, Alarms, Sample, Symptom, first_of};
+use super::sample::Sample;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 

@@ -1,12 +1,14 @@
 //! Faults with names: what can go wrong with a finger, in numbers that never change and in words for the person at the bench.
 
 mod at_link;
+mod description;
 mod fault;
 mod from_monitors;
 mod kind;
 mod table;
 mod warnings;
 
+pub use description::{Description, Part, Quantity, Severity};
 pub use fault::Fault;
-pub use kind::{Description, FaultKind, Part, Quantity, Severity};
+pub use table::FaultKind;
 pub use warnings::Warnings;

@@ -2,7 +2,7 @@
 //!
 //! Numbers are for ever: a new fault takes the next one, and one that is no longer found keeps its own.
 
-use super::kind::{Description, Part, Quantity, Severity};
+use super::description::{Description, Part, Quantity, Severity};
 
 macro_rules! faults {
     ($($number:literal $kind:ident $constant:literal $severity:ident $part:ident $quantity:ident

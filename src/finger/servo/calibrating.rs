@@ -1,34 +1,11 @@
 //! A finger that is being calibrated: whether its routine is in charge, and what becomes of the finger afterwards.
 
 use super::FingerServo;
+use super::calibration::{Before, Calibrating};
 use crate::board::protocol::Status;
 use crate::calibration::{Sample, Verdict};
 use crate::finger::Stage;
 use crate::finger::mailbox::{Adjustable, CalibrationRun};
-
-/// A calibration, and what the finger goes on with until the routine takes over.
-pub(super) struct Calibrating {
-    run: CalibrationRun,
-    before: Option<Before>,
-}
-
-/// What the finger was before its calibration.
-struct Before {
-    stage: Stage,
-    adjustable: Adjustable,
-}
-
-impl Calibrating {
-    /// What this cycle is computed with.
-    pub fn computes_with(&self) -> &Adjustable {
-        self.before.as_ref().map_or(&self.run.adjustable, |before| &before.adjustable)
-    }
-
-    /// What the finger is a spring with, if it still is one.
-    pub fn spring(&self) -> Option<&Adjustable> {
-        self.before.as_ref().filter(|before| before.stage == Stage::Running).map(|before| &before.adjustable)
-    }
-}
 
 impl FingerServo {
     pub(super) fn begin_calibration(&mut self, run: CalibrationRun) {

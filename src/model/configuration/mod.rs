@@ -4,6 +4,9 @@
 mod controller;
 mod drive;
 mod hand;
+mod mechanics;
+mod simulation;
+mod zeroing;
 
 pub use controller::{ConfiguredController, Law, Scheme};
 pub use drive::{
@@ -11,9 +14,12 @@ pub use drive::{
     GaugeReference,
 };
 pub use hand::{ConfiguredHand, EndState, OnFault, OutOfRange, PeriodClock, RealTime};
+pub use mechanics::{ConfiguredFriction, ConfiguredLinks};
+pub use simulation::{ConfiguredSimulation, Surface};
+pub use zeroing::{ConfiguredZeroing, ZeroingMethod};
 
-pub use crate::model::calibrated::{ConfiguredZeroing, ZeroingMethod};
-use crate::model::{ConfiguredFriction, ConfiguredLinks, ConfiguredSimulation, Links, Tendons, TendonsError};
+use crate::model::kinematics::Links;
+use crate::model::tendons::{Tendons, TendonsError};
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -23,6 +29,9 @@ pub const FINGERS: usize = 3;
 
 /// The rates that a hand may have, Hz. The gains of 500 Hz are stable down to 470, and swing at 450.
 pub const RATES: RangeInclusive<f64> = 500.0..=5000.0;
+
+/// How far beyond the soft limits a mechanical stop is where none is configured, degrees.
+const STOP_MARGIN: f64 = 3.0;
 
 /// A key whose value cannot be used, and why. The key is relative to the finger's table, with dots: `tendon.maximum`.
 #[derive(Clone, Debug, PartialEq)]
@@ -193,7 +202,10 @@ impl ConfiguredFinger {
         Matrix3x4::from_fn(|joint, tendon| self.geometry.r[joint][tendon])
     }
 
-    /// R, Q and M.
+    /// R of eq. 14, Q of eq. 23 and M of eq. 22.
+    ///
+    /// # Errors
+    /// Geometry without an arrangement of tendons: `geometry.r` or `geometry.ghost_row` is not of full rank.
     pub fn tendons(&self) -> Result<Tendons, TendonsError> {
         let ghost = self.geometry.ghost_row.map(RowVector4::from);
         Tendons::new(self.r(), Vector4::from(self.geometry.motor_radius), ghost)
@@ -213,5 +225,23 @@ impl ConfiguredFinger {
     pub fn joint_limits(&self) -> (Vector3<f64>, Vector3<f64>) {
         let radians = |degrees: [f64; 3]| Vector3::from(degrees.map(f64::to_radians));
         (radians(self.joints.minimum_degrees), radians(self.joints.maximum_degrees))
+    }
+
+    /// How the zero of the encoders is found: as configured. Where nothing is configured, by the mechanical stops if it is known where
+    /// they are: both `zeroing.lower_stop_degrees` and `zeroing.upper_stop_degrees` are given, or the finger is simulated. Else by the pose.
+    pub fn zeroing_method(&self) -> ZeroingMethod {
+        let stops = self.zeroing.lower_stop_degrees.is_some() && self.zeroing.upper_stop_degrees.is_some();
+        self.zeroing.method.unwrap_or(match stops || self.simulated() {
+            true => ZeroingMethod::Stops,
+            false => ZeroingMethod::Pose,
+        })
+    }
+
+    /// Angles of the mechanical stops, rad: lower, upper.
+    pub fn stops(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let beyond = |limits: [f64; 3], margin: f64| limits.map(|limit| limit + margin);
+        let lower = self.zeroing.lower_stop_degrees.unwrap_or(beyond(self.joints.minimum_degrees, -STOP_MARGIN));
+        let upper = self.zeroing.upper_stop_degrees.unwrap_or(beyond(self.joints.maximum_degrees, STOP_MARGIN));
+        (Vector3::from(lower.map(f64::to_radians)), Vector3::from(upper.map(f64::to_radians)))
     }
 }

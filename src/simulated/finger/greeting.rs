@@ -1,6 +1,7 @@
 //! Who a simulated finger says that it is.
 
-use super::{SHORTEST_WATCHDOG_MS, SimulatedFinger};
+use super::SimulatedFinger;
+use super::identity::{BOARD_NUMBER, SHORTEST_WATCHDOG_MS};
 use crate::board::protocol::{Capabilities, FirmwareVersion, Frame, Hello, Identity, Reason, Refused, VERSION};
 
 /// In [`Identity::board_kind`].
@@ -8,17 +9,6 @@ const SIMULATED_BOARD: u16 = 1;
 
 /// As of the 12-bit converter in [`Sensors`](crate::plant::Sensors).
 const GAUGE_BITS: u8 = 12;
-
-/// Where the number of the board is in the unique number.
-const BOARD_NUMBER: std::ops::Range<usize> = 6..10;
-
-/// Of a finger, 0 to 2, with this address. Two built-in boards may have one address, so it has both.
-pub(super) fn unique_number(index: usize, address: u8) -> [u8; 12] {
-    let mut number = *b"sun2xp\0\0\0\0\0\0";
-    // The index is at most 2.
-    number[BOARD_NUMBER.end..].copy_from_slice(&[index as u8 + 1, address]);
-    number
-}
 
 impl SimulatedFinger {
     /// Makes the unique number another one than that of the same finger on other simulated boards.

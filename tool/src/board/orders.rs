@@ -1,7 +1,8 @@
 //! What `sun2xp board` can be told.
 
 use super::faults::Trouble;
-use sun2xp::model::{Shown, Surface};
+use sun2xp::model::Shown;
+use sun2xp::model::configuration::Surface;
 use sun2xp::nalgebra::Vector3;
 use sun2xp::simulated::SimulatedFinger;
 

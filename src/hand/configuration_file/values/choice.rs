@@ -1,6 +1,5 @@
 //! One of several names: alone as a text, or as the only key of a table.
 
-use super::Node;
 use crate::hand::configuration_file::wrong::Wrong;
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, EnumAccess, VariantAccess, Visitor};
@@ -8,13 +7,13 @@ use serde::{Deserializer, de::Error};
 use std::ops::Range;
 
 /// The name that was chosen, where it stands, and what stands behind it.
-pub(super) struct Choice<'a> {
+pub(super) struct Choice<'a, T> {
     pub name: &'a str,
     pub span: Option<Range<usize>>,
-    pub inside: Option<Node<'a>>,
+    pub inside: Option<T>,
 }
 
-impl<'de> EnumAccess<'de> for Choice<'_> {
+impl<'de, T: Deserializer<'de, Error = Wrong>> EnumAccess<'de> for Choice<'_, T> {
     type Error = Wrong;
     type Variant = Self;
 
@@ -23,7 +22,7 @@ impl<'de> EnumAccess<'de> for Choice<'_> {
     }
 }
 
-impl<'de> VariantAccess<'de> for Choice<'_> {
+impl<'de, T: Deserializer<'de, Error = Wrong>> VariantAccess<'de> for Choice<'_, T> {
     type Error = Wrong;
 
     fn unit_variant(self) -> Result<(), Wrong> {
@@ -40,7 +39,7 @@ impl<'de> VariantAccess<'de> for Choice<'_> {
         }
     }
 
-    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, _: T) -> Result<T::Value, Wrong> {
+    fn newtype_variant_seed<S: DeserializeSeed<'de>>(self, _: S) -> Result<S::Value, Wrong> {
         Err(Wrong::custom("no key of a configuration is of this type"))
     }
 

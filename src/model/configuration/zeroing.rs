@@ -1,11 +1,6 @@
-//! What calibration needs to know beforehand, and the friction that it finds.
+//! How the encoders of a finger are zeroed.
 
-use crate::model::configuration::ConfiguredFinger;
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
-
-/// How far beyond the soft limits a mechanical stop is where none is configured, degrees.
-const STOP_MARGIN: f64 = 3.0;
 
 /// How the zero of the encoders is found.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
@@ -23,7 +18,7 @@ pub enum ZeroingMethod {
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredZeroing {
-    /// Which way; none: see [`ConfiguredFinger::zeroing_method`].
+    /// Which way; none: see `ConfiguredFinger::zeroing_method`.
     pub method: Option<ZeroingMethod>,
     /// Joint angles of the pose, degrees.
     pub pose_degrees: [f64; 3],
@@ -50,25 +45,5 @@ impl Default for ConfiguredZeroing {
             speed: 0.7,
             time_limit_s: 120.0,
         }
-    }
-}
-
-impl ConfiguredFinger {
-    /// How the zero of the encoders is found: as configured. Where nothing is configured, by the mechanical stops if it is known where
-    /// they are: both `zeroing.lower_stop_degrees` and `zeroing.upper_stop_degrees` are given, or the finger is simulated. Else by the pose.
-    pub fn zeroing_method(&self) -> ZeroingMethod {
-        let stops = self.zeroing.lower_stop_degrees.is_some() && self.zeroing.upper_stop_degrees.is_some();
-        self.zeroing.method.unwrap_or(match stops || self.simulated() {
-            true => ZeroingMethod::Stops,
-            false => ZeroingMethod::Pose,
-        })
-    }
-
-    /// Angles of the mechanical stops, rad: lower, upper.
-    pub fn stops(&self) -> (Vector3<f64>, Vector3<f64>) {
-        let beyond = |limits: [f64; 3], margin: f64| limits.map(|limit| limit + margin);
-        let lower = self.zeroing.lower_stop_degrees.unwrap_or(beyond(self.joints.minimum_degrees, -STOP_MARGIN));
-        let upper = self.zeroing.upper_stop_degrees.unwrap_or(beyond(self.joints.maximum_degrees, STOP_MARGIN));
-        (Vector3::from(lower.map(f64::to_radians)), Vector3::from(upper.map(f64::to_radians)))
     }
 }

@@ -1,0 +1,133 @@
+//! All monitors of a finger, over one sample after the other.
+
+use super::agreement::{self, Agreement};
+use super::alarm::{Alarm, Alarms, Symptom};
+use super::encoder_jump::{self, EncoderJump};
+use super::gauge_range::{self, GaugeRange};
+use super::gauge_stuck::{self, GaugeStuck};
+use super::joint_stop::JointStop;
+use super::motor_heat::{self, MotorHeat};
+use super::sample::Sample;
+use super::stalled_motor::{self, StalledMotor};
+use super::tension_lost::{self, TensionLost};
+use crate::control::sensing::sensors::Sensors;
+use crate::control::signals::{Feedback, Measured, Report};
+use crate::model::Tendons;
+use crate::model::configuration::{ConfiguredFinger, Unusable};
+use nalgebra::Vector4;
+
+/// All monitors of a finger.
+#[derive(Clone, Debug)]
+pub(crate) struct Monitors {
+    period: f64,
+    sensors: Sensors,
+    /// Motor radii, cm.
+    radius: Vector4<f64>,
+    tension_lost: TensionLost,
+    gauge_range: GaugeRange,
+    gauge_stuck: GaugeStuck,
+    agreement: Agreement,
+    encoder_jump: EncoderJump,
+    stalled_motor: StalledMotor,
+    motor_heat: MotorHeat,
+    joint_stop: JointStop,
+}
+
+/// What the monitors remember.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Watch {
+    before: Option<Before>,
+    tension_lost: tension_lost::Memory,
+    gauge_range: gauge_range::Memory,
+    gauge_stuck: gauge_stuck::Memory,
+    agreement: agreement::Memory,
+    encoder_jump: encoder_jump::Memory,
+    stalled_motor: stalled_motor::Memory,
+    motor_heat: motor_heat::Memory,
+}
+
+impl Watch {
+    /// The controller has been adjusted: what gauges and encoders differ by is to be found anew.
+    pub fn adjusted(&mut self) {
+        self.agreement = Default::default();
+    }
+}
+
+/// The sample before this one.
+#[derive(Clone, Copy, Debug)]
+struct Before {
+    motor_angles: Vector4<f64>,
+    /// Pulls that act while this sample is taken, N.
+    pulls: Vector4<f64>,
+}
+
+impl Monitors {
+    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64) -> Result<Self, Unusable> {
+        Ok(Self {
+            period: 1.0 / rate,
+            sensors: Sensors::new(finger)?,
+            radius: tendons.radius,
+            tension_lost: TensionLost::new(finger),
+            gauge_range: GaugeRange::new(finger),
+            gauge_stuck: GaugeStuck::new(finger),
+            agreement: Agreement::new(finger, tendons),
+            encoder_jump: EncoderJump::new(finger, 1.0 / rate),
+            stalled_motor: StalledMotor::new(finger, tendons),
+            motor_heat: MotorHeat::new(finger),
+            joint_stop: JointStop::new(finger),
+        })
+    }
+
+    /// One sample of a finger that is a spring. `age`: periods since the last one; `pulls`: what the cycle has just commanded, N.
+    #[allow(clippy::too_many_arguments)]
+    pub fn watch(
+        &self,
+        watch: &mut Watch,
+        feedback: &Feedback,
+        report: &Report,
+        pulls: &Vector4<f64>,
+        heat: &Vector4<f64>,
+        age: f64,
+        full_scale: u16,
+    ) -> Alarms {
+        let Measured { motor_angles, tensions } = self.sensors.measured(feedback);
+        let now = Before { motor_angles, pulls: *pulls };
+        let Some(before) = watch.before.replace(now) else { return Alarms::default() };
+        let sample = Sample {
+            feedback,
+            report,
+            tensions,
+            travel: self.radius.component_mul(&motor_angles),
+            turned: motor_angles - before.motor_angles,
+            pulls: before.pulls,
+            elapsed: self.period * age,
+            full_scale,
+        };
+        // A dead sensor explains what it makes the others say, so sensors come first.
+        let stuck = self.gauge_stuck.watch(&mut watch.gauge_stuck, &sample);
+        let jumped = self.encoder_jump.watch(&mut watch.encoder_jump, &sample);
+        let range = self.gauge_range.watch(&mut watch.gauge_range, &sample);
+        let flickers = watch.gauge_stuck.flickers();
+        self.agreement.compare(&mut watch.agreement, &sample);
+        let missing = watch.agreement.missing();
+        let lost = self.tension_lost.watch(&mut watch.tension_lost, &sample, &missing, &flickers);
+        let suspects = watch.tension_lost.suspects();
+        let disagrees = self.agreement.watch(&mut watch.agreement, &sample, suspects);
+        let silent = (0..4).find(|&gauge| flickers.silent(gauge)).filter(|_| disagrees.is_some());
+        let stuck = stuck.or(silent.map(|gauge| gauge_stuck::alarm(&sample, gauge)));
+        let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
+        // Where the gauge drifts, its motor stands still against a tension that is not there.
+        let doubtful = watch.agreement.doubtful();
+        let stalled =
+            stalled.map(|alarm| if doubtful { Alarm { symptom: Symptom::GaugeDisagrees, ..alarm } } else { alarm });
+        let hot = self.motor_heat.watch(&mut watch.motor_heat, heat, &sample);
+        let fault = jumped.or(stuck).or(range).or(lost.fault).or(stalled).or(disagrees).or(hot.fault);
+        let warning = lost.warning.or(self.joint_stop.watch(&sample)).or(hot.warning).or(not_admitted(report));
+        Alarms { fault, warning }
+    }
+}
+
+fn not_admitted(report: &Report) -> Option<Alarm> {
+    let value = 100.0 * report.torque_scale;
+    (report.torque_scale < 1.0).then_some(Alarm { symptom: Symptom::TorqueNotAdmitted, part: 0, value })
+}
