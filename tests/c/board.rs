@@ -16,7 +16,10 @@ impl Board {
     /// Starts a board that carries finger 1, and configures the bench for it. Both sides forgive a busy machine.
     pub fn start(bench: &Bench) -> Self {
         let mut command = Command::new(super::tool());
-        command.args(["board", "--finger", "1", "--patient", "1000", "--priority", "20"]).stdin(Stdio::piped()).stdout(Stdio::piped());
+        command
+            .args(["board", "--finger", "1", "--patient", "1000", "--priority", "20"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped());
         let mut process = command.spawn().expect("the board can be started");
         let orders = process.stdin.take().expect("standard input is a pipe");
         let answers = BufReader::new(process.stdout.take().expect("standard output is a pipe"));
