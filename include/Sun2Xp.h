@@ -134,10 +134,22 @@
                                   the static library, name the planner's files first
                                   and add -Wl,--allow-multiple-definition
 
-   The planner's macros may have any name, such as i, K, Pos, or Status of X11: gcc and
-   clang set them aside while they read this header. The exceptions are SendPos, SendKx,
-   GetPos, and names that begin with FAULT_, FINGER_, TIMING_ or SUN2XP_. For other
-   compilers undefine macros that have the name of a struct, a member or a call here.
+   Macros: gcc and clang set the planner's macros aside while they read this header. So
+   a planner may have macros named i, K or Pos, macros of X11 such as Status, and macros
+   named like words of C, such as const, volatile, int or float. The exceptions are
+
+       SendPos, SendKx, GetPos, SendPosD, SendKxD, GetPosD
+       names that begin with FAULT_, FINGER_, TIMING_, SUN2XP_ or Sun2Xp
+       _Pragma, and names that the compiler defines itself
+       _Generic, default and sizeof where a C file calls SendPos, SendKx or GetPos
+
+   A name that is poisoned (#pragma GCC poison) must not be a name of this header. Under
+   other compilers the planner must have no macro that is named like a word of C, or like
+   a struct, a member or a call of this header.
+
+   Packing: gcc and clang give the structs of this header the library's layout even after
+   #pragma pack and with -fpack-struct. Where a compiler for 64 bits lays them out in
+   another way, the header does not compile.
 
 
    6. THREADS, SIGNALS, FORK, EXIT
@@ -290,18 +302,17 @@ _Pragma("push_macro(\"DamagedFrames\")") _Pragma("push_macro(\"DuplicateReplies\
 _Pragma("push_macro(\"FaultText\")") _Pragma("push_macro(\"Felt\")") _Pragma("push_macro(\"FingerRecord\")")
 _Pragma("push_macro(\"FingerStatus\")") _Pragma("push_macro(\"FingerTiming\")") _Pragma("push_macro(\"FingerTip\")")
 _Pragma("push_macro(\"Follows\")") _Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")")
-_Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetPosD\")") _Pragma("push_macro(\"GetRecord\")")
-_Pragma("push_macro(\"GetStatus\")") _Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")")
-_Pragma("push_macro(\"HandError\")") _Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"LateReplies\")")
-_Pragma("push_macro(\"LostReplies\")") _Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"MeasuredRate\")")
-_Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")") _Pragma("push_macro(\"Minimum\")")
-_Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"Oldest\")")
-_Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OpenHand\")") _Pragma("push_macro(\"Overruns\")")
-_Pragma("push_macro(\"P99\")") _Pragma("push_macro(\"P999\")") _Pragma("push_macro(\"Part\")")
-_Pragma("push_macro(\"Pos\")") _Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"PushFinger\")")
-_Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")")
-_Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"SendContact\")") _Pragma("push_macro(\"SendDamping\")")
-_Pragma("push_macro(\"SendKxD\")") _Pragma("push_macro(\"SendPosD\")") _Pragma("push_macro(\"SendTip\")")
+_Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetRecord\")") _Pragma("push_macro(\"GetStatus\")")
+_Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")") _Pragma("push_macro(\"HandError\")")
+_Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"LateReplies\")") _Pragma("push_macro(\"LostReplies\")")
+_Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")")
+_Pragma("push_macro(\"MemoryLocked\")") _Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")")
+_Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"Oldest\")") _Pragma("push_macro(\"OnCore\")")
+_Pragma("push_macro(\"OpenHand\")") _Pragma("push_macro(\"Overruns\")") _Pragma("push_macro(\"P99\")")
+_Pragma("push_macro(\"P999\")") _Pragma("push_macro(\"Part\")") _Pragma("push_macro(\"Pos\")")
+_Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"PushFinger\")") _Pragma("push_macro(\"Rate\")")
+_Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")") _Pragma("push_macro(\"ResetTiming\")")
+_Pragma("push_macro(\"SendContact\")") _Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendTip\")")
 _Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Stage\")")
 _Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"StiffnessScale\")")
 _Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")")
@@ -310,6 +321,12 @@ _Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")") _Pragma
 _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")") _Pragma("push_macro(\"WakeUpMedian\")")
 _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")") _Pragma("push_macro(\"WarningValue\")")
 _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pragma("push_macro(\"ZeroFinger\")")
+_Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")") _Pragma("push_macro(\"const\")")
+_Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")") _Pragma("push_macro(\"float\")")
+_Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")") _Pragma("push_macro(\"long\")")
+_Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")") _Pragma("push_macro(\"sizeof\")")
+_Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")") _Pragma("push_macro(\"typedef\")")
+_Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("push_macro(\"volatile\")")
 #undef AdjustFinger
 #undef Answered
 #undef Calibration
@@ -332,7 +349,6 @@ _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pr
 #undef Force
 #undef ForeignFrames
 #undef GetFault
-#undef GetPosD
 #undef GetRecord
 #undef GetStatus
 #undef GetTiming
@@ -364,8 +380,6 @@ _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pr
 #undef ResetTiming
 #undef SendContact
 #undef SendDamping
-#undef SendKxD
-#undef SendPosD
 #undef SendTip
 #undef Size
 #undef SkippedPeriods
@@ -391,6 +405,28 @@ _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pr
 #undef Warnings
 #undef WriteBlackBox
 #undef ZeroFinger
+#undef char
+#undef class
+#undef const
+#undef double
+#undef extern
+#undef float
+#undef inline
+#undef int
+#undef long
+#undef reinterpret_cast
+#undef return
+#undef sizeof
+#undef struct
+#undef template
+#undef typedef
+#undef unsigned
+#undef void
+#undef volatile
+#endif
+
+#if defined(__clang__) || defined(__GNUC__)
+#pragma pack(push, 16)
 #endif
 
 #ifdef __cplusplus
@@ -1542,10 +1578,23 @@ int StopHand(void);
 int RecoverHand(int);
 
 
+/* Where these do not compile, the compiler packs structs in another way than the library. */
+#ifdef __LP64__
+typedef char Sun2XpFingerStatusSize[sizeof(struct FingerStatus) == 120 ? 1 : -1];
+typedef char Sun2XpFingerTimingSize[sizeof(struct FingerTiming) == 120 ? 1 : -1];
+typedef char Sun2XpFingerTipSize[sizeof(struct FingerTip) == 88 ? 1 : -1];
+typedef char Sun2XpFingerRecordSize[sizeof(struct FingerRecord) == 200 ? 1 : -1];
+typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
+#endif
+
 #endif /* SUN2XP_FIVE_CALLS */
 
 #ifdef __cplusplus
 }
+#endif
+
+#if defined(__clang__) || defined(__GNUC__)
+#pragma pack(pop)
 #endif
 
 
@@ -1613,44 +1662,60 @@ template <class Sun2XpElement> inline int GetPos(int Sun2XpFinger, Sun2XpElement
 #endif
 #endif
 
+/* The macros below use these names, because a planner may have macros named like the words of C. */
+typedef char Sun2XpChar;
+typedef int Sun2XpInt;
+typedef long Sun2XpLong;
+typedef void Sun2XpVoid;
+typedef const void Sun2XpVoidC;
+typedef float Sun2XpFloat;
+typedef const float Sun2XpFloatC;
+typedef volatile float Sun2XpFloatV;
+typedef const volatile float Sun2XpFloatCV;
+typedef double Sun2XpDouble;
+typedef const double Sun2XpDoubleC;
+typedef volatile double Sun2XpDoubleV;
+typedef const volatile double Sun2XpDoubleCV;
+
 #ifdef SUN2XP_GENERIC
 /* The type of NULL and 0 below, which are refused at run time. It is incomplete, so no planner has an object of it. */
-struct Sun2XpNull;
+typedef struct Sun2XpNull Sun2XpNull;
 /* A conditional expression has this type only if its other branch is a null pointer constant. So void * pointers and
    integers other than 0 become void *, which fits no association of SUN2XP_SEND and SUN2XP_GET. */
 #define SUN2XP_NULL_POINTER(Array) \
-    (1 ? _Generic(Array, void *: Array, default: (void *)0) : (struct Sun2XpNull *)0)
+    (1 ? _Generic(Array, Sun2XpVoid *: Array, default: (Sun2XpVoid *)0) : (Sun2XpNull *)0)
 #define SUN2XP_NULL_NUMBER(Array) \
-    (1 ? (void *)(long)_Generic(Array, int: Array, long: Array, default: 0) : (struct Sun2XpNull *)0)
+    (1 ? (Sun2XpVoid *)(Sun2XpLong)_Generic(Array, Sun2XpInt: Array, Sun2XpLong: Array, default: 0) : (Sun2XpNull *)0)
 /* An array of variable length fits both Element (*)[3] and Element (*)[9], so they may not stand in one list. */
 #define SUN2XP_ROWS_OF_9(Element) \
-    Element (*)[9]: (Element *)0, const Element (*)[9]: (const Element *)0, \
-    volatile Element (*)[9]: (volatile Element *)0, const volatile Element (*)[9]: (const volatile Element *)0
+    Element (*)[9]: (Element *)0, Element##C (*)[9]: (Element##C *)0, \
+    Element##V (*)[9]: (Element##V *)0, Element##CV (*)[9]: (Element##CV *)0
 #define SUN2XP_TYPED(Array) \
-    _Generic(Array, SUN2XP_ROWS_OF_9(float), SUN2XP_ROWS_OF_9(double), void *: SUN2XP_NULL_POINTER(Array), \
-        int: SUN2XP_NULL_NUMBER(Array), long: SUN2XP_NULL_NUMBER(Array), default: Array)
+    _Generic(Array, SUN2XP_ROWS_OF_9(Sun2XpFloat), SUN2XP_ROWS_OF_9(Sun2XpDouble), \
+        Sun2XpVoid *: SUN2XP_NULL_POINTER(Array), \
+        Sun2XpInt: SUN2XP_NULL_NUMBER(Array), Sun2XpLong: SUN2XP_NULL_NUMBER(Array), default: Array)
 #define SUN2XP_POINTERS(Element, Call) Element *: Call, Element (*)[3]: Call, Element (*)[3][3]: Call
 #define SUN2XP_SEND(Single, Double, Finger, Array) \
     (SUN2XP_GENERIC(SUN2XP_TYPED(Array), \
-        SUN2XP_POINTERS(float, Single), SUN2XP_POINTERS(const float, Single), \
-        SUN2XP_POINTERS(volatile float, Single), SUN2XP_POINTERS(const volatile float, Single), \
-        SUN2XP_POINTERS(double, Double), SUN2XP_POINTERS(const double, Double), \
-        SUN2XP_POINTERS(volatile double, Double), SUN2XP_POINTERS(const volatile double, Double), \
-        struct Sun2XpNull *: Single)((Finger), (const void *)Array))
+        SUN2XP_POINTERS(Sun2XpFloat, Single), SUN2XP_POINTERS(Sun2XpFloatC, Single), \
+        SUN2XP_POINTERS(Sun2XpFloatV, Single), SUN2XP_POINTERS(Sun2XpFloatCV, Single), \
+        SUN2XP_POINTERS(Sun2XpDouble, Double), SUN2XP_POINTERS(Sun2XpDoubleC, Double), \
+        SUN2XP_POINTERS(Sun2XpDoubleV, Double), SUN2XP_POINTERS(Sun2XpDoubleCV, Double), \
+        Sun2XpNull *: Single)((Finger), (Sun2XpVoidC *)Array))
 #define SUN2XP_GET(Single, Double, Finger, Array) \
     (SUN2XP_GENERIC(SUN2XP_TYPED(Array), \
-        SUN2XP_POINTERS(float, Single), SUN2XP_POINTERS(volatile float, Single), \
-        SUN2XP_POINTERS(double, Double), SUN2XP_POINTERS(volatile double, Double), \
-        struct Sun2XpNull *: Single)((Finger), (void *)Array))
+        SUN2XP_POINTERS(Sun2XpFloat, Single), SUN2XP_POINTERS(Sun2XpFloatV, Single), \
+        SUN2XP_POINTERS(Sun2XpDouble, Double), SUN2XP_POINTERS(Sun2XpDoubleV, Double), \
+        Sun2XpNull *: Single)((Finger), (Sun2XpVoid *)Array))
 #else
 /* float, float[3], float[9] have 4, 12, 36 bytes; double, double[3], double[9] have 8, 24, 72. Where the size is no
    multiple of a float's, as that of void is for some compilers, the type char[-1] stops the compiler. */
 #define SUN2XP_IS_FLOAT(Array) \
-    (sizeof *Array % sizeof(double) + 0 * sizeof(char[sizeof *Array % sizeof(float) ? -1 : 1]))
+    (sizeof *Array % sizeof(Sun2XpDouble) + 0 * sizeof(Sun2XpChar[sizeof *Array % sizeof(Sun2XpFloat) ? -1 : 1]))
 #define SUN2XP_SEND(Single, Double, Finger, Array) \
-    (SUN2XP_IS_FLOAT(Array) ? Single((Finger), (const void *)Array) : Double((Finger), (const void *)Array))
+    (SUN2XP_IS_FLOAT(Array) ? Single((Finger), (Sun2XpVoidC *)Array) : Double((Finger), (Sun2XpVoidC *)Array))
 #define SUN2XP_GET(Single, Double, Finger, Array) \
-    (SUN2XP_IS_FLOAT(Array) ? Single((Finger), (void *)Array) : Double((Finger), (void *)Array))
+    (SUN2XP_IS_FLOAT(Array) ? Single((Finger), (Sun2XpVoid *)Array) : Double((Finger), (Sun2XpVoid *)Array))
 #endif
 
 /* From C99 on the array may be a compound literal, whose commas a macro takes for its own. */
@@ -1674,18 +1739,17 @@ _Pragma("pop_macro(\"DamagedFrames\")") _Pragma("pop_macro(\"DuplicateReplies\")
 _Pragma("pop_macro(\"FaultText\")") _Pragma("pop_macro(\"Felt\")") _Pragma("pop_macro(\"FingerRecord\")")
 _Pragma("pop_macro(\"FingerStatus\")") _Pragma("pop_macro(\"FingerTiming\")") _Pragma("pop_macro(\"FingerTip\")")
 _Pragma("pop_macro(\"Follows\")") _Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")")
-_Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetPosD\")") _Pragma("pop_macro(\"GetRecord\")")
-_Pragma("pop_macro(\"GetStatus\")") _Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")")
-_Pragma("pop_macro(\"HandError\")") _Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"LateReplies\")")
-_Pragma("pop_macro(\"LostReplies\")") _Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"MeasuredRate\")")
-_Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")") _Pragma("pop_macro(\"Minimum\")")
-_Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"Oldest\")")
-_Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OpenHand\")") _Pragma("pop_macro(\"Overruns\")")
-_Pragma("pop_macro(\"P99\")") _Pragma("pop_macro(\"P999\")") _Pragma("pop_macro(\"Part\")")
-_Pragma("pop_macro(\"Pos\")") _Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"PushFinger\")")
-_Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")")
-_Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"SendContact\")") _Pragma("pop_macro(\"SendDamping\")")
-_Pragma("pop_macro(\"SendKxD\")") _Pragma("pop_macro(\"SendPosD\")") _Pragma("pop_macro(\"SendTip\")")
+_Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetRecord\")") _Pragma("pop_macro(\"GetStatus\")")
+_Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")") _Pragma("pop_macro(\"HandError\")")
+_Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"LateReplies\")") _Pragma("pop_macro(\"LostReplies\")")
+_Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")")
+_Pragma("pop_macro(\"MemoryLocked\")") _Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")")
+_Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"Oldest\")") _Pragma("pop_macro(\"OnCore\")")
+_Pragma("pop_macro(\"OpenHand\")") _Pragma("pop_macro(\"Overruns\")") _Pragma("pop_macro(\"P99\")")
+_Pragma("pop_macro(\"P999\")") _Pragma("pop_macro(\"Part\")") _Pragma("pop_macro(\"Pos\")")
+_Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"PushFinger\")") _Pragma("pop_macro(\"Rate\")")
+_Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")") _Pragma("pop_macro(\"ResetTiming\")")
+_Pragma("pop_macro(\"SendContact\")") _Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendTip\")")
 _Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Stage\")")
 _Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"StiffnessScale\")")
 _Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"Tension\")") _Pragma("pop_macro(\"TensionSent\")")
@@ -1694,6 +1758,12 @@ _Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")") _Pragma("
 _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")") _Pragma("pop_macro(\"WakeUpMedian\")")
 _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")") _Pragma("pop_macro(\"WarningValue\")")
 _Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")") _Pragma("pop_macro(\"ZeroFinger\")")
+_Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")") _Pragma("pop_macro(\"const\")")
+_Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")") _Pragma("pop_macro(\"float\")")
+_Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")") _Pragma("pop_macro(\"long\")")
+_Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")") _Pragma("pop_macro(\"sizeof\")")
+_Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")") _Pragma("pop_macro(\"typedef\")")
+_Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")") _Pragma("pop_macro(\"volatile\")")
 #endif
 
 #endif

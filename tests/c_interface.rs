@@ -149,6 +149,12 @@ fn the_status_tells_of_the_servo() {
 }
 
 #[test]
+fn a_planner_that_packs_structs_and_redefines_words_of_c_is_served() {
+    succeed(&strict(&["-std=c99", "-Wno-keyword-macro"]), &["packed.c"]);
+    succeed(&strict(&["-std=c99", "-DSUN2XP_NO_GENERIC"]), &["packed.c"]);
+}
+
+#[test]
 fn the_timing_tells_where_the_time_goes() {
     succeed(&strict(&["-std=c99"]), &["timing.c"]);
 }

@@ -21,11 +21,13 @@ const OTHER_CALLS: &[&str] = &[
     "recovery_calls.rs",
 ];
 
-/// Words of C in declarations.
-const KEYWORDS: &[&str] = &["char", "const", "double", "float", "int", "long", "struct", "unsigned", "void"];
+/// Words of C and C++ that stand in the header outside of the declarations.
+const WORDS_OF_THE_TRAILER: &[&str] =
+    &["class", "extern", "inline", "reinterpret_cast", "return", "sizeof", "template", "typedef", "volatile"];
 
-/// The header makes macros of these calls itself, so it cannot give back a planner's macro of the same name.
-const MACROS: &[&str] = &["GetPos", "SendKx", "SendPos"];
+/// The header makes macros of the first three itself, so it cannot give back a planner's macro of the same name. Those macros use
+/// the other three.
+const MACROS: &[&str] = &["GetPos", "GetPosD", "SendKx", "SendKxD", "SendPos", "SendPosD"];
 
 /// A constant for each fault.
 fn faults() -> String {
@@ -62,8 +64,8 @@ fn without_parameter_names(line: &str) -> String {
     format!("{call}({});", parameters.split(", ").map(kind).collect::<Vec<_>>().join(", "))
 }
 
-/// Every name that the declarations use.
-fn names(declarations: &str) -> BTreeSet<&str> {
+/// The declarations without their comments.
+fn code(declarations: &str) -> String {
     let mut code = Vec::new();
     let mut rest = declarations;
     while let Some((before, comment)) = rest.split_once("/*") {
@@ -71,10 +73,43 @@ fn names(declarations: &str) -> BTreeSet<&str> {
         rest = comment.split_once("*/").expect("every comment ends").1;
     }
     code.push(rest);
-    let lines = code.iter().flat_map(|code| code.lines()).filter(|line| !line.starts_with('#'));
+    code.concat()
+}
+
+/// Every name that the declarations use, and the words of C around them.
+fn names(code: &str) -> BTreeSet<&str> {
+    let lines = code.lines().filter(|line| !line.starts_with('#'));
     let words = lines.flat_map(|line| line.split(|letter: char| !letter.is_alphanumeric() && letter != '_'));
     let names = words.filter(|word| word.starts_with(|letter: char| letter.is_alphabetic()));
-    names.filter(|name| !KEYWORDS.contains(name) && !MACROS.contains(name)).collect()
+    names.filter(|name| !MACROS.contains(name)).chain(WORDS_OF_THE_TRAILER.iter().copied()).collect()
+}
+
+/// Stops a compiler for 64 bits that lays a struct out in another way than the library.
+fn sizes(code: &str) -> String {
+    let mut lines = String::new();
+    for declaration in code.split("\nstruct ").skip(1) {
+        let (name, members) = declaration.split_once('{').expect("a struct has members");
+        let members = members.split_once('}').expect("the members end").0;
+        let (mut size, mut alignment) = (0, 1);
+        for member in members.split(';').map(str::trim).filter(|member| !member.is_empty()) {
+            let (kind, rest) = member.rsplit_once(' ').expect("a member has a type and a name");
+            let part = match kind {
+                "int" | "unsigned int" => 4,
+                "double" | "unsigned long" => 8,
+                _ => panic!("the size of {kind} is not known here"),
+            };
+            let parts: usize = rest.split(['[', ']']).filter_map(|part| part.parse::<usize>().ok()).product();
+            size = usize::next_multiple_of(size, part) + part * parts;
+            alignment = alignment.max(part);
+        }
+        let (name, size) = (name.trim(), size.next_multiple_of(alignment));
+        writeln!(lines, "typedef char Sun2Xp{name}Size[sizeof(struct {name}) == {size} ? 1 : -1];")
+            .expect("a String grows");
+    }
+    format!(
+        "/* Where these do not compile, the compiler packs structs in another way than the library. */\n\
+             #ifdef __LP64__\n{lines}#endif\n"
+    )
 }
 
 /// Sets the planner's macros aside, and takes them up again.
@@ -109,14 +144,15 @@ fn the_committed_header_is_the_one_of_the_exports() {
     let (header, trailer) = (part(&config.header), part(&config.trailer));
     let calls_of_1990 = declarations(config.clone(), CALLS_OF_1990);
     let others = declarations(config, OTHER_CALLS);
+    let sizes = sizes(&code(&others));
     let body = format!(
         "{calls_of_1990}\n\n\
          #ifndef SUN2XP_FIVE_CALLS\n\n\
-         /* The faults (chapter 10). Numbers never change. */\n{}\n\n\n{others}\n\n\
+         /* The faults (chapter 10). Numbers never change. */\n{}\n\n\n{others}\n\n{sizes}\n\
          #endif /* SUN2XP_FIVE_CALLS */\n",
         faults()
     );
-    let (shield, unshield) = shields(&names(&body));
+    let (shield, unshield) = shields(&names(&code(&format!("{calls_of_1990}{others}"))));
     let (header, trailer) = (header.replace("@SHIELD@", &shield), trailer.replace("@UNSHIELD@", &unshield));
     let made = format!("{header}\n{body}\n{trailer}");
 

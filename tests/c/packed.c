@@ -1,0 +1,46 @@
+/* A planner that packs its structs and has macros named like words of C. It calls all the same, and reads what the library wrote. */
+#include <string.h>
+#include <unistd.h>
+#include "check.h"
+#pragma pack(1)
+#define const
+#define volatile
+#define int long
+#define unsigned
+#define float double
+#include "Sun2Xp.h"
+
+struct packed { char Byte; float Number; };
+
+static float far_from(const float *Pos, const float *Wanted)
+{
+    return APART(Pos[0], Wanted[0]) + APART(Pos[1], Wanted[1]) + APART(Pos[2], Wanted[2]);
+}
+
+#undef int
+
+int main(void)
+{
+    const float Wanted[3] = {0.1, 0.5, 0.9};
+    volatile float Now[3] = {0, 0, 0};
+    struct FingerStatus Status;
+    int tries;
+
+    CHECK(sizeof(struct packed) == 1 + sizeof(double));
+    CHECK(OpenHand() == 0);
+    CHECK(SendPos(1, Wanted) == 0);
+    for (tries = 0; tries < 300; tries++) {
+        CHECK(GetPos(1, Now) == 0);
+        if (far_from(Now, Wanted) < 0.06)
+            break;
+        PAUSE_MS(20);
+    }
+    CHECK(tries < 300);
+    memset(&Status, 0, sizeof Status);
+    Status.Size = sizeof Status;
+    CHECK(GetStatus(1, &Status) == 0);
+    CHECK(Status.Size == sizeof Status && Status.State == FINGER_RUNNING);
+    CHECK(Status.Rate == 1000.0 && Status.Cycles > 100);
+    CHECK(Status.StiffnessScale > 0.0 && Status.StiffnessScale <= 1.0);
+    return CloseHand();
+}
