@@ -4,82 +4,11 @@
 //! inheritance), and a channel is not lock-free when a real-time thread shares a core with a preempted sender. The planners'
 //! own side is locked among themselves only.
 
-use crate::calibration::{Calibration, Verdict};
-use crate::control::{Controller, Report, SetPoint};
-use crate::finger::{Fault, Losses, Stage, Warnings};
+use crate::control::SetPoint;
+use crate::finger::{Adjustable, Fault, FingerReport, Order, Stage};
 use crate::realtime::{Input, Memory, Output, Pages, SharedPages, triple_buffer};
-use nalgebra::Vector3;
 use parking_lot::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// What a finger is asked for besides set points. Plain values: the servo neither allocates nor frees.
-#[allow(clippy::large_enum_variant)]
-#[derive(Clone, Debug)]
-pub enum Order {
-    /// Nothing, as in the beginning.
-    Nothing,
-    /// To be calibrated; the finger is limp afterwards, whatever comes of it.
-    Calibrate(CalibrationRun),
-    /// To begin anew with what it was handed last to compute with: what its state is measured in may have changed.
-    Restart {
-        /// With the motors off; else slack is taken up, as after open.
-        limp: bool,
-    },
-}
-
-/// A calibration with what the servo computes with until its verdict. What it was handed besides is kept for afterwards.
-#[derive(Clone, Debug)]
-pub struct CalibrationRun {
-    /// The routine.
-    pub calibration: Calibration,
-    /// Made for [`Calibration::controlled`].
-    pub adjustable: Adjustable,
-}
-
-/// What a servo tells of its finger, each cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FingerReport {
-    /// Where the finger is between open and close.
-    pub stage: Stage,
-    /// The set point in force.
-    pub set_point: SetPoint,
-    /// How often it has become a spring that holds the pose it was found in: at open, after a fault, after a calibration. What was
-    /// sent before is gone.
-    pub springs: u32,
-    /// What the last cycle found and decided.
-    pub cycle: Report,
-    /// Number of the controller that planners have handed over last and the servo has taken: it is computed with, or will be after a
-    /// calibration.
-    pub controller: u32,
-    /// How many orders have been taken.
-    pub orders: u32,
-    /// What became of the last calibration, if there was one.
-    pub calibration: Option<Verdict>,
-    /// Since open.
-    pub losses: Losses,
-    /// How often it has gone on after a fault.
-    pub recoveries: u32,
-    /// What the finger is warned of.
-    pub warnings: Warnings,
-    /// When the first cycle began, ns of the monotonic clock.
-    pub first: u64,
-    /// When the last cycle began, ns of the monotonic clock.
-    pub last: u64,
-}
-
-/// What a servo computes with, and what a planner may change while it runs.
-#[derive(Clone, Debug)]
-pub struct Adjustable {
-    /// Of the controller, in the finger's black box.
-    pub number: u32,
-    /// The boxes of Figure 9.
-    pub controller: Controller,
-    /// Joint angles that a finger under tension can have, rad: lowest and highest.
-    pub pose: (Vector3<f64>, Vector3<f64>),
-}
-
-// A servo copies it out of a buffer: nothing may be allocated or freed then.
-const _: () = assert!(!std::mem::needs_drop::<Adjustable>());
 
 /// The planners' end.
 pub struct Mailbox {

@@ -1,5 +1,6 @@
 //! One finger's servo thread and its mailboxes: the shell around the pure core.
 
+mod adjustable;
 mod alarm;
 mod black_box;
 mod control_input;
@@ -9,13 +10,16 @@ mod link_handover;
 mod link_watch;
 mod losses;
 mod mailbox;
+mod order;
 mod recording;
 mod replay;
+mod report;
 mod servo;
 mod servo_thread;
 mod stage;
 mod supervision;
 
+pub use adjustable::Adjustable;
 pub use alarm::{Alarm, stop_all, stop_calls};
 pub use black_box::{BlackBox, Recorder};
 pub use control_input::ControlInput;
@@ -24,9 +28,11 @@ pub use faults::{Description, Fault, FaultKind, Part, Quantity, Severity, Warnin
 pub use link_handover::{Borrower, Lender, Lent, Mended, lending};
 pub use link_watch::Fading;
 pub use losses::Losses;
-pub use mailbox::{Adjustable, CalibrationRun, FingerReport, Mailbox, Order};
+pub use mailbox::Mailbox;
+pub use order::{CalibrationRun, Order};
 pub use recording::{Origin, Recording, RecordingError};
 pub use replay::{Difference, NotReplayable, Replayed};
+pub use report::FingerReport;
 pub use servo::FingerServo;
 pub use servo_thread::{REPLY_WINDOW, ServedPort, Servo};
 pub use stage::Stage;

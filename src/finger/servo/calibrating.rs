@@ -5,7 +5,7 @@ use super::calibration::{Before, Calibrating};
 use crate::board::protocol::Status;
 use crate::calibration::{Sample, Verdict};
 use crate::finger::Stage;
-use crate::finger::mailbox::{Adjustable, CalibrationRun};
+use crate::finger::{Adjustable, CalibrationRun};
 
 impl FingerServo {
     pub(super) fn begin_calibration(&mut self, run: CalibrationRun) {

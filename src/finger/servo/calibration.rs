@@ -1,7 +1,7 @@
 //! The calibration of a finger, beside what the finger was before.
 
 use crate::finger::Stage;
-use crate::finger::mailbox::{Adjustable, CalibrationRun};
+use crate::finger::{Adjustable, CalibrationRun};
 
 /// A calibration, and what the finger goes on with until the routine takes over.
 pub(super) struct Calibrating {

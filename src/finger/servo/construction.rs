@@ -3,8 +3,9 @@
 use super::{FingerServo, Limits, STOPS_AFTER_FAULT};
 use crate::board::protocol::{Configured, Identity};
 use crate::control::{Activity, Command, Controller, Feedback, SetPoint};
+use crate::finger::Adjustable;
 use crate::finger::link_watch::LinkWatch;
-use crate::finger::mailbox::{Adjustable, Mailbox, mailbox};
+use crate::finger::mailbox::{Mailbox, mailbox};
 use crate::finger::supervision::Watching;
 use crate::finger::{Alarm, FingerReport, Losses, Recorder, Stage, stop_calls};
 use crate::model::configuration::{Configuration, Unusable};

@@ -3,7 +3,7 @@
 use super::{FingerServo, STOPS_AFTER_FAULT};
 use crate::board::protocol::Configured;
 use crate::control::{Activity, Command, Feedback, SetPoint};
-use crate::finger::mailbox::{Adjustable, Order};
+use crate::finger::{Adjustable, Order};
 use crate::finger::{Fault, FaultKind, Stage};
 use crate::model::configuration::EndState;
 use nalgebra::Vector4;
