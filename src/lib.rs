@@ -69,7 +69,7 @@ pub mod stability;
 
 pub use calibration::{Findings, Identified, Obstacle, Progress, Signs, Step, Task, Zeros};
 pub use finger::{
-    Difference, Fault, FaultKind, Losses, NotReplayable, Part, Quantity, Recording, RecordingError, Replayed, Severity,
+    Difference, Fault, FaultKind, Losses, NotReplayable, Quantity, Recording, RecordingError, Replayed, Severity,
     Stage, stop_all,
 };
 pub use hand::{
@@ -81,7 +81,7 @@ pub use model::configuration::{
     ConfiguredStiffness, ConfiguredTendon, ConfiguredZeroing, EndState, GaugeReference, Law, OnFault, OutOfRange,
     PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
 };
-pub use model::{Contact, ContactError};
+pub use model::{Contact, ContactError, Part};
 pub use realtime::Distribution;
 
 /// The matrices of the public signatures.

@@ -87,7 +87,9 @@ pub extern "C" fn FaultText(Number: c_int) -> *const c_char {
 
 fn told(told: &FingerFault) -> Fault {
     let parts = |fault: Option<finger::Fault>| {
-        fault.map_or((0, 0, 0.0), |fault| (c_int::from(fault.kind.number()), c_int::from(fault.part), fault.value))
+        fault.map_or((0, 0, 0.0), |fault| {
+            (c_int::from(fault.kind.number()), c_int::from(fault.part.number()), fault.value)
+        })
     };
     let (number, part, value) = parts(told.stopped);
     let (warning, warning_part, warning_value) = parts(told.warning);

@@ -24,7 +24,7 @@ pub use alarm::{Alarm, stop_all, stop_calls};
 pub use black_box::{BlackBox, Recorder};
 pub use control_input::ControlInput;
 pub use cycle_record::{ControlRecord, ControllerSource, CycleRecord, KeptRecord};
-pub use faults::{Description, Fault, FaultKind, Part, Quantity, Severity, Warnings};
+pub use faults::{Description, Fault, FaultKind, PartKind, Quantity, Severity, Warnings};
 pub use link_handover::{Borrower, Lender, Lent, Mended, lending};
 pub use link_watch::Fading;
 pub use losses::Losses;

@@ -66,9 +66,9 @@ fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, Stri
     let named = match warns {
         true if fault.is_some() => false,
         true => found.is_some(),
-        false => {
-            fault.is_some_and(|fault| fault.kind == case.called && injected.part.is_none_or(|part| part == fault.part))
-        }
+        false => fault.is_some_and(|fault| {
+            fault.kind == case.called && injected.part.is_none_or(|part| part == fault.part.number())
+        }),
     };
     if !named {
         let called = fault.or(bench.warning()).map_or("nothing".into(), |fault| fault.to_string());

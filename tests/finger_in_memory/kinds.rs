@@ -8,6 +8,7 @@ use sun2xp::board::protocol::{Frame, Kind, Reason, Refused, Status, Stop};
 use sun2xp::board::{PortError, Transport};
 use sun2xp::calibration::{Calibration, Task};
 use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
+use sun2xp::model::Part;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::simulated::{Defect, LineFault};
 
@@ -21,7 +22,7 @@ fn a_joint_that_is_pushed_beyond_its_limit_is_said_to_be_at_its_stop() {
     assert_eq!(bench.warning(), None);
     bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(5.0, 0.0, 0.0)));
     let warning = bench.warns(FaultKind::JointAtStop);
-    assert!(warning.part == 0 && warning.value > 7.0, "{warning}");
+    assert!(warning.part == Part::Joint(0) && warning.value > 7.0, "{warning}");
     bench.with_finger(|finger| finger.plant().set_external_force(Vector3::zeros()));
     bench.cycles(3000);
     assert_eq!((bench.stage(), bench.warning()), (Stage::Running, None), "it went on, and the warning went away");
@@ -36,7 +37,7 @@ fn a_finger_that_reads_an_angle_it_cannot_have_does_not_become_a_spring() {
         },
     );
     let fault = bench.faults(FaultKind::ImpossiblePose);
-    let read = bench.report().cycle.joints[usize::from(fault.part)].to_degrees();
+    let read = bench.report().cycle.joints[usize::from(fault.part.number())].to_degrees();
     assert!(fault.value == read && fault.value.abs() > 90.0, "{fault}");
 }
 
@@ -47,7 +48,7 @@ fn a_tendon_that_is_without_tension_for_a_moment_is_no_fault() {
     bench.cycles(6);
     bench.with_finger(|finger| finger.mend());
     let warning = bench.warns(FaultKind::SlackInMotion);
-    assert!(warning.part == 3 && warning.value < 0.5, "{warning}");
+    assert!(warning.part == Part::Tendon(3) && warning.value < 0.5, "{warning}");
     bench.cycles(3000);
     assert_eq!((bench.stage(), bench.warning()), (Stage::Running, None));
 }

@@ -8,8 +8,8 @@
 
 use super::alarm::{Alarm, Symptom};
 use super::sample::Sample;
-use crate::model::Tendons;
 use crate::model::configuration::ConfiguredFinger;
+use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
 
 /// Disagreement that is let pass, N; besides it what an error of k explains, a part of the change of the tensions.
@@ -109,7 +109,7 @@ impl Agreement {
         let counts = memory.part > 1.0 && !explained;
         memory.lasts = if counts { memory.lasts + sample.elapsed } else { 0.0 };
         // The gauge that its motor contradicts most.
-        let suspect = memory.unbalanced.iamax() as u8 + 1;
+        let suspect = Part::gauge(memory.unbalanced.iamax());
         let alarm = Alarm { symptom: Symptom::GaugeDisagrees, part: suspect, value: memory.difference };
         (memory.lasts >= LASTS).then_some(alarm)
     }

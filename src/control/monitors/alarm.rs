@@ -1,5 +1,7 @@
 //! What the monitors find.
 
+use crate::model::Part;
+
 /// What a monitor finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symptom {
@@ -36,8 +38,8 @@ pub enum Symptom {
 pub struct Alarm {
     /// What.
     pub symptom: Symptom,
-    /// Tendon, motor, gauge or encoder, 1 to 4, 0 where it is not known which; joint, 0 to 2.
-    pub part: u8,
+    /// Where.
+    pub part: Part,
     /// In the unit of the symptom.
     pub value: f64,
 }
@@ -52,6 +54,10 @@ pub struct Alarms {
 }
 
 /// The first of four for which this holds, as an alarm.
-pub(super) fn first_of(symptom: Symptom, found: impl Fn(usize) -> Option<f64>) -> Option<Alarm> {
-    (0..4).find_map(|index| found(index).map(|value| Alarm { symptom, part: index as u8 + 1, value }))
+pub(super) fn first_of(
+    symptom: Symptom,
+    part: impl Fn(usize) -> Part,
+    found: impl Fn(usize) -> Option<f64>,
+) -> Option<Alarm> {
+    (0..4).find_map(|index| found(index).map(|value| Alarm { symptom, part: part(index), value }))
 }

@@ -2,6 +2,7 @@
 
 use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
+use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 use std::f64::consts::TAU;
@@ -55,7 +56,7 @@ impl EncoderJump {
         }
         let (turned, elapsed) = (std::mem::take(&mut memory.turned), std::mem::take(&mut memory.elapsed));
         let before = memory.speed.replace(turned / elapsed)?;
-        first_of(Symptom::EncoderJump, |encoder| {
+        first_of(Symptom::EncoderJump, Part::encoder, |encoder| {
             let unexpected = (turned[encoder] - before[encoder] * elapsed) * self.counts_per_radian[encoder];
             // Both speeds are means: the change had up to two intervals of this length.
             let possible = 2.0 * self.strongest[encoder] * elapsed.powi(2) * self.counts_per_radian[encoder];

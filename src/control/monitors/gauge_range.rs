@@ -2,6 +2,7 @@
 
 use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
+use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 
 /// A tendon may exceed t_max by this factor: commands keep t_max, but blows and steps overshoot it.
@@ -54,8 +55,10 @@ impl GaugeRange {
             memory.out[gauge] = if out { memory.out[gauge] + sample.elapsed } else { 0.0 };
         }
         let counts = |gauge: usize| f64::from(sample.feedback.gauge_counts[gauge]);
-        let out = first_of(Symptom::GaugeOutOfRange, |gauge| (memory.out[gauge] >= LASTS).then(|| counts(gauge)));
+        let out = first_of(Symptom::GaugeOutOfRange, Part::gauge, |gauge| {
+            (memory.out[gauge] >= LASTS).then(|| counts(gauge))
+        });
         let over = |tendon: usize| (memory.over[tendon] >= LASTS).then_some(sample.tensions[tendon]);
-        out.or_else(|| first_of(Symptom::OverTension, over))
+        out.or_else(|| first_of(Symptom::OverTension, Part::tendon, over))
     }
 }

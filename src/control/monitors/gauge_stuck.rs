@@ -3,6 +3,7 @@
 
 use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
+use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 
 /// Part of the way that the mean of the flicker goes in a sample.
@@ -135,7 +136,7 @@ impl GaugeStuck {
         }
         let known = memory.flickers().known;
         let alone = |gauge: usize| (0..4).all(|other| other == gauge || known[other]);
-        first_of(Symptom::GaugeStuck, |gauge| {
+        first_of(Symptom::GaugeStuck, Part::gauge, |gauge| {
             // Where a tendon hangs its gauge may be at its end, and show half of the noise only.
             let least = if sample.tensions[gauge] < self.slack { MOST_REPEATS } else { LEAST_REPEATS };
             let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(least).ln() < UNLIKELY;
@@ -150,5 +151,5 @@ impl GaugeStuck {
 /// That this gauge, 0 to 3, is dead.
 pub(super) fn alarm(sample: &Sample, gauge: usize) -> Alarm {
     let value = f64::from(sample.feedback.gauge_counts[gauge]);
-    Alarm { symptom: Symptom::GaugeStuck, part: gauge as u8 + 1, value }
+    Alarm { symptom: Symptom::GaugeStuck, part: Part::gauge(gauge), value }
 }

@@ -2,6 +2,7 @@
 
 use super::alarm::{Alarm, Symptom};
 use super::sample::Sample;
+use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
@@ -26,7 +27,7 @@ impl JointStop {
         let at_stop = |&joint: &usize| joints[joint] < self.low[joint] || joints[joint] > self.high[joint];
         (0..3).find(at_stop).map(|joint| Alarm {
             symptom: Symptom::JointAtStop,
-            part: joint as u8,
+            part: Part::joint(joint),
             value: joints[joint].to_degrees(),
         })
     }

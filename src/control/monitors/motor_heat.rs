@@ -2,6 +2,7 @@
 
 use super::alarm::{Alarms, Symptom, first_of};
 use super::sample::Sample;
+use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 
@@ -34,8 +35,8 @@ impl MotorHeat {
         let percent = |motor: usize| 100.0 * heat[motor];
         let too_long = |motor: usize| (memory.0[motor] > self.bearable).then(|| percent(motor));
         Alarms {
-            fault: first_of(Symptom::OverheatedMotor, too_long),
-            warning: first_of(Symptom::WarmMotor, |motor| (heat[motor] > WARM).then(|| percent(motor))),
+            fault: first_of(Symptom::OverheatedMotor, Part::motor, too_long),
+            warning: first_of(Symptom::WarmMotor, Part::motor, |motor| (heat[motor] > WARM).then(|| percent(motor))),
         }
     }
 }

@@ -3,8 +3,8 @@
 use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
 use crate::control::motors::motor_friction::MotorFriction;
-use crate::model::Tendons;
 use crate::model::configuration::ConfiguredFinger;
+use crate::model::{Part, Tendons};
 
 /// Out-of-balance that friction may hold: the configured friction so many times, because it is known badly, and this part of
 /// the pull, for the error of the torque constant.
@@ -50,7 +50,7 @@ impl StalledMotor {
             memory.lasts[motor] = if goes_on { memory.lasts[motor] + sample.elapsed.copysign(unbalanced) } else { 0.0 };
             memory.turned[motor] = if goes_on { turned } else { 0.0 };
         }
-        first_of(Symptom::StalledMotor, |motor| {
+        first_of(Symptom::StalledMotor, Part::motor, |motor| {
             (memory.lasts[motor].abs() >= LASTS).then(|| sample.pulls[motor] - sample.tensions[motor])
         })
     }

@@ -8,6 +8,7 @@
 use super::alarm::{Alarm, Alarms, Symptom, first_of};
 use super::gauge_stuck::{self, Flicker};
 use super::sample::Sample;
+use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 
@@ -88,7 +89,7 @@ impl TensionLost {
             let impulse = memory.impulse[tendon] + tension * sample.elapsed;
             memory.impulse[tendon] = if low { impulse } else { 0.0 };
         }
-        let warning = first_of(Symptom::SlackInMotion, |tendon| {
+        let warning = first_of(Symptom::SlackInMotion, Part::tendon, |tendon| {
             (memory.gone[tendon] >= NOTICED).then_some(sample.tensions[tendon])
         });
         // The others follow a torn tendon, as nothing balances them: the one that went first is it.
@@ -117,6 +118,6 @@ impl TensionLost {
     fn lost(&self, memory: &Memory, tendon: usize) -> Alarm {
         let mean = memory.impulse[tendon] / memory.low[tendon];
         let symptom = if mean < self.gone { Symptom::BrokenTendon } else { Symptom::SlackTendon };
-        Alarm { symptom, part: tendon as u8 + 1, value: mean }
+        Alarm { symptom, part: Part::tendon(tendon), value: mean }
     }
 }

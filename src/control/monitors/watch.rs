@@ -12,8 +12,8 @@ use super::stalled_motor::{self, StalledMotor};
 use super::tension_lost::{self, TensionLost};
 use crate::control::sensing::sensors::Sensors;
 use crate::control::signals::{Feedback, Measured, Report};
-use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
+use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
 
 /// All monitors of a finger.
@@ -118,8 +118,13 @@ impl Monitors {
         let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
         // Where the gauge drifts, its motor stands still against a tension that is not there.
         let doubtful = watch.agreement.doubtful();
-        let stalled =
-            stalled.map(|alarm| if doubtful { Alarm { symptom: Symptom::GaugeDisagrees, ..alarm } } else { alarm });
+        let stalled = stalled.map(|alarm| {
+            if doubtful {
+                Alarm { symptom: Symptom::GaugeDisagrees, part: Part::Gauge(alarm.part.number()), ..alarm }
+            } else {
+                alarm
+            }
+        });
         let hot = self.motor_heat.watch(&mut watch.motor_heat, heat, &sample);
         let fault = jumped.or(stuck).or(range).or(lost.fault).or(stalled).or(disagrees).or(hot.fault);
         let warning = lost.warning.or(self.joint_stop.watch(&sample)).or(hot.warning).or(not_admitted(report));
@@ -129,5 +134,5 @@ impl Monitors {
 
 fn not_admitted(report: &Report) -> Option<Alarm> {
     let value = 100.0 * report.torque_scale;
-    (report.torque_scale < 1.0).then_some(Alarm { symptom: Symptom::TorqueNotAdmitted, part: 0, value })
+    (report.torque_scale < 1.0).then_some(Alarm { symptom: Symptom::TorqueNotAdmitted, part: Part::Finger, value })
 }

@@ -13,7 +13,7 @@ pub enum Severity {
 
 /// What the number of a part counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum PartKind {
     /// The whole finger; the number is 0.
     Finger,
     /// Joints 0 to 2.
@@ -59,7 +59,7 @@ pub struct Description {
     /// What becomes of the finger.
     pub severity: Severity,
     /// What the number of the part counts.
-    pub part: Part,
+    pub part: PartKind,
     /// What the value measures.
     pub quantity: Quantity,
     /// A name of few words.
@@ -79,16 +79,16 @@ impl Description {
     }
 }
 
-impl Part {
+impl PartKind {
     /// The singular, as in a sentence; none for the whole finger.
     pub fn word(self) -> Option<&'static str> {
         match self {
-            Part::Finger => None,
-            Part::Joint => Some("joint"),
-            Part::Tendon => Some("tendon"),
-            Part::Motor => Some("motor"),
-            Part::Gauge => Some("gauge"),
-            Part::Encoder => Some("encoder"),
+            PartKind::Finger => None,
+            PartKind::Joint => Some("joint"),
+            PartKind::Tendon => Some("tendon"),
+            PartKind::Motor => Some("motor"),
+            PartKind::Gauge => Some("gauge"),
+            PartKind::Encoder => Some("encoder"),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A fault that happened: its kind, where, and how much.
 
-use super::{FaultKind, Part, Quantity};
+use super::{FaultKind, Quantity};
+use crate::model::Part;
 use std::error::Error;
 use std::fmt;
 
@@ -9,8 +10,8 @@ use std::fmt;
 pub struct Fault {
     /// Which one.
     pub kind: FaultKind,
-    /// Of which joint (0 to 2), tendon, motor, gauge or encoder (1 to 4); 0 where it is of the whole finger.
-    pub part: u8,
+    /// Where.
+    pub part: Part,
     /// How much, in the unit of the kind's [`Quantity`]; 0 where there is nothing to measure.
     pub value: f64,
 }
@@ -18,12 +19,12 @@ pub struct Fault {
 impl Fault {
     /// A fault of the whole finger, without a value.
     pub fn new(kind: FaultKind) -> Self {
-        Self { kind, part: 0, value: 0.0 }
+        Self { kind, part: Part::Finger, value: 0.0 }
     }
 
     /// A fault of the whole finger.
     pub fn of(kind: FaultKind, value: f64) -> Self {
-        Self { kind, part: 0, value }
+        Self { kind, part: Part::Finger, value }
     }
 }
 
@@ -32,9 +33,8 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let told = self.kind.description();
         write!(f, "{}", told.name)?;
-        let part = told.part.word().filter(|_| told.part == Part::Joint || self.part > 0);
-        if let Some(part) = part {
-            write!(f, ", {part} {}", self.part)?;
+        if self.part != Part::Finger {
+            write!(f, ", {}", self.part)?;
         }
         match told.quantity {
             Quantity::Nothing => {}
@@ -62,10 +62,10 @@ mod tests {
 
     #[test]
     fn a_fault_says_what_where_how_much_why_and_what_to_do() {
-        let text = Fault { kind: FaultKind::BrokenTendon, part: 3, value: 0.04 }.to_string();
+        let text = Fault { kind: FaultKind::BrokenTendon, part: Part::Tendon(3), value: 0.04 }.to_string();
         assert!(text.starts_with("broken tendon, tendon 3 (0.0 N): "), "{text}");
         assert!(text.contains(". Likely cause: "), "{text}");
-        let text = Fault { kind: FaultKind::ImpossiblePose, part: 0, value: -170.26 }.to_string();
+        let text = Fault { kind: FaultKind::ImpossiblePose, part: Part::Joint(0), value: -170.26 }.to_string();
         assert!(text.starts_with("impossible pose, joint 0 (-170.3 degrees): "), "{text}");
         let text = Fault::of(FaultKind::BoardStopped, 72.0).to_string();
         assert!(text.starts_with("board stopped (status bits 0x0048): "), "{text}");

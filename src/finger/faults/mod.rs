@@ -8,7 +8,7 @@ mod kind;
 mod table;
 mod warnings;
 
-pub use description::{Description, Part, Quantity, Severity};
+pub use description::{Description, PartKind, Quantity, Severity};
 pub use fault::Fault;
 pub use table::FaultKind;
 pub use warnings::Warnings;

@@ -2,7 +2,7 @@
 //!
 //! Numbers are for ever: a new fault takes the next one, and one that is no longer found keeps its own.
 
-use super::description::{Description, Part, Quantity, Severity};
+use super::description::{Description, PartKind, Quantity, Severity};
 
 macro_rules! faults {
     ($($number:literal $kind:ident $constant:literal $severity:ident $part:ident $quantity:ident
@@ -24,7 +24,7 @@ macro_rules! faults {
                     $(FaultKind::$kind => &Description {
                         constant: $constant,
                         severity: Severity::$severity,
-                        part: Part::$part,
+                        part: PartKind::$part,
                         quantity: Quantity::$quantity,
                         name: $name,
                         text: $text,

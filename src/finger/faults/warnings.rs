@@ -40,11 +40,12 @@ impl Warnings {
 mod tests {
     use super::*;
     use crate::finger::FaultKind;
+    use crate::model::Part;
 
     #[test]
     fn a_warning_stays_for_its_time_and_counts_once() {
         let mut warnings = Warnings::default();
-        let warm = Some(Fault { kind: FaultKind::WarmMotor, part: 2, value: 85.0 });
+        let warm = Some(Fault { kind: FaultKind::WarmMotor, part: Part::Motor(2), value: 85.0 });
         for _ in 0..10 {
             warnings.note(warm, 3);
         }

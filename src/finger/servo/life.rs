@@ -5,6 +5,7 @@ use crate::board::protocol::Configured;
 use crate::control::{Activity, Command, Feedback, SetPoint};
 use crate::finger::{Adjustable, Order};
 use crate::finger::{Fault, FaultKind, Stage};
+use crate::model::Part;
 use crate::model::configuration::EndState;
 use nalgebra::Vector4;
 
@@ -120,7 +121,7 @@ impl FingerServo {
         self.fault(if wound_ms >= MOSTLY * waited_ms {
             let slackest = self.report.cycle.slackest;
             let value = self.report.cycle.tensions[slackest];
-            Fault { kind: FaultKind::SlackTendon, part: slackest as u8 + 1, value }
+            Fault { kind: FaultKind::SlackTendon, part: Part::tendon(slackest), value }
         } else {
             Fault::of(FaultKind::OpeningTimedOut, waited_ms)
         });
@@ -166,7 +167,7 @@ impl FingerServo {
         let joints = self.report.cycle.joints;
         if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
             let value = joints[joint].to_degrees();
-            self.fault(Fault { kind: FaultKind::ImpossiblePose, part: joint as u8, value });
+            self.fault(Fault { kind: FaultKind::ImpossiblePose, part: Part::joint(joint), value });
         }
     }
 }

@@ -1,0 +1,73 @@
+//! The parts of a finger that a fault or a refusal names.
+
+use std::fmt;
+
+/// A part of a finger. The numbers are those that planners see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The whole finger, or a part that is not known.
+    Finger,
+    /// A joint, 0 to 2.
+    Joint(u8),
+    /// A tendon, 1 to 4.
+    Tendon(u8),
+    /// A motor, 1 to 4.
+    Motor(u8),
+    /// A strain gauge, 1 to 4.
+    Gauge(u8),
+    /// A motor encoder, 1 to 4.
+    Encoder(u8),
+}
+
+impl Part {
+    /// The joint with this index, 0 to 2.
+    pub fn joint(index: usize) -> Self {
+        Self::Joint(index as u8)
+    }
+
+    /// The tendon with this index, 0 to 3.
+    pub fn tendon(index: usize) -> Self {
+        Self::Tendon(index as u8 + 1)
+    }
+
+    /// The motor with this index, 0 to 3.
+    pub fn motor(index: usize) -> Self {
+        Self::Motor(index as u8 + 1)
+    }
+
+    /// The strain gauge with this index, 0 to 3.
+    pub fn gauge(index: usize) -> Self {
+        Self::Gauge(index as u8 + 1)
+    }
+
+    /// The motor encoder with this index, 0 to 3.
+    pub fn encoder(index: usize) -> Self {
+        Self::Encoder(index as u8 + 1)
+    }
+
+    /// The number that the C interface gives: 0 to 2 for joints, 1 to 4 for the others, 0 for the whole finger.
+    pub fn number(self) -> u8 {
+        match self {
+            Part::Finger => 0,
+            Part::Joint(number)
+            | Part::Tendon(number)
+            | Part::Motor(number)
+            | Part::Gauge(number)
+            | Part::Encoder(number) => number,
+        }
+    }
+}
+
+/// As in a sentence: `joint 0`, `tendon 3`.
+impl fmt::Display for Part {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Part::Finger => formatter.write_str("finger"),
+            Part::Joint(number) => write!(formatter, "joint {number}"),
+            Part::Tendon(number) => write!(formatter, "tendon {number}"),
+            Part::Motor(number) => write!(formatter, "motor {number}"),
+            Part::Gauge(number) => write!(formatter, "gauge {number}"),
+            Part::Encoder(number) => write!(formatter, "encoder {number}"),
+        }
+    }
+}
