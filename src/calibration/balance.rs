@@ -9,6 +9,7 @@ use super::instruments::Instruments;
 use super::joint_lead::JointLead;
 use super::obstacle::Obstacle;
 use super::step::Sample;
+use crate::model::Part;
 use nalgebra::{Vector3, Vector4};
 
 /// How far the joints are led to both sides, rad, and how fast, rad/s.
@@ -86,8 +87,8 @@ impl Balance {
         let gains = gains / gains.mean();
         match gains.iter().position(|gain| !(LEAST..MOST).contains(gain)) {
             Some(index) => {
-                let what = "the gain of its gauge against the others'";
-                Err(Obstacle::Implausible { tendon: index as u8 + 1, what, value: 1.0 / gains[index] })
+                let what = "the gain, relative to the other gauges,";
+                Err(Obstacle::Implausible { part: Part::gauge(index), what, value: 1.0 / gains[index] })
             }
             None => Ok(Some(gains)),
         }

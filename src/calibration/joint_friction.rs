@@ -8,6 +8,7 @@ use super::joint_lead::JointLead;
 use super::least_squares::LeastSquares;
 use super::obstacle::Obstacle;
 use super::step::Sample;
+use crate::model::Part;
 use nalgebra::Vector3;
 
 /// Speeds, rad/s, and how far each goes, rad.
@@ -72,8 +73,7 @@ impl JointFriction {
             return Err(Obstacle::JointBlocked { joint: joint as u8 });
         }
         if last && strained {
-            let implausible =
-                |value| Obstacle::Implausible { tendon: joint as u8 + 1, what: "the friction of its joint", value };
+            let implausible = |value| Obstacle::Implausible { part: Part::joint(joint), what: "the friction", value };
             let (found, _) = self.fit.solve().ok_or(implausible(f64::NAN))?;
             return Ok(Some((found[1].max(0.0), found[2])));
         }

@@ -6,6 +6,7 @@ use super::instruments::Instruments;
 use super::least_squares::LeastSquares;
 use super::obstacle::Obstacle;
 use super::step::Sample;
+use crate::model::Part;
 use nalgebra::{Vector3, Vector4};
 
 /// Time constant of the smoothed travel, s, and the speed from which a motor counts as turning, cm/s at the tendon.
@@ -47,7 +48,7 @@ impl MotorFriction {
     pub fn solve(&self) -> Result<Friction, Obstacle> {
         let mut friction = [Vector4::zeros(); 3];
         for (motor, fit) in self.fits.iter().enumerate() {
-            let implausible = |what, value| Obstacle::Implausible { tendon: motor as u8 + 1, what, value };
+            let implausible = |what, value| Obstacle::Implausible { part: Part::motor(motor), what, value };
             let (found, _) = fit.solve().ok_or(implausible("the friction of its motor", f64::NAN))?;
             let [a, coulomb, conduit]: [f64; 3] = found.into();
             if !(0.2..5.0).contains(&a) {

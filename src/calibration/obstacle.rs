@@ -1,5 +1,6 @@
 //! Why a routine gave up.
 
+use crate::model::Part;
 use thiserror::Error;
 
 /// What stood in the way, and what to do about it. Nothing was changed.
@@ -124,12 +125,12 @@ pub enum Obstacle {
     },
     /// The experiment does not determine a number, or gives an impossible one.
     #[error(
-        "tendon {tendon}: {what} comes out as {value:.4}, which is impossible: the finger was touched, or two gauges \
+        "{part}: {what} comes out as {value:.4}, which is impossible: the finger was touched, or two gauges \
          or motors are swapped. Let nothing touch the finger, and check their cables"
     )]
     Implausible {
-        /// 1 to 4; of a joint's friction the joint's number and one more.
-        tendon: u8,
+        /// Of which part.
+        part: Part,
         /// Of what.
         what: &'static str,
         /// The number.

@@ -8,6 +8,7 @@ use super::instruments::Instruments;
 use super::least_squares::LeastSquares;
 use super::obstacle::Obstacle;
 use super::step::Sample;
+use crate::model::Part;
 use nalgebra::{SVector, Vector4};
 
 /// N/cm, outside which no tendon is.
@@ -40,10 +41,14 @@ impl TendonStiffness {
     /// N/cm, and the rms residual in travel, cm.
     pub fn solve(&self) -> Result<(Vector4<f64>, f64), Obstacle> {
         let what = "the stiffness, N/cm,";
-        let (found, residual) = self.fit.solve().ok_or(Obstacle::Implausible { tendon: 1, what, value: f64::NAN })?;
+        let (found, residual) = self.fit.solve().ok_or(Obstacle::Implausible {
+            part: Part::Finger,
+            what: "the stiffness of the tendons, N/cm,",
+            value: f64::NAN,
+        })?;
         let stiffness = found.fixed_rows::<4>(0).map(f64::recip);
         match stiffness.iter().position(|k| !(SOFTEST..=STIFFEST).contains(k)) {
-            Some(index) => Err(Obstacle::Implausible { tendon: index as u8 + 1, what, value: stiffness[index] }),
+            Some(index) => Err(Obstacle::Implausible { part: Part::tendon(index), what, value: stiffness[index] }),
             None => Ok((stiffness, residual)),
         }
     }
