@@ -1,0 +1,205 @@
+//! What identification does in each of its phases.
+
+use super::{Identification, Phase};
+use crate::calibration::balance::{Balance, SWING};
+use crate::calibration::findings::{Findings, Identified};
+use crate::calibration::instruments::Instruments;
+use crate::calibration::joint_friction::JointFriction;
+use crate::calibration::joint_lead::JointLead;
+use crate::calibration::motor_friction::MotorFriction;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::pressing::Pressing;
+use crate::calibration::step::{Progress, Sample, Step, Stepped};
+use crate::calibration::stop_search::StopSearch;
+use crate::calibration::take_up::TakeUp;
+use crate::calibration::tendon_stiffness::TendonStiffness;
+use crate::control::signals::Activity;
+use crate::model::configuration::GaugeReference;
+use std::ops::ControlFlow::{Break, Continue};
+
+/// How much further than its range a joint is led in search of its lower stop, rad.
+const BEYOND: f64 = 0.17;
+/// How near to where it began a joint is brought back, rad.
+const NEAR: f64 = 0.05;
+/// Torque on every joint with which gauges are compared, N cm: wrong ones turn the joints.
+const BALANCING: f64 = 10.0;
+/// Room that a joint keeps to its stops then, beyond its swing, rad.
+const ROOM: f64 = 0.1;
+/// A joint that pulls at its limit for so long on its way back is blocked, s.
+const BLOCKED: f64 = 0.5;
+
+/// The routine goes on with `activity`.
+fn going(step: Step, part: f64, activity: Activity) -> Stepped {
+    Ok(Continue((activity, Progress { step, part })))
+}
+
+impl Identification {
+    pub(super) fn take_up_slack(&mut self, mut take_up: TakeUp, instruments: &Instruments, sample: &Sample) -> Stepped {
+        if let Some(activity) = take_up.step(instruments, sample)? {
+            self.phase = Phase::Tighten(take_up);
+            return going(Step::TakingUpSlack, 0.0, activity);
+        }
+        let lead = JointLead::new(instruments, sample, BALANCING);
+        self.start = lead.joints;
+        self.phase = Phase::Balance { lead, balance: self.balance_near(&lead) };
+        going(Step::ComparingGauges, 0.0, lead.activity(instruments, sample))
+    }
+
+    pub(super) fn compare_gauges(
+        &mut self,
+        mut lead: JointLead,
+        mut balance: Balance,
+        instruments: &mut Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        lead.measure(instruments, sample);
+        let found = balance.step(instruments, sample, &mut lead)?;
+        let activity = lead.activity(instruments, sample);
+        self.phase = match found {
+            None => Phase::Balance { lead, balance },
+            Some(gain) => {
+                instruments.gain = gain;
+                self.search_of(0, JointLead::new(instruments, sample, self.torque))
+            }
+        };
+        going(Step::ComparingGauges, 0.02, activity)
+    }
+
+    pub(super) fn seek_stop(
+        &mut self,
+        mut lead: JointLead,
+        joint: usize,
+        mut search: StopSearch,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        lead.measure(instruments, sample);
+        let met = search.step(instruments, &mut lead, self.speed)?;
+        if let Some(angle) = met {
+            self.stop[joint] = angle;
+        }
+        self.phase = match met {
+            None => Phase::Seek { lead, joint, search },
+            Some(_) if joint < 2 => self.search_of(joint + 1, lead),
+            Some(_) => self.swing_of(0, lead),
+        };
+        going(Step::SeekingStops, 0.05 + 0.05 * joint as f64, lead.activity(instruments, sample))
+    }
+
+    pub(super) fn swing_joint(
+        &mut self,
+        mut lead: JointLead,
+        mut friction: JointFriction,
+        joint: usize,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        lead.measure(instruments, sample);
+        let found = friction.step(instruments, sample, &mut lead)?;
+        if let Some((coulomb, viscous)) = found {
+            self.joint_coulomb[joint] = coulomb;
+            self.joint_viscous[joint] = viscous;
+        }
+        self.phase = match found {
+            None => Phase::Swing { lead, friction, joint },
+            Some(_) if joint < 2 => self.swing_of(joint + 1, lead),
+            Some(_) => Phase::Press {
+                pressing: Pressing::new(instruments),
+                stiffness: TendonStiffness::new(instruments),
+                friction: MotorFriction::new(),
+            },
+        };
+        going(Step::MovingJoints, 0.2 + 0.1 * joint as f64, lead.activity(instruments, sample))
+    }
+
+    pub(super) fn press_against_stops(
+        &mut self,
+        mut pressing: Pressing,
+        mut stiffness: TendonStiffness,
+        mut friction: MotorFriction,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        if pressing.under_way() {
+            stiffness.add(instruments, sample);
+            friction.add(instruments, sample);
+        }
+        let part = 0.5 + 0.4 * pressing.part();
+        if let Some(tensions) = pressing.step(instruments, &instruments.tensions(sample.feedback)) {
+            self.phase = Phase::Press { pressing, stiffness, friction };
+            return going(Step::Pressing, part, Activity::Tense(instruments.ask(tensions)));
+        }
+        let found = self.identified(&stiffness, &friction, instruments)?;
+        let mut lead = JointLead::new(instruments, sample, self.torque);
+        // The finger is still against its stops, so it is led away from where it is.
+        lead.anchor = lead.joints;
+        self.phase = Phase::Return { lead, joint: 0, strained: 0.0, found };
+        going(Step::Returning, 0.9, lead.activity(instruments, sample))
+    }
+
+    pub(super) fn lead_back(
+        &mut self,
+        mut lead: JointLead,
+        mut joint: usize,
+        strained: f64,
+        found: Identified,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        lead.measure(instruments, sample);
+        lead.advance(joint, self.start[joint], self.speed * instruments.period);
+        let strained = if lead.strained(joint) { strained + instruments.period } else { 0.0 };
+        if strained > BLOCKED {
+            return Err(Obstacle::JointBlocked { joint: joint as u8 });
+        }
+        if (lead.joints[joint] - self.start[joint]).abs() < NEAR {
+            if joint == 2 {
+                return Ok(Break(Findings::Identified(found)));
+            }
+            joint += 1;
+        }
+        self.phase = Phase::Return { lead, joint, strained, found };
+        going(Step::Returning, 0.95, lead.activity(instruments, sample))
+    }
+
+    /// A comparison of the gauges about the present pose, or about the nearest one that leaves room for the swing.
+    fn balance_near(&self, lead: &JointLead) -> Balance {
+        let room = SWING + ROOM;
+        let (low, high) = (self.stops.0.add_scalar(room), self.stops.1.add_scalar(-room));
+        Balance::new(lead.joints.zip_zip_map(&low, &high, |joint, low, high| joint.min(high).max(low)))
+    }
+
+    fn search_of(&self, joint: usize, lead: JointLead) -> Phase {
+        let range = self.stops.1[joint] - self.stops.0[joint];
+        Phase::Seek { lead, joint, search: StopSearch::new(joint, -(range + BEYOND)) }
+    }
+
+    fn swing_of(&self, joint: usize, lead: JointLead) -> Phase {
+        Phase::Swing { lead, friction: JointFriction::new(joint, self.stop[joint]), joint }
+    }
+
+    /// All results together, with the mean of the gauge gains taken from the configured reference.
+    fn identified(
+        &self,
+        stiffness: &TendonStiffness,
+        friction: &MotorFriction,
+        instruments: &Instruments,
+    ) -> Result<Identified, Obstacle> {
+        let (tendon_stiffness, travel_residual) = stiffness.solve()?;
+        let [coulomb, conduit, ratio] = friction.solve()?;
+        let found = Identified {
+            tendon_stiffness,
+            travel_residual,
+            gauge_gain: instruments.gain,
+            motor_coulomb: coulomb.component_mul(&instruments.radius),
+            conduit,
+            motor_ratio: ratio.map(f64::recip),
+            joint_coulomb: self.joint_coulomb,
+            joint_viscous: self.joint_viscous,
+        };
+        Ok(match self.reference {
+            GaugeReference::Gauges => found,
+            GaugeReference::Motors => found.scaled(ratio.mean()),
+        })
+    }
+}
