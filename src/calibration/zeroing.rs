@@ -1,5 +1,9 @@
 //! Zeros of gauges and encoders.
 
+mod at_pose;
+mod at_stops;
+mod gauges;
+
 use super::encoder_zero::Reading;
 use super::findings::{Findings, Zeros};
 use super::gauge_zero::GaugeZero;
@@ -13,18 +17,7 @@ use super::take_up::TakeUp;
 use crate::control::signals::Activity;
 use crate::model::configuration::{ConfiguredFinger, ZeroingMethod};
 use nalgebra::{Vector3, Vector4};
-use std::ops::ControlFlow::{self, Break, Continue};
-
-/// A stop may be so far from where it is expected, rad, before it counts as something else in the way.
-const TOLERANCE: f64 = 0.035;
-/// How much further than its range a joint is led in search of a stop, rad.
-const BEYOND: f64 = 0.17;
-/// How near to the middle of its range a joint is brought back, rad.
-const NEAR: f64 = 0.05;
-/// Part of t_min that every tendon is to be pulled with where the finger is under control already.
-const PULLED: f64 = 0.3;
-/// How long the finger comes to rest before its counts are read, s.
-const RESTING: f64 = 0.3;
+use std::ops::ControlFlow::{self, Continue};
 
 #[derive(Clone, Debug)]
 pub(super) struct Zeroing {
@@ -42,7 +35,7 @@ pub(super) struct Zeroing {
     met: (Vector3<f64>, Vector3<f64>),
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 enum Phase {
     Start,
     /// The finger is held as it was before.
@@ -79,6 +72,11 @@ enum Phase {
 /// What a step of zeroing yields. No activity: the finger goes on with what it did before.
 type Stepped = Result<ControlFlow<Findings, (Option<Activity>, Progress)>, Obstacle>;
 
+/// The routine goes on with `activity`.
+fn going(step: Step, part: f64, activity: Activity) -> Stepped {
+    Ok(Continue((Some(activity), Progress { step, part })))
+}
+
 impl Zeroing {
     pub fn new(finger: &ConfiguredFinger) -> Self {
         let zeroing = &finger.zeroing;
@@ -96,167 +94,23 @@ impl Zeroing {
         }
     }
 
+    /// Runs one cycle of the current phase. Every method begins with the gauges. Then the encoders are zeroed in the
+    /// configured pose or between the stops, unless their zeros are kept.
     pub fn step(&mut self, instruments: &mut Instruments, sample: &Sample) -> Stepped {
-        let going = |step, part, activity| Ok(Continue((Some(activity), Progress { step, part })));
-        let as_before = |part| Ok(Continue((None, Progress { step: Step::ReadingEncoders, part })));
-        match &mut self.phase {
-            Phase::Start => {
-                if self.method == ZeroingMethod::Kept && !sample.zero_valid {
-                    return Err(Obstacle::NotKept);
-                }
-                self.phase = if sample.report.desired_tensions.min() > PULLED * instruments.minimum {
-                    Phase::Read
-                } else {
-                    // Not to be tightened before the gauges are zeroed: wrong ones would pull the finger away.
-                    Phase::Gauges(GaugeZero::new(None))
-                };
-                as_before(0.0)
+        match self.phase {
+            Phase::Start => self.begin(instruments, sample),
+            Phase::Read => self.read_before(instruments, sample),
+            Phase::Gauges(gauges) => self.zero_gauges(gauges, instruments, sample),
+            Phase::Tighten(take_up) => self.take_up_slack(take_up, instruments, sample),
+            Phase::Try(grip) => self.try_pose(grip, instruments, sample),
+            Phase::ReadPose { grip, reading } => self.read_pose(grip, reading, instruments, sample),
+            Phase::Seek { lead, joint, upper, search } => {
+                self.seek_stop(lead, joint, upper, search, instruments, sample)
             }
-            Phase::Read => {
-                let mut first = self.first.unwrap_or_default();
-                if first.step(instruments, sample) {
-                    if self.method == ZeroingMethod::Pose {
-                        first.still()?;
-                    }
-                    self.phase = Phase::Gauges(GaugeZero::new(Some(first.tensions())));
-                }
-                self.first = Some(first);
-                as_before(0.1)
-            }
-            Phase::Gauges(gauges) => match gauges.step(instruments, sample)? {
-                Continue(activity) => going(Step::ZeroingGauges, 0.2, activity),
-                Break(offset) => {
-                    self.offset = offset;
-                    instruments.offset = offset;
-                    match (self.method, self.first) {
-                        (ZeroingMethod::Kept, _) => {
-                            Ok(Break(self.findings(instruments, self.configured, Vector3::zeros(), None)))
-                        }
-                        (ZeroingMethod::Pose, Some(first)) => Ok(Break(self.at_pose(instruments, &first, &offset))),
-                        (ZeroingMethod::Pose, None) | (ZeroingMethod::Stops, _) => {
-                            self.phase = Phase::Tighten(TakeUp::new());
-                            going(Step::TakingUpSlack, 0.25, Activity::Turn(Vector4::zeros()))
-                        }
-                    }
-                }
-            },
-            Phase::Tighten(take_up) => match take_up.step(instruments, sample)? {
-                Some(activity) => going(Step::TakingUpSlack, 0.25, activity),
-                None if self.method == ZeroingMethod::Pose => {
-                    self.phase = Phase::Try(Grip::new(instruments, sample, self.torque));
-                    going(Step::TryingPose, 0.3, Activity::Tighten(instruments.offset))
-                }
-                None => {
-                    let lead = JointLead::new(instruments, sample, self.torque);
-                    let search = StopSearch::new(0, -self.longest(0));
-                    self.phase = Phase::Seek { lead, joint: 0, upper: false, search };
-                    going(Step::SeekingStops, 0.3, lead.activity(instruments, sample))
-                }
-            },
-            Phase::Try(grip) => {
-                let (activity, done) = grip.step(instruments, sample, self.speed)?;
-                if done {
-                    self.phase = Phase::ReadPose { grip: *grip, reading: Reading::default() };
-                }
-                going(Step::TryingPose, 0.6, activity)
-            }
-            Phase::ReadPose { grip, reading } => {
-                let (activity, _) = grip.step(instruments, sample, self.speed)?;
-                if !reading.step(instruments, sample) {
-                    return going(Step::ReadingEncoders, 0.9, activity);
-                }
-                reading.still()?;
-                grip.returned(&reading.joints(instruments, &Vector4::zeros()))?;
-                let reading = *reading;
-                Ok(Break(self.at_pose(instruments, &reading, &Vector4::zeros())))
-            }
-            &mut Phase::Seek { ref mut lead, joint, upper, ref mut search } => {
-                lead.measure(instruments, sample);
-                let met = search.step(instruments, lead, self.speed)?;
-                let activity = lead.activity(instruments, sample);
-                let part = 0.3 + 0.2 * (joint as f64 + if upper { 0.5 } else { 0.0 });
-                let lead = *lead;
-                match (met, upper) {
-                    (None, _) => {}
-                    (Some(angle), false) => {
-                        self.met.0[joint] = angle;
-                        let search = StopSearch::new(joint, self.longest(joint));
-                        self.phase = Phase::Seek { lead, joint, upper: true, search };
-                    }
-                    (Some(angle), true) => {
-                        self.met.1[joint] = angle;
-                        self.check_range(joint)?;
-                        self.phase = Phase::Return { lead, joint };
-                    }
-                }
-                going(Step::SeekingStops, part, activity)
-            }
-            &mut Phase::Return { ref mut lead, joint } => {
-                let middle = 0.5 * (self.met.0[joint] + self.met.1[joint]);
-                lead.measure(instruments, sample);
-                lead.advance(joint, middle, self.speed * instruments.period);
-                let (activity, arrived) =
-                    (lead.activity(instruments, sample), (lead.joints[joint] - middle).abs() < NEAR);
-                if arrived {
-                    let lead = *lead;
-                    self.phase = if joint < 2 {
-                        let search = StopSearch::new(joint + 1, -self.longest(joint + 1));
-                        Phase::Seek { lead, joint: joint + 1, upper: false, search }
-                    } else {
-                        Phase::Rest { lead, seconds: 0.0 }
-                    };
-                }
-                going(Step::SeekingStops, 0.3 + 0.2 * (joint as f64 + 0.9), activity)
-            }
-            Phase::Rest { lead, seconds } => {
-                *seconds += instruments.period;
-                lead.measure(instruments, sample);
-                let activity = lead.activity(instruments, sample);
-                if *seconds >= RESTING {
-                    self.phase = Phase::ReadAgain { lead: *lead, reading: Reading::default() };
-                }
-                going(Step::ReadingEncoders, 0.95, activity)
-            }
-            Phase::ReadAgain { lead, reading } => {
-                lead.measure(instruments, sample);
-                let activity = lead.activity(instruments, sample);
-                if !reading.step(instruments, sample) {
-                    return going(Step::ReadingEncoders, 0.95, activity);
-                }
-                // The offsets are in the readings by now.
-                let none = Vector4::zeros();
-                // Stretch that is wrongly taken out is so in opposite directions at the two stops.
-                let too_far = (self.met.0 + self.met.1 - self.stops.0 - self.stops.1) * 0.5;
-                let joints = reading.joints(instruments, &none) - too_far;
-                let zeros = reading.zeros(instruments, &none, &joints, self.configured);
-                let range = (self.met.1 - self.met.0) - (self.stops.1 - self.stops.0);
-                Ok(Break(self.findings(instruments, zeros, too_far, Some(range))))
-            }
+            Phase::Return { lead, joint } => self.return_to_middle(lead, joint, instruments, sample),
+            Phase::Rest { lead, seconds } => self.rest(lead, seconds, instruments, sample),
+            Phase::ReadAgain { lead, reading } => self.read_between_stops(lead, reading, instruments, sample),
         }
-    }
-
-    /// How far a joint is led at most, rad.
-    fn longest(&self, joint: usize) -> f64 {
-        self.stops.1[joint] - self.stops.0[joint] + BEYOND
-    }
-
-    fn check_range(&self, joint: usize) -> Result<(), Obstacle> {
-        let (found, expected) = (self.met.1[joint] - self.met.0[joint], self.stops.1[joint] - self.stops.0[joint]);
-        let number = joint as u8;
-        if found < expected - TOLERANCE {
-            let (degrees, expected) = (found.to_degrees(), expected.to_degrees());
-            return Err(Obstacle::EarlyStop { joint: number, degrees, expected });
-        }
-        if found > expected + TOLERANCE {
-            return Err(Obstacle::NoStop { joint: number, degrees: found.to_degrees() });
-        }
-        Ok(())
-    }
-
-    /// The finger was in the configured pose when it was read.
-    fn at_pose(&self, instruments: &Instruments, reading: &Reading, offset: &Vector4<f64>) -> Findings {
-        let zeros = reading.zeros(instruments, offset, &self.pose, self.configured);
-        self.findings(instruments, zeros, reading.joints(instruments, offset) - self.pose, None)
     }
 
     fn findings(

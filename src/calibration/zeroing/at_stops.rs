@@ -1,0 +1,132 @@
+//! Zeros of the encoders from the two stops of every joint.
+
+use super::{Phase, Stepped, Zeroing, going};
+use crate::calibration::encoder_zero::Reading;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::joint_lead::JointLead;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::step::{Sample, Step};
+use crate::calibration::stop_search::StopSearch;
+use nalgebra::Vector4;
+use std::ops::ControlFlow::Break;
+
+/// A stop may be so far from where it is expected, rad, before it counts as something else in the way.
+const TOLERANCE: f64 = 0.035;
+/// How much further than its range a joint is led in search of a stop, rad.
+const BEYOND: f64 = 0.17;
+/// How near to the middle of its range a joint is brought back, rad.
+const NEAR: f64 = 0.05;
+/// How long the finger comes to rest before its counts are read, s.
+const RESTING: f64 = 0.3;
+
+impl Zeroing {
+    pub(super) fn seek_stop(
+        &mut self,
+        mut lead: JointLead,
+        joint: usize,
+        upper: bool,
+        mut search: StopSearch,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        lead.measure(instruments, sample);
+        self.phase = match (search.step(instruments, &mut lead, self.speed)?, upper) {
+            (None, _) => Phase::Seek { lead, joint, upper, search },
+            (Some(angle), false) => {
+                self.met.0[joint] = angle;
+                self.search_upper(joint, lead)
+            }
+            (Some(angle), true) => {
+                self.met.1[joint] = angle;
+                self.check_range(joint)?;
+                Phase::Return { lead, joint }
+            }
+        };
+        let part = 0.3 + 0.2 * (joint as f64 + if upper { 0.5 } else { 0.0 });
+        going(Step::SeekingStops, part, lead.activity(instruments, sample))
+    }
+
+    pub(super) fn return_to_middle(
+        &mut self,
+        mut lead: JointLead,
+        joint: usize,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        let middle = 0.5 * (self.met.0[joint] + self.met.1[joint]);
+        lead.measure(instruments, sample);
+        lead.advance(joint, middle, self.speed * instruments.period);
+        let arrived = (lead.joints[joint] - middle).abs() < NEAR;
+        self.phase = match (arrived, joint) {
+            (false, _) => Phase::Return { lead, joint },
+            (true, 0 | 1) => self.search_lower(joint + 1, lead),
+            (true, _) => Phase::Rest { lead, seconds: 0.0 },
+        };
+        going(Step::SeekingStops, 0.3 + 0.2 * (joint as f64 + 0.9), lead.activity(instruments, sample))
+    }
+
+    pub(super) fn rest(
+        &mut self,
+        mut lead: JointLead,
+        seconds: f64,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        let seconds = seconds + instruments.period;
+        lead.measure(instruments, sample);
+        self.phase = if seconds >= RESTING {
+            Phase::ReadAgain { lead, reading: Reading::default() }
+        } else {
+            Phase::Rest { lead, seconds }
+        };
+        going(Step::ReadingEncoders, 0.95, lead.activity(instruments, sample))
+    }
+
+    pub(super) fn read_between_stops(
+        &mut self,
+        mut lead: JointLead,
+        mut reading: Reading,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        lead.measure(instruments, sample);
+        if !reading.step(instruments, sample) {
+            self.phase = Phase::ReadAgain { lead, reading };
+            return going(Step::ReadingEncoders, 0.95, lead.activity(instruments, sample));
+        }
+        // The instruments have subtracted the offsets already.
+        let none = Vector4::zeros();
+        // A wrong stiffness shifts the two stops of a joint in opposite directions, so their mean is right.
+        let too_far = (self.met.0 + self.met.1 - self.stops.0 - self.stops.1) * 0.5;
+        let joints = reading.joints(instruments, &none) - too_far;
+        let zeros = reading.zeros(instruments, &none, &joints, self.configured);
+        let range = (self.met.1 - self.met.0) - (self.stops.1 - self.stops.0);
+        Ok(Break(self.findings(instruments, zeros, too_far, Some(range))))
+    }
+
+    pub(super) fn search_lower(&self, joint: usize, lead: JointLead) -> Phase {
+        Phase::Seek { lead, joint, upper: false, search: StopSearch::new(joint, -self.longest(joint)) }
+    }
+
+    fn search_upper(&self, joint: usize, lead: JointLead) -> Phase {
+        Phase::Seek { lead, joint, upper: true, search: StopSearch::new(joint, self.longest(joint)) }
+    }
+
+    /// How far a joint is led at most, rad.
+    fn longest(&self, joint: usize) -> f64 {
+        self.stops.1[joint] - self.stops.0[joint] + BEYOND
+    }
+
+    fn check_range(&self, joint: usize) -> Result<(), Obstacle> {
+        let (found, expected) = (self.met.1[joint] - self.met.0[joint], self.stops.1[joint] - self.stops.0[joint]);
+        let number = joint as u8;
+        if found < expected - TOLERANCE {
+            let (degrees, expected) = (found.to_degrees(), expected.to_degrees());
+            return Err(Obstacle::EarlyStop { joint: number, degrees, expected });
+        }
+        if found > expected + TOLERANCE {
+            return Err(Obstacle::NoStop { joint: number, degrees: found.to_degrees() });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,88 @@
+//! The first phases of zeroing, up to tendons that are tight with gauges that are zeroed.
+
+use super::{Phase, Stepped, Zeroing, going};
+use crate::calibration::gauge_zero::GaugeZero;
+use crate::calibration::grip::Grip;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::joint_lead::JointLead;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::step::{Progress, Sample, Step};
+use crate::calibration::take_up::TakeUp;
+use crate::control::signals::Activity;
+use crate::model::configuration::ZeroingMethod;
+use nalgebra::{Vector3, Vector4};
+use std::ops::ControlFlow::{Break, Continue};
+
+/// Part of t_min that every tendon is to be pulled with where the finger is under control already.
+const PULLED: f64 = 0.3;
+
+/// The finger goes on with what it did before the routine.
+fn as_before(part: f64) -> Stepped {
+    Ok(Continue((None, Progress { step: Step::ReadingEncoders, part })))
+}
+
+impl Zeroing {
+    pub(super) fn begin(&mut self, instruments: &Instruments, sample: &Sample) -> Stepped {
+        if self.method == ZeroingMethod::Kept && !sample.zero_valid {
+            return Err(Obstacle::NotKept);
+        }
+        self.phase = if sample.report.desired_tensions.min() > PULLED * instruments.minimum {
+            Phase::Read
+        } else {
+            // The tendons must stay slack before the gauges are zeroed: wrong gauges would pull the finger away.
+            Phase::Gauges(GaugeZero::new(None))
+        };
+        as_before(0.0)
+    }
+
+    pub(super) fn read_before(&mut self, instruments: &Instruments, sample: &Sample) -> Stepped {
+        let mut first = self.first.unwrap_or_default();
+        if first.step(instruments, sample) {
+            if self.method == ZeroingMethod::Pose {
+                first.still()?;
+            }
+            self.phase = Phase::Gauges(GaugeZero::new(Some(first.tensions())));
+        }
+        self.first = Some(first);
+        as_before(0.1)
+    }
+
+    pub(super) fn zero_gauges(
+        &mut self,
+        mut gauges: GaugeZero,
+        instruments: &mut Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        let offset = match gauges.step(instruments, sample)? {
+            Break(offset) => offset,
+            Continue(activity) => {
+                self.phase = Phase::Gauges(gauges);
+                return going(Step::ZeroingGauges, 0.2, activity);
+            }
+        };
+        self.offset = offset;
+        instruments.offset = offset;
+        match (self.method, self.first) {
+            (ZeroingMethod::Kept, _) => Ok(Break(self.findings(instruments, self.configured, Vector3::zeros(), None))),
+            (ZeroingMethod::Pose, Some(first)) => Ok(Break(self.at_pose(instruments, &first, &offset))),
+            (ZeroingMethod::Pose, None) | (ZeroingMethod::Stops, _) => {
+                self.phase = Phase::Tighten(TakeUp::new());
+                going(Step::TakingUpSlack, 0.25, Activity::Turn(Vector4::zeros()))
+            }
+        }
+    }
+
+    pub(super) fn take_up_slack(&mut self, mut take_up: TakeUp, instruments: &Instruments, sample: &Sample) -> Stepped {
+        if let Some(activity) = take_up.step(instruments, sample)? {
+            self.phase = Phase::Tighten(take_up);
+            return going(Step::TakingUpSlack, 0.25, activity);
+        }
+        if self.method == ZeroingMethod::Pose {
+            self.phase = Phase::Try(Grip::new(instruments, sample, self.torque));
+            return going(Step::TryingPose, 0.3, Activity::Tighten(instruments.offset));
+        }
+        let lead = JointLead::new(instruments, sample, self.torque);
+        self.phase = self.search_lower(0, lead);
+        going(Step::SeekingStops, 0.3, lead.activity(instruments, sample))
+    }
+}
