@@ -1,11 +1,14 @@
 //! Which way motors, encoders and gauges count, when nothing is known about it.
 //!
-//! First every motor is given a short push: command and count agree or disagree, and from then on every motor can be held
-//! where it is, whichever way that pulls. Then one motor after the other turns to and fro with the rest held. On one side the
-//! tensions grow, on the other they are gone: that is in and out. A free finger shares every pull among all its tendons (its
-//! tensions stay along the null vector of R), so all gauges answer to every motor.
+//! First every motor is given a short push: command and count agree or disagree, and from then on every motor can be
+//! held where it is, whichever way that pulls. Then one motor after the other turns to and fro with the rest held. On
+//! one side the tensions grow, on the other they are gone: that is in and out. A free finger shares every pull among
+//! all its tendons (its tensions stay along the null vector of R), so all gauges answer to every motor.
 
-use super::average::Average;
+mod pushes;
+mod sweep;
+mod sweeping;
+
 use super::findings::{Findings, Signs};
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
@@ -15,39 +18,13 @@ use crate::control::signals::{Activity, Feedback};
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 use std::ops::ControlFlow::{Break, Continue};
-
-/// A push counts when its motor has turned so far, cm at the tendon.
-const TURNED: f64 = 0.005;
-/// Pushes begin at this part of t_min and grow by a factor until the motor turns; N at the tendon.
-const FIRST_PUSH: f64 = 0.4;
-const GROWTH: f64 = 1.3;
-const HARDEST_PUSH: f64 = 2.0;
-/// Seconds of a push and of the pause after it.
-const PUSH: f64 = 0.1;
-/// Seconds at rest before anything is measured.
-const REST: f64 = 0.2;
+use sweep::Sweep;
 
 /// Holding a motor: N/cm, N s/cm, largest pull in t_min, corner of the speed in 1/s.
 const HOLD: f64 = 150.0;
 const DAMPING: f64 = 2.0;
 const STRONGEST_HOLD: f64 = 1.2;
 const SPEED_CORNER: f64 = 1000.0;
-/// A motor that lags so far behind has stalled, cm and part of the way.
-const STALLED: (f64, f64) = (0.03, 0.25);
-
-/// The way of a motor to each side, cm: first and longest. It is doubled until one side is tight and the other slack.
-const FIRST_WAY: f64 = 0.05;
-const LONGEST_WAY: f64 = 1.0;
-/// cm/s.
-const SPEED: f64 = 0.5;
-/// Stops on the way, parts of it.
-const PLACES: [f64; 5] = [0.5, 1.0, -0.5, -1.0, 0.0];
-/// Seconds at each: settling, then reading.
-const SETTLING: f64 = 0.15;
-const READING: f64 = 0.1;
-/// Change over the outer half of a way, N: from here on it is tight; up to here it is slack.
-const TIGHT: f64 = 0.5;
-const SLACK: f64 = 0.25;
 
 #[derive(Clone, Debug)]
 pub(super) struct SignSearch {
@@ -70,7 +47,7 @@ pub(super) struct SignSearch {
     phase: Phase,
 }
 
-// No heap in the servo: the largest phase takes its room.
+// The servo does not use the heap, so every phase has the size of the largest one.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug)]
 enum Phase {
@@ -88,26 +65,6 @@ enum Phase {
     Sweep(Sweep),
     /// Every sign is known.
     Wiring(Wiring),
-}
-
-/// One motor to and fro.
-#[derive(Clone, Copy, Debug)]
-struct Sweep {
-    centre: f64,
-    way: f64,
-    place: usize,
-    /// At the place, s.
-    seconds: f64,
-    gauges: Average,
-    read: [Vector4<f64>; 4],
-    stalled: [bool; 4],
-}
-
-impl Sweep {
-    fn new(centre: f64, way: f64) -> Self {
-        let read = [Vector4::zeros(); 4];
-        Self { centre, way, place: 0, seconds: 0.0, gauges: Average::default(), read, stalled: [false; 4] }
-    }
 }
 
 impl SignSearch {
@@ -131,85 +88,31 @@ impl SignSearch {
         }
     }
 
+    /// Runs one cycle of the current phase. Every motor is pushed after a rest, then every motor sweeps, then the
+    /// wiring is checked.
     pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> Stepped {
         let way = self.measure(instruments, sample.feedback);
-        let motor = self.motor;
-        let minimum = instruments.minimum;
-        let sweeping = matches!(self.phase, Phase::Sweep(_) | Phase::Wiring(_));
-        let part = motor as f64 * if sweeping { 0.22 } else { 0.03 } + if sweeping { 0.12 } else { 0.0 };
-        let mut torques = Vector4::zeros();
-        match &mut self.phase {
-            Phase::Rest { seconds } => {
-                *seconds += instruments.period;
-                if *seconds > REST {
-                    self.phase = Phase::Push { seconds: 0.0, push: FIRST_PUSH * minimum, from: way };
-                }
-            }
-            &mut Phase::Push { ref mut seconds, push, from } => {
-                *seconds += instruments.period;
-                let moved = way - from;
-                if moved[motor].abs() > TURNED {
-                    self.agrees[motor] = moved[motor].signum();
-                    self.phase = Phase::Pause { seconds: 0.0 };
-                } else if moved.amax() > TURNED {
-                    let encoder = moved.iamax() as u8 + 1;
-                    return Err(Obstacle::SwappedMotor { motor: motor as u8 + 1, encoder });
-                } else if *seconds > PUSH {
-                    let push = push * GROWTH;
-                    if push > HARDEST_PUSH * minimum {
-                        return Err(Obstacle::MotorStuck { motor: motor as u8 + 1 });
-                    }
-                    self.phase = Phase::Push { seconds: 0.0, push, from };
-                } else {
-                    torques[motor] = push * instruments.radius[motor];
-                }
-            }
-            Phase::Pause { seconds } => {
-                *seconds += instruments.period;
-                if *seconds > PUSH {
-                    self.motor = (motor + 1) % 4;
-                    self.phase = if motor < 3 {
-                        Phase::Push { seconds: 0.0, push: FIRST_PUSH * minimum, from: way }
-                    } else {
-                        self.target = way;
-                        Phase::Sweep(Sweep::new(way[0], FIRST_WAY))
-                    };
-                }
-            }
-            &mut Phase::Sweep(mut sweep) => {
-                let mut next = None;
-                if self.advance(&mut sweep, instruments, sample, &way) {
-                    if let Some(side) = sweep.tight_side() {
-                        self.tightens[motor] = side;
-                        self.note_gauges(&sweep, side)?;
-                        // Left on the tight side: it takes some slack out for the motors that follow.
-                        self.target[motor] = sweep.centre + 0.5 * side * sweep.way;
-                        if motor == 3 {
-                            next = Some(Phase::Wiring(Wiring::new()));
-                        } else {
-                            self.motor += 1;
-                            sweep = Sweep::new(self.target[motor + 1], FIRST_WAY);
-                        }
-                    } else if sweep.way * 2.0 > LONGEST_WAY {
-                        return Err(Obstacle::NothingTightens { motor: motor as u8 + 1 });
-                    } else {
-                        sweep = Sweep::new(sweep.centre, sweep.way * 2.0);
-                    }
-                }
-                self.phase = next.unwrap_or(Phase::Sweep(sweep));
-                torques = self.hold(instruments, &way);
-            }
-            Phase::Wiring(wiring) => {
-                let scale = self.newton_per_count.component_mul(&Vector4::from(self.gauges));
-                let tensions = Vector4::from(sample.feedback.gauge_counts.map(f64::from)).component_mul(&scale);
-                let Some(jerk) = wiring.step(instruments, &tensions)? else {
-                    return self.findings().map(Break);
-                };
-                let inward = Vector4::from(self.agrees).component_mul(&Vector4::from(self.tightens));
-                torques = self.hold(instruments, &way) + jerk.component_mul(&inward).component_mul(&instruments.radius);
-            }
+        let progress = Progress { step: Step::TryingMotors, part: self.part() };
+        let torques = match self.phase {
+            Phase::Rest { seconds } => self.rest(seconds, instruments, &way),
+            Phase::Push { seconds, push, from } => self.push_motor(seconds, push, &from, instruments, &way)?,
+            Phase::Pause { seconds } => self.pause(seconds, instruments, &way),
+            Phase::Sweep(sweep) => self.sweep_motor(sweep, instruments, sample, &way)?,
+            Phase::Wiring(wiring) => match self.check_wiring(wiring, instruments, sample, &way)? {
+                Some(torques) => torques,
+                None => return self.findings().map(Break),
+            },
+        };
+        Ok(Continue((Activity::Turn(torques), progress)))
+    }
+
+    /// The part of the routine that is done, roughly.
+    fn part(&self) -> f64 {
+        let motor = self.motor as f64;
+        match self.phase {
+            Phase::Sweep(_) | Phase::Wiring(_) => motor * 0.22 + 0.12,
+            Phase::Rest { .. } | Phase::Push { .. } | Phase::Pause { .. } => motor * 0.03,
         }
-        Ok(Continue((Activity::Turn(torques), Progress { step: Step::TryingMotors, part })))
     }
 
     /// Way of every motor since the beginning, cm of rising count.
@@ -231,44 +134,21 @@ impl SignSearch {
         pulls.component_mul(&Vector4::from(self.agrees)).component_mul(&instruments.radius)
     }
 
-    /// Moves the motor on; whether it has been everywhere.
-    fn advance(&mut self, sweep: &mut Sweep, instruments: &Instruments, sample: &Sample, way: &Vector4<f64>) -> bool {
-        let motor = self.motor;
-        let aim = sweep.centre + PLACES[sweep.place] * sweep.way;
-        let step = SPEED * instruments.period;
-        self.target[motor] += (aim - self.target[motor]).clamp(-step, step);
-        if self.target[motor] != aim {
-            return false;
-        }
-        sweep.seconds += instruments.period;
-        if sweep.seconds > SETTLING {
-            sweep.gauges.add(Vector4::from(sample.feedback.gauge_counts.map(f64::from)));
-        }
-        if sweep.seconds < SETTLING + READING {
-            return false;
-        }
-        if let Some(read) = sweep.read.get_mut(sweep.place) {
-            *read = sweep.gauges.mean().component_mul(&self.newton_per_count);
-            sweep.stalled[sweep.place] = (aim - way[motor]).abs() > STALLED.0 + STALLED.1 * sweep.way;
-        }
-        (sweep.place, sweep.seconds, sweep.gauges) = (sweep.place + 1, 0.0, Average::default());
-        sweep.place == PLACES.len()
-    }
-
-    /// Which way the gauges went between the slack end and the tight one.
-    fn note_gauges(&mut self, sweep: &Sweep, side: f64) -> Result<(), Obstacle> {
-        let change = (sweep.read[1] - sweep.read[3]) * side;
-        for gauge in 0..4 {
-            if change[gauge].abs() < TIGHT {
-                continue;
-            }
-            let sign = change[gauge].signum();
-            if self.gauges[gauge] == -sign {
-                return Err(Obstacle::SenselessGauge { tendon: gauge as u8 + 1 });
-            }
-            self.gauges[gauge] = sign;
-        }
-        Ok(())
+    /// The torques that jerk one motor after the other inward, N cm; none when the wiring is found to be right.
+    fn check_wiring(
+        &mut self,
+        mut wiring: Wiring,
+        instruments: &Instruments,
+        sample: &Sample,
+        way: &Vector4<f64>,
+    ) -> Result<Option<Vector4<f64>>, Obstacle> {
+        let scale = self.newton_per_count.component_mul(&Vector4::from(self.gauges));
+        let tensions = Vector4::from(sample.feedback.gauge_counts.map(f64::from)).component_mul(&scale);
+        let jerk = wiring.step(instruments, &tensions)?;
+        self.phase = Phase::Wiring(wiring);
+        let inward = Vector4::from(self.agrees).component_mul(&Vector4::from(self.tightens));
+        let torques = |jerk: Vector4<f64>| jerk.component_mul(&inward).component_mul(&instruments.radius);
+        Ok(jerk.map(|jerk| self.hold(instruments, way) + torques(jerk)))
     }
 
     fn findings(&self) -> Result<Findings, Obstacle> {
@@ -281,22 +161,5 @@ impl SignSearch {
             encoder: self.tightens.map(whole),
             gauge: self.gauges.map(whole),
         }))
-    }
-}
-
-impl Sweep {
-    /// +1 or -1: the side, in counts, on which the tensions grow while they are gone on the other; none where that is not
-    /// so clear.
-    fn tight_side(&self) -> Option<f64> {
-        let change = |inner: usize, outer: usize| (self.read[outer] - self.read[inner]).amax();
-        let tight = |inner, outer: usize| change(inner, outer) > TIGHT || self.stalled[outer];
-        let slack = |inner, outer: usize| change(inner, outer) < SLACK && !self.stalled[outer];
-        if tight(0, 1) && slack(2, 3) {
-            Some(1.0)
-        } else if tight(2, 3) && slack(0, 1) {
-            Some(-1.0)
-        } else {
-            None
-        }
     }
 }

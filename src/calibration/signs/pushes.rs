@@ -1,0 +1,79 @@
+//! Short pushes that show which way each motor's count goes for its command.
+
+use super::sweep::Sweep;
+use super::{Phase, SignSearch};
+use crate::calibration::instruments::Instruments;
+use crate::calibration::obstacle::Obstacle;
+use nalgebra::Vector4;
+
+/// A push counts when its motor has turned so far, cm at the tendon.
+const TURNED: f64 = 0.005;
+/// Pushes begin at this part of t_min and grow by a factor until the motor turns; N at the tendon.
+const FIRST_PUSH: f64 = 0.4;
+const GROWTH: f64 = 1.3;
+const HARDEST_PUSH: f64 = 2.0;
+/// Seconds of a push and of the pause after it.
+const PUSH: f64 = 0.1;
+/// Seconds at rest before anything is measured.
+const REST: f64 = 0.2;
+
+impl SignSearch {
+    /// The finger comes to rest before the first push. Like the other phases, it returns the motor torques, N cm.
+    pub(super) fn rest(&mut self, seconds: f64, instruments: &Instruments, way: &Vector4<f64>) -> Vector4<f64> {
+        let seconds = seconds + instruments.period;
+        self.phase = if seconds > REST { first_push(instruments, way) } else { Phase::Rest { seconds } };
+        Vector4::zeros()
+    }
+
+    /// Pushes the motor until its count changes, with a harder push each time.
+    pub(super) fn push_motor(
+        &mut self,
+        seconds: f64,
+        push: f64,
+        from: &Vector4<f64>,
+        instruments: &Instruments,
+        way: &Vector4<f64>,
+    ) -> Result<Vector4<f64>, Obstacle> {
+        let motor = self.motor;
+        let seconds = seconds + instruments.period;
+        let moved = way - from;
+        let mut torques = Vector4::zeros();
+        self.phase = if moved[motor].abs() > TURNED {
+            self.agrees[motor] = moved[motor].signum();
+            Phase::Pause { seconds: 0.0 }
+        } else if moved.amax() > TURNED {
+            let encoder = moved.iamax() as u8 + 1;
+            return Err(Obstacle::SwappedMotor { motor: motor as u8 + 1, encoder });
+        } else if seconds > PUSH {
+            let push = push * GROWTH;
+            if push > HARDEST_PUSH * instruments.minimum {
+                return Err(Obstacle::MotorStuck { motor: motor as u8 + 1 });
+            }
+            Phase::Push { seconds: 0.0, push, from: *from }
+        } else {
+            torques[motor] = push * instruments.radius[motor];
+            Phase::Push { seconds, push, from: *from }
+        };
+        Ok(torques)
+    }
+
+    /// The motor that was pushed comes to rest before the next one is pushed, or before the first one sweeps.
+    pub(super) fn pause(&mut self, seconds: f64, instruments: &Instruments, way: &Vector4<f64>) -> Vector4<f64> {
+        let seconds = seconds + instruments.period;
+        self.phase = if seconds <= PUSH {
+            Phase::Pause { seconds }
+        } else if self.motor < 3 {
+            self.motor += 1;
+            first_push(instruments, way)
+        } else {
+            self.motor = 0;
+            self.target = *way;
+            Phase::Sweep(Sweep::first(way[0]))
+        };
+        Vector4::zeros()
+    }
+}
+
+fn first_push(instruments: &Instruments, way: &Vector4<f64>) -> Phase {
+    Phase::Push { seconds: 0.0, push: FIRST_PUSH * instruments.minimum, from: *way }
+}

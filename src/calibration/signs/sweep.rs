@@ -1,0 +1,92 @@
+//! The readings of one motor that turns to and fro.
+
+use crate::calibration::average::Average;
+use nalgebra::Vector4;
+
+/// The way of a motor to each side, cm: first and longest. It is doubled until one side is tight and the other slack.
+const FIRST_WAY: f64 = 0.05;
+const LONGEST_WAY: f64 = 1.0;
+/// Stops on the way, parts of it.
+const PLACES: [f64; 5] = [0.5, 1.0, -0.5, -1.0, 0.0];
+/// Seconds at each: settling, then reading.
+const SETTLING: f64 = 0.15;
+const READING: f64 = 0.1;
+/// A motor that lags so far behind has stalled, cm and part of the way.
+const STALLED: (f64, f64) = (0.03, 0.25);
+/// Change over the outer half of a way, N: from here on it is tight; up to here it is slack.
+pub(super) const TIGHT: f64 = 0.5;
+const SLACK: f64 = 0.25;
+
+/// One motor to and fro.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sweep {
+    pub centre: f64,
+    pub way: f64,
+    place: usize,
+    /// At the place, s.
+    seconds: f64,
+    gauges: Average,
+    read: [Vector4<f64>; 4],
+    stalled: [bool; 4],
+}
+
+impl Sweep {
+    /// The shortest sweep about `centre`, cm.
+    pub fn first(centre: f64) -> Self {
+        Self::new(centre, FIRST_WAY)
+    }
+
+    /// A sweep of twice the way; none where that would be too long.
+    pub fn wider(&self) -> Option<Self> {
+        let way = self.way * 2.0;
+        (way <= LONGEST_WAY).then(|| Self::new(self.centre, way))
+    }
+
+    fn new(centre: f64, way: f64) -> Self {
+        let read = [Vector4::zeros(); 4];
+        Self { centre, way, place: 0, seconds: 0.0, gauges: Average::default(), read, stalled: [false; 4] }
+    }
+
+    /// Where the motor is to be now, cm.
+    pub fn aim(&self) -> f64 {
+        self.centre + PLACES[self.place] * self.way
+    }
+
+    /// Takes in a cycle at the place: raw counts of the gauges, with newtons of a count, and how far the motor lags
+    /// behind, cm. Returns whether the motor has been at every place.
+    pub fn dwell(&mut self, period: f64, counts: [u16; 4], newton_per_count: &Vector4<f64>, lag: f64) -> bool {
+        self.seconds += period;
+        if self.seconds > SETTLING {
+            self.gauges.add(Vector4::from(counts.map(f64::from)));
+        }
+        if self.seconds < SETTLING + READING {
+            return false;
+        }
+        if let Some(read) = self.read.get_mut(self.place) {
+            *read = self.gauges.mean().component_mul(newton_per_count);
+            self.stalled[self.place] = lag > STALLED.0 + STALLED.1 * self.way;
+        }
+        (self.place, self.seconds, self.gauges) = (self.place + 1, 0.0, Average::default());
+        self.place == PLACES.len()
+    }
+
+    /// How the gauges differ between the far ends of the way, N.
+    pub fn change_between_ends(&self) -> Vector4<f64> {
+        self.read[1] - self.read[3]
+    }
+
+    /// The side, in counts, on which the tensions grow while they are gone on the other: +1 or -1. There is none where
+    /// the difference is not clear.
+    pub fn tight_side(&self) -> Option<f64> {
+        let change = |inner: usize, outer: usize| (self.read[outer] - self.read[inner]).amax();
+        let tight = |inner, outer: usize| change(inner, outer) > TIGHT || self.stalled[outer];
+        let slack = |inner, outer: usize| change(inner, outer) < SLACK && !self.stalled[outer];
+        if tight(0, 1) && slack(2, 3) {
+            Some(1.0)
+        } else if tight(2, 3) && slack(0, 1) {
+            Some(-1.0)
+        } else {
+            None
+        }
+    }
+}

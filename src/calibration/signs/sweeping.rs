@@ -1,0 +1,76 @@
+//! Sweeps of one motor after the other, which show which way tightens and which way the gauges count.
+
+use super::sweep::{Sweep, TIGHT};
+use super::{Phase, SignSearch};
+use crate::calibration::instruments::Instruments;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::step::Sample;
+use crate::calibration::wiring::Wiring;
+use nalgebra::Vector4;
+
+/// cm/s.
+const SPEED: f64 = 0.5;
+
+impl SignSearch {
+    /// Sweeps the motor with the others held, each time twice as far, until one side is tight and the other slack.
+    /// Returns the motor torques, N cm.
+    pub(super) fn sweep_motor(
+        &mut self,
+        mut sweep: Sweep,
+        instruments: &Instruments,
+        sample: &Sample,
+        way: &Vector4<f64>,
+    ) -> Result<Vector4<f64>, Obstacle> {
+        let complete = self.advance(&mut sweep, instruments, sample, way);
+        self.phase = if !complete {
+            Phase::Sweep(sweep)
+        } else if let Some(side) = sweep.tight_side() {
+            self.conclude(&sweep, side)?
+        } else {
+            Phase::Sweep(sweep.wider().ok_or(Obstacle::NothingTightens { motor: self.motor as u8 + 1 })?)
+        };
+        Ok(self.hold(instruments, way))
+    }
+
+    /// Notes the signs that a sweep has shown, and goes on to the next motor, or to the wiring after the last.
+    fn conclude(&mut self, sweep: &Sweep, side: f64) -> Result<Phase, Obstacle> {
+        self.tightens[self.motor] = side;
+        self.note_gauges(sweep, side)?;
+        // The motor stays on the tight side, which takes some slack out for the motors that follow.
+        self.target[self.motor] = sweep.centre + 0.5 * side * sweep.way;
+        if self.motor == 3 {
+            return Ok(Phase::Wiring(Wiring::new()));
+        }
+        self.motor += 1;
+        Ok(Phase::Sweep(Sweep::first(self.target[self.motor])))
+    }
+
+    /// Moves the motor on. Returns whether it has been at every place.
+    fn advance(&mut self, sweep: &mut Sweep, instruments: &Instruments, sample: &Sample, way: &Vector4<f64>) -> bool {
+        let motor = self.motor;
+        let aim = sweep.aim();
+        let step = SPEED * instruments.period;
+        self.target[motor] += (aim - self.target[motor]).clamp(-step, step);
+        if self.target[motor] != aim {
+            return false;
+        }
+        let lag = (aim - way[motor]).abs();
+        sweep.dwell(instruments.period, sample.feedback.gauge_counts, &self.newton_per_count, lag)
+    }
+
+    /// Which way the gauges went between the slack end and the tight one.
+    fn note_gauges(&mut self, sweep: &Sweep, side: f64) -> Result<(), Obstacle> {
+        let change = sweep.change_between_ends() * side;
+        for gauge in 0..4 {
+            if change[gauge].abs() < TIGHT {
+                continue;
+            }
+            let sign = change[gauge].signum();
+            if self.gauges[gauge] == -sign {
+                return Err(Obstacle::SenselessGauge { tendon: gauge as u8 + 1 });
+            }
+            self.gauges[gauge] = sign;
+        }
+        Ok(())
+    }
+}
