@@ -4,7 +4,7 @@ use super::{Controller, Doing, State};
 use crate::control::signals::{Report, SetPoint};
 use crate::control::spring::soft_limits::Push;
 use crate::control::spring::spring_transition::Spring;
-use crate::control::state_feedback::Decision;
+use crate::control::state_feedback::decision::Decision;
 use crate::control::tendons::tension_distribution::Distribution;
 use nalgebra::Matrix3;
 

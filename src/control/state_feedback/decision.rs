@@ -1,0 +1,181 @@
+//! What state feedback decides in a cycle: from the estimated state and the spring to the pull of every motor.
+
+use super::{StateFeedback, StateFeedbackState};
+use crate::control::spring::gravity_compensation::GravityCompensation;
+use crate::control::spring::soft_limits::SoftLimits;
+use crate::control::spring::spring_transition::Spring;
+use crate::control::state_feedback::observer::TendonMotion;
+use crate::control::state_feedback::reference::ReferenceMotion;
+use crate::control::tendons::tension_distribution::{BoundedDistribution, Distribution};
+use nalgebra::{Matrix3, Vector3, Vector4};
+
+/// What a cycle decides.
+pub(in crate::control) struct Decision {
+    /// N.
+    pub pulls: Vector4<f64>,
+    /// The part of them that is fed forward against friction, N.
+    pub against_friction: Vector4<f64>,
+    /// N cm.
+    pub joint_torques: Vector3<f64>,
+    /// With the dither, N.
+    pub desired_tensions: Vector4<f64>,
+    /// The part of the torque that the bounds let through.
+    pub torque_scale: f64,
+}
+
+/// The motion of all tendons and joints at the next sample, SI.
+struct Motion {
+    tensions: Vector4<f64>,
+    motor_speeds: Vector4<f64>,
+    /// Of the joints' side of each tendon.
+    speeds: Vector4<f64>,
+    disturbances: Vector4<f64>,
+    joints: Vector3<f64>,
+    rates: Vector3<f64>,
+}
+
+/// The dither of the tensions, N, and its rate, N/s.
+struct Shake {
+    tensions: Vector4<f64>,
+    rates: Vector4<f64>,
+}
+
+impl StateFeedback {
+    /// The pulls that make the fingertip the spring `spring`, from the next sample on. It `begins` where the finger is.
+    pub fn decide(
+        &self,
+        state: &mut StateFeedbackState,
+        spring: &Spring,
+        begins: bool,
+        limits: &SoftLimits,
+        gravity: &GravityCompensation,
+        distribution: &BoundedDistribution,
+    ) -> Decision {
+        if begins {
+            self.begin_without_deflection(state);
+        }
+        let now = self.motion_at_next_sample(state);
+        let reference = self.follow(state, &spring.joints);
+        let spring = Spring { joints: reference.joints, ..*spring };
+        let inertia = self.dynamics.inertia(&state.joints);
+        let joint_torques = self.joint_torques(state, &now, &spring, &reference, &inertia, (limits, gravity)) * 100.0;
+        let Distribution { tensions: distributed, scale: torque_scale } = distribution.distribute(&joint_torques);
+        if begins {
+            state.transition.begin(&now.tensions, &distributed);
+        }
+        let shake = self.shake(state);
+        let desired_tensions = distributed + shake.tensions;
+        let error = desired_tensions + state.transition.advance(self.period) - now.tensions;
+        let against_friction = self.friction.pulls(&now.motor_speeds, &now.tensions);
+        let pulls = self.forces(&now, &error, &reference, &inertia, &shake) + against_friction;
+        Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale }
+    }
+
+    fn begin_without_deflection(&self, state: &mut StateFeedbackState) {
+        state.anchor = state.joints;
+        state.reference = self.reference.start(&state.joints);
+        state.drift = Vector3::zeros();
+        state.dither = self.dither.start();
+    }
+
+    fn motion_at_next_sample(&self, state: &StateFeedbackState) -> Motion {
+        let motion: [TendonMotion; 4] = std::array::from_fn(|tendon| self.motion(state, tendon));
+        let of = |part: fn(&TendonMotion) -> f64| Vector4::from_fn(|tendon, _| part(&motion[tendon]));
+        let speeds = of(|motion| motion.speed);
+        Motion {
+            tensions: of(|motion| motion.tension),
+            motor_speeds: of(|motion| motion.motor_speed),
+            speeds,
+            disturbances: of(|motion| motion.disturbance),
+            joints: self.pseudo_inverse.tr_mul(&of(|motion| motion.travel)),
+            rates: self.pseudo_inverse.tr_mul(&speeds),
+        }
+    }
+
+    /// Moves the reference on toward the set point, rad.
+    fn follow(&self, state: &mut StateFeedbackState, set_point: &Vector3<f64>) -> ReferenceMotion {
+        self.slew.advance(&mut state.anchor, set_point);
+        let reference = self.reference.advance(&mut state.reference, &state.anchor);
+        state.jerk = reference.jerk;
+        reference
+    }
+
+    /// The torque of the spring, its damper and the reference's motion, N m.
+    fn joint_torques(
+        &self,
+        state: &mut StateFeedbackState,
+        now: &Motion,
+        spring: &Spring,
+        reference: &ReferenceMotion,
+        inertia: &Matrix3<f64>,
+        (limits, gravity): (&SoftLimits, &GravityCompensation),
+    ) -> Vector3<f64> {
+        let push = limits.push(&now.joints);
+        let k_theta =
+            self.joint_stiffness.joint_stiffness(spring, &now.joints) + Matrix3::from_diagonal(&push.stiffness);
+        let k_theta = k_theta * 0.01;
+        let felt = self.felt_motors + inertia;
+        let damped = self.damped_motors + inertia;
+        let damping = self.damping.damping(&damped, inertia, &k_theta, spring.damping);
+        let rubbing = self.rubbing(state, &now.rates, &reference.rates, &damping);
+        let held = self.joint_stiffness.spring(spring, &now.joints) + push.torque + gravity.torques(&now.joints);
+        held * 0.01 - damping * (now.rates - reference.rates)
+            + felt * reference.accelerations
+            + self.dynamics.coriolis(&now.joints, &reference.rates)
+            + self.joint_viscous.component_mul(&reference.rates)
+            + rubbing
+    }
+
+    /// The Coulomb friction of the joints that is fed forward, N m, at no higher rate than the damping allows.
+    fn rubbing(
+        &self,
+        state: &mut StateFeedbackState,
+        rates: &Vector3<f64>,
+        reference_rates: &Vector3<f64>,
+        damping: &Matrix3<f64>,
+    ) -> Vector3<f64> {
+        state.drift += (rates - reference_rates - state.drift) * self.drift_gain;
+        let moving = reference_rates + state.drift;
+        Vector3::from_fn(|joint, _| {
+            let most = self.joint_coulomb[joint];
+            (self.rubbing * damping[(joint, joint)] * moving[joint]).clamp(-most, most)
+        })
+    }
+
+    fn shake(&self, state: &mut StateFeedbackState) -> Shake {
+        let (shake, quarter_ahead) = self.dither.advance(&mut state.dither);
+        Shake {
+            tensions: self.pseudo_inverse * shake,
+            rates: self.pseudo_inverse * quarter_ahead * self.dither.frequency,
+        }
+    }
+
+    /// The pulls, N, that make the tendons force sources, without what cancels friction. What the reference and the
+    /// dither ask of the motors is fed forward.
+    fn forces(
+        &self,
+        now: &Motion,
+        error: &Vector4<f64>,
+        reference: &ReferenceMotion,
+        inertia: &Matrix3<f64>,
+        shake: &Shake,
+    ) -> Vector4<f64> {
+        let tension_rates = self.pseudo_inverse * (inertia * reference.jerk);
+        let tension_accelerations = self.pseudo_inverse * (inertia * reference.snap);
+        let motor_rates = self.r.tr_mul(&reference.rates);
+        let omega_squared = self.dither.frequency * self.dither.frequency;
+        let error = self.softer_in_common(error, self.common_gain);
+        // The share of the joints' speed must be exactly 1: with 0.94 it was a drag of three times D.
+        let stretching = now.motor_speeds - now.speeds - (tension_rates + shake.rates).component_div(&self.stiffness);
+        let stretching = self.softer_in_common(&stretching, self.common_damping);
+        let yielding = (tension_accelerations - shake.tensions * omega_squared).component_div(&self.stiffness);
+        now.tensions + error * self.inertia_gain - stretching * self.relative_damping - now.disturbances
+            + self.viscous.component_mul(&motor_rates)
+            + self.mass.component_mul(&yielding)
+    }
+
+    /// `values` with this part of what the tendons have in common.
+    fn softer_in_common(&self, values: &Vector4<f64>, part: f64) -> Vector4<f64> {
+        values + self.common * (self.common.dot(values) * (part - 1.0))
+    }
+}
