@@ -182,6 +182,16 @@
    Undefined: to jump out of any other call, and to leave any call by pthread_exit or by
    an exception in a signal handler.
 
+   Memory: OpenHand takes what the servos, CloseHand and all other calls need. Where
+   malloc returns NULL afterwards the hand goes on, these calls work, and CloseHand closes
+   it. OpenHand (12 MiB), RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger and
+   WriteBlackBox (4 MiB) are refused with ENOMEM where so much is not free. If memory runs
+   out while one of them is at work, the process is aborted, and the boards end the
+   motion. A fault whose black box finds no 4 MiB free is reported without one, and a line
+   on standard error says so. In a library that was loaded with dlopen, the first call of
+   a thread needs memory for its thread-local data; without that the C library aborts the
+   process.
+
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the
    planner's next cancellation point; with asynchronous cancellation, when the call
    returns.

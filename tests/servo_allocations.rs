@@ -1,4 +1,4 @@
-//! No allocation in the servo loop: an allocator that counts what the servo threads ask for.
+//! No allocation in the servo loop, nor in the thread that collects its reports: an allocator that counts what they ask for.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -6,6 +6,7 @@ use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 
 static BY_SERVOS: AtomicU64 = AtomicU64::new(0);
+static BY_REPORTS: AtomicU64 = AtomicU64::new(0);
 static BY_OTHERS: AtomicU64 = AtomicU64::new(0);
 
 struct Counting;
@@ -17,7 +18,12 @@ fn count() {
     let mut name = [0u8; 16];
     // SAFETY: PR_GET_NAME writes at most 16 bytes.
     unsafe { libc::prctl(libc::PR_GET_NAME, name.as_mut_ptr()) };
-    if name.starts_with(b"sun2xp servo") { &BY_SERVOS } else { &BY_OTHERS }.fetch_add(1, Relaxed);
+    let counter = match &name {
+        name if name.starts_with(b"sun2xp servo") => &BY_SERVOS,
+        name if name.starts_with(b"sun2xp reports") => &BY_REPORTS,
+        _ => &BY_OTHERS,
+    };
+    counter.fetch_add(1, Relaxed);
 }
 
 // SAFETY: everything is passed on to the system's allocator.
@@ -44,8 +50,11 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     let hand = Hand::open(Configuration::default()).expect("the simulated hand");
     assert!(BY_SERVOS.load(Relaxed) > 0, "starting a thread allocates: the counter must see it");
     let before = BY_SERVOS.load(Relaxed);
+    // With the black boxes empty, and for longer than they need to fill: where memory has run out an allocation ends the process.
+    let reports_before = BY_REPORTS.load(Relaxed);
+    assert!(reports_before > 0, "the counter must see the thread that collects reports");
     let cycles = |finger| hand.report(finger).expect("a report").losses.cycles;
-    let end = cycles(1) + 1000;
+    let end = cycles(1) + 3000;
     let mut others = BY_OTHERS.load(Relaxed);
     for step in 0u32.. {
         // Commands and reports all the while, moving the finger and its stiffness.
@@ -59,6 +68,7 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
         std::thread::yield_now();
     }
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads");
+    assert_eq!(BY_REPORTS.load(Relaxed), reports_before, "allocations in the thread that collects reports");
     others = BY_OTHERS.load(Relaxed) - others;
     assert!(others < 100, "the planner's calls allocate: {others}");
     // A new controller is made by the planner and only copied by the servo.

@@ -3,7 +3,7 @@
 // The names of the header.
 #![allow(non_snake_case)]
 
-use crate::capi::boundary::{delegated, guarded};
+use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
 use crate::capi::default_hand;
 use crate::capi::memory::{fill, non_null, size_up_to};
 use crate::capi::refusal::Wanted;
@@ -130,7 +130,7 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 ///     WriteBlackBox(1, "finger-1.jsonl");
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn WriteBlackBox(i: c_int, Path: *const c_char) -> c_int {
-    delegated("WriteBlackBox", || {
+    delegated("WriteBlackBox", MEMORY_OF_CALL, || {
         non_null(Path, "Path", Wanted::FileName)?;
         // SAFETY: not null, and a C string by the manual's contract.
         let path = PathBuf::from(OsStr::from_bytes(unsafe { CStr::from_ptr(Path) }.to_bytes()));

@@ -8,10 +8,19 @@ use crate::capi::forked::is_forked_child;
 use crate::capi::process;
 use crate::capi::refusal::{Refusal, refuse};
 use crate::hand::HandError;
-use crate::realtime::{DeferredCancellation, Environment, Errand, NoCancellation, SignalsBlocked};
+use crate::realtime::{DeferredCancellation, Environment, Errand, NoCancellation, SignalsBlocked, is_memory_free};
 use std::ffi::c_int;
 use std::mem::ManuallyDrop;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// The memory that OpenHand may need, with the black boxes.
+pub(super) const MEMORY_OF_HAND: usize = 12 << 20;
+
+/// The memory that a slow call on an open hand may need: a black box takes most.
+pub(super) const MEMORY_OF_CALL: usize = 4 << 20;
+
+/// The memory that a thread for a call may need.
+const MEMORY_OF_THREAD: usize = 64 * 1024;
 
 /// Runs a quick call: 0 where it is done, -1 where it is refused. `call` must have no cancellation point.
 #[inline(always)]
@@ -26,15 +35,19 @@ pub(super) fn guarded(name: &'static str, call: impl FnOnce() -> Result<(), Refu
 }
 
 /// Runs a slow call in a thread of its own: 0 where it is done, -1 where it is refused. `prepare` copies the arguments in the
-/// planner's thread.
+/// planner's thread. The call is refused where less than `memory` is free, bytes.
 #[inline(always)]
 pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
     name: &'static str,
+    memory: usize,
     prepare: impl FnOnce() -> Result<C, Refusal>,
 ) -> c_int {
     uncancelled(|| {
         let blocked = SignalsBlocked::all();
         waited_for(name, &blocked, || {
+            if !is_memory_free(memory) {
+                return Err(Refusal::NoMemory);
+            }
             // With the signals of faults let in: it reads the planner's memory.
             let call = blocked.faults_let_in(prepare)?;
             let start = |source| HandError::System { doing: "start a thread for this call", source };
@@ -44,19 +57,22 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
     })
 }
 
-/// Runs a slow call as [`delegated`] does, but in the planner's thread where the system refuses another: for what must not fail.
+/// Runs a slow call as [`delegated`] does, but in the planner's thread where there is no memory for another or the system refuses
+/// it: for what must not fail.
 #[inline(always)]
 pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<(), Refusal>) -> c_int {
     uncancelled(|| {
         let blocked = SignalsBlocked::all();
-        waited_for(name, &blocked, || match Errand::begin(&blocked, move || caught(call)) {
-            Ok(errand) => errand.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked)),
-            Err(_) => {
-                let _whole = NoCancellation::begin();
-                let environment = Environment::enter_default();
-                let closed = caught(call);
-                environment.restore();
-                closed
+        waited_for(name, &blocked, || {
+            match is_memory_free(MEMORY_OF_THREAD).then(|| Errand::begin(&blocked, move || caught(call))) {
+                Some(Ok(errand)) => errand.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked)),
+                _ => {
+                    let _whole = NoCancellation::begin();
+                    let environment = Environment::enter_default();
+                    let closed = caught(call);
+                    environment.restore();
+                    closed
+                }
             }
         })
     })
@@ -174,15 +190,26 @@ mod tests {
             Some("sun2xp call") => Ok(()),
             _ => Err(Refusal::Busy),
         };
-        assert_eq!((delegated("OpenHand", || Ok(elsewhere)), process::errno()), (0, libc::E2BIG), "{}", told());
+        assert_eq!(
+            (delegated("OpenHand", MEMORY_OF_CALL, || Ok(elsewhere)), process::errno()),
+            (0, libc::E2BIG),
+            "{}",
+            told()
+        );
         let none = || -> Result<fn() -> Result<(), Refusal>, Refusal> {
             Err(Refusal::SmallStruct { name: "Fault", size: 1, least: 2 })
         };
-        assert_eq!((delegated("WriteBlackBox", none), process::errno()), (-1, libc::EINVAL));
+        assert_eq!((delegated("WriteBlackBox", MEMORY_OF_CALL, none), process::errno()), (-1, libc::EINVAL));
         assert!(told().starts_with("WriteBlackBox: Fault->Size is 1"));
-        assert_eq!((delegated("OpenHand", || Ok(|| Err(Refusal::NoHand))), process::errno()), (-1, libc::ENODEV));
+        assert_eq!(
+            (delegated("OpenHand", MEMORY_OF_CALL, || Ok(|| Err(Refusal::NoHand))), process::errno()),
+            (-1, libc::ENODEV)
+        );
         assert!(told().starts_with("OpenHand: no hand is open"));
-        assert_eq!((delegated("OpenHand", || Ok(|| panic!("a defect"))), process::errno()), (-1, libc::EIO));
+        assert_eq!(
+            (delegated("OpenHand", MEMORY_OF_CALL, || Ok(|| panic!("a defect"))), process::errno()),
+            (-1, libc::EIO)
+        );
         assert!(told().starts_with("OpenHand: the library failed (a defect)"));
         assert_eq!(delegated_or_done_here("CloseHand", || Err(Refusal::Busy)), -1);
         assert_eq!(process::errno(), libc::EBUSY);

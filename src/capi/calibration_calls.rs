@@ -4,7 +4,7 @@
 #![allow(non_snake_case)]
 
 use crate::calibration::Task;
-use crate::capi::boundary::delegated;
+use crate::capi::boundary::{MEMORY_OF_CALL, delegated};
 use crate::capi::default_hand;
 use std::ffi::c_int;
 
@@ -57,7 +57,7 @@ use std::ffi::c_int;
 ///         fprintf(stderr, "%s\n", HandError());
 #[unsafe(no_mangle)]
 pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
-    delegated("ZeroFinger", || Ok(move || default_hand::calibrate(i, Task::Zero)))
+    delegated("ZeroFinger", MEMORY_OF_CALL, || Ok(move || default_hand::calibrate(i, Task::Zero)))
 }
 
 /// IdentifyFinger - measure gauge gains, friction and tendon stiffness of a finger
@@ -78,5 +78,5 @@ pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
 /// Threads: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn IdentifyFinger(i: c_int) -> c_int {
-    delegated("IdentifyFinger", || Ok(move || default_hand::calibrate(i, Task::Identify)))
+    delegated("IdentifyFinger", MEMORY_OF_CALL, || Ok(move || default_hand::calibrate(i, Task::Identify)))
 }

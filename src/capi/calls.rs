@@ -5,7 +5,7 @@
 // The names of 1990.
 #![allow(non_snake_case)]
 
-use crate::capi::boundary::{delegated, delegated_or_done_here, guarded, uncancelled};
+use crate::capi::boundary::{MEMORY_OF_HAND, delegated, delegated_or_done_here, guarded, uncancelled};
 use crate::capi::default_hand;
 use crate::capi::memory::{load, non_null};
 use crate::capi::refusal::{self, Wanted};
@@ -41,7 +41,7 @@ use std::ffi::{c_char, c_int};
 ///     }
 #[unsafe(no_mangle)]
 pub extern "C" fn OpenHand() -> c_int {
-    delegated("OpenHand", || Ok(default_hand::open))
+    delegated("OpenHand", MEMORY_OF_HAND, || Ok(default_hand::open))
 }
 
 /// CloseHand - stop the hand

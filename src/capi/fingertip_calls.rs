@@ -4,7 +4,7 @@
 // Named like the calls of 1990.
 #![allow(non_snake_case)]
 
-use crate::capi::boundary::{delegated, guarded};
+use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
 use crate::capi::default_hand;
 use crate::capi::memory::{fill, load, non_null, size_up_to};
 use crate::capi::refusal::Wanted;
@@ -236,7 +236,7 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 ///     AdjustFinger(1, "tendon.minimum = 6\ncontroller.tension_gain = 3");
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
-    delegated("AdjustFinger", || {
+    delegated("AdjustFinger", MEMORY_OF_CALL, || {
         non_null(Keys, "Keys", Wanted::Text)?;
         // SAFETY: not null, and a string by the manual's contract.
         let keys = unsafe { CStr::from_ptr(Keys) }.to_owned();

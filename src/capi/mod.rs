@@ -5,6 +5,7 @@
 //! Where several things are wrong with one call, it reports the first of this order: forked child (EPERM), null pointer
 //! (EFAULT), no hand (ENODEV), a struct with too small a Size (EINVAL), then what the hand finds: finger number, numbers
 //! that are not finite, symmetry and eigenvalues, limits, a faulted finger. The lists in the manual have the same order.
+//! A slow call looks for free memory (ENOMEM) after the first.
 
 // The boundary to C cannot be written without raw pointers.
 #![allow(unsafe_code)]
@@ -23,4 +24,5 @@ mod process;
 mod recovery_calls;
 mod refusal;
 mod status_calls;
+mod text;
 mod timing_calls;

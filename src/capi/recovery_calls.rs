@@ -3,7 +3,7 @@
 // The names of the header.
 #![allow(non_snake_case)]
 
-use crate::capi::boundary::delegated;
+use crate::capi::boundary::{MEMORY_OF_CALL, delegated};
 use crate::capi::default_hand;
 use crate::hand;
 use std::ffi::c_int;
@@ -80,5 +80,5 @@ pub extern "C" fn StopHand() -> c_int {
 ///     }
 #[unsafe(no_mangle)]
 pub extern "C" fn RecoverHand(i: c_int) -> c_int {
-    delegated("RecoverHand", || Ok(move || default_hand::recover(i)))
+    delegated("RecoverHand", MEMORY_OF_CALL, || Ok(move || default_hand::recover(i)))
 }

@@ -2,12 +2,12 @@
 //! standard error.
 
 use crate::capi::process;
+use crate::capi::text::Text;
 use crate::hand;
-use crate::model::one_line;
 use crate::realtime::print_line;
 use parking_lot::Mutex;
 use std::cell::RefCell;
-use std::ffi::{CStr, CString, c_char, c_int};
+use std::ffi::{c_char, c_int};
 use std::fmt::{self, Display, Formatter};
 use std::mem::{Discriminant, discriminant};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,6 +31,11 @@ pub(super) enum Refusal {
     AlreadyOpen,
     #[error("another thread is opening or closing the hand: wait until its call has returned")]
     Busy,
+    #[error(
+        "memory is short, and this call needs some: nothing was changed. Free memory, or raise the limit of this process \
+         (ulimit -v), and call again"
+    )]
+    NoMemory,
     #[error("the library failed ({0}): a defect of this library, please report it")]
     Panicked(String),
     #[error(transparent)]
@@ -71,6 +76,7 @@ impl Refusal {
             Self::SmallStruct { .. } => libc::EINVAL,
             Self::NoHand => libc::ENODEV,
             Self::AlreadyOpen | Self::Busy => libc::EBUSY,
+            Self::NoMemory => libc::ENOMEM,
             Self::Panicked(_) => libc::EIO,
             Self::Hand(error) => error.errno(),
         }
@@ -86,22 +92,23 @@ impl Refusal {
 }
 
 thread_local! {
-    static TEXT: RefCell<Option<CString>> = const { RefCell::new(None) };
+    static TEXT: RefCell<Text> = const { RefCell::new(Text::EMPTY) };
 }
+
+/// More than there are kinds of refusals.
+const KINDS: usize = 64;
 
 static PRINT: AtomicBool = AtomicBool::new(true);
 static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
 
 /// Leaves errno, the text of the calling thread and, at the first of its kind, a line on standard error.
 pub(super) fn refuse(name: &str, refusal: &Refusal) {
-    let text = one_line(&format!("{name}: {refusal}"));
-    if PRINT.load(Ordering::Relaxed) && is_first_of_its_kind(refusal.kind()) {
-        print_line(&text);
-    }
-    // A thread that is ending may have no text any more: errno still tells.
-    let _ = TEXT.try_with(|slot| {
-        if let Ok(mut slot) = slot.try_borrow_mut() {
-            *slot = CString::new(text).ok();
+    TEXT.with(|slot| {
+        // A signal handler may have broken into this very place and make a call that it may not make: errno still tells.
+        let Ok(mut text) = slot.try_borrow_mut() else { return };
+        text.compose(format_args!("{name}: {refusal}"));
+        if PRINT.load(Ordering::Relaxed) && is_first_of_its_kind(refusal.kind()) {
+            print_line(text.as_str());
         }
     });
     process::set_errno(refusal.errno());
@@ -111,7 +118,8 @@ fn is_first_of_its_kind(kind: Kind) -> bool {
     // Never waits: in a forked child the lock may have been held by a thread that was not forked with it.
     let Some(mut printed) = PRINTED.try_lock() else { return false };
     let first = !printed.contains(&kind);
-    if first {
+    // Where there is no memory to remember it, it is printed again.
+    if first && printed.try_reserve(1).is_ok() {
         printed.push(kind);
     }
     first
@@ -120,12 +128,13 @@ fn is_first_of_its_kind(kind: Kind) -> bool {
 /// Whether refusals are printed from now on: the configuration of the hand that was opened last.
 pub(super) fn set_printing(on: bool) {
     PRINT.store(on, Ordering::Relaxed);
+    // So that a refusal allocates nothing.
+    PRINTED.lock().reserve(KINDS);
 }
 
 /// The text of the calling thread's last refused call; empty when none was refused.
 pub(super) fn text() -> *const c_char {
-    let text = TEXT.try_with(|slot| slot.try_borrow().ok().and_then(|slot| slot.as_deref().map(CStr::as_ptr)));
-    text.ok().flatten().unwrap_or(c"".as_ptr())
+    TEXT.with(|slot| slot.try_borrow().map_or(c"".as_ptr(), |text| text.as_c_string()))
 }
 
 #[cfg(test)]

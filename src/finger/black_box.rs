@@ -66,8 +66,9 @@ impl BlackBox {
         let black_box = Self {
             arriving,
             keyframes_arriving,
-            records: VecDeque::new(),
-            keyframes: VecDeque::new(),
+            // With room for all that they ever hold: whoever collects allocates nothing.
+            records: VecDeque::with_capacity(cycles(KEPT + UNCOLLECTED + 2.0 / KEYFRAMES)),
+            keyframes: VecDeque::with_capacity(cycles(KEPT + UNCOLLECTED).div_ceil(apart) + 4),
             length: cycles(KEPT) as u64,
             finger: index as i32 + 1, // 1 to 3
             hand: hand.clone(),

@@ -1,24 +1,24 @@
 //! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
 
+mod collected;
+mod collecting;
+
 use crate::control::{SetPoint, spatial};
 use crate::finger::{self, Adjustable, BlackBox, FingerReport, KeptRecord, Losses, Mailbox, Recording};
 use crate::hand::admission::Admission;
-use crate::hand::black_box_file::keep;
+use crate::hand::dispatcher::collected::Collected;
+use crate::hand::dispatcher::collecting::collect;
 use crate::hand::opening::Reached;
 use crate::hand::{Fingers, HandError};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
-use crate::realtime::{Consumer, CycleTiming, Distribution, Histograms, PlannerWatch, Priority, Stage, spawn};
-use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+use crate::realtime::{Distribution, Histograms, Priority, Stage, spawn};
+use crossbeam_channel::{Sender, bounded};
 use nalgebra::Vector3;
 use parking_lot::{Mutex, MutexGuard, RwLock};
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Duration;
-
-/// How often timings and black boxes are collected. The rings of a servo hold many times what comes in between.
-const COLLECTING: Duration = Duration::from_millis(50);
 
 /// One finger as the planners see it.
 pub(super) struct Member {
@@ -33,24 +33,6 @@ pub(super) struct Dispatcher {
     members: Vec<Member>,
     collected: Arc<Vec<Mutex<Collected>>>,
     collector: Option<(Sender<()>, JoinHandle<()>)>,
-}
-
-/// What the servo of one finger leaves behind.
-struct Collected {
-    arriving: Consumer<CycleTiming>,
-    histograms: Histograms,
-    /// Up to the last reset.
-    losses_before: Losses,
-    black_box: BlackBox,
-}
-
-impl Collected {
-    fn collect(&mut self) {
-        while let Some(timing) = self.arriving.pop() {
-            self.histograms.record(&timing);
-        }
-        self.black_box.collect();
-    }
 }
 
 impl Dispatcher {
@@ -258,44 +240,6 @@ impl Drop for Dispatcher {
             drop(stop);
             // It panics only if the histograms do, and then there is nothing to collect.
             let _ = thread.join();
-        }
-    }
-}
-
-fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopped: &Receiver<()>) {
-    let mut ended = false;
-    let mut writing = Vec::new();
-    let mut planner = PlannerWatch::default();
-    while !ended {
-        // Once more at the end: a finger may just have faulted.
-        ended = stopped.recv_timeout(COLLECTING) != Err(RecvTimeoutError::Timeout);
-        planner.look();
-        for collected in fingers {
-            let mut collected = collected.lock();
-            collected.collect();
-            let recording = collected.black_box.faulted().then(|| collected.black_box.recording()).flatten();
-            drop(collected);
-            if let (Some(folder), Some(recording)) = (folder, recording) {
-                writing.extend(write(recording, folder.to_path_buf()));
-            }
-        }
-    }
-    for thread in writing {
-        // A panic while a black box is written loses that file only.
-        let _ = thread.join();
-    }
-}
-
-/// Writes a black box on a thread of its own: a disk may take longer to confirm a file than the rings of the other
-/// fingers last.
-fn write(recording: Recording, folder: PathBuf) -> Option<JoinHandle<()>> {
-    let shared = Arc::new((recording, folder));
-    let given = shared.clone();
-    match spawn("sun2xp writer", Priority::default(), move |_| keep(&given.0, &given.1)) {
-        Ok(thread) => Some(thread),
-        Err(_) => {
-            keep(&shared.0, &shared.1);
-            None
         }
     }
 }

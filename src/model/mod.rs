@@ -18,6 +18,6 @@ pub use inverse_kinematics::{InverseKinematics, OutOfReach};
 pub use kinematics::Links;
 pub use link_dynamics::LinkDynamics;
 pub use part::Part;
-pub use shown::{Shown, ShownPath, one_line};
+pub use shown::{OneLine, Shown, ShownPath, one_line};
 pub use tendons::{Tendons, TendonsError};
 pub use validation::Refusal;

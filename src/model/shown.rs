@@ -55,14 +55,21 @@ impl Display for ShownPath<'_> {
 /// A message on one line and without characters that cannot be seen, whatever it is made of. Else it stays as it is.
 pub fn one_line(message: &str) -> String {
     let mut line = String::with_capacity(message.len());
-    for character in message.chars() {
-        // It is written to a string, which takes everything.
-        let _ = match character {
-            '\\' => line.write_char(character),
-            _ => write_visible(character, &mut line),
-        };
-    }
+    // A string takes everything.
+    let _ = OneLine(&mut line).write_str(message);
     line
+}
+
+/// Writes on what [`one_line`] makes of a message, without a copy of it.
+pub struct OneLine<'a, W>(pub &'a mut W);
+
+impl<W: Write> Write for OneLine<'_, W> {
+    fn write_str(&mut self, message: &str) -> Result {
+        message.chars().try_for_each(|character| match character {
+            '\\' => self.0.write_char(character),
+            _ => write_visible(character, self.0),
+        })
+    }
 }
 
 fn write_visible(character: char, to: &mut impl Write) -> Result {

@@ -3,7 +3,9 @@
 
 use super::clock::now;
 use super::threads::{own_threads, spawn_alike};
-use std::fs;
+use std::fmt::Display;
+use std::fs::{self, File};
+use std::io::{Cursor, Read, Write};
 use std::process::{exit, id};
 
 /// How often the threads are looked at, ns.
@@ -37,7 +39,7 @@ impl PlannerWatch {
 /// Whether every thread of the process but those of this library has ended. Where the system does not tell, none has.
 fn planner_has_ended() -> bool {
     // The first thread stays as a zombie where others go on. Mostly it is alive, and there is nothing more to look at.
-    has_ended(&id().to_string()) && others_have_ended().unwrap_or(false)
+    has_ended(id()) && others_have_ended().unwrap_or(false)
 }
 
 fn others_have_ended() -> Option<bool> {
@@ -45,18 +47,29 @@ fn others_have_ended() -> Option<bool> {
     for thread in fs::read_dir("/proc/self/task").ok()? {
         let number = thread.ok()?.file_name().into_string().ok()?;
         let is_own = number.parse().is_ok_and(|number| own.contains(&number));
-        if !is_own && !has_ended(&number) {
+        if !is_own && !has_ended(number) {
             return Some(false);
         }
     }
     Some(true)
 }
 
-/// Whether a thread is a zombie.
-fn has_ended(thread: &str) -> bool {
-    // Its state stands behind its name, which is in parentheses and may hold any character.
-    let stat = fs::read_to_string(format!("/proc/self/task/{thread}/stat")).unwrap_or_default();
-    stat.rsplit_once(") ").is_some_and(|(_, fields)| fields.starts_with(['Z', 'X']))
+/// Whether a thread is a zombie. Allocates nothing: the process may be out of memory.
+fn has_ended(thread: impl Display) -> bool {
+    state(thread).is_some_and(|state| matches!(state, b'Z' | b'X'))
+}
+
+/// The letter of its state.
+fn state(thread: impl Display) -> Option<u8> {
+    let mut path = Cursor::new([0; 64]);
+    write!(path, "/proc/self/task/{thread}/stat").ok()?;
+    let path = path.get_ref().split(|&byte| byte == 0).next()?;
+    let mut stat = [0; 512];
+    let mut file = File::open(str::from_utf8(path).ok()?).ok()?;
+    let read = file.read(&mut stat).ok()?;
+    // It stands behind the name of the thread, which is in parentheses and may hold any character.
+    let end_of_name = stat[..read].iter().rposition(|&byte| byte == b')')?;
+    stat.get(end_of_name + 2).copied()
 }
 
 #[cfg(test)]
@@ -67,6 +80,7 @@ mod tests {
     fn the_threads_of_a_test_are_those_of_a_planner() {
         assert!(!planner_has_ended());
         assert_eq!(others_have_ended(), Some(false));
-        assert!(!has_ended(&id().to_string()) && !has_ended("no number"));
+        assert!(!has_ended(id()) && !has_ended("no number"));
+        assert!(matches!(state(id()), Some(b'R' | b'S')));
     }
 }

@@ -26,8 +26,8 @@ fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
         libc::ENFILE => Some("the system may not open more files: end other programs, or raise fs.file-max (sysctl)"),
         libc::EAGAIN => Some(
             "this user may not start more threads: end other programs, or raise the limit of the user (ulimit -u), of \
-             the service or container (TasksMax, pids.max) or of the system (kernel.threads-max); after mlockall raise \
-             the memlock limit (ulimit -l)",
+             the service or container (TasksMax, pids.max) or of the system (kernel.threads-max); raise the \
+             limits of memory too (ulimit -v, and ulimit -l after mlockall)",
         ),
         libc::ENOMEM => Some("memory is short: end other programs, or raise the limit of this process (ulimit -v)"),
         libc::ENOSPC => Some(

@@ -1,5 +1,7 @@
 //! What the table of faults says about each kind of fault.
 
+use std::fmt::{self, Display, Formatter};
+
 /// What becomes of the finger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
@@ -74,8 +76,18 @@ pub struct Description {
 
 impl Description {
     /// What is the case, its likely cause and the remedy, in sentences of which the last has no full stop.
-    pub fn explanation(&self) -> String {
-        format!("{}. Likely cause: {}. {}", self.text, self.cause, self.remedy)
+    pub fn explanation(&self) -> impl Display {
+        Explanation(*self)
+    }
+}
+
+/// Written where it is needed, without a copy.
+struct Explanation(Description);
+
+impl Display for Explanation {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        let Description { text, cause, remedy, .. } = self.0;
+        write!(formatter, "{text}. Likely cause: {cause}. {remedy}")
     }
 }
 

@@ -1,0 +1,61 @@
+//! Collects what the servos leave behind, so that none is lost while nobody asks, and has the black box of a finger that faults written.
+//! It allocates nothing before that: a planner that is out of memory keeps its hand.
+
+use crate::finger::Recording;
+use crate::hand::black_box_file::keep;
+use crate::hand::dispatcher::collected::Collected;
+use crate::realtime::{PlannerWatch, Priority, is_memory_free, print_line, spawn};
+use crossbeam_channel::{Receiver, RecvTimeoutError};
+use parking_lot::Mutex;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// How often timings and black boxes are collected. The rings of a servo hold many times what comes in between.
+const COLLECTING: Duration = Duration::from_millis(50);
+
+/// What a copy of a black box takes with the thread that writes it, bytes.
+const MEMORY_OF_BLACK_BOX: usize = 4 << 20;
+
+/// Runs until `stopped` says so. `folder`: where black boxes are written, if they shall be.
+pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopped: &Receiver<()>) {
+    let mut ended = false;
+    let mut writing = Vec::new();
+    let mut planner = PlannerWatch::default();
+    while !ended {
+        // Once more at the end: a finger may just have faulted.
+        ended = stopped.recv_timeout(COLLECTING) != Err(RecvTimeoutError::Timeout);
+        planner.look();
+        for collected in fingers {
+            let mut collected = collected.lock();
+            collected.collect();
+            let Some(folder) = folder.filter(|_| collected.black_box.faulted()) else { continue };
+            if !is_memory_free(MEMORY_OF_BLACK_BOX) {
+                print_line("a finger faulted, and memory is too short to write its black box");
+                continue;
+            }
+            let recording = collected.black_box.recording();
+            drop(collected);
+            writing.extend(recording.and_then(|recording| write(recording, folder.to_path_buf())));
+        }
+    }
+    for thread in writing {
+        // A panic while a black box is written loses that file only.
+        let _ = thread.join();
+    }
+}
+
+/// Writes a black box on a thread of its own: a disk may take longer to confirm a file than the rings of the other
+/// fingers last.
+fn write(recording: Recording, folder: PathBuf) -> Option<JoinHandle<()>> {
+    let shared = Arc::new((recording, folder));
+    let given = shared.clone();
+    match spawn("sun2xp writer", Priority::default(), move |_| keep(&given.0, &given.1)) {
+        Ok(thread) => Some(thread),
+        Err(_) => {
+            keep(&shared.0, &shared.1);
+            None
+        }
+    }
+}

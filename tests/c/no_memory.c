@@ -1,0 +1,120 @@
+/* Memory runs out while a hand is open: malloc and its relatives return NULL from some moment on. The hand goes on, and no call ends
+   the process: quick calls work, slow calls are refused with ENOMEM, and CloseHand closes. */
+#include <errno.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+/* The functions of glibc behind the names that this program takes over. */
+extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
+extern void *__libc_memalign(size_t, size_t);
+
+static volatile int is_out;
+
+static void *nothing(void)
+{
+    errno = ENOMEM;
+    return NULL;
+}
+
+void *malloc(size_t size) { return is_out ? nothing() : __libc_malloc(size); }
+void *calloc(size_t count, size_t size) { return is_out ? nothing() : __libc_calloc(count, size); }
+void *realloc(void *block, size_t size) { return is_out ? nothing() : __libc_realloc(block, size); }
+
+int posix_memalign(void **block, size_t alignment, size_t size)
+{
+    *block = is_out ? NULL : __libc_memalign(alignment, size);
+    return *block == NULL ? ENOMEM : 0;
+}
+
+#define REFUSED(Call, Number, Words) \
+    do { \
+        errno = 0; \
+        CHECK((Call) == -1 && errno == (Number)); \
+        CHECK(strstr(HandError(), Words) != NULL); \
+    } while (0)
+
+static float Pos[3] = {0.1f, 0.5f, 0.9f};
+
+static void quick_calls(void)
+{
+    double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}, Tip[3] = {0.0, -6.0, 8.0};
+    struct FingerStatus Status;
+    struct FingerTiming Timing;
+    struct FingerTip At;
+    struct FingerRecord Record;
+    struct Fault Fault;
+
+    Status.Size = sizeof Status;
+    Timing.Size = sizeof Timing;
+    At.Size = sizeof At;
+    Record.Size = sizeof Record;
+    Fault.Size = sizeof Fault;
+    CHECK(SendPos(1, Pos) == 0);
+    CHECK(SendKx(1, Kx) == 0);
+    CHECK(SendTip(1, Tip) == 0);
+    CHECK(SendContact(1, 3, &Kx[0][0], NULL) == 0);
+    CHECK(SendDamping(1, 1.0) == 0);
+    CHECK(GetPos(1, Pos) == 0);
+    CHECK(GetTip(1, &At) == 0);
+    CHECK(GetStatus(1, &Status) == 0 && Status.State == FINGER_RUNNING);
+    CHECK(GetTiming(1, TIMING_CYCLE, &Timing) == 0);
+    CHECK(ResetTiming(1) == 0);
+    CHECK(GetRecord(1, 0, &Record) == 0);
+    CHECK(GetFault(1, &Fault) == 0 && Fault.Number == 0);
+    REFUSED(SendPos(9, Pos), EINVAL, "no finger 9");
+    REFUSED(SendPos(1, (float *)NULL), EFAULT, "null pointer");
+    Pos[0] = 9;
+    REFUSED(SendPos(1, Pos), ERANGE, "outside the limits");
+    Pos[0] = 0.1f;
+}
+
+static volatile int go;
+
+static void *another_thread(void *own)
+{
+    while (!go)
+        PAUSE_MS(1);
+    quick_calls();
+    return own;
+}
+
+int main(void)
+{
+    pthread_t thread;
+    struct Fault Fault;
+    void *end = NULL;
+    Fault.Size = sizeof Fault;
+
+    is_out = 1;
+    REFUSED(OpenHand(), ENOMEM, "memory");
+    is_out = 0;
+    CHECK(OpenHand() == 0);
+    CHECK(pthread_create(&thread, NULL, another_thread, Pos) == 0);
+    PAUSE_MS(50);
+
+    is_out = 1;
+    quick_calls();
+    go = 1;
+    CHECK(pthread_join(thread, &end) == 0 && end == Pos);
+    REFUSED(AdjustFinger(1, "tendon.minimum = 6"), ENOMEM, "memory");
+    REFUSED(WriteBlackBox(1, "no_memory.jsonl"), ENOMEM, "memory");
+    REFUSED(ZeroFinger(1), ENOMEM, "memory");
+    /* The library's own threads look and collect meanwhile: every 50 ms, every second, and for as long as a black box fills. */
+    PAUSE_MS(3500);
+    quick_calls();
+    CHECK(StopHand() == 0);
+    PAUSE_MS(200);
+    CHECK(GetFault(1, &Fault) == 0 && Fault.Number == FAULT_EMERGENCY_STOP_CALL);
+    REFUSED(SendPos(1, Pos), EIO, "faulted");
+    REFUSED(RecoverHand(1), ENOMEM, "memory");
+    CHECK(CloseHand() == 0);
+    REFUSED(SendPos(1, Pos), ENODEV, "no hand is open");
+    is_out = 0;
+    CHECK(OpenHand() == 0);
+    CHECK(CloseHand() == 0);
+    return 0;
+}
