@@ -49,13 +49,13 @@ impl MotorFriction {
         let mut friction = [Vector4::zeros(); 3];
         for (motor, fit) in self.fits.iter().enumerate() {
             let implausible = |what, value| Obstacle::Implausible { part: Part::motor(motor), what, value };
-            let (found, _) = fit.solve().ok_or(implausible("the friction of its motor", f64::NAN))?;
+            let (found, _) = fit.solve().ok_or(implausible("the friction", f64::NAN))?;
             let [a, coulomb, conduit]: [f64; 3] = found.into();
             if !(0.2..5.0).contains(&a) {
-                return Err(implausible("commanded pull over tension", a));
+                return Err(implausible("the commanded pull over the tension", a));
             }
             if coulomb < -0.5 || conduit < -0.1 {
-                return Err(implausible("the friction of its motor, N,", coulomb));
+                return Err(implausible("the friction, N,", coulomb));
             }
             friction[0][motor] = coulomb.max(0.0);
             friction[1][motor] = conduit.max(0.0);

@@ -216,7 +216,9 @@ impl Controller {
     /// gauges' largest count.
     pub fn watch(&self, watch: &mut Watch, state: &State, feedback: &Feedback, age: f64, full_scale: u16) -> Alarms {
         let heat = self.heating.part(&state.heat);
-        self.monitors.watch(watch, feedback, &state.report, &state.pulls, &heat, age, full_scale)
+        // The cycle has turned the counts into units.
+        let measured = Measured { motor_angles: state.motor_angles, tensions: state.report.tensions };
+        self.monitors.watch(watch, feedback, &measured, &state.report, &state.pulls, &heat, age, full_scale)
     }
 
     /// Keeps the observers of state feedback going in every activity; whether it can decide.

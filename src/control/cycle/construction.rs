@@ -60,7 +60,7 @@ impl Controller {
             admissible,
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
-            monitors: Monitors::new(finger, &tendons, rate)?,
+            monitors: Monitors::new(finger, &tendons, rate),
             period: 1.0 / rate,
             sensors: Sensors::new(finger)?,
             speed_filter: LowPass::new(gains.speed_filter, rate),

@@ -10,9 +10,8 @@ use super::motor_heat::{self, MotorHeat};
 use super::sample::Sample;
 use super::stalled_motor::{self, StalledMotor};
 use super::tension_lost::{self, TensionLost};
-use crate::control::sensing::sensors::Sensors;
 use crate::control::signals::{Feedback, Measured, Report};
-use crate::model::configuration::{ConfiguredFinger, Unusable};
+use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
 
@@ -20,7 +19,6 @@ use nalgebra::Vector4;
 #[derive(Clone, Debug)]
 pub(crate) struct Monitors {
     period: f64,
-    sensors: Sensors,
     /// Motor radii, cm.
     radius: Vector4<f64>,
     tension_lost: TensionLost,
@@ -62,10 +60,9 @@ struct Before {
 }
 
 impl Monitors {
-    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64) -> Result<Self, Unusable> {
-        Ok(Self {
+    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64) -> Self {
+        Self {
             period: 1.0 / rate,
-            sensors: Sensors::new(finger)?,
             radius: tendons.radius,
             tension_lost: TensionLost::new(finger),
             gauge_range: GaugeRange::new(finger),
@@ -75,7 +72,7 @@ impl Monitors {
             stalled_motor: StalledMotor::new(finger, tendons),
             motor_heat: MotorHeat::new(finger),
             joint_stop: JointStop::new(finger),
-        })
+        }
     }
 
     /// One sample of a finger that is a spring. `age`: periods since the last one; `pulls`: what the cycle has just commanded, N.
@@ -84,13 +81,14 @@ impl Monitors {
         &self,
         watch: &mut Watch,
         feedback: &Feedback,
+        measured: &Measured,
         report: &Report,
         pulls: &Vector4<f64>,
         heat: &Vector4<f64>,
         age: f64,
         full_scale: u16,
     ) -> Alarms {
-        let Measured { motor_angles, tensions } = self.sensors.measured(feedback);
+        let Measured { motor_angles, tensions } = *measured;
         let now = Before { motor_angles, pulls: *pulls };
         let Some(before) = watch.before.replace(now) else { return Alarms::default() };
         let sample = Sample {
