@@ -1,4 +1,4 @@
-//! Single frames: good ones of every type with edge values, damaged ones, and good ones that are not for this board.
+//! Good frames of every type, with edge values.
 
 use super::example_board::IDENTITY;
 use super::json::{hex, list, object, text};
@@ -11,7 +11,7 @@ pub fn sealed(content: &[u8]) -> Vec<u8> {
     stuffed(&with_check(content))
 }
 
-fn with_check(content: &[u8]) -> Vec<u8> {
+pub fn with_check(content: &[u8]) -> Vec<u8> {
     [content, &check(content).to_le_bytes()].concat()
 }
 
@@ -27,16 +27,43 @@ fn terms(end_state: EndState) -> Configure {
     }
 }
 
-fn messages() -> Vec<(&'static str, u8, u8, Frame)> {
-    let all_ones = Configure {
-        version: 255,
-        watchdog_ms: u16::MAX,
-        end_state: EndState::Hold,
-        hold_time_ms: u16::MAX,
-        hold_torque_limit: u16::MAX,
-        torque_limits: [u16::MAX; 4],
-        torque_constants: [u32::MAX; 4],
-    };
+type Named = (&'static str, u8, u8, Frame);
+
+const ALL_ONES: Configure = Configure {
+    version: 255,
+    watchdog_ms: u16::MAX,
+    end_state: EndState::Hold,
+    hold_time_ms: u16::MAX,
+    hold_torque_limit: u16::MAX,
+    torque_limits: [u16::MAX; 4],
+    torque_constants: [u32::MAX; 4],
+};
+
+/// Names, addresses, sequence numbers and frames.
+fn messages() -> Vec<Named> {
+    [requests(), answers()].concat()
+}
+
+fn requests() -> Vec<Named> {
+    let command = |toggle, enable, torques| Frame::Command(Command { toggle, enable, torques });
+    vec![
+        ("versions 1 to 1", 1, 1, Frame::Hello(Hello { lowest_version: 1, highest_version: 1 })),
+        ("to any finger", 0, 255, Frame::Hello(Hello { lowest_version: 0, highest_version: 255 })),
+        ("hold, limits and constants that differ", 1, 2, Frame::Configure(terms(EndState::Hold))),
+        ("release, the highest address", 15, 0, Frame::Configure(terms(EndState::Release))),
+        ("all ones but the end state", 15, 255, Frame::Configure(ALL_ONES)),
+        ("toggle and enable", 1, 7, command(true, true, [1188, 594, 0, -1])),
+        ("neither", 1, 8, command(false, false, [0; 4])),
+        ("the ends of the range", 2, 0, command(false, true, [i16::MAX, i16::MIN, 256, -256])),
+        ("no zero in the frame", 15, 255, command(true, false, [-1, 257, -257, 514])),
+        ("without a body", 1, 3, Frame::Stop(Stop)),
+        ("all bytes zero but the check", 1, 0, Frame::Stop(Stop)),
+        ("nothing received yet", 1, 4, Frame::TactileRequest(TactileRequest { received: 0 })),
+        ("event 255 received", 1, 5, Frame::TactileRequest(TactileRequest { received: 255 })),
+    ]
+}
+
+fn answers() -> Vec<Named> {
     let most = Identity {
         version: 255,
         addresses: 0xFFFE,
@@ -55,22 +82,8 @@ fn messages() -> Vec<(&'static str, u8, u8, Frame)> {
     let reply = |status, encoders, gauges, sampled_at| {
         Frame::Reply(Reply { status: Status(status), encoders, gauges, sampled_at })
     };
-    let command = |toggle, enable, torques| Frame::Command(Command { toggle, enable, torques });
     let refused = |request, reason, detail| Frame::Refused(Refused { request, reason, detail });
     vec![
-        ("versions 1 to 1", 1, 1, Frame::Hello(Hello { lowest_version: 1, highest_version: 1 })),
-        ("to any finger", 0, 255, Frame::Hello(Hello { lowest_version: 0, highest_version: 255 })),
-        ("hold, limits and constants that differ", 1, 2, Frame::Configure(terms(EndState::Hold))),
-        ("release, the highest address", 15, 0, Frame::Configure(terms(EndState::Release))),
-        ("all ones but the end state", 15, 255, Frame::Configure(all_ones)),
-        ("toggle and enable", 1, 7, command(true, true, [1188, 594, 0, -1])),
-        ("neither", 1, 8, command(false, false, [0; 4])),
-        ("the ends of the range", 2, 0, command(false, true, [i16::MAX, i16::MIN, 256, -256])),
-        ("no zero in the frame", 15, 255, command(true, false, [-1, 257, -257, 514])),
-        ("without a body", 1, 3, Frame::Stop(Stop)),
-        ("all bytes zero but the check", 1, 0, Frame::Stop(Stop)),
-        ("nothing received yet", 1, 4, Frame::TactileRequest(TactileRequest { received: 0 })),
-        ("event 255 received", 1, 5, Frame::TactileRequest(TactileRequest { received: 255 })),
         ("a board with three fingers", 1, 1, Frame::Identity(IDENTITY)),
         ("the largest numbers", 15, 255, Frame::Identity(most)),
         (
@@ -88,7 +101,7 @@ fn messages() -> Vec<(&'static str, u8, u8, Frame)> {
             "the ends of the range",
             1,
             3,
-            configured(all_ones, [i32::MIN, i32::MAX, -2, 1], [0, 65535, 1, 256], Status(0xFFFF)),
+            configured(ALL_ONES, [i32::MIN, i32::MAX, -2, 1], [0, 65535, 1, 256], Status(0xFFFF)),
         ),
         ("in motion", 1, 7, reply(0x23, [0x86A0, 0xFFFF, 0, 0], [410, 205, 205, 410], 12345)),
         ("all zeros", 1, 0, reply(0, [0; 4], [0; 4], 0)),
@@ -209,79 +222,7 @@ pub fn good() -> Vec<String> {
     messages().into_iter().map(line).collect()
 }
 
-/// A Command to finger 1, and what can happen to it.
-fn damaged() -> Vec<(&'static str, &'static str, Vec<u8>)> {
-    let content = [0x31, 7, 3, 0xA4, 4, 0x52, 2, 0, 0, 0xFF, 0xFF];
-    let good = sealed(&content);
-    let changed = |place: usize, value: u8| {
-        let mut wire = good.clone();
-        wire[place] ^= value;
-        wire
-    };
-    let without = |place: usize| [&good[..place], &good[place + 1..]].concat();
-    let mut wrong_check = with_check(&content);
-    wrong_check[content.len()] ^= 0x80;
-    let swapped: Vec<u8> = content.iter().copied().chain(check(&content).to_be_bytes()).collect();
-    let unfinished = |initial: u32| {
-        // As a CRC without its final exclusive-or would be.
-        let frame: Vec<u8> = content.iter().copied().chain((check(&content) ^ initial).to_le_bytes()).collect();
-        stuffed(&frame)
-    };
-    vec![
-        ("one bit of a torque", "check", changed(4, 0x10)),
-        ("one bit of the sequence number", "check", changed(2, 1)),
-        ("one bit of the check", "check", stuffed(&wrong_check)),
-        ("the check in the other byte order", "check", stuffed(&swapped)),
-        ("the check without its last exclusive-or", "check", unfinished(u32::MAX)),
-        ("a check of zero", "check", stuffed(&[&content[..], &[0; 4]].concat())),
-        ("a byte lost", "check", without(5)),
-        ("a byte doubled", "check", [&good[..5], &good[4..]].concat()),
-        ("cut short by a delimiter", "check", [&good[..9], &[0]].concat()),
-        ("two frames without the delimiter between them", "check", [&good[..good.len() - 1], &good[..]].concat()),
-        ("the first distance lost", "stuffing", without(0)),
-        ("a distance beyond the end", "stuffing", vec![9, 0x41, 3, 0]),
-        ("a distance beyond the end of a whole frame", "stuffing", changed(0, 0x40)),
-        ("nothing but a distance", "short", vec![1, 0]),
-        ("one byte", "short", vec![2, 0x41, 0]),
-        ("five bytes, of which four are their check", "short", sealed(&[0x41])),
-        ("four bytes, the check of nothing", "short", sealed(&[])),
-        ("129 bytes whose check is right", "long", sealed(&[0x41; 125])),
-        ("200 bytes whose check is right", "long", sealed(&[0x41; 196])),
-        ("300 bytes without a zero", "long", [vec![0x55; 300], vec![0]].concat()),
-        ("half a Stop, then half a Command", "stuffing", [&sealed(&[0x41, 3])[..4], &good[8..]].concat()),
-        ("text", "stuffing", b"login: \0".to_vec()),
-    ]
-}
-
-pub fn bad() -> Vec<String> {
-    let line = |(name, reason, wire): (&str, &str, Vec<u8>)| {
-        object(&[("reason", text(reason)), ("name", text(name)), ("wire", hex(&wire))])
-    };
-    damaged().into_iter().map(line).collect()
-}
-
-/// For a board with the one finger 1.
-fn not_for_finger_1() -> Vec<(&'static str, Vec<u8>)> {
-    vec![
-        ("a Stop for finger 2", sealed(&[0x42, 1])),
-        ("a Hello for finger 15", sealed(&[0x1F, 1, 1, 1])),
-        ("a Stop for address 0", sealed(&[0x40, 1])),
-        ("a Command for address 0", sealed(&[0x30, 1, 2, 0, 0, 0, 0, 0, 0, 0, 0])),
-        ("an unknown type for finger 2", sealed(&[0x72, 1, 9])),
-        ("a Stopped, which is an answer", sealed(&[0xC1, 1, 0, 0])),
-        ("a Refused, which is an answer", sealed(&[0xD1, 1, 3, 3, 0, 0])),
-        ("a free type with the top bit set", sealed(&[0xF1, 1])),
-        ("a delimiter", vec![0]),
-        ("three delimiters", vec![0; 3]),
-    ]
-}
-
-pub fn ignored() -> Vec<String> {
-    let line = |(name, wire): (&str, Vec<u8>)| object(&[("name", text(name)), ("wire", hex(&wire))]);
-    not_for_finger_1().into_iter().map(line).collect()
-}
-
-fn all_found(decoder: &mut Decoder, mut bytes: &[u8]) -> Vec<Message> {
+pub fn all_found(decoder: &mut Decoder, mut bytes: &[u8]) -> Vec<Message> {
     let mut found = Vec::new();
     while let Some(packet) = decoder.next(&mut bytes) {
         found.extend(Message::read(&packet));
@@ -302,35 +243,5 @@ fn good_frames_are_read_back() {
         let message = Message { address, sequence, frame };
         let mut decoder = Decoder::default();
         assert_eq!(all_found(&mut decoder, WireFrame::new(&message).as_bytes()), [message], "{name}");
-    }
-}
-
-#[test]
-fn bad_frames_are_dropped_and_counted_and_cost_no_other() {
-    let next = Message { address: 1, sequence: 8, frame: Frame::Stop(Stop) };
-    for (name, _, wire) in damaged() {
-        let mut decoder = Decoder::default();
-        assert_eq!(all_found(&mut decoder, &wire), [], "{name}");
-        assert_eq!(decoder.counters().damaged, 1, "{name}");
-        assert_eq!(all_found(&mut decoder, WireFrame::new(&next).as_bytes()), [next], "{name}");
-    }
-}
-
-#[test]
-fn reasons_are_right() {
-    for (name, reason, wire) in damaged() {
-        let mut frame = [0; 512];
-        let stuffed = &wire[..wire.len() - 1];
-        let length = cobs::decode(stuffed, &mut frame).map(|report| report.frame_size());
-        let found = match length {
-            _ if stuffed.len() > MAX_WIRE - 1 => "long",
-            Err(_) => "stuffing",
-            Ok(0..6) => "short",
-            Ok(length) => match Packet::checked(&frame[..length]) {
-                None => "check",
-                Some(_) => "none",
-            },
-        };
-        assert_eq!(found, reason, "{name}");
     }
 }

@@ -1,11 +1,15 @@
-//! protocol/vectors.json: what any board and any host can be tested against. The codec makes the file, and it must agree with
-//! it ever after; the simulated board must hold every conversation in it, and so must the reference firmware (tests/c_boards.rs).
+//! protocol/vectors.json: what any board and any host can be tested against. The codec makes the file, and it must agree
+//! with it ever after; the simulated board must hold every conversation in it, and so must the reference firmware
+//! (tests/c_boards.rs).
 
 mod conversations;
 mod example_board;
 mod frames;
 mod json;
+mod scripts;
+mod steps;
 mod stuffing;
+mod unusable_frames;
 
 use std::path::Path;
 use std::{env, fs};
@@ -15,8 +19,8 @@ const ABOUT: &str = "Test vectors of docs/board-protocol.md, version 1; protocol
 fn text() -> String {
     let sections = [
         ("frames", frames::good()),
-        ("bad", frames::bad()),
-        ("ignored", frames::ignored()),
+        ("bad", unusable_frames::bad()),
+        ("ignored", unusable_frames::ignored()),
         ("conversations", conversations::listed()),
     ];
     let sections: Vec<String> =

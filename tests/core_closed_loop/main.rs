@@ -7,6 +7,7 @@ mod figure11;
 mod limits;
 mod rig;
 mod robustness;
+mod settling;
 mod slack;
 mod state_feedback;
 mod switching;

@@ -8,6 +8,9 @@ use sun2xp::control::{Activity, Command, Controller, Feedback, Report, SetPoint,
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
+/// A finger counts as settled this close to its target, rad.
+pub const SETTLED: f64 = 0.02;
+
 pub struct Loop {
     pub plant: Plant,
     pub rate: f64,

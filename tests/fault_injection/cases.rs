@@ -73,6 +73,11 @@ impl Case {
 
 /// Of the finger itself.
 pub fn of_the_finger() -> Vec<Case> {
+    // The order decides the seed of each case.
+    of_the_tendons().into_iter().chain(of_the_motors()).chain(of_the_board()).collect()
+}
+
+fn of_the_tendons() -> Vec<Case> {
     use FaultKind::*;
     vec![
         case("cut tendon", BrokenTendon, |bench| {
@@ -106,6 +111,12 @@ pub fn of_the_finger() -> Vec<Case> {
         case("drifting gauge (20 N/s), k identified", GaugeDisagrees, drift)
             .with(|configuration| configuration.fingers[0].tendon.stiffness_tolerance = 0.03)
             .from(10.0, disagrees),
+    ]
+}
+
+fn of_the_motors() -> Vec<Case> {
+    use FaultKind::*;
+    vec![
         case("encoder jump (150 counts)", EncoderJump, |bench| {
             let (encoder, way) = (bench.part(), bench.random(-1.0, 1.0).signum());
             suffer(bench, Defect::EncoderJump { encoder, counts: 150 * way as i32 });
@@ -123,19 +134,13 @@ pub fn of_the_finger() -> Vec<Case> {
             .from(0.0, |truth, _, finger| truth.hot_for.max() > finger.motor.thermal_time),
         case("a blow (40 N)", OverTension, |bench| push(bench, [0.0, 40.0, 0.0]))
             .from(4.0, |truth, _, finger| truth.tensions.max() > 1.3 * finger.tendon.maximum),
-        // Interference that the line and the counters meet together: nobody sees the counters jump.
-        case("impossible pose", ImpossiblePose, |bench| {
-            line(bench, LineFault::Drop, 1.0, 12);
-            let finger = bench.finger();
-            let tendons = finger.tendons().expect("tendons");
-            let turned = (tendons.r.tr_mul(&Vector3::new(0.0, -3.0, 0.0))).component_div(&tendons.radius);
-            let per_turn = finger.encoder.counts_per_revolution.map(f64::from);
-            for (index, per_turn) in per_turn.into_iter().enumerate() {
-                let counts = (turned[index] * per_turn / TAU) as i32;
-                suffer(bench, Defect::EncoderJump { encoder: index as u8 + 1, counts });
-            }
-            Injected::default()
-        }),
+        case("impossible pose", ImpossiblePose, turn_encoders_unseen),
+    ]
+}
+
+fn of_the_board() -> Vec<Case> {
+    use FaultKind::*;
+    vec![
         case("zero lost", ZeroLost, |bench| suffer(bench, Defect::ZeroLost)),
         case("emergency stop, input", EmergencyStopInput, |bench| suffer(bench, Defect::EmergencyStop)),
         case("motor supply", SupplyFault, |bench| suffer(bench, Defect::Supply)),
@@ -190,6 +195,20 @@ pub fn warnings() -> Vec<Case> {
 fn with_small_motors(configuration: &mut Configuration) {
     let motor = &mut configuration.fingers[0].motor;
     (motor.continuous_torque, motor.thermal_time) = ([0.8; 4], 0.3);
+}
+
+/// Interference that the line and the counters meet together, so that nobody sees the counters jump.
+fn turn_encoders_unseen(bench: &mut Bench) -> Injected {
+    line(bench, LineFault::Drop, 1.0, 12);
+    let finger = bench.finger();
+    let tendons = finger.tendons().expect("tendons");
+    let turned = (tendons.r.tr_mul(&Vector3::new(0.0, -3.0, 0.0))).component_div(&tendons.radius);
+    let per_turn = finger.encoder.counts_per_revolution.map(f64::from);
+    for (index, per_turn) in per_turn.into_iter().enumerate() {
+        let counts = (turned[index] * per_turn / TAU) as i32;
+        suffer(bench, Defect::EncoderJump { encoder: index as u8 + 1, counts });
+    }
+    Injected::default()
 }
 
 fn drift(bench: &mut Bench) -> Injected {

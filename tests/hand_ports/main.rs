@@ -17,6 +17,7 @@ mod opening;
 #[allow(dead_code)]
 #[path = "../common/priority.rs"]
 mod priority;
+mod reconnection;
 mod recovery;
 mod rig;
 

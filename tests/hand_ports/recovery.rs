@@ -1,11 +1,7 @@
 //! Stopped, unplugged, powered down: nothing goes on by itself, everything goes on when it is told to.
 
-use crate::pauses::name_pauses;
-use crate::rig::{
-    Board, START, TARGET, close, goes, on_boards, on_one_port, on_ports, open, three_boards, turn, wait_until,
-};
-use std::fs::{self, read_dir};
-use std::path::Path;
+use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three_boards, turn, wait_until};
+use std::fs::read_dir;
 use sun2xp::board::protocol::Status;
 use sun2xp::finger::{FaultKind, Stage};
 use sun2xp::hand::{Hand, HandError, Recovering, stop_all};
@@ -20,13 +16,21 @@ pub fn fault(hand: &Hand, finger: i32) -> Option<FaultKind> {
     }
 }
 
-fn faults(hand: &Hand, finger: i32) -> FaultKind {
+pub fn faults(hand: &Hand, finger: i32) -> FaultKind {
     wait_until("faulted", || fault(hand, finger).is_some());
     fault(hand, finger).expect("faulted")
 }
 
-fn recovers(hand: &Hand, finger: i32) {
+pub fn recovers(hand: &Hand, finger: i32) {
     hand.recover(finger).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
+}
+
+/// A hand whose three fingers are on one simulated port.
+fn one_port() -> (SimulatedPort, Hand) {
+    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
+    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
+    let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
+    (board, hand)
 }
 
 /// Open descriptors and threads of this process.
@@ -99,9 +103,7 @@ fn fingers_that_stop_together_recover_one_by_one() {
 #[test]
 fn a_board_that_lost_its_power_recovers_on_the_same_port() {
     let _turn = turn();
-    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
-    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
-    let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
+    let (board, hand) = one_port();
     board.with_finger(2, |finger| finger.reset()).expect("finger 2");
     assert_eq!(faults(&hand, 2), FaultKind::BoardReset);
     // Its neighbours run on the same link.
@@ -126,9 +128,7 @@ fn a_board_that_lost_its_power_recovers_on_the_same_port() {
 #[test]
 fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found() {
     let _turn = turn();
-    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
-    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
-    let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
+    let (board, hand) = one_port();
     goes(&hand, 2, START);
     // On its way when it is stopped.
     hand.send_position(2, TARGET).expect("sent");
@@ -152,9 +152,7 @@ fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found()
 #[test]
 fn two_that_recover_fingers_of_one_port_at_once_both_succeed() {
     let _turn = turn();
-    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
-    let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
-    let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
+    let (_board, hand) = one_port();
     stop_all();
     (1..=3).for_each(|finger| assert_ne!(faults(&hand, finger), FaultKind::Companion));
     // Both have begun before one of them has mended the port.
@@ -226,117 +224,5 @@ fn a_hand_is_closed_and_its_ports_free_while_somebody_recovers_a_finger() {
     let hand = open(on_boards(&boards));
     goes(&hand, 2, TARGET);
     drop((mending, late));
-    close(hand);
-}
-
-/// A board that is another one, or has lost its zero, is not taken for the finger's.
-#[test]
-fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
-    let _turn = turn();
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("other.toml");
-    // Of the same kind and with the same number, but with other encoders.
-    fs::write(&file, "[finger]\nencoder.counts_per_revolution = [4096, 4096, 4096, 4096]\n").expect("written");
-    let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
-    let mut second = Board::start_at(&at(folder.path()), &["2"]);
-    let mut configuration = on_ports([&first.port, &at(folder.path()), &third.port]);
-    configuration.fingers[1].reconnect = true;
-    let hand = open(configuration);
-    let refused = |kind: FaultKind| {
-        let mut told = None;
-        // At first the port may not be there yet.
-        wait_until("refused for a fault", || match hand.recover(2) {
-            Err(HandError::Faulted { finger: 2, fault }) => {
-                told = Some(fault.kind);
-                true
-            }
-            Err(_) => false,
-            Ok(()) => panic!("recovers"),
-        });
-        assert_eq!(told, Some(kind));
-        assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished), "and stays as it was");
-    };
-    second.kill();
-    assert_eq!(faults(&hand, 2), FaultKind::PortVanished);
-    let mut other = Board::start_with(&["--link", &at(folder.path()), "--config", &file.to_string_lossy()], &["2"]);
-    refused(FaultKind::IdentityChanged);
-    assert!(!other.state(2).has(Status::ENABLED) && other.state(2).limp());
-    other.kill();
-    let mut forgetful = Board::start_at(&at(folder.path()), &["2"]);
-    forgetful.order("zero-lost 2");
-    refused(FaultKind::ZeroLost);
-    assert!(!forgetful.state(2).has(Status::ENABLED) && forgetful.state(2).limp());
-    forgetful.order("mend 2");
-    wait_until("recovered", || hand.recover(2).is_ok());
-    goes(&hand, 2, TARGET);
-    close(hand);
-}
-
-#[test]
-fn a_port_that_is_not_to_be_reconnected_stays_away() {
-    let _turn = turn();
-    let mut boards = three_boards();
-    let hand = open(on_boards(&boards));
-    boards[2].kill();
-    assert_eq!(faults(&hand, 3), FaultKind::PortVanished);
-    let error = hand.recover(3).expect_err("refused");
-    assert!(error.errno() == libc::ENODEV && error.to_string().contains("finger.reconnect"), "{error}");
-    goes(&hand, 1, TARGET);
-    close(hand);
-}
-
-fn at(folder: &Path) -> String {
-    folder.join("board-2").to_string_lossy().into_owned()
-}
-
-/// `SUN2XP_ROUNDS=100 cargo test --test hand_ports unplugged -- --nocapture` for more rounds.
-#[test]
-fn a_board_that_is_unplugged_again_and_again_recovers_and_nothing_leaks() {
-    let _turn = turn();
-    let rounds: u32 = std::env::var("SUN2XP_ROUNDS").map_or(3, |rounds| rounds.parse().expect("a number"));
-    let folder = tempfile::tempdir().expect("a folder");
-    let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
-    let mut second = Board::start_at(&at(folder.path()), &["2"]);
-    let mut configuration = on_ports([&first.port, &at(folder.path()), &third.port]);
-    configuration.fingers[1].reconnect = true;
-    let hand = open(configuration);
-    goes(&hand, 2, TARGET);
-    let _rest = name_pauses().rest();
-    let before = held();
-    for round in 0..rounds {
-        second.kill();
-        assert_eq!(faults(&hand, 2), FaultKind::PortVanished);
-        let error = hand.recover(2).expect_err("nobody is there");
-        assert!([libc::ENOENT, libc::EIO, libc::ENOTTY].contains(&error.errno()), "{error}");
-        // Its port is a new device behind the old name.
-        second = Board::start_at(&at(folder.path()), &["2"]);
-        wait_until("recovered", || hand.recover(2).is_ok());
-        assert_eq!(hand.report(2).expect("a report").recoveries, round + 1);
-        goes(&hand, 2, TARGET);
-        assert_eq!((fault(&hand, 1), fault(&hand, 3)), (None, None), "the others go on");
-    }
-    assert_eq!(held(), before, "descriptors and threads after {rounds} rounds");
-    goes(&hand, 1, TARGET);
-    close(hand);
-}
-
-#[test]
-fn nobody_recovers_a_finger_but_who_asks() {
-    let _turn = turn();
-    let folder = tempfile::tempdir().expect("a folder");
-    let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
-    let mut second = Board::start_at(&at(folder.path()), &["2"]);
-    let mut configuration = on_ports([&first.port, &at(folder.path()), &third.port]);
-    configuration.fingers[1].reconnect = true;
-    let hand = open(configuration);
-    second.kill();
-    faults(&hand, 2);
-    let mut second = Board::start_at(&at(folder.path()), &["2"]);
-    // The library has found the board and configured it, and that is all.
-    let state = second.wait_for(2, "configured", |state| state.has(Status::CONFIGURED));
-    assert!(!state.has(Status::ENABLED) && state.limp(), "{state:?}");
-    assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished));
-    recovers(&hand, 2);
-    assert!(second.state(2).has(Status::ENABLED));
     close(hand);
 }

@@ -1,0 +1,78 @@
+//! Disturbances of the line: bytes that do not fit, that come late, and that come without end.
+
+use crate::other_end::OtherEnd;
+use crate::rig::{MS, board, pull, terms};
+use sun2xp::board::protocol::*;
+use sun2xp::board::*;
+use sun2xp::model::configuration::EndState;
+use sun2xp::simulated::*;
+
+#[test]
+fn a_frame_that_did_not_fit_costs_itself_only() {
+    /// Takes 5 bytes of the second write.
+    struct Narrow(SimulatedCable, u32);
+    impl Transport for Narrow {
+        fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
+            self.1 += 1;
+            self.0.write(if self.1 == 4 { &bytes[..5] } else { bytes })
+        }
+        fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
+            self.0.read_until(buffer, deadline)
+        }
+        fn discard_input(&mut self) -> Result<(), PortError> {
+            self.0.discard_input()
+        }
+        fn now(&self) -> u64 {
+            self.0.now()
+        }
+    }
+    let mut link = Link::new(Narrow(SimulatedCable::new(board(&[1])), 0));
+    link.shake_hands(1, &terms(EndState::Release), 500 * MS).unwrap();
+    let mut answered = Vec::new();
+    for sequence in 0..4 {
+        link.send(&[OutgoingCommand { address: 1, sequence, command: pull(100) }]).unwrap();
+        let deadline = link.transport().now() + MS;
+        answered.extend(link.receive(deadline).unwrap().map(|received| received.sequence));
+    }
+    // Writes: Hello, Configure, three whole commands and one cut short, the second.
+    assert_eq!(answered, [0, 2, 3]);
+    assert_eq!(link.counters().unsent, 1);
+}
+
+#[test]
+fn a_refused_handshake_frame_that_comes_late_is_no_fault() {
+    let refusal = |request| {
+        let frame = Frame::Refused(Refused { request, reason: Reason::Running, detail: 0 });
+        WireFrame::new(&Message { address: 1, sequence: 3, frame }).as_bytes().to_vec()
+    };
+    for (request, fault) in [(Kind::Configure as u8, false), (Kind::Command as u8, true)] {
+        let mut link = Link::new(OtherEnd::new(|_| Vec::new(), refusal(request)));
+        assert_eq!(link.receive(MS).is_err(), fault);
+        assert_eq!(link.counters().foreign, u64::from(!fault));
+    }
+}
+
+#[test]
+fn endless_rubbish_holds_up_nobody() {
+    /// Always has bytes; each read takes 10 us.
+    struct Babbler(u64);
+    impl Transport for Babbler {
+        fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
+            Ok(bytes.len())
+        }
+        fn read_until(&mut self, buffer: &mut [u8], _: u64) -> Result<usize, PortError> {
+            self.0 += 10_000;
+            buffer.fill(0x5A);
+            Ok(buffer.len())
+        }
+        fn discard_input(&mut self) -> Result<(), PortError> {
+            Ok(())
+        }
+        fn now(&self) -> u64 {
+            self.0
+        }
+    }
+    let mut link = Link::new(Babbler(0));
+    assert_eq!(link.receive(MS).unwrap(), None);
+    assert!(link.transport().now() <= MS + 10_000);
+}
