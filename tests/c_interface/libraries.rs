@@ -1,0 +1,45 @@
+//! The shared library and the static library.
+
+use crate::c::{Bench, c_compiler, library, root, said};
+use std::fs;
+use std::process::Command;
+
+#[test]
+fn the_static_library_serves_too() {
+    let bench = Bench::new();
+    let archive = library().with_extension("a");
+    let program = bench.path().join("static");
+    let mut compiler = Command::new(c_compiler());
+    compiler.arg("-I").arg(root().join("include")).args(["-D_DEFAULT_SOURCE", "-o"]).arg(&program);
+    compiler.arg(root().join("tests/c/closed.c")).arg(&archive).args(["-lpthread", "-ldl", "-lm"]);
+    let built = compiler.output().expect("the compiler can be started");
+    assert!(built.status.success(), "{}", said(&built));
+    let run = bench.run(Command::new(&program));
+    assert!(run.status.success(), "{}", said(&run));
+}
+
+#[test]
+fn the_library_exports_the_calls_and_nothing_else() {
+    let run = Command::new("nm").args(["-D", "--defined-only"]).arg(library()).output().expect("nm can be started");
+    let listing = said(&run);
+    let mut exported: Vec<_> = listing.lines().filter_map(|line| line.split_whitespace().nth(2)).collect();
+    exported.sort_unstable();
+    // The header declares every call at the beginning of a line.
+    let header = fs::read_to_string("include/Sun2Xp.h").expect("the header");
+    let called = |line: &str| {
+        let declared = line.strip_prefix("int ").or(line.strip_prefix("const char *"))?;
+        declared.split_once('(').map(|(name, _)| name.to_string())
+    };
+    let mut calls: Vec<_> = header.lines().filter_map(called).collect();
+    calls.sort_unstable();
+    assert!(["CloseHand", "GetPos", "OpenHand", "SendKx", "SendPos"].iter().all(|call| exported.contains(call)));
+    assert_eq!(exported, calls);
+}
+
+#[test]
+fn the_library_has_its_name_and_stays_loaded() {
+    let run = Command::new("readelf").args(["-d", "-W"]).arg(library()).output().expect("readelf can be started");
+    let dynamic = said(&run);
+    assert!(dynamic.contains("[libsun2xp.so.0]"), "{dynamic}");
+    assert!(dynamic.contains("NODELETE"), "{dynamic}");
+}

@@ -1,0 +1,152 @@
+//! Planners in every dialect of C, and in C++: they compile without a warning, move the hand, and see the right results.
+
+use crate::c::{Bench, STRICT, c_compiler, said, tool};
+use crate::{strict, succeed};
+use std::process::Command;
+
+#[test]
+fn a_planner_with_float_arrays_arrives() {
+    succeed(&strict(&["-ansi", "-DREAL=float"]), &["reach.c"]);
+}
+
+#[test]
+fn a_planner_with_double_arrays_arrives() {
+    succeed(&strict(&["-std=c17", "-DREAL=double"]), &["reach.c"]);
+}
+
+#[test]
+fn a_planner_arrives_where_the_compiler_has_no_generic() {
+    succeed(&strict(&["-ansi", "-DREAL=double", "-DSUN2XP_NO_GENERIC"]), &["reach.c"]);
+}
+
+#[test]
+fn a_planner_in_k_and_r_c_without_include_arrives_with_float_and_with_double() {
+    succeed(&["-std=gnu89", "-DREAL=float"], &["old.c"]);
+    let double = ["-std=gnu89", "-DREAL=double", "-DSendPos=SendPosD", "-DSendKx=SendKxD", "-DGetPos=GetPosD"];
+    succeed(&double, &["old.c"]);
+}
+
+#[test]
+fn a_planner_in_cpp_arrives() {
+    for standard in ["-std=c++98", "-std=c++17"] {
+        succeed(&strict(&[standard]), &["reach.cpp"]);
+    }
+}
+
+#[test]
+fn a_header_inside_extern_c_serves() {
+    succeed(&strict(&[]), &["inside_extern_c.cpp"]);
+}
+
+#[test]
+fn own_declarations_and_addresses_are_served() {
+    succeed(&strict(&["-DSUN2XP_REAL=float", "-DREAL=float"]), &["own.c"]);
+    succeed(&strict(&["-DSUN2XP_REAL=double", "-DREAL=double"]), &["own.c"]);
+    succeed(&strict(&["-DSUN2XP_H", "-DANSI_DECLARATIONS", "-DREAL=float"]), &["own.c"]);
+}
+
+#[test]
+fn two_files_may_include_the_c_file_of_1990() {
+    succeed(&strict(&[]), &["two_files.c", "two_files_other.c"]);
+}
+
+#[test]
+fn arguments_are_evaluated_once() {
+    succeed(&strict(&["-std=c99"]), &["once.c"]);
+    succeed(&strict(&["-std=c99", "-DSUN2XP_NO_GENERIC"]), &["once.c"]);
+}
+
+#[test]
+fn arrays_of_variable_length_are_what_their_elements_are() {
+    succeed(&strict(&["-std=c99"]), &["variable_length.c"]);
+    succeed(&strict(&["-std=c99", "-DSUN2XP_NO_GENERIC"]), &["variable_length.c"]);
+}
+
+#[test]
+fn null_pointers_are_refused() {
+    succeed(&strict(&["-ansi"]), &["null.c"]);
+}
+
+#[test]
+fn refusals_have_their_errno_and_text_and_change_nothing() {
+    succeed(&strict(&["-std=c99"]), &["refusals.c"]);
+}
+
+#[test]
+fn without_a_hand_calls_are_refused_and_close_is_done() {
+    succeed(&strict(&["-std=c99"]), &["closed.c"]);
+}
+
+#[test]
+fn a_forked_child_is_refused() {
+    succeed(&strict(&[]), &["forked.c"]);
+}
+
+#[test]
+fn the_alarms_of_a_planner_are_its_own() {
+    succeed(&strict(&[]), &["signals.c"]);
+}
+
+#[test]
+fn threads_may_call_at_once() {
+    succeed(&strict(&[]), &["threads.c"]);
+}
+
+#[test]
+fn a_planner_without_standard_descriptors_keeps_its_ports_to_itself() {
+    succeed(STRICT, &["bare.c"]);
+}
+
+#[test]
+fn dlclose_leaves_the_hand() {
+    succeed(&strict(&[]), &["loaded.c"]);
+}
+
+#[test]
+fn a_finger_is_zeroed() {
+    succeed(&strict(&[]), &["zero.c"]);
+}
+
+#[test]
+fn a_finger_reads_what_it_does() {
+    succeed(&strict(&[]), &["states.c"]);
+}
+
+#[test]
+fn a_signal_handler_stops_the_hand_and_the_planner_recovers_it() {
+    succeed(&strict(&[]), &["stopped.c"]);
+}
+
+#[test]
+fn a_black_box_is_written_and_replayed() {
+    let bench = Bench::new();
+    let program = bench.build(c_compiler(), &strict(&[]), &["black_box.c"]);
+    let file = bench.path().join("finger-1.jsonl");
+    let mut command = Command::new(&program);
+    command.arg(&file);
+    let run = bench.run(command);
+    assert!(run.status.success(), "{}", said(&run));
+    let run = Command::new(tool()).arg("replay").arg(&file).output().expect("the tool runs");
+    assert!(run.status.success() && said(&run).contains("the same to the last bit"), "{}", said(&run));
+}
+
+#[test]
+fn the_status_tells_of_the_servo() {
+    succeed(&strict(&[]), &["status.c"]);
+}
+
+#[test]
+fn a_planner_that_packs_structs_and_redefines_words_of_c_is_served() {
+    succeed(&strict(&["-std=c99", "-Wno-keyword-macro"]), &["packed.c"]);
+    succeed(&strict(&["-std=c99", "-DSUN2XP_NO_GENERIC"]), &["packed.c"]);
+}
+
+#[test]
+fn the_timing_tells_where_the_time_goes() {
+    succeed(&strict(&["-std=c99"]), &["timing.c"]);
+}
+
+#[test]
+fn a_fingertip_is_sent_read_and_made_a_contact() {
+    succeed(&strict(&["-ansi"]), &["tip.c"]);
+}
