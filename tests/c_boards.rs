@@ -23,7 +23,7 @@ use pauses::Part;
 use sun2xp::hand::{Hand, HandError, read};
 use sun2xp::model::configuration::Configuration;
 
-const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/c/second_board.c");
+const SOURCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/c/second_board");
 const FIRMWARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/firmware");
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/board-protocol.md");
 
@@ -42,11 +42,14 @@ fn succeeds(command: &mut Command) {
 fn compile(folder: &Path) -> PathBuf {
     let program = folder.join("second_board");
     let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_string());
+    let sources =
+        std::fs::read_dir(SOURCES).expect("the folder of the board").map(|entry| entry.expect("a file").path());
+    let sources = sources.filter(|path| path.extension().is_some_and(|extension| extension == "c"));
     succeeds(
         Command::new(&compiler)
             .args(["-std=c99", "-D_XOPEN_SOURCE=700", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-o"])
             .arg(&program)
-            .arg(SOURCE)
+            .args(sources)
             .arg("-lm"),
     );
     program
@@ -184,8 +187,8 @@ fn settles_three_fingers_and_notices_a_dead_board(program: &Path, folder: &Path)
     });
 }
 
-/// A servo that hears nothing for 10 ms lets its motors go and begins anew (docs/architecture.md). A hand survives that, but the frictionless
-/// fingers of these boards may not survive five times as long.
+/// A servo that hears nothing for 10 ms lets its motors go and begins anew (docs/architecture.md). A hand survives that, but
+/// the frictionless fingers of these boards may not survive five times as long.
 const BEARS: Duration = Duration::from_millis(50);
 
 fn configuration(boards: &[Board; 3], folder: &Path) -> Configuration {

@@ -261,8 +261,8 @@ impl ByHand {
         let version = Command::new(&compiler).arg("--version").output()?.stdout;
         let version = String::from_utf8_lossy(&version).lines().next().unwrap_or_default().to_string();
         let path = CString::new(library.into_os_string().into_encoded_bytes())?;
-        // SAFETY: a path that ends in 0. The library stays loaded until the process ends, so its symbols stay good; their types are
-        // those of step.c.
+        // SAFETY: a path that ends in 0. The library stays loaded until the process ends, so its symbols stay good; their
+        // types are those of step.c.
         unsafe {
             let library = libc::dlopen(path.as_ptr(), libc::RTLD_NOW);
             if library.is_null() {

@@ -1,105 +1,28 @@
 /*
- * One servo step of Figures 9 and 10, from counts to motor torques and report, as one would write it by hand for this one
- * finger: what the library's step is measured against. The same arithmetic and the same features as Controller::cycle while a
- * fingertip is a spring with the report's law; gravity is off in both.
+ * One servo step of Figures 9 and 10, from counts to motor torques and report, as one would write it by hand for this
+ * one finger: what the library's step is measured against. The same arithmetic and the same features as
+ * Controller::cycle while a fingertip is a spring with the report's law; gravity is off in both.
  *
- * Units as in the library: rad, cm, N, N cm, s. The structures are repeated in parameters.rs.
+ * Units as in the library: rad, cm, N, N cm, s. by_hand.rs repeats the structures of structures.h.
  */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-enum { JOINTS = 3, TENDONS = 4, TIP = 6 };
+#include "stiffness.h"
+#include "structures.h"
 
-struct parameters {
-    double period;
-    double radians_per_count[TENDONS];
-    double newton_per_count[TENDONS];
-    double gauge_zero[TENDONS];
-    double speed_gain, stretch_gain;
-    double from_motors[JOINTS][TENDONS];
-    double from_tensions[JOINTS][TENDONS];
-    double home[TENDONS];
-    double tight;
-    double spring_part;
-    double slew_step;
-    double links[JOINTS];
-    double joint_damping[JOINTS];
-    double inverse_cholesky[JOINTS][JOINTS];
-    double compliance[JOINTS];
-    double share;
-    double low[JOINTS], high[JOINTS];
-    double limit_stiffness[JOINTS];
-    double from_torque[TENDONS][JOINTS];
-    double ghost[TENDONS], inverse_ghost[TENDONS];
-    double ratio[TENDONS][TENDONS];
-    double idle[TENDONS][TENDONS];
-    double at_rest[TENDONS], strongest[TENDONS];
-    double coulomb[TENDONS], past_conduit[TENDONS];
-    double least_tension;
-    double tension_gain, integral_gain, motor_damping;
-    double limit[TENDONS], continuous[TENDONS];
-    double heat_gain;
-    double radius_m[TENDONS];
-    double signed_radius[TENDONS];
-    int32_t encoder_zero[TENDONS];
-};
-
-struct set_point {
-    double joints[JOINTS];
-    double stiffness[TIP][TIP];
-    double damping;
-};
-
-/* What is between two set points. */
-struct spring {
-    double stiffness[TIP][TIP];
-    double exact, damping;
-};
-
-struct report {
-    double joints[JOINTS], joint_rates[JOINTS];
-    double tensions[TENDONS], desired_tensions[TENDONS];
-    double joint_torques[JOINTS];
-    double torque_scale, stiffness_scale;
-    double motor_torques[TENDONS];
-    int32_t under_tension;
-};
-
-struct state {
-    double motor_angles[TENDONS], motor_speeds[TENDONS], tensions[TENDONS];
-    double integral[TENDONS];
-    double transition[TENDONS];
-    double still_at[TENDONS], still_seconds;
-    double pulls[TENDONS];
-    double heat[TENDONS];
-    double anchor[JOINTS];
-    struct spring first, second;
-    struct report report;
-    uint32_t age;
-    int32_t following;
-};
-
-struct feedback {
-    int32_t motor_counts[TENDONS];
-    uint16_t gauge_counts[TENDONS];
-};
-
-static const double SOFT_LIMIT_DEPTH = 0.0175, SOFT_LIMIT_DAMPING = 0.015, LIMP_DAMPING = 0.2, LEAST_LEVER = 0.5;
+static const double SOFT_LIMIT_DEPTH = 0.0175, SOFT_LIMIT_DAMPING = 0.015, LIMP_DAMPING = 0.2;
 static const double FADE = 0.02, REST = 0.05, WANDER = 0.007, WARM = 0.8;
-
-static double clamp(double value, double low, double high)
-{
-    return value < low ? low : value > high ? high : value;
-}
 
 static void measure(const struct parameters *p, struct state *s, const struct feedback *feedback)
 {
     double angles[TENDONS], tensions[TENDONS], moved = 0.0, least = INFINITY;
     double elapsed = p->period * s->age;
     for (int i = 0; i < TENDONS; i++) {
-        angles[i] = (int32_t)((uint32_t)feedback->motor_counts[i] - (uint32_t)p->encoder_zero[i]) * p->radians_per_count[i];
+        int32_t counts = (int32_t)((uint32_t)feedback->motor_counts[i] - (uint32_t)p->encoder_zero[i]);
+        angles[i] = counts * p->radians_per_count[i];
         tensions[i] = (feedback->gauge_counts[i] - p->gauge_zero[i]) * p->newton_per_count[i];
     }
     for (int i = 0; i < TENDONS; i++) {
@@ -131,108 +54,6 @@ static void measure(const struct parameters *p, struct state *s, const struct fe
     s->report.under_tension = least >= p->tight && s->still_seconds >= REST;
 }
 
-/* Rows 0 to 2 eq. 8, rows 3 to 5 the axes of the joints. */
-static void spatial_jacobian(const double links[JOINTS], const double joints[JOINTS], double j[TIP][JOINTS])
-{
-    double s0 = sin(joints[0]), c0 = cos(joints[0]);
-    double s1 = sin(joints[1]), c1 = cos(joints[1]);
-    double s2 = sin(joints[2]), c2 = cos(joints[2]);
-    double s12 = c1 * s2 + s1 * c2, c12 = c1 * c2 - s1 * s2;
-    double reach = links[0] + links[1] * c1 + links[2] * c12;
-    double fall = -links[1] * s1 - links[2] * s12;
-    j[0][0] = reach * c0;
-    j[0][1] = fall * s0;
-    j[0][2] = -links[2] * s12 * s0;
-    j[1][0] = 0.0;
-    j[1][1] = -links[1] * c1 - links[2] * c12;
-    j[1][2] = -links[2] * c12;
-    j[2][0] = -reach * s0;
-    j[2][1] = fall * c0;
-    j[2][2] = -links[2] * s12 * c0;
-    j[3][0] = 0.0;
-    j[3][1] = c0;
-    j[3][2] = c0;
-    j[4][0] = 1.0;
-    j[4][1] = 0.0;
-    j[4][2] = 0.0;
-    j[5][0] = 0.0;
-    j[5][1] = -s0;
-    j[5][2] = -s0;
-}
-
-/* J^T K J, eq. 6. */
-static void joint_stiffness(const double k[TIP][TIP], const double j[TIP][JOINTS], double k_theta[JOINTS][JOINTS])
-{
-    double kj[TIP][JOINTS];
-    for (int row = 0; row < TIP; row++)
-        for (int column = 0; column < JOINTS; column++) {
-            kj[row][column] = 0.0;
-            for (int i = 0; i < TIP; i++)
-                kj[row][column] += k[row][i] * j[i][column];
-        }
-    for (int row = 0; row < JOINTS; row++)
-        for (int column = 0; column < JOINTS; column++) {
-            k_theta[row][column] = 0.0;
-            for (int i = 0; i < TIP; i++)
-                k_theta[row][column] += j[i][row] * kj[i][column];
-        }
-}
-
-static void multiply(const double a[JOINTS][JOINTS], const double b[JOINTS][JOINTS], double product[JOINTS][JOINTS])
-{
-    for (int row = 0; row < JOINTS; row++)
-        for (int column = 0; column < JOINTS; column++)
-            product[row][column] =
-                a[row][0] * b[0][column] + a[row][1] * b[1][column] + a[row][2] * b[2][column];
-}
-
-/* By the cosine formula. */
-static double largest_eigenvalue(const double m[JOINTS][JOINTS])
-{
-    double square[JOINTS][JOINTS];
-    multiply(m, m, square);
-    double first = m[0][0] + m[1][1] + m[2][2];
-    double second = 0.5 * (first * first - (square[0][0] + square[1][1] + square[2][2]));
-    double third = first / 3.0;
-    double spread = third * third - second / 3.0;
-    double root = sqrt(spread > 0.0 ? spread : 0.0);
-    if (root <= 1e-12 * fabs(third))
-        return third;
-    double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
-        - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-    double cubic = third * third * third - 0.5 * third * second + 0.5 * determinant;
-    return third + 2.0 * root * cos(acos(clamp(cubic / (spread * root), -1.0, 1.0)) / 3.0);
-}
-
-/* Of joint 0 near its axis, beside J^T K J. */
-static double hold(const double k[TIP][TIP], const double j[TIP][JOINTS])
-{
-    double lacking = LEAST_LEVER * LEAST_LEVER - (j[0][0] * j[0][0] + j[1][0] * j[1][0] + j[2][0] * j[2][0]);
-    if (lacking <= 0.0)
-        return 0.0;
-    double held = 0.0;
-    for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 3; column++)
-            held += j[3 + row][1] * k[row][column] * j[3 + column][1];
-    return held * lacking;
-}
-
-/* How much of K_theta the locked tendons can carry beside the joints' limits. */
-static double admissible(const struct parameters *p, const double k_theta[JOINTS][JOINTS], const double limits[JOINTS])
-{
-    double half[JOINTS][JOINTS], transposed[JOINTS][JOINTS], whole[JOINTS][JOINTS];
-    multiply(p->inverse_cholesky, k_theta, half);
-    for (int row = 0; row < JOINTS; row++)
-        for (int column = 0; column < JOINTS; column++)
-            transposed[row][column] = p->inverse_cholesky[column][row];
-    multiply(half, transposed, whole);
-    double largest = largest_eigenvalue(whole);
-    double left = p->share;
-    for (int i = 0; i < JOINTS; i++)
-        left -= limits[i] * p->compliance[i];
-    return largest > left ? left / largest : 1.0;
-}
-
 /* What motors as warm as these may pull. */
 static void warm_limits(const struct parameters *p, const struct state *s, double limit[TENDONS])
 {
@@ -248,7 +69,8 @@ static double distribute(const struct parameters *p, const double limit[TENDONS]
 {
     double wanted[TENDONS], scale = 1.0, ghost_torque = -INFINITY;
     for (int i = 0; i < TENDONS; i++)
-        wanted[i] = p->from_torque[i][0] * torques[0] + p->from_torque[i][1] * torques[1] + p->from_torque[i][2] * torques[2];
+        wanted[i] = p->from_torque[i][0] * torques[0] + p->from_torque[i][1] * torques[1]
+            + p->from_torque[i][2] * torques[2];
     for (int i = 0; i < TENDONS; i++) {
         double given = (limit[i] - p->coulomb[i]) * p->past_conduit[i];
         double most = p->strongest[i] < given ? p->strongest[i] : given;
@@ -281,10 +103,12 @@ static void approach(struct spring *spring, const double stiffness[TIP][TIP], do
 }
 
 /* tau of the spring, its damper and the soft limits; advances the anchor. */
-static void joint_torques(const struct parameters *p, struct state *s, const struct set_point *set_point, double torques[JOINTS])
+static void joint_torques(const struct parameters *p, struct state *s, const struct set_point *set_point,
+                          double torques[JOINTS])
 {
     const double *joints = s->report.joints, *rates = s->report.joint_rates;
-    double j[TIP][JOINTS], k_theta[JOINTS][JOINTS], way[JOINTS], farthest = 0.0, b[JOINTS], pushed[JOINTS], limits[JOINTS];
+    double j[TIP][JOINTS], k_theta[JOINTS][JOINTS], way[JOINTS], farthest = 0.0;
+    double b[JOINTS], pushed[JOINTS], limits[JOINTS];
     approach(&s->first, set_point->stiffness, 0.0, set_point->damping, p->spring_part);
     approach(&s->second, (const double (*)[TIP])s->first.stiffness, s->first.exact, s->first.damping, p->spring_part);
     spatial_jacobian(p->links, joints, j);
@@ -327,7 +151,8 @@ static void joint_torques(const struct parameters *p, struct state *s, const str
     }
 }
 
-static inline void follow(const struct parameters *p, struct state *s, const struct set_point *set_point, int proportional)
+static inline void follow(const struct parameters *p, struct state *s, const struct set_point *set_point,
+                          int proportional)
 {
     double torques[JOINTS], asked[TENDONS], limit[TENDONS];
     int begins = !s->following;
@@ -372,7 +197,8 @@ static inline void follow(const struct parameters *p, struct state *s, const str
 }
 
 static inline void step(const struct parameters *p, struct state *s, const struct feedback *feedback,
-                        const struct set_point *set_point, double motor_torques[TENDONS], struct report *report, int proportional)
+                        const struct set_point *set_point, double motor_torques[TENDONS], struct report *report,
+                        int proportional)
 {
     if (s->age < UINT32_MAX)
         s->age++;
@@ -404,7 +230,8 @@ void start(const struct parameters *p, struct state *s, const struct feedback *f
 {
     memset(s, 0, sizeof *s);
     for (int i = 0; i < TENDONS; i++) {
-        double angle = (int32_t)((uint32_t)feedback->motor_counts[i] - (uint32_t)p->encoder_zero[i]) * p->radians_per_count[i];
+        int32_t counts = (int32_t)((uint32_t)feedback->motor_counts[i] - (uint32_t)p->encoder_zero[i]);
+        double angle = counts * p->radians_per_count[i];
         double tension = (feedback->gauge_counts[i] - p->gauge_zero[i]) * p->newton_per_count[i];
         s->motor_angles[i] = s->still_at[i] = angle;
         s->tensions[i] = tension;

@@ -2,88 +2,14 @@
 
        vectors protocol/vectors.json
 
-   It reads the file line by line: every vector is an object on a line of its own. A board of your own design can be tested
-   with this program too: give it a hardware layer like fake_hardware.c and keep the rest. */
+   It reads the file line by line: every vector is an object on a line of its own. A board of your own design can be
+   tested with this program too: give it a hardware layer like fake_hardware.c and keep the rest. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"
+#include "vector_line.h"
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-enum { LINE_MOST = 4096, BYTES_MOST = 1024 };
-
-static const char *current_line;
-static unsigned line_number, failures, checked;
-static char conversation[LINE_MOST];
-
-static void fail(const char *what)
-{
-    fprintf(stderr, "line %u: %s\n    %s", line_number, what, current_line);
-    if (conversation[0] != 0)
-        fprintf(stderr, "    in: %s", conversation);
-    failures++;
-}
-
-static void expect(bool holds, const char *what)
-{
-    checked++;
-    if (!holds)
-        fail(what);
-}
-
-/* Objects of numbers, lists of numbers and texts without escapes */
-
-/* What follows `"name": `; NULL without it. */
-static const char *value(const char *name)
-{
-    char key[40];
-    snprintf(key, sizeof key, "\"%s\": ", name);
-    const char *found = strstr(current_line, key);
-    return found == NULL ? NULL : found + strlen(key);
-}
-
-/* The number, or the `index`th of a list. */
-static long long number(const char *name, size_t index)
-{
-    const char *at = value(name);
-    if (at == NULL) {
-        fail(name);
-        return 0;
-    }
-    if (*at == '[')
-        at++;
-    for (; index > 0 && at != NULL; index--) {
-        at = strchr(at, ',');
-        if (at != NULL)
-            at++;
-    }
-    return at == NULL ? 0 : strtoll(at, NULL, 10);
-}
-
-static bool text_is(const char *name, const char *wanted)
-{
-    const char *at = value(name);
-    return at != NULL && *at == '"' && strncmp(at + 1, wanted, strlen(wanted)) == 0 && at[1 + strlen(wanted)] == '"';
-}
-
-static unsigned digit(char c)
-{
-    return (unsigned)(c <= '9' ? c - '0' : c - 'a' + 10);
-}
-
-static size_t bytes_of(const char *name, uint8_t bytes[BYTES_MOST])
-{
-    const char *at = value(name);
-    size_t length = 0;
-    if (at == NULL || *at++ != '"') {
-        fail(name);
-        return 0;
-    }
-    for (; at[0] != '"' && length < BYTES_MOST; at += 2)
-        bytes[length++] = (uint8_t)(digit(at[0]) << 4 | digit(at[1]));
-    return length;
-}
 
 /* Frames */
 
@@ -130,7 +56,8 @@ static void check_request(const struct frame *frame)
         read_configure(frame, &terms);
         terms_of_line(&wanted);
         expect(terms.version == wanted.version && terms.watchdog_ms == wanted.watchdog_ms, "version or watchdog");
-        expect(terms.end_state == wanted.end_state && terms.hold_time_ms == wanted.hold_time_ms, "end state or hold time");
+        expect(terms.end_state == wanted.end_state, "end state");
+        expect(terms.hold_time_ms == wanted.hold_time_ms, "hold time");
         expect(terms.hold_torque_limit == wanted.hold_torque_limit, "hold torque limit");
         for (size_t i = 0; i < MOTORS; i++) {
             expect(terms.torque_limits[i] == wanted.torque_limits[i], "torque limits");
@@ -150,7 +77,8 @@ static void check_request(const struct frame *frame)
 static bool write_answer(struct frame *frame, uint8_t type)
 {
     struct sensors sensors = {0};
-    uint16_t status = type == TYPE_CONFIGURED || type == TYPE_REPLY || type == TYPE_STOPPED ? (uint16_t)number("status", 0) : 0;
+    bool has_status = type == TYPE_CONFIGURED || type == TYPE_REPLY || type == TYPE_STOPPED;
+    uint16_t status = has_status ? (uint16_t)number("status", 0) : 0;
     for (size_t i = 0; i < MOTORS && (type == TYPE_CONFIGURED || type == TYPE_REPLY); i++) {
         sensors.encoders[i] = (int32_t)number("encoders", i);
         sensors.gauges[i] = (uint16_t)number("gauges", i);
@@ -182,7 +110,8 @@ static bool write_answer(struct frame *frame, uint8_t type)
     } else if (type == TYPE_STOPPED) {
         write_stopped(frame, status);
     } else if (type == TYPE_REFUSED) {
-        write_refused(frame, (uint8_t)number("request", 0), (uint8_t)number("reason", 0), (uint16_t)number("detail", 0));
+        uint8_t request = (uint8_t)number("request", 0), reason = (uint8_t)number("reason", 0);
+        write_refused(frame, request, reason, (uint16_t)number("detail", 0));
     } else {
         return false;
     }
@@ -253,6 +182,33 @@ static void check_ignored(void)
     expect(!fingers[0].damaged, "taken for damage");
 }
 
+/* Sends a request, and checks the answer. */
+static void check_exchange(void)
+{
+    say("send");
+    struct frame answer = {0};
+    unsigned damaged = 0;
+    size_t found = frames_in(fake.output, fake.output_length, &answer, &damaged);
+    bool silent = text_is("answer", "none");
+    expect(found == (silent ? 0 : 1) && damaged == 0, "number of answers");
+    if (silent || found != 1)
+        return;
+    expect(frame_address(&answer) == 1, "address");
+    if (text_is("answer", "Refused")) {
+        expect(frame_type(&answer) == TYPE_REFUSED, "type of the answer");
+        expect(frame_get8(&answer, 3) == number("reason", 0), "reason");
+        expect(frame_get16(&answer, 4) == number("detail", 0), "detail");
+    } else if (text_is("answer", "Identity")) {
+        expect(frame_type(&answer) == TYPE_IDENTITY, "type of the answer");
+    } else {
+        bool configured = text_is("answer", "Configured"), stopped = text_is("answer", "Stopped");
+        uint8_t type = configured ? TYPE_CONFIGURED : stopped ? TYPE_STOPPED : TYPE_REPLY;
+        expect(frame_type(&answer) == type, "type of the answer");
+        unsigned status = frame_get16(&answer, configured ? 58 : 2);
+        expect((status & ~(unsigned)STATUS_ZERO_VALID) == number("status", 0), "status");
+    }
+}
+
 static void check_step(void)
 {
     if (value("wait_ms") != NULL) {
@@ -263,28 +219,7 @@ static void check_step(void)
         for (size_t i = 0; i < MOTORS; i++)
             expect(fake_torque(0, i, 23400) == number("torques", i), "torques");
     } else {
-        say("send");
-        struct frame answer = {0};
-        unsigned damaged = 0;
-        size_t found = frames_in(fake.output, fake.output_length, &answer, &damaged);
-        bool silent = text_is("answer", "none");
-        expect(found == (silent ? 0 : 1) && damaged == 0, "number of answers");
-        if (silent || found != 1)
-            return;
-        expect(frame_address(&answer) == 1, "address");
-        if (text_is("answer", "Refused")) {
-            expect(frame_type(&answer) == TYPE_REFUSED, "type of the answer");
-            expect(frame_get8(&answer, 3) == number("reason", 0), "reason");
-            expect(frame_get16(&answer, 4) == number("detail", 0), "detail");
-        } else if (text_is("answer", "Identity")) {
-            expect(frame_type(&answer) == TYPE_IDENTITY, "type of the answer");
-        } else {
-            bool configured = text_is("answer", "Configured"), stopped = text_is("answer", "Stopped");
-            uint8_t type = configured ? TYPE_CONFIGURED : stopped ? TYPE_STOPPED : TYPE_REPLY;
-            expect(frame_type(&answer) == type, "type of the answer");
-            unsigned status = frame_get16(&answer, configured ? 58 : 2);
-            expect((status & ~(unsigned)STATUS_ZERO_VALID) == number("status", 0), "status");
-        }
+        check_exchange();
     }
 }
 
