@@ -9,6 +9,7 @@ mod eigenvalues;
 pub mod monitors;
 mod motors;
 mod number_checks;
+mod rate_table;
 pub(crate) mod sensing;
 pub(crate) mod signals;
 pub(crate) mod spring;

@@ -13,7 +13,7 @@ use crate::control::state_feedback::observer::{ElasticTendon, ObserverDesign, Te
 use crate::control::state_feedback::reference::Reference;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::model::{LinkDynamics, Tendons};
-use nalgebra::{Matrix4x3, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
 
 /// Noise of a gauge that the observers reckon with, N rms.
 const GAUGE_NOISE: f64 = 0.03;
@@ -21,13 +21,98 @@ const GAUGE_NOISE: f64 = 0.03;
 /// How many times that noise the tensions keep off their bounds, beside the dither.
 const NOISE_RESERVE: f64 = 14.0;
 
-/// The part of a motor's friction at t_max that its tendon keeps off t_max beside that: a motor at rest is held by its friction, and
-/// a tendon keeps what it has until what is missing, or too much, is observed. Without it tendons of a finger at a stop had up to
-/// 0.39 N more than t_max at 1000 Hz, with it 0.46 N less, over 24 seeds of 24 poses.
+/// The part of a motor's friction at t_max that its tendon keeps off t_max beside that: a motor at rest is held by its
+/// friction, and a tendon keeps what it has until what is missing, or too much, is observed. Without it tendons of a
+/// finger at a stop had up to 0.39 N more than t_max at 1000 Hz, with it 0.46 N less, over 24 seeds of 24 poses.
 const FRICTION_RESERVE: f64 = 0.2;
 
-/// Of the low-pass on the motion of the joints beside the reference, rad/s: above it dither and noise are, below it pushes.
+/// Of the low-pass on the motion of the joints beside the reference, rad/s: above it dither and noise are, below it
+/// pushes.
 const DRIFT_BANDWIDTH: f64 = 60.0;
+
+/// The motors and their tendons as masses on springs, in SI units at the tendon.
+struct Drives {
+    /// m.
+    radius: Vector4<f64>,
+    /// kg.
+    mass: Vector4<f64>,
+    /// N s/m.
+    viscous: Vector4<f64>,
+    /// N/m.
+    stiffness: Vector4<f64>,
+    /// Tensions at which the encoders are zeroed, N.
+    home: Vector4<f64>,
+    /// Angle of an encoder count, rad.
+    count: [f64; 4],
+}
+
+impl Drives {
+    fn new(finger: &ConfiguredFinger, tendons: &Tendons) -> Result<Self, Unusable> {
+        positive("motor.inertia", &finger.motor.inertia)?;
+        positive("tendon.stiffness", &finger.tendon.stiffness)?;
+        let radius = tendons.radius * 0.01;
+        let squared = radius.component_mul(&radius);
+        Ok(Self {
+            radius,
+            mass: Vector4::from(finger.motor.inertia).component_div(&squared),
+            viscous: Vector4::from(finger.motor.viscous_friction).component_div(&squared),
+            stiffness: Vector4::from(finger.tendon.stiffness) * 100.0,
+            home: tendons.pretension(finger.tendon.minimum),
+            count: finger.encoder.counts_per_revolution.map(|counts| std::f64::consts::TAU / f64::from(counts)),
+        })
+    }
+
+    /// The observer of one tendon.
+    fn observer(
+        &self,
+        index: usize,
+        finger: &ConfiguredFinger,
+        numbers: &Numbers,
+        rate: f64,
+    ) -> Result<TendonObserver, Unusable> {
+        let design = ObserverDesign {
+            link: numbers.link_bandwidth,
+            disturbance: numbers.disturbance_bandwidth,
+            encoder_step: self.count[index] * self.radius[index],
+            gauge_step: finger.gauge.newton_per_count[index].abs(),
+            gauge_noise: GAUGE_NOISE,
+        };
+        let tendon = ElasticTendon {
+            mass: self.mass[index],
+            viscous: self.viscous[index],
+            stiffness: self.stiffness[index],
+            home: self.home[index],
+        };
+        let too_far = || Unusable {
+            key: "tendon.stiffness",
+            reason: format!(
+                "of {} N/m with {} kg of motor cannot be observed at {rate} Hz",
+                tendon.stiffness, tendon.mass
+            ),
+        };
+        TendonObserver::new(tendon, &design, 1.0 / rate).ok_or_else(too_far)
+    }
+
+    /// c, N s/m: what damps the motors against the links of a finger that is bent like at its homing pose. R in m.
+    fn relative_damping(&self, numbers: &Numbers, dynamics: &LinkDynamics, r: &Matrix3x4<f64>) -> f64 {
+        let bent = Vector3::new(0.0, 0.5, 1.0);
+        let link_mass = (dynamics.inertia(&bent).determinant() / (r * r.transpose()).determinant()).cbrt();
+        let (mass, stiffness) = (self.mass.mean(), self.stiffness.mean());
+        let frequency = (stiffness / link_mass + numbers.inertia_gain * stiffness / mass).sqrt();
+        2.0 * numbers.relative_damping * mass * frequency
+    }
+
+    /// R m R^T / alpha, kg m^2: what the joints feel of the motors.
+    fn felt(&self, numbers: &Numbers, r: &Matrix3x4<f64>) -> Matrix3<f64> {
+        r * Matrix4x3::from_fn(|tendon, joint| self.mass[tendon] * r[(joint, tendon)]) / numbers.inertia_gain
+    }
+}
+
+/// R^T (R R^T)^-1.
+fn right_inverse(r: &Matrix3x4<f64>) -> Result<Matrix4x3<f64>, Unusable> {
+    let singular = || Unusable { key: "geometry.r", reason: "has no right inverse: is a sign wrong?".into() };
+    Ok(r.transpose() * (r * r.transpose()).try_inverse().ok_or_else(singular)?)
+}
 
 impl StateFeedback {
     /// All numbers from the configuration. `maximum`: what each tendon may have, N.
@@ -39,59 +124,20 @@ impl StateFeedback {
         rate: f64,
     ) -> Result<Self, Unusable> {
         let numbers = Numbers::new(&finger.controller, rate)?;
-        positive("motor.inertia", &finger.motor.inertia)?;
-        positive("tendon.stiffness", &finger.tendon.stiffness)?;
+        let drives = Drives::new(finger, tendons)?;
         positive("links.masses", &finger.links.masses)?;
         positive("links.radii", &finger.links.radii)?;
-        let radius = tendons.radius * 0.01;
-        let squared = radius.component_mul(&radius);
-        let mass = Vector4::from(finger.motor.inertia).component_div(&squared);
-        let viscous = Vector4::from(finger.motor.viscous_friction).component_div(&squared);
-        let stiffness = Vector4::from(finger.tendon.stiffness) * 100.0;
-        let home = tendons.pretension(finger.tendon.minimum);
         let r = tendons.r * 0.01;
-        let gram = r * r.transpose();
-        let singular = || Unusable { key: "geometry.r", reason: "has no right inverse: is a sign wrong?".into() };
-        let pseudo_inverse = r.transpose() * gram.try_inverse().ok_or_else(singular)?;
-
-        let count = finger.encoder.counts_per_revolution.map(|counts| std::f64::consts::TAU / f64::from(counts));
-        let observer = |index: usize| {
-            let design = ObserverDesign {
-                link: numbers.link_bandwidth,
-                disturbance: numbers.disturbance_bandwidth,
-                encoder_step: count[index] * radius[index],
-                gauge_step: finger.gauge.newton_per_count[index].abs(),
-                gauge_noise: GAUGE_NOISE,
-            };
-            let tendon = ElasticTendon {
-                mass: mass[index],
-                viscous: viscous[index],
-                stiffness: stiffness[index],
-                home: home[index],
-            };
-            let too_far = || Unusable {
-                key: "tendon.stiffness",
-                reason: format!(
-                    "of {} N/m with {} kg of motor cannot be observed at {rate} Hz",
-                    tendon.stiffness, tendon.mass
-                ),
-            };
-            TendonObserver::new(tendon, &design, 1.0 / rate).ok_or_else(too_far)
-        };
+        let pseudo_inverse = right_inverse(&r)?;
+        let observer = |index| drives.observer(index, finger, &numbers, rate);
         let dynamics = LinkDynamics::new(finger.links(), finger.links.masses, finger.links.radii, Vector3::zeros());
-        // The frequency of motors against links, for the inertia of a finger bent like at its homing pose.
-        let alpha = numbers.inertia_gain;
+        let relative_damping = drives.relative_damping(&numbers, &dynamics, &r);
         let joint_coulomb = Vector3::from(finger.friction.joint_coulomb) * 0.01;
-        let bent = Vector3::new(0.0, 0.5, 1.0);
-        let link_mass = (dynamics.inertia(&bent).determinant() / gram.determinant()).cbrt();
-        let (mean_mass, mean_stiffness) = (mass.mean(), stiffness.mean());
-        let frequency = (mean_stiffness / link_mass + alpha * mean_stiffness / mean_mass).sqrt();
-        let relative_damping = 2.0 * numbers.relative_damping * mean_mass * frequency;
         let shaken = joint_coulomb * numbers.dither;
-        let felt_motors = r * Matrix4x3::from_fn(|tendon, joint| mass[tendon] * r[(joint, tendon)]) / alpha;
-        let common = tendons.pretension(1.0).normalize();
+        let felt_motors = drives.felt(&numbers, &r);
         let friction = MotorFriction::new(finger, tendons);
         let lower_reserve = (pseudo_inverse.abs() * shaken).max() + NOISE_RESERVE * GAUGE_NOISE;
+        let upper_reserve = |motor| lower_reserve + FRICTION_RESERVE * friction.at(motor, maximum[motor]);
         Ok(Self {
             period: 1.0 / rate,
             observers: [observer(0)?, observer(1)?, observer(2)?, observer(3)?],
@@ -100,25 +146,23 @@ impl StateFeedback {
             damping: DampingDesign {
                 ratio: numbers.damping_ratio,
                 least_frequency: numbers.least_frequency,
-                lag: numbers.lag * relative_damping / (alpha * mean_stiffness),
+                lag: numbers.lag * relative_damping / (numbers.inertia_gain * drives.stiffness.mean()),
             },
             reference: Reference::new(numbers.reference_time, rate),
             slew: Slew::new(set_point_speed, rate),
             dither: Dither::new(shaken, numbers.dither_frequency, rate),
             lower_reserve,
-            upper_reserve: Vector4::from_fn(|motor, _| {
-                lower_reserve + FRICTION_RESERVE * friction.at(motor, maximum[motor])
-            }),
+            upper_reserve: Vector4::from_fn(|motor, _| upper_reserve(motor)),
             friction: FrictionFeedForward(friction),
             r,
             pseudo_inverse,
-            common,
+            common: tendons.pretension(1.0).normalize(),
             felt_motors,
             damped_motors: felt_motors * numbers.felt,
-            mass,
-            viscous,
-            stiffness,
-            inertia_gain: alpha,
+            mass: drives.mass,
+            viscous: drives.viscous,
+            stiffness: drives.stiffness,
+            inertia_gain: numbers.inertia_gain,
             relative_damping,
             common_gain: numbers.common_gain,
             common_damping: numbers.common_damping,
@@ -127,8 +171,8 @@ impl StateFeedback {
             drift_gain: -(-DRIFT_BANDWIDTH / rate).exp_m1(),
             rubbing: numbers.rubbing,
             ahead: numbers.ahead / rate,
-            radius,
-            half_count: Vector4::from_fn(|motor, _| 0.5 * count[motor] * f64::from(finger.encoder.sign[motor])),
+            radius: drives.radius,
+            half_count: Vector4::from_fn(|motor, _| 0.5 * drives.count[motor] * f64::from(finger.encoder.sign[motor])),
         })
     }
 }

@@ -1,11 +1,11 @@
 //! From a configuration to the numbers of state feedback: one procedure, nothing tuned for a finger by hand.
 //!
-//! What has a unit follows from the configuration: masses from rotor inertias, the observers' gains from the sizes of a count
-//! and a bandwidth. What remains has no unit, or is one in cycles, and was searched on the eigenvalues of the exact one-cycle
-//! map of the default finger, never for a pose.
+//! What has a unit follows from the configuration: masses from rotor inertias, the observers' gains from the sizes of a
+//! count and a bandwidth. What remains has no unit, or is one in cycles, and was searched on the eigenvalues of the
+//! exact one-cycle map of the default finger, never for a pose.
 
 use crate::control::number_checks::{not_negative, positive};
-use crate::control::tendons::gains::{Row, at};
+use crate::control::rate_table::{Row, Tuned, at};
 use crate::model::configuration::{ConfiguredController, Unusable};
 
 /// Frequencies are those of `rate`, and scale with the rate of the finger.
@@ -29,17 +29,17 @@ pub(super) struct Numbers {
     /// alpha makes of them.
     pub lag: f64,
     pub felt: f64,
-    /// alpha and the damping of motors against links for what the tendons have in common, over those for what turns the joints:
-    /// motors that are not alike turn the one into the other.
+    /// alpha and the damping of motors against links for what the tendons have in common, over those for what turns the
+    /// joints: motors that are not alike turn the one into the other.
     pub common_gain: f64,
     pub common_damping: f64,
-    /// Rate of fed forward joint friction over the spring's damping, at most: friction that is believed too large must not undo
-    /// the damping.
+    /// Rate of fed forward joint friction over the spring's damping, at most: friction that is believed too large must
+    /// not undo the damping.
     pub rubbing: f64,
     /// s, of each pole of the reference.
     pub reference_time: f64,
-    /// Amplitude of the dither over the joints' Coulomb friction, and its frequency, Hz: the lower it is, the less a motor must
-    /// give for it, and the more the tip moves.
+    /// Amplitude of the dither over the joints' Coulomb friction, and its frequency, Hz: the lower it is, the less a
+    /// motor must give for it, and the more the tip moves.
     pub dither: f64,
     pub dither_frequency: f64,
 }
@@ -53,44 +53,113 @@ const DITHER_FREQUENCY: f64 = 40.0;
 /// See [`Numbers::rubbing`].
 const RUBBING: f64 = 0.4;
 
-/// alpha, zeta, relative zeta, disturbance and link bandwidth (radians a cycle), cycles that it looks back, lag, common gain, common damping,
-/// felt, reference time (s).
-const TABLE: [Row<11>; 3] = [
-    (500.0, [0.95, 0.42, 0.19, 48.0, 2.6, 0.6, 0.04, 0.2, 0.6, 1.4, 0.012]),
-    (1000.0, [2.3, 0.178, 0.31, 13.0, 1.634, 0.12, 0.015, 0.043, 0.266, 10.2, 0.008]),
-    (2000.0, [3.58, 0.274, 0.557, 15.45, 0.57, 0.359, 0.042, 0.095, 0.184, 9.03, 0.008]),
+/// The numbers that the table has for several rates. What has no unit here is the same as in [`Numbers`].
+#[derive(Clone, Copy)]
+struct TunedNumbers {
+    inertia_gain: f64,
+    damping_ratio: f64,
+    relative_damping: f64,
+    /// Bandwidth of the observed disturbance, radians a cycle.
+    disturbance: f64,
+    /// Bandwidth of the observed links, radians a cycle.
+    link: f64,
+    /// Cycles that the law looks back from the next sample.
+    behind: f64,
+    lag: f64,
+    common_gain: f64,
+    common_damping: f64,
+    felt: f64,
+    /// s.
+    reference_time: f64,
+}
+
+impl Tuned for TunedNumbers {
+    fn combine(lower: &Self, upper: &Self, number: impl Fn(f64, f64) -> f64) -> Self {
+        Self {
+            inertia_gain: number(lower.inertia_gain, upper.inertia_gain),
+            damping_ratio: number(lower.damping_ratio, upper.damping_ratio),
+            relative_damping: number(lower.relative_damping, upper.relative_damping),
+            disturbance: number(lower.disturbance, upper.disturbance),
+            link: number(lower.link, upper.link),
+            behind: number(lower.behind, upper.behind),
+            lag: number(lower.lag, upper.lag),
+            common_gain: number(lower.common_gain, upper.common_gain),
+            common_damping: number(lower.common_damping, upper.common_damping),
+            felt: number(lower.felt, upper.felt),
+            reference_time: number(lower.reference_time, upper.reference_time),
+        }
+    }
+}
+
+const TABLE: [Row<TunedNumbers>; 3] = [
+    (
+        500.0,
+        TunedNumbers {
+            inertia_gain: 0.95,
+            damping_ratio: 0.42,
+            relative_damping: 0.19,
+            disturbance: 48.0,
+            link: 2.6,
+            behind: 0.6,
+            lag: 0.04,
+            common_gain: 0.2,
+            common_damping: 0.6,
+            felt: 1.4,
+            reference_time: 0.012,
+        },
+    ),
+    (
+        1000.0,
+        TunedNumbers {
+            inertia_gain: 2.3,
+            damping_ratio: 0.178,
+            relative_damping: 0.31,
+            disturbance: 13.0,
+            link: 1.634,
+            behind: 0.12,
+            lag: 0.015,
+            common_gain: 0.043,
+            common_damping: 0.266,
+            felt: 10.2,
+            reference_time: 0.008,
+        },
+    ),
+    (
+        2000.0,
+        TunedNumbers {
+            inertia_gain: 3.58,
+            damping_ratio: 0.274,
+            relative_damping: 0.557,
+            disturbance: 15.45,
+            link: 0.57,
+            behind: 0.359,
+            lag: 0.042,
+            common_gain: 0.095,
+            common_damping: 0.184,
+            felt: 9.03,
+            reference_time: 0.008,
+        },
+    ),
 ];
 
 impl Numbers {
     /// What is configured; the rest from the table.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
-        let [
-            inertia_gain,
-            damping_ratio,
-            relative_damping,
-            disturbance,
-            link,
-            behind,
-            lag,
-            common_gain,
-            common_damping,
-            felt,
-            reference_time,
-        ] = at(&TABLE, rate);
+        let tuned = at(&TABLE, rate);
         let numbers = Self {
-            inertia_gain: configured.inertia_gain.unwrap_or(inertia_gain),
-            damping_ratio: configured.damping_ratio.unwrap_or(damping_ratio),
-            relative_damping,
-            disturbance_bandwidth: disturbance * rate,
-            link_bandwidth: link * rate,
-            ahead: -behind,
-            lag,
-            felt,
-            common_gain,
-            common_damping,
+            inertia_gain: configured.inertia_gain.unwrap_or(tuned.inertia_gain),
+            damping_ratio: configured.damping_ratio.unwrap_or(tuned.damping_ratio),
+            relative_damping: tuned.relative_damping,
+            disturbance_bandwidth: tuned.disturbance * rate,
+            link_bandwidth: tuned.link * rate,
+            ahead: -tuned.behind,
+            lag: tuned.lag,
+            felt: tuned.felt,
+            common_gain: tuned.common_gain,
+            common_damping: tuned.common_damping,
             rubbing: RUBBING,
             least_frequency: LEAST_FREQUENCY,
-            reference_time: configured.set_point_time.unwrap_or(reference_time / (rate / TABLE[0].0).min(1.0)),
+            reference_time: configured.set_point_time.unwrap_or(tuned.reference_time / (rate / TABLE[0].0).min(1.0)),
             dither: configured.dither.unwrap_or(2.0),
             dither_frequency: DITHER_FREQUENCY.min(rate / 12.0),
         };

@@ -1,6 +1,7 @@
 //! The numbers of the tendon controllers for a rate.
 
 use crate::control::number_checks::{not_negative, positive};
+use crate::control::tendons::tuned_gains::TunedGains;
 use crate::model::configuration::{ConfiguredController, Scheme, Unusable};
 
 /// Gains of one scheme; see [`ConfiguredController`] for their meaning and units.
@@ -16,64 +17,23 @@ pub(crate) struct Gains {
     pub adaptation_gain: f64,
 }
 
-/// rad/s. At this speed a finger led to each of 200 random poses at 3 N/cm settled within 0.02 rad, with both figures at all
-/// three rates, and no tension fell under 1.6 N; at half as much again two poses missed, and a tendon went slack.
+/// rad/s. At this speed a finger led to each of 200 random poses at 3 N/cm settled within 0.02 rad, with both figures
+/// at all three rates, and no tension fell under 1.6 N; at half as much again two poses missed, and a tendon went
+/// slack.
 const SET_POINT_SPEED: f64 = 2.0;
 
-/// rad/s. State feedback follows its reference, which therefore may move as fast as the tensions can carry it: from 1000 Hz up.
+/// rad/s. State feedback follows its reference, which therefore may move as fast as the tensions can carry it: from
+/// 1000 Hz up.
 const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 5.0;
-
-/// Rate, Hz, and numbers at that rate, none negative. The rates of a table rise.
-pub(crate) type Row<const NUMBERS: usize> = (f64, [f64; NUMBERS]);
-
-/// The fields of [`Gains`] in their order but the last two. Found by experiment with the finger of the default configuration.
-const FIGURE_9: [Row<6>; 3] = [
-    (500.0, [0.0, 50.0, 250.0, 0.020, 160.0, 3.0]),
-    (1000.0, [0.0, 75.0, 310.0, 0.050, 180.0, 2.0]),
-    (2000.0, [0.0, 100.0, 440.0, 0.060, 160.0, 5.0]),
-];
-
-const FIGURE_10: [Row<6>; 3] = [
-    (500.0, [0.1, 55.0, 265.0, 0.020, 190.0, 3.0]),
-    (1000.0, [2.0, 250.0, 450.0, 0.015, 400.0, 6.0]),
-    (2000.0, [5.0, 550.0, 460.0, 0.020, 400.0, 6.0]),
-];
-
-/// At 500 and 2000 Hz by a random search of 50 rows for the smallest largest eigenvalue of the one-cycle map, over 40 poses at 1, 3
-/// and 6 N/cm.
-const FIGURE_11: [Row<6>; 3] = [
-    (500.0, [0.0, 0.0, 60.0, 0.020, 200.0, 3.0]),
-    (1000.0, [0.0, 0.0, 86.0, 0.0055, 400.0, 20.0]),
-    (2000.0, [0.0, 0.0, 54.0, 0.0041, 385.0, 6.0]),
-];
 
 /// 1/s.
 const ADAPTATION_GAIN: f64 = 20.0;
-
-/// The row of a table for `rate`, Hz: between two rates each number is a power of the rate, beyond the last ones it stays.
-///
-/// Not the nearest row: gains of a higher rate act on a delay for which they are too large, and were unstable in every pose tried.
-pub(crate) fn at<const NUMBERS: usize>(table: &[Row<NUMBERS>], rate: f64) -> [f64; NUMBERS] {
-    let above = table.iter().position(|row| row.0 >= rate).unwrap_or(table.len() - 1);
-    let ((low, lower), (high, upper)) = (table[above.saturating_sub(1)], table[above]);
-    if rate <= low || rate >= high {
-        return if rate <= low { lower } else { upper };
-    }
-    let part = (rate / low).ln() / (high / low).ln();
-    std::array::from_fn(|gain| lower[gain].powf(1.0 - part) * upper[gain].powf(part))
-}
 
 impl Gains {
     /// What is configured; the rest from the table of the scheme.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
         let scheme = configured.scheme(rate);
-        let table = match scheme {
-            Scheme::Figure9 => &FIGURE_9,
-            // Slack is taken up with Figure 10.
-            Scheme::Figure10 | Scheme::StateFeedback => &FIGURE_10,
-            Scheme::Figure11 => &FIGURE_11,
-        };
-        let [tension_gain, tension_integral, motor_damping, rate_time, speed_filter, stretch_filter] = at(table, rate);
+        let tuned = TunedGains::of(scheme, rate);
         let absent = |key, term: &str| {
             let reason = format!("is given, but this scheme has no {term} term: leave it out, or choose \"figure 10\"");
             Err(Unusable { key, reason })
@@ -85,12 +45,12 @@ impl Gains {
             return absent("controller.tension_integral", "integral");
         }
         let gains = Self {
-            tension_gain: configured.tension_gain.unwrap_or(tension_gain),
-            tension_integral: configured.tension_integral.unwrap_or(tension_integral),
-            motor_damping: configured.motor_damping.unwrap_or(motor_damping),
-            rate_time: configured.rate_time.unwrap_or(rate_time),
-            speed_filter: configured.speed_filter.unwrap_or(speed_filter),
-            stretch_filter: configured.stretch_filter.unwrap_or(stretch_filter),
+            tension_gain: configured.tension_gain.unwrap_or(tuned.tension_gain),
+            tension_integral: configured.tension_integral.unwrap_or(tuned.tension_integral),
+            motor_damping: configured.motor_damping.unwrap_or(tuned.motor_damping),
+            rate_time: configured.rate_time.unwrap_or(tuned.rate_time),
+            speed_filter: configured.speed_filter.unwrap_or(tuned.speed_filter),
+            stretch_filter: configured.stretch_filter.unwrap_or(tuned.stretch_filter),
             set_point_speed: configured.set_point_speed.unwrap_or(match scheme {
                 Scheme::StateFeedback => STATE_FEEDBACK_SET_POINT_SPEED * (rate / 1000.0).min(1.0),
                 Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => SET_POINT_SPEED,

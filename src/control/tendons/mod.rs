@@ -10,3 +10,4 @@ pub(crate) mod release;
 pub(crate) mod tendon_controller;
 pub(crate) mod tension_distribution;
 pub(crate) mod tension_integral;
+mod tuned_gains;
