@@ -4,6 +4,7 @@
 mod one_cycle_map;
 mod recurrence;
 mod stiffness_bound;
+mod trial;
 
 pub use one_cycle_map::{OneCycleMap, Rest};
 pub use recurrence::growth;

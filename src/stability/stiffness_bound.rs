@@ -1,15 +1,13 @@
 //! The largest Kx for which a finger is stable wherever it may be.
 
-use super::{OneCycleMap, Rest};
-use crate::control::AdmissibleDamping;
+use super::Rest;
+use super::trial::Trial;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use rand_distr::{Distribution, UnitSphere};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::f64::consts::PI;
-use std::num::NonZero;
-use std::thread;
 
 /// A bound is a multiple of this, N/cm.
 const GRID: f64 = 0.1;
@@ -17,15 +15,9 @@ const GRID: f64 = 0.1;
 /// A stiffness of which some pose would get less than this part is not on offer.
 const LEAST_SCALE: f64 = 0.5;
 
-/// Nearer to the axis of joint 0 than this the tip is next to the singular pose in which nothing holds that joint: such poses
-/// are counted apart, cm.
+/// Nearer to the axis of joint 0 than this the tip is next to the singular pose in which nothing holds that joint: such
+/// poses are counted apart, cm.
 const CLEAR_OF_AXIS: f64 = 3.0;
-
-/// Springs have at least this eigenvalue, N/cm, where the bound is not less: what is softer is nearly limp, whatever the bound.
-const SOFTEST: f64 = 1.0;
-
-/// Nothing damps a joint that nothing holds: it has an eigenvalue of 1.
-const ROUNDING: f64 = 1e-5;
 
 /// How the bound is looked for.
 #[derive(Clone, Copy, Debug)]
@@ -49,8 +41,9 @@ pub struct StiffnessBound {
     pub least_scale: f64,
     /// How many samples were tried at the bound, all stable.
     pub samples: usize,
-    /// Of the samples with the tip within 3 cm of the axis of joint 0, where the finger is next to singular and which the bound
-    /// does not cover: how many there are, how many are unstable at the bound, and how far from the axis such a tip is at most, cm.
+    /// Of the samples with the tip within 3 cm of the axis of joint 0, where the finger is next to singular and which
+    /// the bound does not cover: how many there are, how many are unstable at the bound, and how far from the axis such
+    /// a tip is at most, cm.
     pub near_axis: (usize, usize, f64),
 }
 
@@ -64,83 +57,45 @@ pub enum Limit {
 }
 
 impl Search {
-    /// The bound of `finger` with its scheme and gains at `rate`, Hz: every sample of poses within the joint limits, of Kx with
-    /// random axes and eigenvalues from 1 N/cm to the bound, of loads that deflect the tip by up to 1 mm, and of the least, the
-    /// controller's own and the most damping that such a Kx admits, is stable at it. The servo
-    /// scales Kx down where the tendons of a pose carry less, and so it does here.
+    /// The bound of `finger` with its scheme and gains at `rate`, Hz: every sample of poses within the joint limits, of
+    /// Kx with random axes and eigenvalues from 1 N/cm to the bound, of loads that deflect the tip by up to 1 mm, and
+    /// of the least, the controller's own and the most damping that such a Kx admits, is stable at it. The servo scales
+    /// Kx down where the tendons of a pose carry less, and so it does here.
     ///
     /// # Errors
     /// The key that makes no controller, or `controller` where a pose is unstable with next to no stiffness.
     pub fn bound(&self, finger: &ConfiguredFinger, rate: f64) -> Result<StiffnessBound, Unusable> {
-        let map = OneCycleMap::new(finger, rate)?;
-        let admissible = AdmissibleDamping::new(finger, rate);
+        let trial = Trial::new(finger, rate)?;
         let links = finger.links();
         let (clear, near): (Vec<Rest>, Vec<Rest>) =
             self.rests(finger).into_iter().partition(|rest| links.reach(&rest.joints).abs() >= CLEAR_OF_AXIS);
-
-        // What each pose carries, N/cm: beyond it, as much as is asked is scaled away.
-        const BEYOND: f64 = 1e3;
-        let isotropic = |rest: &Rest| Rest { stiffness: Matrix3::identity() * BEYOND, damping: 1.0, ..*rest };
-        let carried = in_parallel(&clear, |rest| BEYOND * map.scale(&isotropic(rest)));
+        let carried = trial.carried(&clear);
         let Some(softest) = (0..clear.len()).min_by(|&one, &other| carried[one].total_cmp(&carried[other])) else {
             let reason = "leave no pose with the tip off the axis of joint 0".into();
             return Err(Unusable { key: "joints.minimum_degrees", reason });
         };
-        let mut limit = Limit::Scaled(clear[softest].joints);
-        let mut bound = (carried[softest] / LEAST_SCALE / GRID).floor();
-
-        let stable = |rest: &Rest, bound: f64| {
-            let (stiffest, softest) = (bound * GRID, SOFTEST.min(bound * GRID));
-            let stiffness = Matrix3::identity() * softest + rest.stiffness * (stiffest - softest);
-            // Samples below, at and above a ratio of 1 take turns: see `rests`.
-            let (least, most) = admissible.range(stiffness.symmetric_eigenvalues().max());
-            let rest = Rest { stiffness, damping: rest.damping.clamp(least, most), ..*rest };
-            map.largest_eigenvalue(&rest).is_some_and(|modulus| modulus < 1.0 + ROUNDING)
+        let most = (carried[softest] / LEAST_SCALE / GRID).floor();
+        let lowered = lower_until_stable(&trial, &clear, most)?;
+        let (grid_steps, limit) = match lowered {
+            None => (most, Limit::Scaled(clear[softest].joints)),
+            Some((bound, joints)) => (bound, Limit::Unstable(joints)),
         };
-        loop {
-            let found = in_parallel(&clear, |rest| stable(rest, bound));
-            let unstable: Vec<&Rest> = clear.iter().zip(found).filter(|(_, stable)| !stable).map(|(r, _)| r).collect();
-            if unstable.is_empty() {
-                break;
-            }
-            for rest in unstable {
-                if stable(rest, bound) {
-                    continue;
-                }
-                let (mut low, mut high) = (0.0, bound);
-                while high - low > 1.0 {
-                    let middle = ((low + high) / 2.0).floor();
-                    if stable(rest, middle) { low = middle } else { high = middle }
-                }
-                (bound, limit) = (low, Limit::Unstable(rest.joints));
-                if bound == 0.0 {
-                    let degrees = rest.joints.map(f64::to_degrees);
-                    let reason = format!(
-                        "leaves the finger unstable at any stiffness at {:.0?} degrees: leave its gains out, or choose another scheme",
-                        degrees.as_slice()
-                    );
-                    return Err(Unusable { key: "controller", reason });
-                }
-            }
-        }
-
-        let near_stable = in_parallel(&near, |rest| stable(rest, bound));
-        let swinging = near.iter().zip(near_stable).filter(|(_, stable)| !stable).map(|(rest, _)| rest);
-        let distances: Vec<f64> = swinging.map(|rest| links.reach(&rest.joints).abs()).collect();
-        let stiffness = bound * GRID;
+        let stiffness = grid_steps * GRID;
+        let unstable = trial.unstable(&near, stiffness);
+        let distances = unstable.iter().map(|rest| links.reach(&rest.joints).abs());
         Ok(StiffnessBound {
             stiffness,
             limit,
             scaled: carried.iter().filter(|&&carried| carried < stiffness).count() as f64 / carried.len() as f64,
             least_scale: (carried[softest] / stiffness).min(1.0),
             samples: clear.len(),
-            near_axis: (near.len(), distances.len(), distances.iter().copied().fold(0.0, f64::max)),
+            near_axis: (near.len(), unstable.len(), distances.fold(0.0, f64::max)),
         })
     }
 
-    /// Rests anywhere within the joint limits. Where Kx is between softest and stiffest: its eigenvalues are 0 to 1, the largest
-    /// is 1 in three of four, one of them isotropic, and anything in the fourth. The relative damping is none, 1 or without limit in turn,
-    /// to be clamped to what the stiffness admits.
+    /// Rests anywhere within the joint limits. Where Kx is between softest and stiffest: its eigenvalues are 0 to 1,
+    /// the largest is 1 in three of four, one of them isotropic, and anything in the fourth. The relative damping is
+    /// none, 1 or without limit in turn, to be clamped to what the stiffness admits.
     fn rests(&self, finger: &ConfiguredFinger) -> Vec<Rest> {
         let mut random = Pcg64::seed_from_u64(self.seed);
         let (low, high) = finger.joint_limits();
@@ -167,17 +122,50 @@ impl Search {
     }
 }
 
-/// `measure` of every item, in order, on as many threads as there are cores.
-fn in_parallel<Item: Sync, Found: Send>(items: &[Item], measure: impl Fn(&Item) -> Found + Sync) -> Vec<Found> {
-    let threads = thread::available_parallelism().map_or(1, NonZero::get);
-    let measure = &measure;
-    thread::scope(|scope| {
-        let parts: Vec<_> = items
-            .chunks(items.len().div_ceil(threads).max(1))
-            .map(|part| scope.spawn(move || part.iter().map(measure).collect::<Vec<_>>()))
-            .collect();
-        parts.into_iter().flat_map(|part| part.join().expect("no measurement panics")).collect()
-    })
+/// The largest bound up to `most` at which every rest is stable, in steps of the grid, and the pose that keeps it from
+/// being larger. None where every rest is stable at `most`.
+///
+/// # Errors
+/// `controller` where a rest is unstable with next to no stiffness.
+fn lower_until_stable(trial: &Trial, rests: &[Rest], most: f64) -> Result<Option<(f64, Vector3<f64>)>, Unusable> {
+    let mut bound = most;
+    let mut limit = None;
+    loop {
+        let unstable = trial.unstable(rests, bound * GRID);
+        if unstable.is_empty() {
+            return Ok(limit.map(|joints| (bound, joints)));
+        }
+        for rest in unstable {
+            // The bound may be lower by now than the one at which this rest was unstable.
+            if trial.stable(rest, bound * GRID) {
+                continue;
+            }
+            bound = largest_stable(trial, rest, bound);
+            limit = Some(rest.joints);
+            if bound == 0.0 {
+                return Err(unstable_at_any_stiffness(&rest.joints));
+            }
+        }
+    }
+}
+
+/// The largest bound below `unstable` at which a rest is stable, by bisection, in steps of the grid.
+fn largest_stable(trial: &Trial, rest: &Rest, unstable: f64) -> f64 {
+    let (mut low, mut high) = (0.0, unstable);
+    while high - low > 1.0 {
+        let middle = ((low + high) / 2.0).floor();
+        if trial.stable(rest, middle * GRID) { low = middle } else { high = middle }
+    }
+    low
+}
+
+fn unstable_at_any_stiffness(joints: &Vector3<f64>) -> Unusable {
+    let degrees = joints.map(f64::to_degrees);
+    let reason = format!(
+        "leaves the finger unstable at any stiffness at {:.0?} degrees: leave its gains out, or choose another scheme",
+        degrees.as_slice()
+    );
+    Unusable { key: "controller", reason }
 }
 
 /// Any direction, of unit length.
