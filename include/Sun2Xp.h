@@ -147,9 +147,9 @@
    other compilers the planner must have no macro that is named like a word of C, or like
    a struct, a member or a call of this header.
 
-   Packing: gcc and clang give the structs of this header the library's layout even after
-   #pragma pack and with -fpack-struct. Where a compiler for 64 bits lays them out in
-   another way, the header does not compile.
+   Packing: after #pragma pack, gcc and clang still give the structs of this header the
+   library's layout. Where a compiler for 64 bits lays them out in another way, as gcc
+   does with -fpack-struct, the header does not compile.
 
 
    6. THREADS, SIGNALS, FORK, EXIT
@@ -583,6 +583,9 @@ int SendKxD(int, const double *);
    Pos   Pos[3]: measured angles of joints 0, 1, 2, rad, from the servo's last cycle.
          Written only if the call returns 0
 
+ While the servo thread does not run, the angles stay those of its last cycle. GetStatus
+ shows that: SkippedPeriods grows.
+
  Returns 0, or -1 with
    EPERM    forked child
    EFAULT   Pos is null
@@ -783,7 +786,8 @@ struct FingerStatus {
      */
     double Rate;
     /*
-     Measured servo rate since OpenHand, Hz.
+     Measured servo rate since OpenHand, Hz. While the servo does not run, the periods that
+     are missing up to now count too, so the rate falls.
      */
     double MeasuredRate;
     /*
@@ -809,8 +813,8 @@ struct FingerStatus {
      */
     unsigned long Cycles;
     /*
-     Whole periods that were skipped because the cycle before was not over. One such cycle
-     may skip many.
+     Whole periods in which no cycle began, because the cycle before was not over or the
+     servo thread did not run, up to now. One such cycle may skip many.
      */
     unsigned long SkippedPeriods;
     /*
@@ -1067,6 +1071,11 @@ struct Fault {
             the call returns 0
 
  Works on a faulted finger too.
+
+ A servo thread does not run while a thread with a higher priority occupies its core, or
+ while a debugger holds it. Then State is that of its last cycle and Cycles stands still.
+ SkippedPeriods grows with every period, so a planner that compares it with an earlier
+ value knows how old the pose of GetPos is.
 
  Returns 0, or -1 with
    EPERM    forked child

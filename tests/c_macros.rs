@@ -54,8 +54,8 @@ const WORDS: &[&str] = &[
     "__inline",
 ];
 
-/// Macros of the header itself, and the calls that these use. A planner that defines one too sees a compiler's complaint, or makes
-/// the call another one.
+/// Macros of the header itself, and the calls that these use. A planner that defines one too sees a compiler's complaint,
+/// or makes the call another one.
 const MACROS_OF_THE_HEADER: &[&str] = &["SendPos", "SendKx", "GetPos", "SendPosD", "SendKxD", "GetPosD"];
 
 fn words(text: &str) -> impl Iterator<Item = &str> {

@@ -219,6 +219,28 @@ fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
     }
 }
 
+/// What a planner asks while the servo does not run, and what the servo counts when it runs again.
+#[test]
+fn periods_that_are_missing_are_known_before_the_servo_runs_again() {
+    let mut rig = Rig::new(0, 60_000);
+    rig.run_until(60.0, |report| report.stage != Stage::Opening);
+    let before = rig.mailbox.report();
+    let missing = |rig: &Rig| rig.mailbox.report().missing_periods(rig.world.borrow().now, MILLISECOND);
+    assert_eq!(missing(&rig), 0);
+    let mut most = 0;
+    for pause in [1, 3, 900, 1800] {
+        let now = rig.world.borrow().now;
+        rig.world.borrow_mut().advance_to(now + pause * MILLISECOND);
+        let periods = missing(&rig);
+        assert!(periods + 2 >= pause && periods >= most, "{periods} of {pause}");
+        most = periods;
+    }
+    rig.servo.cycle();
+    let counted = rig.mailbox.report().losses.skipped_periods - before.losses.skipped_periods;
+    assert!((most..=most + 2).contains(&counted), "{most} were missing, and {counted} are counted");
+    assert_eq!(missing(&rig), 0);
+}
+
 #[test]
 fn a_command_or_reply_that_was_thrown_away_is_made_good() {
     let mut rig = Rig::new(0, 60_000);

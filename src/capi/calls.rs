@@ -174,6 +174,9 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
 ///   Pos   Pos[3]: measured angles of joints 0, 1, 2, rad, from the servo's last cycle.
 ///         Written only if the call returns 0
 ///
+/// While the servo thread does not run, the angles stay those of its last cycle. GetStatus
+/// shows that: SkippedPeriods grows.
+///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
 ///   EFAULT   Pos is null

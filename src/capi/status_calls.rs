@@ -51,7 +51,8 @@ pub struct FingerStatus {
     pub Realtime: c_int,
     /// Configured servo rate, Hz.
     pub Rate: f64,
-    /// Measured servo rate since OpenHand, Hz.
+    /// Measured servo rate since OpenHand, Hz. While the servo does not run, the periods that
+    /// are missing up to now count too, so the rate falls.
     pub MeasuredRate: f64,
     /// How late cycles began since OpenHand or ResetTiming, microseconds: half of them no
     /// later than this. The servo's jitter.
@@ -65,8 +66,8 @@ pub struct FingerStatus {
     pub TorqueScale: f64,
     /// Cycles since OpenHand.
     pub Cycles: c_ulong,
-    /// Whole periods that were skipped because the cycle before was not over. One such cycle
-    /// may skip many.
+    /// Whole periods in which no cycle began, because the cycle before was not over or the
+    /// servo thread did not run, up to now. One such cycle may skip many.
     pub SkippedPeriods: c_ulong,
     /// Cycles without a valid reply in time.
     pub LostReplies: c_ulong,
@@ -94,6 +95,11 @@ pub struct FingerStatus {
 ///            the call returns 0
 ///
 /// Works on a faulted finger too.
+///
+/// A servo thread does not run while a thread with a higher priority occupies its core, or
+/// while a debugger holds it. Then State is that of its last cycle and Cycles stands still.
+/// SkippedPeriods grows with every period, so a planner that compares it with an earlier
+/// value knows how old the pose of GetPos is.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child

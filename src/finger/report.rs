@@ -33,4 +33,18 @@ pub struct FingerReport {
     pub first: u64,
     /// When the last cycle began, ns of the monotonic clock.
     pub last: u64,
+    /// When the next cycle shall begin, ns of the monotonic clock.
+    pub next: u64,
+}
+
+impl FingerReport {
+    /// Whole periods, of `period` ns, that have passed without a cycle and are not counted in [`Losses::skipped_periods`] yet,
+    /// because the servo counts at the end of its next cycle. `now`: ns of the monotonic clock.
+    pub fn missing_periods(&self, now: u64, period: u64) -> u64 {
+        if self.losses.cycles == 0 || self.stage == Stage::Closed {
+            return 0;
+        }
+        // As many as the servo would skip if its next cycle ended now.
+        now.saturating_sub(self.next + period) / period
+    }
 }

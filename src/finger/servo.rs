@@ -128,9 +128,9 @@ impl FingerServo {
         }
     }
 
-    /// Ends a cycle: computes the next command. `overrun`: the next cycle should have begun already, and so many periods are
-    /// skipped.
-    pub fn end(&mut self, began: u64, overrun: Option<u64>, heard: &LinkCounters) {
+    /// Ends a cycle: computes the next command. `next`: when the next cycle shall begin, ns. `overrun`: the next cycle should have
+    /// begun already, and so many periods are skipped.
+    pub fn end(&mut self, began: u64, next: u64, overrun: Option<u64>, heard: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
         self.sample_age += 1 + skipped;
         let losses = &mut self.report.losses;
@@ -138,7 +138,7 @@ impl FingerServo {
         losses.overruns += u64::from(overrun.is_some());
         losses.skipped_periods += skipped;
         (losses.damaged_frames, losses.foreign_frames) = (heard.damaged, heard.foreign);
-        self.report.last = began;
+        (self.report.last, self.report.next) = (began, next);
         if losses.cycles == 1 {
             self.report.first = began;
         }

@@ -135,7 +135,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         for port in self.ports.iter_mut() {
             let heard = port.heard();
             for finger in port.fingers.iter_mut() {
-                finger.end(began, overrun, &heard);
+                finger.end(began, self.schedule.next(), overrun, &heard);
                 let computed = self.clock.now();
                 finger.note(Stage::Compute, computing, computed);
                 finger.note(Stage::Whole, beginning, computed);
@@ -154,7 +154,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
             let heard = port.heard();
             for finger in port.fingers.iter_mut() {
                 finger.fault(Fault::new(FaultKind::ServoPanic));
-                finger.end(now, None, &heard);
+                finger.end(now, self.schedule.next(), None, &heard);
                 finger.tell();
             }
         }

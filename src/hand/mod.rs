@@ -23,6 +23,7 @@ mod reconnection;
 mod recovery;
 mod root;
 mod servo_threads;
+mod status;
 mod workshop;
 
 pub use crate::finger::stop_all;
@@ -38,5 +39,6 @@ pub use found::Found;
 pub use missing::{Missing, missing};
 pub use opening::{check, ports, simulate};
 pub use recovery::Recovering;
-pub use root::{FingerStatus, Hand};
+pub use root::Hand;
 pub use servo_threads::priority;
+pub use status::FingerStatus;

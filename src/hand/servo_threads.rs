@@ -40,7 +40,7 @@ pub(super) fn start(
     lines: Vec<Line>,
     servos: &mut Vec<JoinHandle<PortServo>>,
 ) -> Result<Given, HandError> {
-    let period = (1e9 / configuration.hand.rate).round() as u64;
+    let period = configuration.hand.period();
     let real_time = configuration.hand.real_time;
     let mut threads: Vec<u8> = lines.iter().map(|line| line.thread).collect();
     threads.sort_unstable();

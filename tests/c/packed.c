@@ -1,4 +1,4 @@
-/* A planner that packs its structs and has macros named like words of C. It calls all the same, and reads what the library wrote. */
+/* A planner that packs its structs and has macros named like words of C. Its calls are served all the same. */
 #include <string.h>
 #include <unistd.h>
 #include "check.h"

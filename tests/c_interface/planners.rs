@@ -136,6 +136,11 @@ fn the_status_tells_of_the_servo() {
 }
 
 #[test]
+fn the_status_tells_of_a_servo_that_does_not_run() {
+    succeed(&strict(&["-std=gnu99"]), &["held.c"]);
+}
+
+#[test]
 fn a_planner_that_packs_structs_and_redefines_words_of_c_is_served() {
     succeed(&strict(&["-std=c99", "-Wno-keyword-macro"]), &["packed.c"]);
     succeed(&strict(&["-std=c99", "-DSUN2XP_NO_GENERIC"]), &["packed.c"]);

@@ -74,6 +74,7 @@ impl FingerServo {
             warnings: Default::default(),
             first: 0,
             last: 0,
+            next: 0,
         };
         let (planners, servo, mut memory) = mailbox(report, &adjustable);
         memory.append(&black_box.memory());

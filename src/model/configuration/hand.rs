@@ -94,6 +94,13 @@ pub struct ConfiguredHand {
     pub gravity: [f64; 3],
 }
 
+impl ConfiguredHand {
+    /// The period of the servos, ns.
+    pub fn period(&self) -> u64 {
+        (1e9 / self.rate).round() as u64
+    }
+}
+
 impl Default for ConfiguredHand {
     fn default() -> Self {
         Self {

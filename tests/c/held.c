@@ -1,0 +1,97 @@
+/* A planner looks at the status while the servo thread of finger 1 is stopped, as a debugger stops it, and afterwards. */
+#include <dirent.h>
+#include <errno.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/ptrace.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include "Sun2Xp.h"
+#include "check.h"
+
+/* The number of the servo thread of finger 1. */
+static int servo(void)
+{
+    DIR *threads = opendir("/proc/self/task");
+    struct dirent *thread;
+    int number = 0;
+
+    CHECK(threads != NULL);
+    while (number == 0 && (thread = readdir(threads)) != NULL) {
+        char path[300], name[32] = "";
+        FILE *file;
+        sprintf(path, "/proc/self/task/%s/comm", thread->d_name);
+        file = fopen(path, "r");
+        if (file == NULL)
+            continue;
+        if (fgets(name, sizeof name, file) != NULL && strcmp(name, "sun2xp servo 1\n") == 0)
+            number = atoi(thread->d_name);
+        fclose(file);
+    }
+    closedir(threads);
+    return number;
+}
+
+/* In a child: stops the thread, says so, and lets it go when the parent says so. */
+static void hold(int thread, int held, int go)
+{
+    char byte = 0;
+    int status;
+
+    if (ptrace(PTRACE_SEIZE, thread, NULL, NULL) != 0 || ptrace(PTRACE_INTERRUPT, thread, NULL, NULL) != 0)
+        _exit(errno);
+    if (waitpid(thread, &status, __WALL) != thread || write(held, &byte, 1) != 1 || read(go, &byte, 1) != 1)
+        _exit(1);
+    _exit(ptrace(PTRACE_DETACH, thread, NULL, NULL) == 0 ? 0 : 2);
+}
+
+static struct FingerStatus look(void)
+{
+    struct FingerStatus Status;
+
+    Status.Size = sizeof Status;
+    CHECK(GetStatus(1, &Status) == 0);
+    return Status;
+}
+
+int main(void)
+{
+    struct FingerStatus Before, Held, Later;
+    int thread, status, to_child[2], to_parent[2];
+    pid_t child;
+    char byte;
+
+    CHECK(OpenHand() == 0);
+    PAUSE_MS(200);
+    thread = servo();
+    CHECK(thread > 0 && pipe(to_child) == 0 && pipe(to_parent) == 0);
+    /* Where only descendants may be traced by default. It fails where there is no such restriction. */
+    prctl(PR_SET_PTRACER, -1L, 0, 0, 0);
+    child = fork();
+    CHECK(child >= 0);
+    if (child == 0) {
+        /* Where the parent ends early, the child reads the end of the pipe and lets the thread go. */
+        close(to_child[1]);
+        hold(thread, to_parent[1], to_child[0]);
+    }
+    close(to_parent[1]);
+    CHECK(read(to_parent[0], &byte, 1) == 1);
+    Before = look();
+    PAUSE_MS(500);
+    Held = look();
+    CHECK(Held.Cycles == Before.Cycles);
+    CHECK(Held.SkippedPeriods >= Before.SkippedPeriods + 490);
+    CHECK(Held.MeasuredRate < 0.8 * Before.MeasuredRate);
+    PAUSE_MS(500);
+    CHECK(look().SkippedPeriods >= Held.SkippedPeriods + 490);
+    Held = look();
+    CHECK(write(to_child[1], &byte, 1) == 1);
+    CHECK(waitpid(child, &status, 0) == child && status == 0);
+    PAUSE_MS(100);
+    Later = look();
+    /* What was missing is counted once. */
+    CHECK(Later.Cycles > Held.Cycles);
+    CHECK(Later.SkippedPeriods >= Held.SkippedPeriods);
+    CHECK(Later.SkippedPeriods + Later.Cycles < Held.SkippedPeriods + Held.Cycles + 2000);
+    return CloseHand();
+}
