@@ -63,7 +63,10 @@ proptest! {
     }
 
     #[test]
-    fn damage_is_found(content in content(), hits in prop::collection::vec((any::<prop::sample::Index>(), 1u8..), 1..4)) {
+    fn damage_is_found(
+        content in content(),
+        hits in prop::collection::vec((any::<prop::sample::Index>(), 1u8..), 1..4),
+    ) {
         let good = sealed(&content);
         let mut bad = good.clone();
         for (place, change) in hits {

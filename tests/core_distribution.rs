@@ -24,7 +24,11 @@ fn least(tendons: &Tendons, torque: Vector3<f64>) -> Vector4<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases.max(2000), failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: ProptestConfig::default().cases.max(2000),
+        failure_persistence: None,
+        ..Default::default()
+    })]
 
     #[test]
     fn tensions_give_the_scaled_torque_within_both_bounds_with_the_largest_scale(
@@ -61,7 +65,8 @@ proptest! {
         let rounding = 1e-14 * (100.0 + size);
         let (lowest, highest) = (largest(-rounding), largest(rounding));
         // The bisection itself ends with an interval of 1e-18.
-        prop_assert!((lowest - 1e-15..=highest + 1e-15).contains(&found.scale), "{}, not {lowest} to {highest}", found.scale);
+        let scale = found.scale;
+        prop_assert!((lowest - 1e-15..=highest + 1e-15).contains(&scale), "{scale}, not {lowest} to {highest}");
     }
 
     /// Whatever else gives the same torque is larger, in the 1-, 2- and infinity-norm: R's null vector is all positive, so
@@ -70,7 +75,8 @@ proptest! {
     fn tensions_are_the_least(direction in prop::array::uniform3(-1.0..1.0f64), more in 1e-6..10.0f64) {
         let tendons = tendons(None);
         let torque = Vector3::from(direction) * 20.0;
-        let tensions = TensionDistribution::new(&tendons, MINIMUM, Vector4::repeat(MAXIMUM)).unwrap().distribute(&torque).tensions;
+        let distribution = TensionDistribution::new(&tendons, MINIMUM, Vector4::repeat(MAXIMUM)).unwrap();
+        let tensions = distribution.distribute(&torque).tensions;
         let home = tendons.pretension(1.0);
         prop_assert!((tendons.r * home).amax() < 1e-12 && home.min() > 0.0);
         prop_assert!((tensions - home * more).min() < MINIMUM);
@@ -83,7 +89,10 @@ proptest! {
         direction in prop::array::uniform3(-60.0..60.0f64), ghost in prop::array::uniform4(0.2..3.0f64),
     ) {
         let torque = Vector3::from(direction);
-        let by = |ghost| TensionDistribution::new(&tendons(ghost), MINIMUM, Vector4::repeat(MAXIMUM)).unwrap().distribute(&torque);
+        let by = |ghost| {
+            let maximum = Vector4::repeat(MAXIMUM);
+            TensionDistribution::new(&tendons(ghost), MINIMUM, maximum).unwrap().distribute(&torque)
+        };
         let (with, without) = (by(Some(ghost)), by(None));
         prop_assert!((with.tensions - without.tensions).amax() < 1e-9);
         prop_assert!((with.scale - without.scale).abs() < 1e-9);

@@ -107,7 +107,11 @@ fn agrees_with_an_independent_integration_of_lagranges_equations() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases / 8, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: ProptestConfig::default().cases / 8,
+        failure_persistence: None,
+        ..Default::default()
+    })]
 
     /// Motors without torque, the finger let go from a strained state between tendons, stops, a wall and gravity.
     #[test]
@@ -124,7 +128,8 @@ proptest! {
         let mut plant = Plant::new(&finger, Vector3::new(0.0, -9.81, 0.0)).unwrap();
         if wall {
             let point = plant.tip().into();
-            plant.set_surface(Some(Surface::Wall { point, normal: [0.1 - push[0], -push[1], -push[2]], stiffness: 100.0 }));
+            let normal = [0.1 - push[0], -push[1], -push[2]];
+            plant.set_surface(Some(Surface::Wall { point, normal, stiffness: 100.0 }));
         }
         for (motor, angle) in unwound.into_iter().enumerate() {
             plant.turn_motor(motor, angle);

@@ -5,8 +5,9 @@ use sun2xp::calibration::{Findings, Obstacle, Step, Zeros};
 use sun2xp::finger::Stage;
 use sun2xp::hand::{Calibrating, Fingers, Found, Hand, HandError, read, store};
 
-const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.zeroing]\nspeed = 2.0\n[finger.encoder]\nzero = [700, -20, 30, 4000] # last year\n\
-                    [finger.2.gauge]\nzero = [ 204.0, 200.0, 200.0,  # tendon 3 was exchanged\n 190.0 ]\n";
+const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.zeroing]\nspeed = 2.0\n[finger.encoder]\n\
+     zero = [700, -20, 30, 4000] # last year\n[finger.2.gauge]\n\
+     zero = [ 204.0, 200.0, 200.0,  # tendon 3 was exchanged\n 190.0 ]\n";
 
 #[test]
 fn a_finger_is_calibrated_and_its_file_rewritten() {

@@ -108,7 +108,11 @@ fn thread() -> impl Strategy<Value = PeriodicThread> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases.max(400), failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: ProptestConfig::default().cases.max(400),
+        failure_persistence: None,
+        ..Default::default()
+    })]
 
     #[test]
     fn no_cycle_takes_longer_than_its_bound(threads in prop::collection::vec(thread(), 1..5), seed in any::<u64>()) {
@@ -116,7 +120,8 @@ proptest! {
         let took = simulate(&threads, 2, 6000, seed);
         for (index, bound) in bounds.iter().enumerate() {
             if let Some(bound) = bound {
-                prop_assert!(took[index] <= bound.done, "thread {index} took {} of {bound:?}: {threads:#?}", took[index]);
+                let took = took[index];
+                prop_assert!(took <= bound.done, "thread {index} took {took} of {bound:?}: {threads:#?}");
             }
         }
     }

@@ -11,8 +11,8 @@ use sun2xp::hand::{Found, HandError, read, store};
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use tempfile::{TempDir, tempdir};
 
-const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500 # slow cable\n\n[finger.encoder]\nzero = [1, 2, 3, 4]\n\n\
-                    [finger.2.tendon]\nstiffness = [ 300.0, 300, # new\n  310.0, 300.0 ] # N/cm\n";
+const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500 # slow cable\n\n[finger.encoder]\n\
+     zero = [1, 2, 3, 4]\n\n[finger.2.tendon]\nstiffness = [ 300.0, 300, # new\n  310.0, 300.0 ] # N/cm\n";
 
 /// Somebody who finds the same thing again and again, and nobody else finds it.
 #[derive(Clone, Copy, Debug)]

@@ -72,7 +72,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let now = Record { rustc, libc, instructions };
     if arguments.record {
         let text = format!(
-            "# Instructions of one servo step, counted by callgrind. Written by: cargo bench --bench instructions -- --record\n{}",
+            "# Instructions of one servo step, counted by callgrind. Written by: cargo bench --bench instructions -- \
+             --record\n{}",
             toml_edit::ser::to_string_pretty(&now)?
         );
         std::fs::write(RECORD, text)?;
@@ -132,7 +133,8 @@ fn compare(now: &Record, recorded: &Record) -> Result<(), Box<dyn Error>> {
     println!("\n{}; C library {}", now.rustc, now.libc);
     if (&now.rustc, &now.libc) != (&recorded.rustc, &recorded.libc) {
         eprintln!(
-            "NOT COMPARED: these counts are of another compiler or C library than the recorded ones ({}; {}). {HOW_TO_RECORD}",
+            "NOT COMPARED: these counts are of another compiler or C library than the recorded ones ({}; {}). \
+             {HOW_TO_RECORD}",
             recorded.rustc, recorded.libc
         );
         return Ok(());

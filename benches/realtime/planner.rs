@@ -53,7 +53,8 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
         }
     }
     println!(
-        "| | wake-up, median | 99 % | against spinning, median (goal for those that call: at most 1.1) | 99 % |\n|---|---|---|---|---|"
+        "| | wake-up, median | 99 % | against spinning, median (goal for those that call: at most 1.1) | 99 % \
+         |\n|---|---|---|---|---|"
     );
     let of = |kind: usize, part: fn(&WakeUp) -> f64| median(wake_ups[kind].iter().map(part));
     let (spinning, spinning_p99) = (of(1, |wake| wake.0), of(1, |wake| wake.1));
@@ -63,7 +64,8 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     }
     let [_, _, calling] = wake_ups.map(|wake_ups| wake_ups.len() / FINGERS);
     println!(
-        "\nMedians over three fingers and {} repeats of {} s, {disturbed} more disturbed by faults; {:.1} million calls a second.\n",
+        "\nMedians over three fingers and {} repeats of {} s, {disturbed} more disturbed by faults; {:.1} million \
+         calls a second.\n",
         turns.repeats,
         turns.seconds,
         calls.load(Relaxed) as f64 / (calling as u64 * turns.seconds) as f64 * 1e-6

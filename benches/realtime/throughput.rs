@@ -118,8 +118,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bytes = Kind::Command.wire_length() + Kind::Reply.wire_length();
     let share = capacity(BAUD, 1, 1000.0)?;
     println!(
-        "Bytes a cycle: {bytes}. At {BAUD} baud one finger at 1000 Hz takes {:.0} % of what the line can do, {:.0} Hz is the limit; \
-         a pseudo-terminal has none, and here does {:.1} times that.\n",
+        "Bytes a cycle: {bytes}. At {BAUD} baud one finger at 1000 Hz takes {:.0} % of what the line can do, {:.0} Hz \
+         is the limit; a pseudo-terminal has none, and here does {:.1} times that.\n",
         100.0 * share,
         1000.0 / share,
         all / 3.0 * share / 1000.0

@@ -102,7 +102,8 @@ impl Recording {
         let (low, high) = self.finger.joint_limits();
         let beyond = self.reports.iter().filter(|report| report.joints.inf(&high).sup(&low) != report.joints).count();
         format!(
-            "of {CYCLES} cycles {} were scaled in stiffness, {} in torque, {beyond} beyond a soft limit, {} without reply",
+            "of {CYCLES} cycles {} were scaled in stiffness, {} in torque, {beyond} beyond a soft limit, {} without \
+             reply",
             cycles(|report| report.stiffness_scale < 1.0),
             cycles(|report| report.torque_scale < 1.0),
             (0..CYCLES).filter(|&cycle| lost(cycle)).count()

@@ -13,10 +13,10 @@ pub const USABLE_SHARE: f64 = 0.8;
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
     "{fingers} finger(s) at {rate} Hz do not fit on a port at {baud} baud: a command of {command} bytes takes \
-     {command_us:.0} us, the board {turnaround} us to answer, and {fingers} replies of {reply} bytes {replies_us:.0} us \
-     (10 bits a byte), {needed_us:.0} us in all, but {share:.0} % of a period are {usable_us:.0} us. Set \
-     baud = {least_baud} or more for every finger of the port and in its board, set hand.rate = {fastest_rate:.0} or less, or put fewer \
-     fingers on the port",
+     {command_us:.0} us, the board {turnaround} us to answer, and {fingers} replies of {reply} bytes {replies_us:.0} \
+     us (10 bits a byte), {needed_us:.0} us in all, but {share:.0} % of a period are {usable_us:.0} us. Set baud = \
+     {least_baud} or more for every finger of the port and in its board, set hand.rate = {fastest_rate:.0} or less, or \
+     put fewer fingers on the port",
     command = Kind::Command.wire_length(), reply = Kind::Reply.wire_length(), turnaround = TURNAROUND_MICROSECONDS,
     share = 100.0 * USABLE_SHARE
 )]

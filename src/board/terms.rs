@@ -36,8 +36,9 @@ pub struct Terms {
 pub enum TermsError {
     /// The watchdog is shorter than the board's, and that is longer than the protocol lets it be.
     #[error(
-        "its shortest watchdog is {shortest} ms, though the protocol allows {LONGEST_NEEDED_MS} ms, and {wanted} ms are configured: update \
-         its firmware, or raise hand.watchdog_ms to {shortest}, after which its motors go on for as long when commands stop"
+        "its shortest watchdog is {shortest} ms, though the protocol allows {LONGEST_NEEDED_MS} ms, and {wanted} ms \
+         are configured: update its firmware, or raise hand.watchdog_ms to {shortest}, after which its motors go on \
+         for as long when commands stop"
     )]
     Watchdog {
         /// The board's, ms.

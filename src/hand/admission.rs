@@ -220,7 +220,11 @@ mod tests {
         assert!(matches!(refuse.joints([0.0, 0.0, sent + 1e-3]), Err(HandError::BeyondJointLimit { joint: 2, .. })));
     }
     proptest! {
-        #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases.max(20_000), failure_persistence: None, ..Default::default() })]
+        #![proptest_config(ProptestConfig {
+            cases: ProptestConfig::default().cases.max(20_000),
+            failure_persistence: None,
+            ..Default::default()
+        })]
 
         #[test]
         fn whatever_is_asked_what_is_admitted_is_a_spring_within_the_bound(

@@ -156,9 +156,9 @@ mod tests {
         Found::bound(bound, finger, &Configuration::default()).expect("a finger")
     }
 
-    const FILE: &str = "# The hand in the corner.\n\n[hand]\nrate = 500 # slow cable\n\n[finger.encoder]\nzero = [1, 2, 3, 4]\n\n\
-                        [finger.2]\nport = \"simulated\"   # for now\n[finger.2.tendon]\n# As measured in May:\n\
-                        stiffness = [ 300.0, 300, # new\n  310.0, 300.0 ] # N/cm\n";
+    const FILE: &str = "# The hand in the corner.\n\n[hand]\nrate = 500 # slow cable\n\n[finger.encoder]\n\
+         zero = [1, 2, 3, 4]\n\n[finger.2]\nport = \"simulated\"   # for now\n[finger.2.tendon]\n\
+         # As measured in May:\nstiffness = [ 300.0, 300, # new\n  310.0, 300.0 ] # N/cm\n";
 
     #[test]
     fn what_stands_there_already_changes_nothing() {

@@ -221,8 +221,8 @@ pub enum HandError {
     },
     /// Boards at two ports that say that they are the same.
     #[error(
-        "the boards of fingers {} ({}) and {} ({}) report the same unique number, {number}, so that they cannot be told \
-         apart: give every board a number of its own in its firmware, for example that of its processor with the \
+        "the boards of fingers {} ({}) and {} ({}) report the same unique number, {number}, so that they cannot be \
+         told apart: give every board a number of its own in its firmware, for example that of its processor with the \
          finger's address in it (fault {code})",
         fingers[0], ShownPath(&ports[0]), fingers[1], ShownPath(&ports[1]), code = FaultKind::SameNumber.number()
     )]

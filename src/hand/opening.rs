@@ -174,8 +174,8 @@ pub fn ports(
 fn warn_of_latency(port: &Port) {
     if let Some(milliseconds) = port.latency_timer_ms().filter(|&milliseconds| milliseconds > 1) {
         say(&format!(
-            "{} holds bytes back for {milliseconds} ms (its latency timer): write 1 to latency_timer under /sys/bus/usb-serial/devices, \
-             or let a udev rule do so",
+            "{} holds bytes back for {milliseconds} ms (its latency timer): write 1 to latency_timer under \
+             /sys/bus/usb-serial/devices, or let a udev rule do so",
             ShownPath(port.path())
         ));
     }
@@ -185,8 +185,9 @@ fn warn_of_latency(port: &Port) {
 fn longer_watchdog(finger: usize, configured_ms: u16, agreed_ms: u16) -> Option<String> {
     (agreed_ms > configured_ms).then(|| {
         format!(
-            "the board of finger {finger} cannot keep a watchdog of less than {agreed_ms} ms: it keeps {agreed_ms} ms, though \
-             hand.watchdog_ms is {configured_ms}. Its motors may go on for as long, and 1 ms and 1 % more, after the last command"
+            "the board of finger {finger} cannot keep a watchdog of less than {agreed_ms} ms: it keeps {agreed_ms} ms, \
+             though hand.watchdog_ms is {configured_ms}. Its motors may go on for as long, and 1 ms and 1 % more, \
+             after the last command"
         )
     })
 }

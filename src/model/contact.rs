@@ -223,7 +223,8 @@ mod tests {
         #[test]
         fn the_length_of_a_normal_does_not_matter(
             mantissa in 1.0..1.7f64, exponent in -300..=308i32,
-            direction in proptest::array::uniform3(-1.0..1.0f64).prop_filter("no direction", |d| d.iter().any(|x| x.abs() > 0.1)),
+            direction in proptest::array::uniform3(-1.0..1.0f64)
+                .prop_filter("no direction", |d| d.iter().any(|x| x.abs() > 0.1)),
         ) {
             let unit = Vector3::from(direction).normalize();
             let long = unit * format!("{mantissa}e{exponent}").parse::<f64>().expect("a number");

@@ -118,7 +118,8 @@ fn a_hand_settles_where_it_does_on_the_simulated_board() {
         let losses = hand.losses(1).map_err(told)?;
         let (from_simulated, from_truth) = (farthest(positions, expected), farthest(joints, expected));
         let found = format!(
-            "{from_simulated:.4} rad from the simulated hand, {from_truth:.4} rad of it in truth, {} of {} replies lost",
+            "{from_simulated:.4} rad from the simulated hand, {from_truth:.4} rad of it in truth, {} of {} replies \
+             lost",
             losses.lost_replies, losses.cycles
         );
         println!("{found}");

@@ -66,10 +66,20 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     /// A finger of the board, 1 to 3; may be repeated. Unless configured, its address is its number.
-    #[arg(long = "finger", value_name = "N", default_values_t = [1, 2, 3], value_parser = clap::value_parser!(u8).range(1..=FINGERS as i64))]
+    #[arg(
+        long = "finger",
+        value_name = "N",
+        default_values_t = [1, 2, 3],
+        value_parser = clap::value_parser!(u8).range(1..=FINGERS as i64)
+    )]
     fingers: Vec<u8>,
     /// Push every fingertip from the start, N.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = |list: &str| Action::from_list("force", list))]
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        allow_hyphen_values = true,
+        value_parser = |list: &str| Action::from_list("force", list)
+    )]
     force: Option<Action>,
     /// A wall before every finger from the start, cm and N/cm.
     #[arg(

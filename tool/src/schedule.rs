@@ -33,7 +33,12 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["measure", "p999"])]
     costs: Option<PathBuf>,
     /// For so long the simulated hand is measured, s.
-    #[arg(long, value_name = "SECONDS", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 10,
+        value_parser = clap::value_parser!(u64).range(1..=86_400)
+    )]
     measure: u64,
     /// Leave out one cycle in a thousand of each cost: on a virtual machine a pause of the whole machine is in every maximum.
     #[arg(long)]
@@ -81,7 +86,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     writeln!(out, "With the sensor up to {with_sensor} Hz: {}.", limited(with_sensor, &sensor))?;
     out.flush()?;
     if schedule.iter().any(|thread| thread.limit.is_some()) {
-        return Err(format!("at {rate:.0} Hz a deadline may be missed: lower hand.rate, raise finger.baud or spread the fingers over cores").into());
+        return Err(format!(
+            "at {rate:.0} Hz a deadline may be missed: lower hand.rate, raise finger.baud or spread the fingers over \
+             cores"
+        )
+        .into());
     }
     Ok(())
 }

@@ -86,7 +86,8 @@ fn one_finger_at_a_port_is_asked_to_be_held_in_its_pose() {
     contains(
         &said(&output),
         &[
-            "finger 1 is zeroed at a pose, because zeroing.lower_stop_degrees and upper_stop_degrees do not say where its stops are",
+            "finger 1 is zeroed at a pose, because zeroing.lower_stop_degrees and upper_stop_degrees do not say where \
+             its stops are",
             "0.0 degrees, straight ahead",
             "-10.0 degrees, bent back",
             "60.0 degrees, bent inward",
@@ -111,7 +112,8 @@ fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
             &[
                 "finger 2 is zeroed at a pose, because zeroing.method is \"pose\"",
                 "finger 2, zeroing:",
-                "finger 2 is not calibrated, its motors are off, and nothing was changed: nothing holds the finger in its pose",
+                "finger 2 is not calibrated, its motors are off, and nothing was changed: nothing holds the finger in \
+                 its pose",
                 "--finger 2 --zero --identify; and for what was not begun:",
                 "--finger 3 --zero --identify\n",
             ],
@@ -144,7 +146,8 @@ fn signs_are_stored_before_a_zero_that_is_refused() {
 fn a_finger_whose_stops_are_known_is_zeroed_against_them() {
     let desk = Desk::new(
         "[hand]\nrate = 500\n[finger]\nport = \"simulated\"\n[finger.gauge]\nzero = [204.0, 204.0, 204.0, 204.0]\n\
-         [finger.zeroing]\nspeed = 3.0\nlower_stop_degrees = [-63.0, -33.0, 2.0]\nupper_stop_degrees = [63.0, 103.0, 123.0]\n",
+         [finger.zeroing]\nspeed = 3.0\nlower_stop_degrees = [-63.0, -33.0, 2.0]\n\
+         upper_stop_degrees = [63.0, 103.0, 123.0]\n",
     );
     let output = desk.calibrate(&["--finger", "1", "--zero"], "");
     assert!(output.status.success(), "{}", said(&output));

@@ -46,8 +46,8 @@ impl TensionDistribution {
         let at_rest = tendons.pretension(minimum);
         if let Some(tendon) = (0..4).find(|&tendon| maximum[tendon] <= at_rest[tendon]) {
             let reason = format!(
-                "allows tendon {} {:.2} N, but with no tendon under {minimum} N a finger without joint torque already has \
-                 {:.2} N there: raise tendon.maximum or motor.torque_limit, or lower tendon.minimum",
+                "allows tendon {} {:.2} N, but with no tendon under {minimum} N a finger without joint torque already \
+                 has {:.2} N there: raise tendon.maximum or motor.torque_limit, or lower tendon.minimum",
                 tendon + 1,
                 maximum[tendon],
                 at_rest[tendon]

@@ -82,8 +82,8 @@ fn latency(subject: String, timer_ms: Option<u32>) -> Finding {
             Verdict::Failure,
             subject,
             format!("opened; its adapter holds bytes back for {milliseconds} ms"),
-            "Every reply waits for the adapter's latency timer: write 1 to latency_timer under /sys/bus/usb-serial/devices, or let the \
-             udev rule of README do so",
+            "Every reply waits for the adapter's latency timer: write 1 to latency_timer under \
+             /sys/bus/usb-serial/devices, or let the udev rule of README do so",
         ),
         Some(_) => Finding::good(subject, "opened; its adapter has the shortest latency timer"),
         None => Finding::good(subject, "opened, and nobody else has it; no latency timer"),
@@ -161,8 +161,8 @@ fn judge(configuration: &Configuration, subject: String, measured: Result<Measur
         share if share > LONG => Verdict::Warning,
         _ => return Finding::good(subject, found),
     };
-    let advice = "Replies come too late for their cycle: raise the baud rate of board and finger.baud, give the adapter a port of its own \
-                  on the machine, shorten its latency timer, or lower hand.rate";
+    let advice = "Replies come too late for their cycle: raise the baud rate of board and finger.baud, give the \
+         adapter a port of its own on the machine, shorten its latency timer, or lower hand.rate";
     Finding::new(verdict, subject, found, advice)
 }
 
