@@ -179,8 +179,8 @@
    signal handler may jump out of that wait (siglongjmp). The call then goes on to its
    end by itself: until then OpenHand is refused with EBUSY, and CloseHand waits.
 
-   Undefined: to jump out of any other call, and to leave any call by pthread_exit or by
-   an exception in a signal handler.
+   Undefined: to jump out of any other call, to leave any call by pthread_exit, and in
+   C++ to throw an exception out of a signal handler that broke into a call.
 
    Memory: OpenHand takes what the servos, CloseHand and all other calls need. Where
    malloc returns NULL afterwards the hand goes on, these calls work, and CloseHand closes
@@ -242,7 +242,8 @@
 
    OpenHand takes the first of
 
-       1. the file that SUN2XP_CONFIG names (environment); it must exist
+       1. the file that SUN2XP_CONFIG names (environment); it must exist. An empty
+          SUN2XP_CONFIG counts as not set
        2. sun2xp.toml in the working directory
        3. sun2xp/sun2xp.toml in $XDG_CONFIG_HOME, or ~/.config
        4. sun2xp/sun2xp.toml in the folders of $XDG_CONFIG_DIRS, or /etc/xdg
