@@ -2,20 +2,21 @@
 //!
 //! `SUN2XP_SECONDS=60 cargo test --release --test link_losses -- --nocapture` prints the table of docs/measurements.md.
 
+#[allow(dead_code)]
+#[path = "common/finger_on_a_cable.rs"]
+mod finger_on_a_cable;
+
+use finger_on_a_cable::{Hooks, ServedFinger, World};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
-use std::cell::RefCell;
 use std::collections::VecDeque;
-use std::rc::Rc;
 use sun2xp::board::protocol::Status;
-use sun2xp::board::{Link, PortError, Terms, Transport};
-use sun2xp::finger::{BlackBox, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage};
+use sun2xp::board::{PortError, Transport};
+use sun2xp::finger::{FaultKind, FingerReport, Stage};
 use sun2xp::model::configuration::{Configuration, EndState, Scheme};
-use sun2xp::realtime::{Clock, Schedule};
-use sun2xp::simulated::{SimulatedBoard, SimulatedCable};
+use sun2xp::simulated::SimulatedCable;
 
 const MS: u64 = 1_000_000;
-const PERIOD: u64 = MS;
 
 /// What can happen to a reply.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +39,8 @@ impl Mishap {
     }
 }
 
-struct World {
-    cable: SimulatedCable,
+/// What the cable does to replies.
+struct Line {
     random: Pcg64,
     /// Part of the replies that something happens to.
     share: f64,
@@ -52,7 +53,7 @@ struct World {
     cost: u64,
 }
 
-impl World {
+impl Line {
     fn mishap(&mut self) -> Option<Mishap> {
         let dice = self.random.next_u64();
         let hit = (dice >> 11) as f64 / (1u64 << 53) as f64 >= 1.0 - self.share;
@@ -91,60 +92,38 @@ impl World {
     }
 }
 
-/// A cable's end, and the clock of the world.
-#[derive(Clone)]
-struct End(Rc<RefCell<World>>);
-
-impl Transport for End {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
-        let world = &mut *self.0.borrow_mut();
-        world.cable.write(bytes)?;
+impl Hooks for Line {
+    fn write(&mut self, cable: &mut SimulatedCable, bytes: &[u8]) -> Result<usize, PortError> {
+        cable.write(bytes)?;
         let mut reply = [0; 512];
-        let now = world.cable.now();
-        let taken = world.cable.read_until(&mut reply, now)?;
-        if taken > 0 && !world.silent {
-            world.spoil(reply[..taken].to_vec());
+        let now = cable.now();
+        let taken = cable.read_until(&mut reply, now)?;
+        if taken > 0 && !self.silent {
+            self.spoil(reply[..taken].to_vec());
         }
         Ok(bytes.len())
     }
 
-    fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
-        let world = &mut *self.0.borrow_mut();
-        if world.arriving.is_empty() {
-            world.cable.advance_to(deadline);
+    fn read_until(&mut self, cable: &mut SimulatedCable, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
+        if self.arriving.is_empty() {
+            cable.advance_to(deadline);
         }
-        let taken = buffer.len().min(world.arriving.len());
-        for (place, byte) in buffer.iter_mut().zip(world.arriving.drain(..taken)) {
+        let taken = buffer.len().min(self.arriving.len());
+        for (place, byte) in buffer.iter_mut().zip(self.arriving.drain(..taken)) {
             *place = byte;
         }
         Ok(taken)
     }
 
-    fn discard_input(&mut self) -> Result<(), PortError> {
-        self.0.borrow_mut().arriving.clear();
+    fn discard_input(&mut self, _: &mut SimulatedCable) -> Result<(), PortError> {
+        self.arriving.clear();
         Ok(())
-    }
-
-    fn now(&self) -> u64 {
-        self.0.borrow().cable.now()
-    }
-}
-
-impl Clock for End {
-    fn now(&self) -> u64 {
-        Transport::now(self)
-    }
-
-    fn sleep_until(&self, deadline: u64) {
-        self.0.borrow_mut().cable.advance_to(deadline);
     }
 }
 
 struct Rig {
-    world: Rc<RefCell<World>>,
-    servo: Servo<End, End>,
-    mailbox: Mailbox,
-    black_box: BlackBox,
+    world: World<Line>,
+    finger: ServedFinger<World<Line>>,
 }
 
 impl Rig {
@@ -152,10 +131,7 @@ impl Rig {
     fn new(configuration: &mut Configuration) -> Self {
         // Not "simulated": a built-in board is waited for patiently.
         configuration.fingers[0].port = "/dev/cable".into();
-        let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
-        let cable = SimulatedCable::new(SimulatedBoard::new(configuration, &[0]).expect("a board"));
-        let world = World {
-            cable,
+        let line = Line {
             random: Pcg64::seed_from_u64(11),
             share: 0.0,
             silent: false,
@@ -164,37 +140,28 @@ impl Rig {
             happened: [0; 6],
             cost: 0,
         };
-        let world = Rc::new(RefCell::new(world));
-        let mut link = Link::new(End(world.clone()));
-        let (identity, configured) = link.shake_hands(1, &Terms::new(hand, finger), 500 * MS).expect("a handshake");
-        let (recorder, black_box) = BlackBox::new(configuration, 0);
-        let (timings, _) = sun2xp::realtime::ring(1);
-        let stiffness = finger.initial_stiffness();
-        let (finger, mailbox) =
-            FingerServo::new(configuration, 0, stiffness, &identity, &configured, timings, recorder).expect("a finger");
-        let first = world.borrow().cable.now() + PERIOD;
-        let port = ServedPort::new(link, vec![finger]);
-        let servo = Servo::new(End(world.clone()), Schedule::new(first, PERIOD), vec![port]);
-        let mut rig = Self { world, servo, mailbox, black_box };
+        let world = World::new(configuration, line);
+        let finger = ServedFinger::new(&world, configuration);
+        let mut rig = Self { world, finger };
         while rig.report().stage == Stage::Opening {
-            rig.servo.cycle();
+            rig.finger.servo.cycle();
         }
         assert_eq!(rig.report().stage, Stage::Running);
         rig
     }
 
     fn report(&self) -> FingerReport {
-        self.mailbox.report()
+        self.finger.mailbox.report()
     }
 
     fn cycles(&mut self, count: u64) {
         for cycle in 0..count {
-            self.servo.cycle();
+            self.finger.servo.cycle();
             if cycle % 100 == 0 {
-                self.black_box.collect();
+                self.finger.black_box.collect();
             }
         }
-        self.black_box.collect();
+        self.finger.black_box.collect();
     }
 }
 
@@ -206,35 +173,37 @@ fn seconds() -> u64 {
 fn each_mishap_costs_its_own_period_and_no_more() {
     for (percent, faultless) in [(1, true), (5, true), (20, false)] {
         let mut rig = Rig::new(&mut Configuration::default());
-        rig.world.borrow_mut().share = f64::from(percent) / 100.0;
+        rig.world.place().hooks.share = f64::from(percent) / 100.0;
         let mut farthest = 0.0f64;
         for second in 0..seconds() {
             let target = [0.2, 0.6, if second % 2 == 0 { 1.1 } else { 0.9 }];
-            rig.mailbox.send(|set_point| set_point.joints = target.into()).expect("not faulted");
+            rig.finger.mailbox.send(|set_point| set_point.joints = target.into()).expect("not faulted");
             rig.cycles(999);
             farthest = (rig.report().cycle.joints - nalgebra::Vector3::from(target)).amax().max(farthest);
             rig.cycles(1);
         }
-        let (report, world) = (rig.report(), rig.world.borrow());
+        let (report, place) = (rig.report(), rig.world.place());
+        let line = &place.hooks;
         println!(
-            "{percent:2} %: {} cycles, mishaps {:?}, {} periods lost, {} replies late, {} twice, {} damaged frames, off by {farthest:.4} rad",
+            "{percent:2} %: {} cycles, mishaps {:?}, {} periods lost, {} replies late, {} twice, {} damaged frames, \
+             off by {farthest:.4} rad",
             report.losses.cycles,
-            Mishap::ALL.iter().zip(world.happened).collect::<Vec<_>>(),
+            Mishap::ALL.iter().zip(line.happened).collect::<Vec<_>>(),
             report.losses.lost_replies,
             report.losses.late_replies,
             report.losses.duplicate_replies,
             report.losses.damaged_frames
         );
-        assert_eq!(report.losses.lost_replies, world.cost, "{percent} %");
-        assert!(world.happened.iter().all(|&count| count > 0), "{:?}", world.happened);
+        assert_eq!(report.losses.lost_replies, line.cost, "{percent} %");
+        assert!(line.happened.iter().all(|&count| count > 0), "{:?}", line.happened);
         assert!(!faultless || report.stage == Stage::Running, "{percent} %: {:?}", report.stage);
         // What comes late or twice is known by its number; the last may still be on its way.
-        let of = |mishap: Mishap| world.happened[mishap as usize];
+        let of = |mishap: Mishap| line.happened[mishap as usize];
         let near = |counted: u64, happened: u64| counted <= happened && counted + 1 >= happened;
         assert!(near(report.losses.late_replies, of(Mishap::Late)), "{percent} %: {report:?}");
         assert!(near(report.losses.duplicate_replies, of(Mishap::Doubled)), "{percent} %: {report:?}");
         assert!(farthest < 0.03, "{percent} %: {farthest} rad");
-        let recording = rig.black_box.recording().expect("a recording");
+        let recording = rig.finger.black_box.recording().expect("a recording");
         let replayed = recording.replay().expect("replayable");
         assert!(replayed.different == 0 && replayed.cycles >= 2000, "{replayed:?}");
     }
@@ -249,15 +218,15 @@ fn a_board_without_its_planner_is_in_its_end_state_within_the_watchdogs_time() {
         let mut rig = Rig::new(&mut configuration);
         rig.cycles(200);
         let last = rig.report().last;
-        drop(rig.servo);
-        let mut world = rig.world.borrow_mut();
+        drop(rig.finger.servo);
+        let cable = &mut rig.world.place().cable;
         let mut now = last;
-        while !world.cable.board().finger(1).expect("finger 1").status().has(Status::ENDED) {
+        while !cable.board().finger(1).expect("finger 1").status().has(Status::ENDED) {
             now += MS / 10;
-            world.cable.advance_to(now);
+            cable.advance_to(now);
             assert!(now - last < 25 * MS, "never ends");
         }
-        let strongest = world.cable.board().finger(1).expect("finger 1").motor_torques().amax();
+        let strongest = cable.board().finger(1).expect("finger 1").motor_torques().amax();
         println!("{end_state:?}: in its end state {:.1} ms after the last command", (now - last) as f64 * 1e-6);
         // The physics move on in steps of their own.
         assert!(now - last <= 18 * MS + MS / 2, "{} ns", now - last);
@@ -273,13 +242,13 @@ fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
     let mut rig = Rig::new(&mut configuration);
     rig.cycles(200);
     // The sample of the last good reply was taken with this cycle's command.
-    rig.servo.cycle();
+    rig.finger.servo.cycle();
     let good = rig.report().last;
-    rig.world.borrow_mut().silent = true;
-    let torques = |rig: &Rig| rig.world.borrow_mut().cable.board().finger(1).expect("finger 1").motor_torques();
+    rig.world.place().hooks.silent = true;
+    let torques = |rig: &Rig| rig.world.place().cable.board().finger(1).expect("finger 1").motor_torques();
     let (before, mut at_rest) = (torques(&rig), None);
     while rig.report().stage == Stage::Running {
-        rig.servo.cycle();
+        rig.finger.servo.cycle();
         let after = rig.report().last - good;
         let strongest = torques(&rig).amax();
         if after < 4 * MS {
@@ -293,9 +262,9 @@ fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
     assert!((10 * MS..=12 * MS).contains(&at_rest), "at rest after {at_rest} ns");
     let Stage::Faulted(fault) = rig.report().stage else { panic!("{:?}", rig.report().stage) };
     assert_eq!(fault.kind, FaultKind::LostReplies);
-    rig.servo.cycle();
-    let ended = Transport::now(&End(rig.world.clone())) - good;
-    let status = rig.world.borrow_mut().cable.board().finger(1).expect("finger 1").status();
+    rig.finger.servo.cycle();
+    let ended = Transport::now(&rig.world) - good;
+    let status = rig.world.place().cable.board().finger(1).expect("finger 1").status();
     assert!(status.has(Status::ENDED) && !status.has(Status::WATCHDOG_TRIPPED), "{status:?}");
     assert!(ended <= 20 * MS, "told after {ended} ns");
     println!("at rest {at_rest} ns after the last good reply, told to stop within {ended} ns");

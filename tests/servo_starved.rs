@@ -1,5 +1,10 @@
 //! A servo and its simulated board on a machine that runs neither in time, nor what carries their bytes, on simulated time.
 
+#[allow(dead_code)]
+#[path = "common/finger_on_a_cable.rs"]
+mod finger_on_a_cable;
+
+use finger_on_a_cable::ServedFinger;
 use nalgebra::Vector3;
 use rand_distr::{Distribution, Exp};
 use rand_pcg::Pcg64;
@@ -7,11 +12,10 @@ use rand_pcg::rand_core::SeedableRng;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
-use sun2xp::board::{Link, PortError, Terms, Transport};
-use sun2xp::finger::{BlackBox, Fault, FaultKind, FingerReport, FingerServo, Mailbox, ServedPort, Servo, Stage};
+use sun2xp::board::{PortError, Transport};
+use sun2xp::finger::{Fault, FaultKind, FingerReport, Stage};
 use sun2xp::model::configuration::Configuration;
-use sun2xp::realtime::{Clock, CycleTiming, Schedule};
-use sun2xp::realtime::{Consumer, ring};
+use sun2xp::realtime::Clock;
 use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
 
 /// Nothing happens between two multiples of this, ns.
@@ -127,9 +131,7 @@ impl Transport for Here {
 
 struct Rig {
     world: Rc<RefCell<World>>,
-    servo: Servo<Here, Here>,
-    mailbox: Mailbox,
-    _uncollected: (Consumer<CycleTiming>, BlackBox),
+    finger: ServedFinger<Here>,
 }
 
 impl Rig {
@@ -137,7 +139,6 @@ impl Rig {
     fn new(seed: u64, open_timeout_ms: u32) -> Self {
         let mut configuration = Configuration::default();
         configuration.hand.open_timeout_ms = open_timeout_ms;
-        let finger = &configuration.fingers[0];
         let world = Rc::new(RefCell::new(World {
             now: 0,
             load: Load::default(),
@@ -151,35 +152,23 @@ impl Rig {
             carrier_runs: 0,
             board_runs: 0,
         }));
-        let mut link = Link::new(Here(world.clone()));
-        let terms = Terms::new(&configuration.hand, finger);
-        let (identity, configured) = link.shake_hands(1, &terms, 1000 * MILLISECOND).expect("the board answers");
-        let (producer, timings) = ring(16);
-        let (recorder, black_box) = BlackBox::new(&configuration, 0);
-        let stiffness = finger.initial_stiffness();
-        let (finger, mailbox) =
-            FingerServo::new(&configuration, 0, stiffness, &identity, &configured, producer, recorder)
-                .expect("a finger");
-        let first = world.borrow().now + MILLISECOND;
-        let period = (1e9 / configuration.hand.rate) as u64;
-        let ports = vec![ServedPort::new(link, vec![finger])];
-        let servo = Servo::new(Here(world.clone()), Schedule::new(first, period), ports);
-        Self { world, servo, mailbox, _uncollected: (timings, black_box) }
+        let finger = ServedFinger::new(&Here(world.clone()), &configuration);
+        Self { world, finger }
     }
 
     /// Cycles for so many seconds of the wall.
     fn run(&mut self, seconds: f64) {
         let end = self.world.borrow().now + (seconds * 1e9) as u64;
         while self.world.borrow().now < end {
-            self.servo.cycle();
+            self.finger.servo.cycle();
         }
     }
 
     /// Cycles until the report is as wanted, for so many seconds of the wall at most.
     fn run_until(&mut self, seconds: f64, wanted: impl Fn(&FingerReport) -> bool) {
         let end = self.world.borrow().now + (seconds * 1e9) as u64;
-        while !wanted(&self.mailbox.report()) && self.world.borrow().now < end {
-            self.servo.cycle();
+        while !wanted(&self.finger.mailbox.report()) && self.world.borrow().now < end {
+            self.finger.servo.cycle();
         }
     }
 }
@@ -202,19 +191,19 @@ fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
             rig.world.borrow_mut().load = load;
             // Its own time passes more slowly.
             rig.run_until(60.0, |report| report.stage != Stage::Opening);
-            let report = rig.mailbox.report();
+            let report = rig.finger.mailbox.report();
             assert_eq!(report.stage, Stage::Running, "{load:?}, {seed}: {report:?}");
             let turned = (rig.world.borrow_mut().pose() - start).amax();
             assert!(turned < 0.02, "{load:?}, {seed}: turned by {turned} rad while slack was taken up");
 
             let target = Vector3::new(0.2, 0.6, 1.1);
-            rig.mailbox.send(|set_point| set_point.joints = target).expect("under control");
+            rig.finger.mailbox.send(|set_point| set_point.joints = target).expect("under control");
             let arrived = |report: &FingerReport| {
                 (report.cycle.joints - target).amax() < 0.01 && report.cycle.joint_rates.amax() < 0.5
             };
             rig.run_until(60.0, arrived);
             let off = (rig.world.borrow_mut().pose() - target).amax();
-            assert!(off < 0.02, "{load:?}, {seed}: {off} rad away, {:?}", rig.mailbox.report());
+            assert!(off < 0.02, "{load:?}, {seed}: {off} rad away, {:?}", rig.finger.mailbox.report());
         }
     }
 }
@@ -224,8 +213,8 @@ fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
 fn periods_that_are_missing_are_known_before_the_servo_runs_again() {
     let mut rig = Rig::new(0, 60_000);
     rig.run_until(60.0, |report| report.stage != Stage::Opening);
-    let before = rig.mailbox.report();
-    let missing = |rig: &Rig| rig.mailbox.report().missing_periods(rig.world.borrow().now, MILLISECOND);
+    let before = rig.finger.mailbox.report();
+    let missing = |rig: &Rig| rig.finger.mailbox.report().missing_periods(rig.world.borrow().now, MILLISECOND);
     assert_eq!(missing(&rig), 0);
     let mut most = 0;
     for pause in [1, 3, 900, 1800] {
@@ -235,8 +224,8 @@ fn periods_that_are_missing_are_known_before_the_servo_runs_again() {
         assert!(periods + 2 >= pause && periods >= most, "{periods} of {pause}");
         most = periods;
     }
-    rig.servo.cycle();
-    let counted = rig.mailbox.report().losses.skipped_periods - before.losses.skipped_periods;
+    rig.finger.servo.cycle();
+    let counted = rig.finger.mailbox.report().losses.skipped_periods - before.losses.skipped_periods;
     assert!((most..=most + 2).contains(&counted), "{most} were missing, and {counted} are counted");
     assert_eq!(missing(&rig), 0);
 }
@@ -260,9 +249,9 @@ fn a_command_or_reply_that_was_thrown_away_is_made_good() {
             world.load.carrier = 0.0;
             world.carrier_runs = 0;
         }
-        let lost = rig.mailbox.report().losses.lost_replies;
+        let lost = rig.finger.mailbox.report().losses.lost_replies;
         rig.run(0.3);
-        let report = rig.mailbox.report();
+        let report = rig.finger.mailbox.report();
         assert_eq!(report.stage, Stage::Running);
         // The command is repeated after 0.1 s.
         assert!((75..125).contains(&(report.losses.lost_replies - lost)), "{report:?}");
@@ -275,9 +264,9 @@ fn a_simulated_board_that_never_answers_again_faults_its_finger() {
     rig.run_until(60.0, |report| report.stage != Stage::Opening);
     rig.world.borrow_mut().carrier_runs = u64::MAX;
     rig.run(4.9);
-    assert_eq!(rig.mailbox.report().stage, Stage::Running);
+    assert_eq!(rig.finger.mailbox.report().stage, Stage::Running);
     rig.run(0.2);
-    let stage = rig.mailbox.report().stage;
+    let stage = rig.finger.mailbox.report().stage;
     assert!(matches!(stage, Stage::Faulted(Fault { kind: FaultKind::LostReplies, .. })), "{stage:?}");
 }
 
@@ -289,7 +278,7 @@ fn a_finger_that_a_machine_keeps_from_opening_faults_when_its_time_is_over() {
         rig.world.borrow_mut().load = load;
         let begun = rig.world.borrow().now;
         rig.run_until(60.0, |report| report.stage != Stage::Opening);
-        let stage = rig.mailbox.report().stage;
+        let stage = rig.finger.mailbox.report().stage;
         assert!(matches!(stage, Stage::Faulted(Fault { kind: FaultKind::OpeningTimedOut, .. })), "{stage:?}");
         let lasted = (rig.world.borrow().now - begun) as f64 / MILLISECOND as f64;
         assert!((1400.0..1900.0).contains(&lasted), "{lasted} ms");

@@ -63,20 +63,22 @@ fn requests() -> Vec<Named> {
     ]
 }
 
+/// The largest number of each field.
+const MOST: Identity = Identity {
+    version: 255,
+    addresses: 0xFFFE,
+    board_kind: u16::MAX,
+    unique_number: [255; 12],
+    firmware: FirmwareVersion([255; 3]),
+    counts_per_revolution: u32::MAX,
+    gauge_bits: 16,
+    torque_unit: u32::MAX,
+    torque_limit: 32767,
+    shortest_watchdog_ms: 20,
+    capabilities: Capabilities(u32::MAX),
+};
+
 fn answers() -> Vec<Named> {
-    let most = Identity {
-        version: 255,
-        addresses: 0xFFFE,
-        board_kind: u16::MAX,
-        unique_number: [255; 12],
-        firmware: FirmwareVersion([255; 3]),
-        counts_per_revolution: u32::MAX,
-        gauge_bits: 16,
-        torque_unit: u32::MAX,
-        torque_limit: 32767,
-        shortest_watchdog_ms: 20,
-        capabilities: Capabilities(u32::MAX),
-    };
     let configured =
         |terms, encoders, gauges, status| Frame::Configured(Configured { terms, encoders, gauges, status });
     let reply = |status, encoders, gauges, sampled_at| {
@@ -85,7 +87,7 @@ fn answers() -> Vec<Named> {
     let refused = |request, reason, detail| Frame::Refused(Refused { request, reason, detail });
     vec![
         ("a board with three fingers", 1, 1, Frame::Identity(IDENTITY)),
-        ("the largest numbers", 15, 255, Frame::Identity(most)),
+        ("the largest numbers", 15, 255, Frame::Identity(MOST)),
         (
             "configured and zero valid",
             1,

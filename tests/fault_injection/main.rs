@@ -1,7 +1,10 @@
-//! Faults injected into a finger in motion, at random moments: each is named as it should be, the motors come to the end state in
-//! time, and the finger recovers. `docs/faults.md` has the figures of the long run.
+//! Faults injected into a finger in motion, at random moments: each is named as it should be, the motors come to the end
+//! state in time, and the finger recovers. `docs/faults.md` has the figures of the long run.
 
 mod cases;
+#[allow(dead_code)]
+#[path = "../common/finger_on_a_cable.rs"]
+mod finger_on_a_cable;
 mod rig;
 
 use cases::{Case, Injected, line, of_the_finger, of_the_line, warnings};
@@ -154,13 +157,13 @@ fn survive(fault: LineFault, probability: f64, seed: u64) -> Losses {
     let mut bench = Bench::new(Configuration::default(), seed);
     let before = 300 + bench.random(0.0, 1500.0) as u64;
     bench.run(before);
-    let before = bench.mailbox.report().losses;
+    let before = bench.report().losses;
     // The last of a thousand cycles begins when these are over.
     line(&mut bench, fault, probability, 1001);
     let mut lost = before.lost_replies;
     for _ in 0..1000 {
         bench.cycle();
-        let report = bench.mailbox.report();
+        let report = bench.report();
         let answered = report.losses.lost_replies == lost;
         lost = report.losses.lost_replies;
         // Six times the noise of a gauge.
@@ -170,7 +173,7 @@ fn survive(fault: LineFault, probability: f64, seed: u64) -> Losses {
     bench.mend();
     bench.run(5);
     assert_eq!(bench.fault(), None, "{fault:?}, {seed}");
-    bench.mailbox.report().losses.since(&before)
+    bench.report().losses.since(&before)
 }
 
 fn survive_all(times: u64) {
@@ -208,7 +211,7 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
             let mut bench = Bench::new(configuration, 7);
             bench.with_cable(|cable| cable.inject(fault, 0.05, u64::MAX, 7));
             bench.run(10_000);
-            let report = bench.mailbox.report();
+            let report = bench.report();
             assert_eq!(bench.fault(), None, "{scheme:?}, {fault:?}: {report:?}");
             if fault != LineFault::Duplicate {
                 let share = report.losses.lost_replies as f64 / report.losses.cycles as f64;

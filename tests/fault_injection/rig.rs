@@ -1,20 +1,15 @@
 //! A finger with its servo, its link and its board in memory, on simulated time: what happens is the same in every run.
 
+use crate::finger_on_a_cable::{Hooks, ServedFinger, World};
 use nalgebra::{Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
-use std::cell::RefCell;
-use std::rc::Rc;
-use sun2xp::board::protocol::Identity;
 use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::control::Law;
-use sun2xp::finger::{
-    BlackBox, Borrower, Fault, FingerServo, Lent, Mailbox, Mended, ServedPort, Servo, Stage, lending, stop_calls,
-};
+use sun2xp::finger::{Fault, FingerReport, Lent, Mended, Stage, stop_calls};
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
-use sun2xp::realtime::ring;
-use sun2xp::realtime::{Clock, Schedule};
-use sun2xp::simulated::{SimulatedBoard, SimulatedCable, SimulatedFinger};
+use sun2xp::realtime::Clock;
+use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
 
 pub const MICROSECOND: u64 = 1000;
 pub const MILLISECOND: u64 = 1000 * MICROSECOND;
@@ -22,9 +17,9 @@ pub const MILLISECOND: u64 = 1000 * MICROSECOND;
 /// How often the end state is looked at, ns.
 const LOOK: u64 = MILLISECOND / 10;
 
-/// What is at both ends of the cable: the board, and the clock that its host goes by.
-struct Place {
-    cable: SimulatedCable,
+/// Looks at the motors all the time, and wakes the servo up late.
+#[derive(Default)]
+struct Watch {
     /// When the motors were first seen without torque since this was asked for, ns.
     ended: Option<u64>,
     /// By so much, ns, the servo wakes up late every eighth time.
@@ -32,62 +27,41 @@ struct Place {
     wake_ups: u32,
 }
 
-/// The same for whoever needs it.
-#[derive(Clone)]
-pub struct World(Rc<RefCell<Place>>);
-
-impl Place {
-    fn look(&mut self) {
-        let now = self.cable.now();
-        let finger = self.cable.board().finger(1).expect("the board has finger 1");
+impl Watch {
+    fn look(&mut self, cable: &mut SimulatedCable) {
+        let now = cable.now();
+        let finger = cable.board().finger(1).expect("the board has finger 1");
         if !finger.enabled() && finger.motor_torques().amax() == 0.0 {
             self.ended.get_or_insert(now);
         }
     }
 }
 
-impl Transport for World {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
-        let mut place = self.0.borrow_mut();
-        let written = place.cable.write(bytes);
-        place.look();
+impl Hooks for Watch {
+    fn write(&mut self, cable: &mut SimulatedCable, bytes: &[u8]) -> Result<usize, PortError> {
+        let written = cable.write(bytes);
+        self.look(cable);
         written
     }
 
-    fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
-        let mut place = self.0.borrow_mut();
+    fn read_until(&mut self, cable: &mut SimulatedCable, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
         loop {
-            let next = (place.cable.now() + LOOK).min(deadline);
-            let taken = place.cable.read_until(buffer, next)?;
-            place.look();
-            if taken > 0 || place.cable.now() >= deadline {
+            let next = (cable.now() + LOOK).min(deadline);
+            let taken = cable.read_until(buffer, next)?;
+            self.look(cable);
+            if taken > 0 || cable.now() >= deadline {
                 return Ok(taken);
             }
         }
     }
 
-    fn discard_input(&mut self) -> Result<(), PortError> {
-        self.0.borrow_mut().cable.discard_input()
-    }
-
-    fn now(&self) -> u64 {
-        self.0.borrow().cable.now()
-    }
-}
-
-impl Clock for World {
-    fn now(&self) -> u64 {
-        self.0.borrow().cable.now()
-    }
-
-    fn sleep_until(&self, deadline: u64) {
-        let mut place = self.0.borrow_mut();
-        place.wake_ups += 1;
-        let deadline = if place.wake_ups.is_multiple_of(8) { deadline + place.late } else { deadline };
-        while place.cable.now() < deadline {
-            let next = (place.cable.now() + LOOK).min(deadline);
-            place.cable.advance_to(next);
-            place.look();
+    fn sleep_until(&mut self, cable: &mut SimulatedCable, deadline: u64) {
+        self.wake_ups += 1;
+        let deadline = if self.wake_ups.is_multiple_of(8) { deadline + self.late } else { deadline };
+        while cable.now() < deadline {
+            let next = (cable.now() + LOOK).min(deadline);
+            cable.advance_to(next);
+            self.look(cable);
         }
     }
 }
@@ -113,12 +87,9 @@ pub struct Truth {
 
 /// Finger 1 on a bench.
 pub struct Bench {
-    world: World,
-    servo: Servo<World, World>,
-    pub mailbox: Mailbox,
-    borrower: Borrower<World>,
+    world: World<Watch>,
+    served: ServedFinger<World<Watch>>,
     terms: Terms,
-    identity: Identity,
     random: Pcg64,
     pub configuration: Configuration,
     next_target: u64,
@@ -138,37 +109,13 @@ impl Bench {
         configuration.fingers[0].port = "in memory".into();
         // After a blow a tendon may hang by centimetres, and it is wound in slowly.
         configuration.hand.open_timeout_ms = 30_000;
-        let board = SimulatedBoard::new(&configuration, &[0]).expect("a board");
-        let world = World(Rc::new(RefCell::new(Place {
-            cable: SimulatedCable::new(board),
-            ended: None,
-            late: 0,
-            wake_ups: 0,
-        })));
-        let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
-        let terms = Terms::new(hand, finger);
-        let mut link = Link::new(world.clone());
-        let deadline = Transport::now(&world) + 1000 * MILLISECOND;
-        let (identity, configured) = link.shake_hands(1, &terms, deadline).expect("a board answers");
-        let (timings, _) = ring(1);
-        let stiffness = finger.initial_stiffness();
-        // Nobody reads it.
-        let (recorder, _) = BlackBox::new(&configuration, 0);
-        let (finger, mailbox) =
-            FingerServo::new(&configuration, 0, stiffness, &identity, &configured, timings, recorder)
-                .expect("a finger");
-        let period = (1e9 / hand.rate) as u64;
-        let schedule = Schedule::new(Transport::now(&world) + period, period);
-        let (lender, borrower) = lending();
-        let port = ServedPort::new(link, vec![finger]).lent_through(lender);
-        let servo = Servo::new(world.clone(), schedule, vec![port]);
+        let world = World::new(&configuration, Watch::default());
+        let served = ServedFinger::new(&world, &configuration);
+        let terms = Terms::new(&configuration.hand, &configuration.fingers[0]);
         let mut bench = Self {
             world,
-            servo,
-            mailbox,
-            borrower,
+            served,
             terms,
-            identity,
             random: Pcg64::seed_from_u64(seed),
             configuration,
             next_target: 0,
@@ -184,15 +131,19 @@ impl Bench {
 
     fn come_under_tension(&mut self) {
         for _ in 0..60_000 {
-            self.servo.cycle();
-            match self.mailbox.report().stage {
+            self.served.servo.cycle();
+            match self.report().stage {
                 Stage::Running => break,
                 Stage::Faulted(fault) => panic!("while it takes up slack: {fault}"),
                 _ => {}
             }
         }
-        assert_eq!(self.mailbox.report().stage, Stage::Running, "the finger comes under tension");
+        assert_eq!(self.report().stage, Stage::Running, "the finger comes under tension");
         self.cycles = 0;
+    }
+
+    pub fn report(&self) -> FingerReport {
+        self.served.mailbox.report()
     }
 
     pub fn finger(&self) -> &ConfiguredFinger {
@@ -204,7 +155,7 @@ impl Bench {
     }
 
     pub fn with_cable<R>(&self, act: impl FnOnce(&mut SimulatedCable) -> R) -> R {
-        act(&mut self.world.0.borrow_mut().cable)
+        act(&mut self.world.place().cable)
     }
 
     pub fn with_finger<R>(&self, act: impl FnOnce(&mut SimulatedFinger) -> R) -> R {
@@ -223,7 +174,7 @@ impl Bench {
 
     /// From now on the servo wakes up so much late, ns, every eighth time.
     pub fn wake_late(&self, by: u64) {
-        self.world.0.borrow_mut().late = by;
+        self.world.place().hooks.late = by;
     }
 
     /// The servo does not run for so long, ns.
@@ -234,12 +185,12 @@ impl Bench {
     /// Something is injected now.
     pub fn mark(&mut self) {
         self.injected = self.now();
-        self.world.0.borrow_mut().ended = None;
+        self.world.place().hooks.ended = None;
     }
 
     /// When the motors were without torque, ms after the mark.
     pub fn ended(&self) -> Option<f64> {
-        self.world.0.borrow().ended.map(|ended| (ended - self.injected) as f64 * 1e-6)
+        self.world.place().hooks.ended.map(|ended| (ended - self.injected) as f64 * 1e-6)
     }
 
     /// One period of a finger that is led from pose to pose, with pauses.
@@ -247,18 +198,18 @@ impl Bench {
         if self.now() >= self.next_target {
             let within = |bench: &mut Self, low: f64, high: f64| bench.random(low, high).to_radians();
             let joints = Vector3::new(within(self, -30.0, 30.0), within(self, -10.0, 70.0), within(self, 30.0, 100.0));
-            let sent = self.mailbox.send(|set_point| (set_point.joints, set_point.law) = (joints, Law::Report));
+            let sent = self.served.mailbox.send(|set_point| (set_point.joints, set_point.law) = (joints, Law::Report));
             assert!(sent.is_ok() || self.fault().is_some());
             let pause = self.random(200.0, 800.0) as u64;
             self.next_target = self.now() + pause * MILLISECOND;
         }
-        self.servo.cycle();
+        self.served.servo.cycle();
         self.look();
     }
 
     fn look(&mut self) {
         let now = self.now();
-        let report = self.mailbox.report();
+        let report = self.report();
         let (joints, tensions, torques) = self.with_finger(|finger| {
             let torques = finger.motor_torques();
             (finger.plant().joints(), finger.plant().tensions(), torques)
@@ -293,7 +244,7 @@ impl Bench {
 
     /// What has stopped the finger.
     pub fn fault(&self) -> Option<Fault> {
-        match self.mailbox.report().stage {
+        match self.report().stage {
             Stage::Faulted(fault) => Some(fault),
             _ => None,
         }
@@ -301,7 +252,7 @@ impl Bench {
 
     /// What the finger is warned of.
     pub fn warning(&self) -> Option<Fault> {
-        self.mailbox.report().warnings.newest()
+        self.report().warnings.newest()
     }
 
     /// Nothing is wrong any more: with the line, the finger, or what is around it.
@@ -320,21 +271,21 @@ impl Bench {
     /// Does what RecoverHand does with a finger that has faulted: takes the link that the servo lends, or a new one, shakes hands,
     /// gives it back, and waits until the finger is a spring.
     pub fn recover(&mut self) {
-        let before = self.mailbox.report().recoveries;
+        let before = self.report().recoveries;
         // What was on its way comes.
         self.pause(200 * MILLISECOND);
         let lent = (0..10).find_map(|_| {
-            self.servo.cycle();
-            self.borrower.lent.pop()
+            self.served.servo.cycle();
+            self.served.borrower.lent.pop()
         });
         let Lent { link, failed } = lent.expect("the servo lends its link");
         let mut link = if failed { Link::new(self.world.clone()) } else { link };
         let deadline = self.now() + 300 * MILLISECOND;
         let (identity, configured) = link.shake_hands(1, &self.terms, deadline).expect("the board answers again");
-        assert_eq!(identity, self.identity);
+        assert_eq!(identity, self.served.identity);
         let mended = Mended { link, configured: [Some(configured), None, None], stop_calls: stop_calls() };
-        assert!(self.borrower.mended.push(mended).is_ok());
+        assert!(self.served.borrower.mended.push(mended).is_ok());
         self.come_under_tension();
-        assert_eq!(self.mailbox.report().recoveries, before + 1);
+        assert_eq!(self.report().recoveries, before + 1);
     }
 }

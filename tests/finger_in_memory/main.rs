@@ -2,6 +2,9 @@
 
 mod calibrating;
 mod commands;
+#[allow(dead_code)]
+#[path = "../common/finger_on_a_cable.rs"]
+mod finger_on_a_cable;
 mod floods;
 mod kinds;
 mod opening;

@@ -1,18 +1,12 @@
 //! A finger with its servo, its link and its board in memory, on simulated time, and a link that can be mended after a fault.
 
+use crate::finger_on_a_cable::{Hooks, ServedFinger, World};
 use nalgebra::Vector3;
-use std::cell::RefCell;
-use std::rc::Rc;
 use sun2xp::board::protocol::{Frame, Message, WireFrame};
-use sun2xp::board::{Link, PortError, Terms, Transport};
-use sun2xp::finger::{
-    BlackBox, Borrower, Fault, FaultKind, FingerReport, FingerServo, Mailbox, Mended, ServedPort, Servo, Stage,
-    lending, stop_calls,
-};
+use sun2xp::board::{PortError, Terms, Transport};
+use sun2xp::finger::{Borrower, Fault, FaultKind, FingerReport, Mailbox, Mended, Servo, Stage, stop_calls};
 use sun2xp::model::configuration::Configuration;
-use sun2xp::realtime::ring;
-use sun2xp::realtime::{Clock, Schedule};
-use sun2xp::simulated::{SimulatedBoard, SimulatedCable, SimulatedFinger};
+use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
 
 pub const MILLISECOND: u64 = 1_000_000;
 
@@ -21,14 +15,13 @@ pub const TARGET: Vector3<f64> = Vector3::new(0.2, 0.6, 1.1);
 
 type Read = Result<Vec<u8>, PortError>;
 
-/// The cable, and the clock at both its ends.
-#[derive(Clone)]
-pub struct World {
-    cable: Rc<RefCell<SimulatedCable>>,
+/// What the host reads instead of the board's answers.
+#[derive(Default)]
+pub struct Line {
     /// What the next read finds instead of what the board has sent.
-    instead: Rc<RefCell<Option<Read>>>,
+    instead: Option<Read>,
     /// What every read finds before what the board has sent.
-    flood: Rc<RefCell<Option<Flood>>>,
+    flood: Option<Flood>,
 }
 
 /// A frame that comes without end.
@@ -43,56 +36,32 @@ const FLOODED_READ: u64 = 10_000;
 /// More reads of the flood than any test needs; without this bound a test that fails would never end.
 const MOST_FLOODED_READS: u32 = 1_000_000;
 
-impl Transport for World {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
-        self.cable.borrow_mut().write(bytes)
-    }
-
-    fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
-        if let Some(Flood { wire, reads }) = &mut *self.flood.borrow_mut() {
+impl Hooks for Line {
+    fn read_until(&mut self, cable: &mut SimulatedCable, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
+        if let Some(Flood { wire, reads }) = &mut self.flood {
             *reads += 1;
             assert!(*reads < MOST_FLOODED_READS, "no end of reading");
-            let mut cable = self.cable.borrow_mut();
-            let now = cable.now() + FLOODED_READ;
-            cable.advance_to(now);
+            cable.advance_to(cable.now() + FLOODED_READ);
             buffer.chunks_exact_mut(wire.len()).for_each(|place| place.copy_from_slice(wire));
             return Ok(buffer.len() / wire.len() * wire.len());
         }
-        match self.instead.borrow_mut().take() {
+        match self.instead.take() {
             Some(Err(failure)) => Err(failure),
             Some(Ok(bytes)) => {
                 buffer[..bytes.len()].copy_from_slice(&bytes);
                 Ok(bytes.len())
             }
-            None => self.cable.borrow_mut().read_until(buffer, deadline),
+            None => cable.read_until(buffer, deadline),
         }
-    }
-
-    fn discard_input(&mut self) -> Result<(), PortError> {
-        self.cable.borrow_mut().discard_input()
-    }
-
-    fn now(&self) -> u64 {
-        self.cable.borrow().now()
-    }
-}
-
-impl Clock for World {
-    fn now(&self) -> u64 {
-        self.cable.borrow().now()
-    }
-
-    fn sleep_until(&self, deadline: u64) {
-        self.cable.borrow_mut().advance_to(deadline);
     }
 }
 
 /// Finger 1 with all that it needs.
 pub struct Bench {
-    pub world: World,
-    pub servo: Servo<World, World>,
+    pub world: World<Line>,
+    pub servo: Servo<World<Line>, World<Line>>,
     pub mailbox: Mailbox,
-    borrower: Borrower<World>,
+    borrower: Borrower<World<Line>>,
     /// As the board has it.
     configuration: Configuration,
 }
@@ -118,24 +87,8 @@ impl Bench {
         is(&mut configuration);
         let mut belief = configuration.clone();
         believed(&mut belief);
-        let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
-        let board = SimulatedBoard::new(&configuration, &[0]).expect("a board");
-        let cable = Rc::new(RefCell::new(SimulatedCable::new(board)));
-        let world = World { cable, instead: Rc::default(), flood: Rc::default() };
-        let mut link = Link::new(world.clone());
-        let (identity, configured) =
-            link.shake_hands(1, &Terms::new(hand, finger), 1000 * MILLISECOND).expect("a board answers");
-        let (timings, _) = ring(1);
-        // Nobody reads it.
-        let (recorder, _) = BlackBox::new(&configuration, 0);
-        let (finger, mailbox) =
-            FingerServo::new(&belief, 0, finger.initial_stiffness(), &identity, &configured, timings, recorder)
-                .expect("a finger");
-        let period = (1e9 / hand.rate) as u64;
-        let schedule = Schedule::new(Transport::now(&world) + period, period);
-        let (lender, borrower) = lending();
-        let port = ServedPort::new(link, vec![finger]).lent_through(lender);
-        let servo = Servo::new(world.clone(), schedule, vec![port]);
+        let world = World::new(&configuration, Line::default());
+        let ServedFinger { servo, mailbox, borrower, .. } = ServedFinger::believing(&world, &configuration, &belief);
         Self { world, servo, mailbox, borrower, configuration }
     }
 
@@ -161,7 +114,7 @@ impl Bench {
     }
 
     pub fn with_cable<R>(&self, act: impl FnOnce(&mut SimulatedCable) -> R) -> R {
-        act(&mut self.world.cable.borrow_mut())
+        act(&mut self.world.place().cable)
     }
 
     pub fn with_finger<R>(&self, act: impl FnOnce(&mut SimulatedFinger) -> R) -> R {
@@ -170,23 +123,23 @@ impl Bench {
 
     /// The next read of the port meets this.
     pub fn fail_port(&self, failure: PortError) {
-        *self.world.instead.borrow_mut() = Some(Err(failure));
+        self.world.place().hooks.instead = Some(Err(failure));
     }
 
     /// The board's next answer is this.
     pub fn answer_with(&self, frame: Frame) {
         let wire = WireFrame::new(&Message { address: 1, sequence: 200, frame });
-        *self.world.instead.borrow_mut() = Some(Ok(wire.as_bytes().to_vec()));
+        self.world.place().hooks.instead = Some(Ok(wire.as_bytes().to_vec()));
     }
 
     /// From now on the board's answers are lost in this frame, which comes without end.
     pub fn flood_with(&self, frame: Frame) {
         let wire = WireFrame::new(&Message { address: 1, sequence: 200, frame }).as_bytes().to_vec();
-        *self.world.flood.borrow_mut() = Some(Flood { wire, reads: 0 });
+        self.world.place().hooks.flood = Some(Flood { wire, reads: 0 });
     }
 
     pub fn end_flood(&self) {
-        *self.world.flood.borrow_mut() = None;
+        self.world.place().hooks.flood = None;
     }
 
     /// Another program at the same port sends this to the finger's board, and leaves the answer to whoever reads first.

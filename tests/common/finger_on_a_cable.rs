@@ -1,0 +1,131 @@
+//! A finger with its servo, its link and its board in memory, on simulated time: what happens is the same in every run.
+
+use std::cell::{RefCell, RefMut};
+use std::rc::Rc;
+use sun2xp::board::protocol::Identity;
+use sun2xp::board::{Link, PortError, Terms, Transport};
+use sun2xp::finger::{BlackBox, Borrower, FingerServo, Mailbox, ServedPort, Servo, lending};
+use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::{Clock, Consumer, CycleTiming, Schedule, ring};
+use sun2xp::simulated::{SimulatedBoard, SimulatedCable};
+
+/// What happens between a servo and the cable to its board. By default nothing does.
+pub trait Hooks {
+    fn write(&mut self, cable: &mut SimulatedCable, bytes: &[u8]) -> Result<usize, PortError> {
+        cable.write(bytes)
+    }
+
+    fn read_until(&mut self, cable: &mut SimulatedCable, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
+        cable.read_until(buffer, deadline)
+    }
+
+    fn discard_input(&mut self, cable: &mut SimulatedCable) -> Result<(), PortError> {
+        cable.discard_input()
+    }
+
+    fn sleep_until(&mut self, cable: &mut SimulatedCable, deadline: u64) {
+        cable.advance_to(deadline);
+    }
+
+    /// The time of the host, ns.
+    fn now(&self, cable: &SimulatedCable) -> u64 {
+        cable.now()
+    }
+}
+
+/// A cable, and what happens to it.
+pub struct Place<H> {
+    pub cable: SimulatedCable,
+    pub hooks: H,
+}
+
+/// The host's end of a cable, and the host's clock. Clones share the cable.
+pub struct World<H>(Rc<RefCell<Place<H>>>);
+
+impl<H> Clone for World<H> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<H> World<H> {
+    /// A cable to a simulated board with finger 1.
+    pub fn new(configuration: &Configuration, hooks: H) -> Self {
+        let board = SimulatedBoard::new(configuration, &[0]).expect("a board");
+        Self(Rc::new(RefCell::new(Place { cable: SimulatedCable::new(board), hooks })))
+    }
+
+    pub fn place(&self) -> RefMut<'_, Place<H>> {
+        self.0.borrow_mut()
+    }
+}
+
+impl<H: Hooks> Transport for World<H> {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
+        let Place { cable, hooks } = &mut *self.place();
+        hooks.write(cable, bytes)
+    }
+
+    fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
+        let Place { cable, hooks } = &mut *self.place();
+        hooks.read_until(cable, buffer, deadline)
+    }
+
+    fn discard_input(&mut self) -> Result<(), PortError> {
+        let Place { cable, hooks } = &mut *self.place();
+        hooks.discard_input(cable)
+    }
+
+    fn now(&self) -> u64 {
+        Clock::now(self)
+    }
+}
+
+impl<H: Hooks> Clock for World<H> {
+    fn now(&self) -> u64 {
+        let place = self.place();
+        place.hooks.now(&place.cable)
+    }
+
+    fn sleep_until(&self, deadline: u64) {
+        let Place { cable, hooks } = &mut *self.place();
+        hooks.sleep_until(cable, deadline);
+    }
+}
+
+/// Finger 1 with all that its planner and its servo need.
+pub struct ServedFinger<W> {
+    pub servo: Servo<W, W>,
+    pub mailbox: Mailbox,
+    pub borrower: Borrower<W>,
+    pub timings: Consumer<CycleTiming>,
+    pub black_box: BlackBox,
+    pub identity: Identity,
+}
+
+impl<W: Transport + Clock + Clone> ServedFinger<W> {
+    /// Shakes hands with the board. The finger begins to open with the first cycle of the servo.
+    pub fn new(world: &W, configuration: &Configuration) -> Self {
+        Self::believing(world, configuration, configuration)
+    }
+
+    /// The same with a servo that computes with another configuration than the board's.
+    pub fn believing(world: &W, configuration: &Configuration, belief: &Configuration) -> Self {
+        let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
+        let period = (1e9 / hand.rate) as u64;
+        let mut link = Link::new(world.clone());
+        let deadline = Clock::now(world) + 1_000_000_000;
+        let (identity, configured) =
+            link.shake_hands(1, &Terms::new(hand, finger), deadline).expect("the board answers");
+        let (producer, timings) = ring(100_000);
+        let (recorder, black_box) = BlackBox::new(configuration, 0);
+        let stiffness = finger.initial_stiffness();
+        let (finger, mailbox) =
+            FingerServo::new(belief, 0, stiffness, &identity, &configured, producer, recorder).expect("a finger");
+        let (lender, borrower) = lending();
+        let ports = vec![ServedPort::new(link, vec![finger]).lent_through(lender)];
+        let schedule = Schedule::new(Clock::now(world) + period, period);
+        let servo = Servo::new(world.clone(), schedule, ports);
+        Self { servo, mailbox, borrower, timings, black_box, identity }
+    }
+}
