@@ -8,7 +8,7 @@ use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Mailbox, mailbox};
 use crate::finger::supervision::Watching;
 use crate::finger::{Alarm, FingerReport, Losses, Recorder, Stage, stop_calls};
-use crate::model::configuration::{Configuration, Unusable};
+use crate::model::configuration::{Configuration, ConfiguredHand, Unusable};
 use crate::realtime::{CycleTiming, Producer};
 use nalgebra::{Matrix3, Vector3};
 
@@ -35,9 +35,22 @@ impl Adjustable {
     }
 }
 
+impl Limits {
+    fn new(hand: &ConfiguredHand) -> Self {
+        let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
+        Self {
+            period_ms: 1000.0 / hand.rate,
+            opening_ms: hand.open_timeout_ms.into(),
+            settled: cycles(TENSION_SETTLED * 1e3),
+            ramp: cycles(hand.release_ramp_ms.into()),
+            warning: cycles(WARNING_MS),
+        }
+    }
+}
+
 impl FingerServo {
-    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`, records
-    /// of its cycles to `black_box`; those that nobody collects are dropped.
+    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`,
+    /// records of its cycles to `black_box`; those that nobody collects are dropped.
     ///
     /// `stiffness` is the Kx that it will hold its pose with, already admitted.
     ///
@@ -57,25 +70,10 @@ impl FingerServo {
         let adjustable = Adjustable::new(configuration, index)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
-        let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
         let link = LinkWatch::new(hand, finger.simulated());
         let law = finger.controller.law;
         let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
-        let report = FingerReport {
-            stage: Stage::Opening,
-            set_point: initial,
-            springs: 0,
-            controller: 0,
-            cycle: Default::default(),
-            orders: 0,
-            calibration: None,
-            losses: Losses::default(),
-            recoveries: 0,
-            warnings: Default::default(),
-            first: 0,
-            last: 0,
-            next: 0,
-        };
+        let report = opening_report(initial);
         let (planners, servo, mut memory) = mailbox(report, &adjustable);
         memory.append(&black_box.memory());
         timings.add_to(&mut memory);
@@ -106,13 +104,7 @@ impl FingerServo {
             alarm: Alarm::new(false, stop_calls()),
             sampled_at: None,
             sample_age: 0,
-            limits: Limits {
-                period_ms: 1000.0 / hand.rate,
-                opening_ms: hand.open_timeout_ms.into(),
-                settled: cycles(TENSION_SETTLED * 1e3),
-                ramp: cycles(hand.release_ramp_ms.into()),
-                warning: cycles(WARNING_MS),
-            },
+            limits: Limits::new(hand),
             settled_cycles: 0,
             stage_cycles: 0,
             opening_since: None,
@@ -122,5 +114,24 @@ impl FingerServo {
             memory,
         };
         Ok((this, planners))
+    }
+}
+
+/// The report of a finger before its first cycle.
+fn opening_report(set_point: SetPoint) -> FingerReport {
+    FingerReport {
+        stage: Stage::Opening,
+        set_point,
+        springs: 0,
+        controller: 0,
+        cycle: Default::default(),
+        orders: 0,
+        calibration: None,
+        losses: Losses::default(),
+        recoveries: 0,
+        warnings: Default::default(),
+        first: 0,
+        last: 0,
+        next: 0,
     }
 }
