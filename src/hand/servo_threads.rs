@@ -1,14 +1,15 @@
 //! Starts the servo threads, as real-time as they can and have to be.
 
 use crate::board::Port;
-use crate::finger::Servo;
+use crate::finger::{ServedPort, Servo};
 use crate::hand::HandError;
 use crate::hand::announcement::say;
 use crate::hand::missing::{Missing, missing};
 use crate::hand::opening::Line;
 use crate::model::configuration::{Configuration, FINGERS, PeriodClock, RealTime};
 use crate::realtime::{LockedStack, MonotonicClock, Priority, Realtime, Schedule, now, spawn, touch_stack};
-use crossbeam_channel::bounded;
+use crossbeam_channel::{Receiver, Sender, bounded};
+use std::collections::BTreeMap;
 use std::thread::JoinHandle;
 
 /// The servo of one thread.
@@ -30,8 +31,8 @@ pub(super) struct Given {
     pub core: bool,
 }
 
-/// Starts a servo thread for all lines of one number, each. They are put into `servos`, to be joined, also where this fails: then
-/// none has begun its first cycle.
+/// Starts a servo thread for all lines of one number, each. They are put into `servos`, to be joined, also where this
+/// fails: then none has begun its first cycle.
 ///
 /// # Errors
 /// The system refuses a thread; or real time is enforced, and cannot be had.
@@ -40,54 +41,92 @@ pub(super) fn start(
     lines: Vec<Line>,
     servos: &mut Vec<JoinHandle<PortServo>>,
 ) -> Result<Given, HandError> {
-    let period = configuration.hand.period();
     let real_time = configuration.hand.real_time;
-    let mut threads: Vec<u8> = lines.iter().map(|line| line.thread).collect();
-    threads.sort_unstable();
-    threads.dedup();
-    let mut lines: Vec<Option<Line>> = lines.into_iter().map(Some).collect();
-    let (told, hear) = bounded(threads.len());
-    let (begin, begun) = bounded(threads.len());
-    for (place, &thread) in threads.iter().enumerate() {
-        let own = lines.iter_mut().filter(|line| line.as_ref().is_some_and(|line| line.thread == thread));
-        let ports = own.filter_map(Option::take).map(|line| line.port).collect();
-        let schedule = Schedule::staggered(0, period, place, threads.len());
-        let mut servo = Servo::new(MonotonicClock, schedule, ports);
-        if configuration.hand.clock == PeriodClock::Board {
-            servo = servo.following_board();
-        }
+    let shares = by_thread(lines);
+    let numbers: Vec<u8> = shares.keys().copied().collect();
+    let (told, hear) = bounded(numbers.len());
+    let (begin, begun) = bounded(numbers.len());
+    for (place, (thread, ports)) in shares.into_iter().enumerate() {
+        let servo = port_servo(configuration, ports, place, numbers.len());
         let (told, begun) = (told.clone(), begun.clone());
-        let handle = spawn(&format!("sun2xp servo {thread}"), priority(configuration, thread), move |mut had| {
-            touch_stack();
-            let mut locked = None;
-            if real_time != RealTime::Ignore {
-                let stack = LockedStack::lock().map(|stack| locked = Some(stack));
-                had.memory = stack.and_then(|()| servo.memory().lock()).err();
-            }
-            // Whoever starts the threads waits for this; has it given up meanwhile, it will not say when to begin either.
-            let _ = told.send(had);
-            if let Ok(first) = begun.recv() {
-                servo = servo.later(first);
-                servo.run();
-            }
-            drop(locked);
-            servo
-        });
+        let name = format!("sun2xp servo {thread}");
+        let handle =
+            spawn(&name, priority(configuration, thread), move |had| run(servo, had, real_time, &told, &begun));
         servos.push(handle.map_err(|source| HandError::System { doing: "start a servo thread", source })?);
     }
-    // Ours would keep the channel open where a thread died before it could tell.
+    // Our own sender would keep the channel open where a thread died before it could report.
     drop(told);
-    let had: Vec<Realtime> = hear.iter().take(threads.len()).collect();
-    let missing = missing(had);
-    let tried = real_time != RealTime::Ignore;
-    let refused = tried && missing.iter().any(|missing| matches!(missing, Missing::Scheduling(_)));
-    let given = Given {
-        scheduling: tried && !refused && threads.iter().all(|&thread| priority(configuration, thread).fifo > 0),
-        refused,
-        memory: tried && !missing.iter().any(|missing| matches!(missing, Missing::Memory(_))),
-        core: !missing.iter().any(|missing| matches!(missing, Missing::Core(_)))
-            && (tried || configuration.fingers.iter().all(|finger| finger.core.is_none())),
-    };
+    let missing = missing(hear.iter().take(numbers.len()).collect());
+    let given = Given::of(configuration, &numbers, &missing);
+    accept(missing, real_time)?;
+    let first = now() + HEAD_START;
+    for _ in &numbers {
+        // The channel has room for the message to a thread that died.
+        let _ = begin.send(first);
+    }
+    Ok(given)
+}
+
+/// The numbers of the threads, rising, with the ports that each one serves.
+fn by_thread(lines: Vec<Line>) -> BTreeMap<u8, Vec<ServedPort<Port>>> {
+    let mut ports: BTreeMap<u8, Vec<ServedPort<Port>>> = BTreeMap::new();
+    for line in lines {
+        ports.entry(line.thread).or_default().push(line.port);
+    }
+    ports
+}
+
+/// The servo of the thread at `place` among `threads`.
+fn port_servo(configuration: &Configuration, ports: Vec<ServedPort<Port>>, place: usize, threads: usize) -> PortServo {
+    let period = configuration.hand.period();
+    let servo = Servo::new(MonotonicClock, Schedule::staggered(0, period, place, threads), ports);
+    match configuration.hand.clock {
+        PeriodClock::Board => servo.following_board(),
+        PeriodClock::Host => servo,
+    }
+}
+
+/// The life of a servo thread: it prepares its memory, reports what it `had`, waits for its first cycle and runs.
+fn run(
+    mut servo: PortServo,
+    mut had: Realtime,
+    real_time: RealTime,
+    told: &Sender<Realtime>,
+    begun: &Receiver<u64>,
+) -> PortServo {
+    touch_stack();
+    let mut locked = None;
+    if real_time != RealTime::Ignore {
+        let stack = LockedStack::lock().map(|stack| locked = Some(stack));
+        had.memory = stack.and_then(|()| servo.memory().lock()).err();
+    }
+    // The caller of `start` waits for this report. If it has given up, it does not say when to begin either.
+    let _ = told.send(had);
+    if let Ok(first) = begun.recv() {
+        servo = servo.later(first);
+        servo.run();
+    }
+    drop(locked);
+    servo
+}
+
+impl Given {
+    fn of(configuration: &Configuration, threads: &[u8], missing: &[Missing]) -> Self {
+        let tried = configuration.hand.real_time != RealTime::Ignore;
+        let lacks = |kind: fn(&Missing) -> bool| missing.iter().any(kind);
+        let refused = tried && lacks(|missing| matches!(missing, Missing::Scheduling(_)));
+        Self {
+            scheduling: tried && !refused && threads.iter().all(|&thread| priority(configuration, thread).fifo > 0),
+            refused,
+            memory: tried && !lacks(|missing| matches!(missing, Missing::Memory(_))),
+            core: !lacks(|missing| matches!(missing, Missing::Core(_)))
+                && (tried || configuration.fingers.iter().all(|finger| finger.core.is_none())),
+        }
+    }
+}
+
+/// Refuses what is missing where real time is enforced, and warns of it otherwise.
+fn accept(missing: Vec<Missing>, real_time: RealTime) -> Result<(), HandError> {
     for missing in missing {
         match real_time {
             RealTime::Enforce => return Err(HandError::NotRealTime { missing }),
@@ -96,12 +135,7 @@ pub(super) fn start(
             }
         }
     }
-    let first = now() + HEAD_START;
-    for _ in &threads {
-        // A thread that died needs no beginning: there is room for its message.
-        let _ = begin.send(first);
-    }
-    Ok(given)
+    Ok(())
 }
 
 /// The priority and core of a servo thread, 1 to 3.
