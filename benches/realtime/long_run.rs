@@ -1,10 +1,11 @@
-//! Three fingers for a long time, with cyclictest beside them: whether a cycle is ever late by the library's own computation.
+//! Three fingers for a long time, with cyclictest beside them: whether a cycle is ever late by the library's own
+//! computation.
 
 use crate::Failure;
-use crate::cyclictest::Cyclictest;
-use crate::explain::{Cause, LateCycle, NotingClock, Watchers, cause};
+use crate::cyclictest::{Cyclictest, Measured};
+use crate::explain::{Cause, LateCycle, NotingClock, Pauses, Watchers, cause};
 use crate::fingers::reach;
-use sun2xp::finger::{Servo, Stage};
+use sun2xp::finger::{Mailbox, Servo, Stage};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Priority, now, spawn};
 
@@ -23,6 +24,12 @@ const ABOVE: u8 = 90;
 /// Of the simulated boards: below every servo.
 const BELOW: u8 = 20;
 
+/// Three fingers that have run: for each its cycles and the late ones, and its planner's end.
+struct Ran {
+    cycles: Vec<(u64, Vec<LateCycle>)>,
+    planners: Vec<Mailbox>,
+}
+
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut configuration = Configuration::default();
     // What is measured is time: a machine that starves the terminals' bytes must not end it with a fault.
@@ -32,12 +39,31 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let priority = configuration.fingers[0].priority;
     let cyclictest = Cyclictest::start(priority, period / 1000, seconds);
     let watchers = Watchers::start(ABOVE)?;
+    let ran = serve(&configuration, period, now() + seconds * 1_000_000_000)?;
+    let pauses = watchers.finish();
+    let machine = cyclictest.and_then(Cyclictest::finish);
 
-    let end = now() + seconds * 1_000_000_000;
-    let (mut threads, mut planners, mut boards) = (Vec::new(), Vec::new(), Vec::new());
-    for finger in reach(&configuration, period, BELOW)? {
+    let own = print_fingers(&ran, period, &pauses);
+    print_machine(&machine);
+    println!(
+        "\n{:.1} minutes at {:.0} Hz; {} pauses of a core above 50 us.\n",
+        arguments.minutes,
+        configuration.hand.rate,
+        pauses.count()
+    );
+    if own > 0 {
+        return Err(format!("{own} cycles were late by the library's own computation").into());
+    }
+    Ok(())
+}
+
+/// Serves all fingers until `end`, each on its own thread.
+fn serve(configuration: &Configuration, period: u64, end: u64) -> Result<Ran, Failure> {
+    let (mut threads, mut planners, mut others) = (Vec::new(), Vec::new(), Vec::new());
+    for finger in reach(configuration, period, BELOW)? {
         let (port, schedule) = (finger.port, finger.schedule);
-        threads.push(spawn("servo", Priority { fifo: priority, core: None }, move |had| {
+        let priority = Priority { fifo: configuration.fingers[0].priority, core: None };
+        threads.push(spawn("servo", priority, move |had| {
             let clock = NotingClock::new(period);
             let mut servo = Servo::new(&clock, schedule, vec![port]);
             while now() < end {
@@ -46,29 +72,31 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             drop(servo);
             had.scheduling.map_or_else(|| Ok(clock.finish()), Err)
         })?);
-        planners.push((finger.mailbox, finger.uncollected));
-        boards.push(finger.board);
+        planners.push(finger.mailbox);
+        // The boards and the receivers of timings and records must outlive the threads.
+        others.push((finger.board, finger.uncollected));
     }
-    let mut found = Vec::new();
+    let mut cycles = Vec::new();
     for thread in threads {
-        found.push(thread.join().map_err(|_| "a servo panicked")??);
+        cycles.push(thread.join().map_err(|_| "a servo panicked")??);
     }
-    let pauses = watchers.finish();
-    let machine = cyclictest.and_then(Cyclictest::finish);
+    Ok(Ran { cycles, planners })
+}
 
+/// Prints a row for each finger. Returns how many cycles were late by the library's own computation.
+fn print_fingers(ran: &Ran, period: u64, pauses: &Pauses) -> usize {
     println!(
         "| finger | cycles | replies lost | late | by their wake-up | by a pause of a core | kept from its core | by system calls of the exchange | by its computation |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     let mut own = 0;
-    for (index, ((cycles, late), (mailbox, _))) in found.iter().zip(&planners).enumerate() {
+    for (index, ((cycles, late), mailbox)) in ran.cycles.iter().zip(&ran.planners).enumerate() {
         let report = mailbox.report();
         if report.stage != Stage::Running {
             // Its servo has gone on, so its cycles count.
             eprintln!("finger {} is {:?} in the end. Other work on the machine disturbs it.", index + 1, report.stage);
         }
-        let causes: Vec<(Cause, LateCycle)> =
-            late.iter().map(|cycle| (cause(cycle, period, &pauses), *cycle)).collect();
+        let causes: Vec<(Cause, LateCycle)> = late.iter().map(|cycle| (cause(cycle, period, pauses), *cycle)).collect();
         let count = |cause| causes.iter().filter(|(found, _)| *found == cause).count();
         let library = count(Cause::Library);
         println!(
@@ -81,24 +109,32 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             count(Cause::Kept),
             count(Cause::Exchange)
         );
-        for (_, LateCycle { beginning, woken, done, ran, computed }) in
-            causes.iter().filter(|(cause, _)| *cause == Cause::Library).take(10)
-        {
-            let [woken, done, ran, computed] =
-                [woken - beginning, done - beginning, *ran, *computed].map(|time| time as f64 * 1e-3);
-            eprintln!(
-                "finger {}: woken after {woken:.0}, done after {done:.0} us; ran for {ran:.0} us, computed for {computed:.0} us",
-                index + 1
-            );
-        }
+        let by_library = causes.iter().filter(|(cause, _)| *cause == Cause::Library);
+        by_library.take(10).for_each(|(_, cycle)| explain(index, cycle));
         own += library;
     }
+    own
+}
+
+/// Prints how a late cycle spent its time.
+fn explain(index: usize, cycle: &LateCycle) {
+    let &LateCycle { beginning, woken, done, ran, computed } = cycle;
+    let [woken, done, ran, computed] =
+        [woken - beginning, done - beginning, ran, computed].map(|time| time as f64 * 1e-3);
+    eprintln!(
+        "finger {}: woken after {woken:.0}, done after {done:.0} us; ran for {ran:.0} us, computed for {computed:.0} us",
+        index + 1
+    );
+}
+
+/// Prints what cyclictest has measured.
+fn print_machine(machine: &Result<Vec<Measured>, Failure>) {
     println!("\n| cyclictest beside it | wake-ups | median | 99 % | worst | over 1 ms |\n|---|---|---|---|---|---|");
-    if let Err(reason) = &machine {
+    if let Err(reason) = machine {
         println!("| not measured: {reason} | | | | | |");
     }
     for (index, thread) in machine.iter().flatten().enumerate() {
-        let latency = thread.latency;
+        let latency = &thread.latency;
         println!(
             "| thread {} | {} | {:.1} us | {:.1} us | {:.0} us | {} |",
             index + 1,
@@ -109,14 +145,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             thread.late
         );
     }
-    println!(
-        "\n{:.1} minutes at {:.0} Hz; {} pauses of a core above 50 us.\n",
-        arguments.minutes,
-        configuration.hand.rate,
-        pauses.count()
-    );
-    if own > 0 {
-        return Err(format!("{own} cycles were late by the library's own computation").into());
-    }
-    Ok(())
 }
