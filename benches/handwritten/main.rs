@@ -6,10 +6,12 @@
 //! turn. Statistics are off in both: what is timed is from counts to motor torques and report.
 
 mod by_hand;
+mod parameters;
 #[path = "../recorded_run/mod.rs"]
 mod recorded_run;
 
-use by_hand::{ByHand, Gains, Parameters, PlainFeedback, PlainReport, PlainSetPoint, PlainState, Step};
+use by_hand::{ByHand, PlainFeedback, PlainReport, PlainSetPoint, PlainState, Step};
+use parameters::{Gains, Parameters};
 use recorded_run::{CYCLES, CYCLES_A_SET_POINT, RATE, Recording, lost};
 use std::error::Error;
 use std::hint::black_box;
