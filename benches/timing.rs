@@ -2,7 +2,7 @@
 
 use divan::{Bencher, black_box};
 use sun2xp::realtime::ring;
-use sun2xp::realtime::{CycleTiming, Stage, now};
+use sun2xp::realtime::{CycleStage, CycleTiming, now};
 
 fn main() {
     divan::main();
@@ -16,19 +16,19 @@ fn of_a_cycle(bencher: Bencher) {
     bencher.bench_local(|| {
         let mut timing = CycleTiming::default();
         let began = now();
-        timing.note(Stage::WakeUp, beginning, began);
+        timing.note(CycleStage::WakeUp, beginning, began);
         let sent = now();
-        timing.note(Stage::Write, began, sent);
+        timing.note(CycleStage::Write, began, sent);
         let ready = now();
-        timing.note(Stage::Wire, sent, ready);
+        timing.note(CycleStage::Wire, sent, ready);
         let read = now();
-        timing.note(Stage::Read, ready, read);
-        timing.note(Stage::Decode, read, now());
-        timing.note(Stage::Age, 0, black_box(1_000_000));
+        timing.note(CycleStage::Read, ready, read);
+        timing.note(CycleStage::Decode, read, now());
+        timing.note(CycleStage::Age, 0, black_box(1_000_000));
         let computing = now();
         let computed = now();
-        timing.note(Stage::Compute, computing, computed);
-        timing.note(Stage::Whole, beginning, computed);
+        timing.note(CycleStage::Compute, computing, computed);
+        timing.note(CycleStage::Whole, beginning, computed);
         let left = timings.push(black_box(timing));
         beginning = computed;
         // Somebody else collects; here it keeps the ring from filling.

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 
 use attempts::attempts;
 use pauses::Part;
-use sun2xp::hand::{Hand, HandError, read};
+use sun2xp::hand::{Hand, HandError, read_configuration};
 use sun2xp::model::configuration::Configuration;
 
 const SOURCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/c/second_board");
@@ -200,7 +200,7 @@ fn configuration(boards: &[Board; 3], folder: &Path) -> Configuration {
     }
     let path = folder.join("sun2xp.toml");
     std::fs::write(&path, text).expect("the configuration is written");
-    read(&path).expect("the configuration is good")
+    read_configuration(&path).expect("the configuration is good")
 }
 
 fn hold_and_settle(hand: &Hand, boards: &mut [Board; 3]) -> Attempt {

@@ -4,7 +4,7 @@
 use std::env::set_current_dir;
 use std::fs;
 use std::time::{Duration, Instant};
-use sun2xp::hand::{Fingers, Hand, read, stop_all};
+use sun2xp::hand::{Fingers, Hand, read_configuration, stop_all};
 
 #[test]
 fn relative_paths_stay_what_they_were_when_the_hand_was_opened() {
@@ -13,8 +13,12 @@ fn relative_paths_stay_what_they_were_when_the_hand_was_opened() {
     fs::create_dir("boxes").expect("made");
     let file = "[hand]\nrate = 500\nblack_box = \"boxes\"\n[finger]\nport = \"simulated\"\n";
     fs::write("hand.toml", file).expect("written");
-    let hand = Hand::open_limp(read("hand.toml".as_ref()).expect("usable"), Some("hand.toml".into()), Fingers::ALL)
-        .expect("open");
+    let hand = Hand::open_limp(
+        read_configuration("hand.toml".as_ref()).expect("usable"),
+        Some("hand.toml".into()),
+        Fingers::ALL,
+    )
+    .expect("open");
     set_current_dir("/").expect("gone there");
 
     hand.find_signs(1, |_| {}).expect("signs");

@@ -3,7 +3,7 @@
 use std::fs;
 use sun2xp::calibration::{Findings, Obstacle, Step, Zeros};
 use sun2xp::finger::Stage;
-use sun2xp::hand::{Calibrating, Fingers, Found, Hand, HandError, read, store};
+use sun2xp::hand::{Calibrating, Fingers, Found, Hand, HandError, read_configuration, store_findings};
 
 const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.zeroing]\nspeed = 2.0\n[finger.encoder]\n\
      zero = [700, -20, 30, 4000] # last year\n[finger.2.gauge]\n\
@@ -14,7 +14,8 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("hand.toml");
     fs::write(&path, FILE).expect("written");
-    let hand = Hand::open_limp(read(&path).expect("usable"), Some(path.clone()), Fingers::ALL).expect("open");
+    let hand =
+        Hand::open_limp(read_configuration(&path).expect("usable"), Some(path.clone()), Fingers::ALL).expect("open");
     let stage = |finger| hand.report(finger).expect("a report").stage;
     assert_eq!([1, 2, 3].map(stage), [Stage::Limp; 3]);
 
@@ -40,14 +41,15 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
 
     // Meanwhile another process has found the zeros of finger 1.
     let other = Zeros { encoder: [5, 6, 7, 8], gauge: [0.0; 4], joint_error: Default::default(), range_error: None };
-    let other = Found::by_calibration(&Findings::Zeros(other), 1, &read(&path).expect("usable")).expect("a finger");
-    store(&path, &[other]).expect("stored");
+    let other = Found::by_calibration(&Findings::Zeros(other), 1, &read_configuration(&path).expect("usable"))
+        .expect("a finger");
+    store_findings(&path, &[other]).expect("stored");
     assert!(hand.store_calibration(2).expect("stored"));
     assert!(!hand.store_calibration(2).expect("nothing is left to store"));
     let text = fs::read_to_string(&path).expect("there");
     assert!(text.starts_with("# The hand on the desk.\n[hand]\nrate = 500\n"), "{text}");
     assert!(text.contains("# last year") && text.contains("# tendon 3 was exchanged"), "{text}");
-    let (again, found) = (read(&path).expect("usable"), hand.calibrated(2).expect("there"));
+    let (again, found) = (read_configuration(&path).expect("usable"), hand.calibrated(2).expect("there"));
     assert_eq!(again.fingers[1].encoder.zero, found.encoder.zero);
     assert_eq!(again.fingers[0].encoder.zero, [5, 6, 7, 8]);
     assert_eq!(again.fingers[2].encoder.zero, [700, -20, 30, 4000]);

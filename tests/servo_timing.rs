@@ -7,7 +7,7 @@ mod finger_on_a_cable;
 use finger_on_a_cable::{Hooks, ServedFinger, World};
 use sun2xp::board::{PortError, Transport};
 use sun2xp::model::configuration::Configuration;
-use sun2xp::realtime::{Clock, Distribution, Histograms, Stage};
+use sun2xp::realtime::{Clock, CycleStage, Distribution, Histograms};
 use sun2xp::simulated::SimulatedCable;
 
 const PERIOD: u64 = 1_000_000;
@@ -91,7 +91,7 @@ impl Rig {
         while let Some(timing) = self.finger.timings.pop() {
             histograms.record(&timing);
         }
-        histograms.distribution(Stage::Age)
+        histograms.distribution(CycleStage::Age)
     }
 
     /// When the cycles from number `cycle` on have begun, us after the first was due.

@@ -7,7 +7,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use sun2xp::calibration::{Findings, Identified, Zeros};
-use sun2xp::hand::{Found, HandError, read, store};
+use sun2xp::hand::{Found, HandError, read_configuration, store_findings};
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use tempfile::{TempDir, tempdir};
 
@@ -66,7 +66,7 @@ impl Worker {
 
     /// Whether the file has what was found at a turn.
     fn is_stored(self, turn: i32, path: &Path) -> bool {
-        let hand = read(path).unwrap_or_else(|error| panic!("{self:?}, turn {turn}: {error}"));
+        let hand = read_configuration(path).unwrap_or_else(|error| panic!("{self:?}, turn {turn}: {error}"));
         let index = self.finger as usize - 1;
         let ConfiguredFinger { encoder, gauge, tendon, friction, stiffness, .. } = &hand.fingers[index];
         let number = f64::from(turn + 1);
@@ -79,9 +79,9 @@ impl Worker {
 
     /// Stores at every turn and looks whether it is there. Prints a line for each.
     fn work(self, path: &Path, turns: i32) {
-        let configuration = read(path).expect("usable");
+        let configuration = read_configuration(path).expect("usable");
         for turn in 0..turns {
-            let stored = store(path, &[self.found(turn, &configuration)]);
+            let stored = store_findings(path, &[self.found(turn, &configuration)]);
             stored.unwrap_or_else(|error| panic!("{self:?}, turn {turn}: {error}"));
             assert!(self.is_stored(turn, path), "{self:?}, turn {turn}: lost");
             println!("stored {turn}");
@@ -146,11 +146,11 @@ fn threads_and_processes_store_at_once() {
 #[test]
 fn an_older_reading_reverts_nothing() {
     let (_folder, path) = hand();
-    let read_before = read(&path).expect("usable");
+    let read_before = read_configuration(&path).expect("usable");
     WORKERS[0].work(&path, 1);
     let worker = WORKERS[2];
-    store(&path, &[worker.found(5, &read_before)]).expect("stored");
-    store(&path, &[WORKERS[3].found(6, &read_before)]).expect("stored");
+    store_findings(&path, &[worker.found(5, &read_before)]).expect("stored");
+    store_findings(&path, &[WORKERS[3].found(6, &read_before)]).expect("stored");
     assert!(WORKERS[0].is_stored(0, &path) && worker.is_stored(5, &path) && WORKERS[3].is_stored(6, &path));
 }
 
@@ -166,7 +166,7 @@ fn a_killed_process_leaves_a_whole_file_and_no_lock() {
         process.wait().expect("ended");
         assert_eq!(stored, lines);
         let turn = 10_000 + lines as i32;
-        store(&path, &[WORKERS[4].found(turn, &read(&path).expect("usable"))]).expect("stored");
+        store_findings(&path, &[WORKERS[4].found(turn, &read_configuration(&path).expect("usable"))]).expect("stored");
         assert!(WORKERS[4].is_stored(turn, &path));
     }
 }
@@ -212,20 +212,20 @@ fn as_nobody(body: impl FnOnce() + Send) {
 #[test]
 fn what_this_user_may_not_write_is_left_and_named() {
     let (folder, path) = hand();
-    let found = WORKERS[0].found(7, &read(&path).expect("usable"));
+    let found = WORKERS[0].found(7, &read_configuration(&path).expect("usable"));
     let set = |path: &Path, mode| fs::set_permissions(path, Permissions::from_mode(mode)).expect("set");
     for (folder_mode, file_mode) in [(0o555, 0o666), (0o777, 0o444)] {
         set(folder.path(), folder_mode);
         set(&path, file_mode);
         as_nobody(|| {
-            let error = store(&path, std::slice::from_ref(&found)).expect_err("refused");
+            let error = store_findings(&path, std::slice::from_ref(&found)).expect_err("refused");
             assert!(matches!(error, HandError::Store { .. }) && error.errno() == libc::EACCES, "{error}");
             assert!(error.to_string().contains("hand.toml: Permission denied"), "{error}");
         });
         assert_eq!(fs::read_to_string(&path).expect("read"), FILE);
     }
     set(&path, 0o666);
-    as_nobody(|| store(&path, std::slice::from_ref(&found)).expect("stored"));
+    as_nobody(|| store_findings(&path, std::slice::from_ref(&found)).expect("stored"));
     assert!(WORKERS[0].is_stored(7, &path));
     assert_eq!(fs::metadata(&path).expect("there").permissions().mode() & 0o777, 0o666);
 }

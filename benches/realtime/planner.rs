@@ -9,7 +9,7 @@ use std::thread::sleep;
 use std::time::Duration;
 use sun2xp::hand::{Hand, HandError};
 use sun2xp::model::configuration::{Configuration, FINGERS};
-use sun2xp::realtime::Stage;
+use sun2xp::realtime::CycleStage;
 
 /// What the two threads do meanwhile.
 #[derive(Clone, Copy, PartialEq)]
@@ -119,6 +119,6 @@ fn measure(hand: &Hand, seconds: u64) -> Result<Vec<WakeUp>, Failure> {
     sleep(Duration::from_millis(200));
     fingers.clone().try_for_each(|finger| hand.reset_timing(finger))?;
     sleep(Duration::from_secs(seconds));
-    let timings = fingers.map(|finger| hand.timing(finger, Stage::WakeUp).map(|wake| (wake.median, wake.p99)));
+    let timings = fingers.map(|finger| hand.timing(finger, CycleStage::WakeUp).map(|wake| (wake.median, wake.p99)));
     Ok(timings.collect::<Result<_, _>>()?)
 }

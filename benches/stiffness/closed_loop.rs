@@ -4,7 +4,7 @@ use crate::cases::{Case, Friction};
 use nalgebra::{Matrix3, Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
-use sun2xp::control::{Activity, Command, Controller, Feedback, Law, Measured, Report, SetPoint, State};
+use sun2xp::control::{Activity, Controller, Feedback, Law, Measured, MotorCommand, Report, SetPoint, State};
 use sun2xp::model::InverseKinematics;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
@@ -25,7 +25,7 @@ pub struct ClosedLoop {
     controller: Controller,
     inverse: InverseKinematics,
     state: State,
-    command: Command,
+    command: MotorCommand,
     loss: f64,
     random: Pcg64,
 }
@@ -82,7 +82,7 @@ impl ClosedLoop {
             senses,
             controller,
             state,
-            command: Command { motor_torques },
+            command: MotorCommand { motor_torques },
             loss: 0.0,
             random: Pcg64::seed_from_u64(case.seed + 7),
         };

@@ -3,7 +3,7 @@
 use crate::cases::{Case, Friction, stiffen};
 use nalgebra::Vector3;
 use sun2xp::calibration::{Calibration, Obstacle, Sample, Task, Verdict};
-use sun2xp::control::{Activity, Command, Controller, Feedback, Report};
+use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
@@ -24,7 +24,7 @@ pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obsta
         Controller::new(&Calibration::controlled(&belief, case.rate), case.rate).expect("the default controller");
     let mut state = controller.start(&read(&plant));
     plant.release_brake();
-    let mut command = Command::default();
+    let mut command = MotorCommand::default();
     let mut advance = |plant: &mut Plant, feedback: &Feedback, activity: &Activity| {
         for _ in 0..(1.0 / (case.rate * PLANT_STEP_SECONDS)).round() as usize {
             plant.step((command.motor_torques * 0.01).into());

@@ -12,7 +12,7 @@ pub enum PortError {
     /// ENOENT.
     #[error("{} does not exist: check the cable, the board's power and finger.port (ls -l \
              /dev/serial/by-id)", ShownPath(.0))]
-    Missing(PathBuf),
+    MissingPermission(PathBuf),
     /// EACCES.
     #[error("no permission to open {}: add the user to the port's group (usually dialout) and log in \
              again", ShownPath(.0))]
@@ -75,7 +75,7 @@ impl PortError {
     /// The errno of the system; where it reported none, the nearest.
     pub fn errno(&self) -> i32 {
         match self {
-            PortError::Missing(_) => libc::ENOENT,
+            PortError::MissingPermission(_) => libc::ENOENT,
             PortError::Forbidden(_) => libc::EACCES,
             PortError::Busy(_) => libc::EBUSY,
             PortError::NotASerialPort(_) => libc::ENOTTY,
@@ -92,7 +92,7 @@ impl PortError {
     pub(super) fn at_opening(path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.raw_os_error() {
-            Some(libc::ENOENT) => Self::Missing(path),
+            Some(libc::ENOENT) => Self::MissingPermission(path),
             Some(libc::EACCES) => Self::Forbidden(path),
             // Whoever has it has marked it for exclusive use.
             Some(libc::EBUSY) => Self::Busy(path),

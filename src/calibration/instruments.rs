@@ -1,6 +1,6 @@
 //! What every routine reads its finger with: the configured sensors and tendons.
 
-use crate::control::sensing::sensors::Sensors;
+use crate::control::sensing::sensors::SensorScales;
 use crate::control::signals::Feedback;
 use crate::control::spring::joint_hold::JointHold;
 use crate::control::tendons::tension_distribution::TensionDistribution;
@@ -11,7 +11,7 @@ use nalgebra::{Vector3, Vector4};
 /// The finger as it is configured, and the gauge offsets that have been found so far.
 #[derive(Clone, Debug)]
 pub(super) struct Instruments {
-    sensors: Sensors,
+    sensors: SensorScales,
     pub tendons: Tendons,
     pub distribution: TensionDistribution,
     /// N.
@@ -44,7 +44,7 @@ pub(super) struct Instruments {
 impl Instruments {
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
-        let sensors = Sensors::new(finger)?;
+        let sensors = SensorScales::new(finger)?;
         let count = |motor: usize| {
             f64::from(finger.encoder.sign[motor]) * std::f64::consts::TAU
                 / f64::from(finger.encoder.counts_per_revolution[motor])

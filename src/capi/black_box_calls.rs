@@ -137,7 +137,7 @@ pub unsafe extern "C" fn WriteBlackBox(i: c_int, Path: *const c_char) -> c_int {
         Ok(move || {
             let recording = default_hand::with(|hand| hand.recording(i))?;
             // Without the hand: a slow disk must not keep it from being closed.
-            Ok(hand::save(&recording, &path)?)
+            Ok(hand::save_recording(&recording, &path)?)
         })
     })
 }

@@ -27,7 +27,7 @@ pub(super) fn open() -> Result<(), Refusal> {
         return Err(Refusal::AlreadyOpen);
     }
     process::watch(close_at_exit);
-    let configured = hand::configured()?;
+    let configured = hand::find_configuration()?;
     refusal::set_printing(configured.configuration.hand.print_refusals);
     let hand = Hand::open_as(configured)?;
     *HAND.write() = Some(hand);

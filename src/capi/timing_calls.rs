@@ -10,34 +10,34 @@ use crate::capi::status_calls::count;
 use crate::finger::Losses;
 use crate::hand::{Hand, HandError};
 use crate::model::configuration::FINGERS;
-use crate::realtime::{Distribution, Stage};
+use crate::realtime::{CycleStage, Distribution};
 use std::ffi::{c_int, c_uint, c_ulong};
 
-/// Stage for GetTiming: from the scheduled beginning of a cycle to the thread's first
+/// CycleStage for GetTiming: from the scheduled beginning of a cycle to the thread's first
 /// instruction.
 pub const TIMING_WAKE_UP: c_int = 0;
 
-/// Stage for GetTiming: handing the commands of the port to the system.
+/// CycleStage for GetTiming: handing the commands of the port to the system.
 pub const TIMING_WRITE: c_int = 1;
 
-/// Stage for GetTiming: from there until the reply can be read: both ways on the line, and
+/// CycleStage for GetTiming: from there until the reply can be read: both ways on the line, and
 /// the board.
 pub const TIMING_WIRE: c_int = 2;
 
-/// Stage for GetTiming: reading the reply.
+/// CycleStage for GetTiming: reading the reply.
 pub const TIMING_READ: c_int = 3;
 
-/// Stage for GetTiming: from bytes to the finger's reply, checks included.
+/// CycleStage for GetTiming: from bytes to the finger's reply, checks included.
 pub const TIMING_DECODE: c_int = 4;
 
-/// Stage for GetTiming: the controller.
+/// CycleStage for GetTiming: the controller.
 pub const TIMING_COMPUTE: c_int = 5;
 
-/// Stage for GetTiming: from the scheduled beginning of a cycle to the end of its
+/// CycleStage for GetTiming: from the scheduled beginning of a cycle to the end of its
 /// computation.
 pub const TIMING_CYCLE: c_int = 6;
 
-/// Stage for GetTiming: how old the newest measurement is when the command that was
+/// CycleStage for GetTiming: how old the newest measurement is when the command that was
 /// computed from it takes effect, by the board's clock. One period where nothing is late.
 pub const TIMING_AGE: c_int = 7;
 
@@ -53,7 +53,7 @@ pub struct FingerTiming {
     /// In: bytes of room, sizeof *Timing. Out: bytes that were filled, never more.
     pub Size: c_uint,
     /// The stage that was asked for.
-    pub Stage: c_int,
+    pub CycleStage: c_int,
     /// Cycles that had this stage.
     pub Count: c_ulong,
     /// The shortest.
@@ -87,10 +87,10 @@ pub struct FingerTiming {
 
 /// GetTiming - where the time of a finger's cycles goes
 ///
-///     int GetTiming(int i, int Stage, struct FingerTiming *Timing);
+///     int GetTiming(int i, int CycleStage, struct FingerTiming *Timing);
 ///
 ///   i        finger, 1 to 3
-///   Stage    TIMING_WAKE_UP to TIMING_AGE
+///   CycleStage    TIMING_WAKE_UP to TIMING_AGE
 ///   Timing   Timing->Size is set by the caller, all else is filled in. Written only if
 ///            the call returns 0
 ///
@@ -100,7 +100,7 @@ pub struct FingerTiming {
 ///   EPERM    forked child
 ///   EFAULT   Timing is null
 ///   ENODEV   no hand is open
-///   EINVAL   Size is too small; no such finger; no such Stage
+///   EINVAL   Size is too small; no such finger; no such CycleStage
 ///
 /// Threads: any. Never waits for a servo; some us.
 ///
@@ -111,16 +111,16 @@ pub struct FingerTiming {
 ///     if (GetTiming(1, TIMING_WIRE, &Timing) == 0)
 ///         printf("%lu ns\n", Timing.P99);
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTiming) -> c_int {
+pub unsafe extern "C" fn GetTiming(i: c_int, CycleStage: c_int, Timing: *mut FingerTiming) -> c_int {
     guarded("GetTiming", || {
         let least = size_up_to!(FingerTiming, CorruptReplies: c_ulong);
         let tell = |hand: &Hand| {
             // The finger's number is looked at first.
             hand.report(i)?;
             // Times first: then there are no more of them than cycles.
-            let times = hand.timing(i, stage(Stage).ok_or(HandError::NoSuchStage(Stage))?)?;
+            let times = hand.timing(i, stage(CycleStage).ok_or(HandError::NoSuchStage(CycleStage))?)?;
             let losses = hand.losses(i)?;
-            Ok(told(Stage, &times, &losses))
+            Ok(told(CycleStage, &times, &losses))
         };
         // SAFETY: the manual's contract: null, or as much room as its first member says.
         unsafe { fill(Timing, "Timing", least, tell) }
@@ -151,16 +151,16 @@ pub extern "C" fn ResetTiming(i: c_int) -> c_int {
     })
 }
 
-fn stage(number: c_int) -> Option<Stage> {
+fn stage(number: c_int) -> Option<CycleStage> {
     match number {
-        TIMING_WAKE_UP => Some(Stage::WakeUp),
-        TIMING_WRITE => Some(Stage::Write),
-        TIMING_WIRE => Some(Stage::Wire),
-        TIMING_READ => Some(Stage::Read),
-        TIMING_DECODE => Some(Stage::Decode),
-        TIMING_COMPUTE => Some(Stage::Compute),
-        TIMING_CYCLE => Some(Stage::Whole),
-        TIMING_AGE => Some(Stage::Age),
+        TIMING_WAKE_UP => Some(CycleStage::WakeUp),
+        TIMING_WRITE => Some(CycleStage::Write),
+        TIMING_WIRE => Some(CycleStage::Wire),
+        TIMING_READ => Some(CycleStage::Read),
+        TIMING_DECODE => Some(CycleStage::Decode),
+        TIMING_COMPUTE => Some(CycleStage::Compute),
+        TIMING_CYCLE => Some(CycleStage::Whole),
+        TIMING_AGE => Some(CycleStage::Age),
         _ => None,
     }
 }
@@ -169,7 +169,7 @@ fn told(stage: c_int, times: &Distribution, losses: &Losses) -> FingerTiming {
     let ns = |microseconds: f64| (microseconds * 1e3).round() as c_ulong;
     FingerTiming {
         Size: 0, // until the caller's room is known
-        Stage: stage,
+        CycleStage: stage,
         Count: count(times.count),
         Minimum: ns(times.minimum),
         Median: ns(times.median),

@@ -9,9 +9,9 @@ use crate::control::monitors::{Alarms, Monitors, Watch};
 use crate::control::motors::motor_heating::{Heat, MotorHeating};
 use crate::control::motors::motor_torque::MotorTorque;
 use crate::control::sensing::joint_positions::JointPositions;
-use crate::control::sensing::sensors::Sensors;
+use crate::control::sensing::sensors::SensorScales;
 use crate::control::sensing::stillness::Stillness;
-use crate::control::signals::{Activity, Command, Feedback, Measured, Report};
+use crate::control::signals::{Activity, Feedback, Measured, MotorCommand, Report};
 use crate::control::spring::admissible_stiffness::AdmissibleStiffness;
 use crate::control::spring::gravity_compensation::GravityCompensation;
 use crate::control::spring::joint_stiffness::JointStiffness;
@@ -20,7 +20,7 @@ use crate::control::spring::soft_limits::SoftLimits;
 use crate::control::spring::spring_transition::{SpringStages, SpringTransition};
 use crate::control::state_feedback::{StateFeedback, StateFeedbackState};
 use crate::control::take_up::slack::{Slack, SlackTakeUp};
-use crate::control::tendons::bumpless_transfer::Transition;
+use crate::control::tendons::bumpless_transfer::BumplessTransfer;
 use crate::control::tendons::low_pass::LowPass;
 use crate::control::tendons::release::Release;
 use crate::control::tendons::tendon_controller::TendonController;
@@ -33,7 +33,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug)]
 pub struct Controller {
     period: f64,
-    sensors: Sensors,
+    sensors: SensorScales,
     speed_filter: LowPass,
     stretch_filter: LowPass,
     joint_positions: JointPositions,
@@ -70,7 +70,7 @@ pub struct State {
     /// Low-passed, N, for the tendon stretch.
     tensions: Vector4<f64>,
     tendons: TendonState,
-    transition: Transition,
+    transition: BumplessTransfer,
     /// The spring that is followed.
     spring: Option<SpringStages>,
     /// What the controller before this one would pull next, N at the tendon.
@@ -120,7 +120,7 @@ impl Controller {
             motor_speeds: Vector4::zeros(),
             tensions,
             tendons: TendonState::default(),
-            transition: Transition::default(),
+            transition: BumplessTransfer::default(),
             spring: None,
             goes_on_from: None,
             stillness: Stillness::new(motor_angles),
@@ -144,7 +144,7 @@ impl Controller {
         state: &mut State,
         feedback: Option<&Feedback>,
         activity: &Activity,
-    ) -> (Command, Report) {
+    ) -> (MotorCommand, Report) {
         let mut before = *state;
         previous.cycle(&mut before, feedback, activity);
         state.goes_on_from = Some(before.pulls);
@@ -158,7 +158,7 @@ impl Controller {
 
     /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates rests,
     /// but a release goes on, and so does state feedback for some cycles, from what it predicts.
-    pub fn cycle(&self, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) -> (Command, Report) {
+    pub fn cycle(&self, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) -> (MotorCommand, Report) {
         let measured = feedback.map(|feedback| self.sensors.measured(feedback));
         self.cycle_measured(state, measured.as_ref(), activity)
     }
@@ -170,7 +170,7 @@ impl Controller {
         state: &mut State,
         measured: Option<&Measured>,
         activity: &Activity,
-    ) -> (Command, Report) {
+    ) -> (MotorCommand, Report) {
         state.age = state.age.saturating_add(1);
         let acting = state.pulls;
         if let Some(measured) = measured {
@@ -209,7 +209,7 @@ impl Controller {
         self.heating.advance(&mut state.heat, &state.pulls);
         let motor_torques = self.motor_torque.torques(&state.pulls);
         state.report.motor_torques = motor_torques;
-        (Command { motor_torques }, state.report)
+        (MotorCommand { motor_torques }, state.report)
     }
 
     /// What is wrong with a finger that follows, after a cycle with `feedback`, `age` periods after the one before. `full_scale`: the

@@ -79,12 +79,12 @@ pub enum Activity {
 
 /// What the motors shall do.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
-pub struct Command {
+pub struct MotorCommand {
     /// m_tau of eq. 22, N cm, as the board takes it: a positive one pulls where `motor.sign` is +1.
     pub motor_torques: Vector4<f64>,
 }
 
-impl Command {
+impl MotorCommand {
     /// Whether every torque is a finite number.
     pub fn is_finite(&self) -> bool {
         self.motor_torques.iter().all(|torque| torque.is_finite())

@@ -21,7 +21,7 @@ use crate::control::state_feedback::dither::{Dither, DitherState};
 use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
 use crate::control::state_feedback::observer::{TendonEstimate, TendonMotion, TendonObserver};
 use crate::control::state_feedback::reference::{Reference, ReferenceState};
-use crate::control::tendons::bumpless_transfer::Transition;
+use crate::control::tendons::bumpless_transfer::BumplessTransfer;
 use crate::model::LinkDynamics;
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
@@ -96,7 +96,7 @@ pub(super) struct StateFeedbackState {
     anchor: Vector3<f64>,
     /// What the tensions still differ by from what the spring asks for. Of tensions, not of pulls: these are noisy, and
     /// the noise of one cycle must not be kept.
-    transition: Transition,
+    transition: BumplessTransfer,
     reference: ReferenceState,
     /// How fast the joints move beside the reference, low-passed, rad/s.
     drift: Vector3<f64>,
@@ -118,7 +118,7 @@ impl StateFeedback {
             jerk: Vector3::zeros(),
             lost: 0,
             anchor: joints,
-            transition: Transition::default(),
+            transition: BumplessTransfer::default(),
             reference: self.reference.start(&joints),
             drift: Vector3::zeros(),
             dither: self.dither.start(),

@@ -9,7 +9,7 @@ use crate::control::State;
 use crate::finger::recording::{Origin, Recording};
 use crate::finger::{ControllerSource, CycleRecord, KeptRecord, Stage};
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
-use crate::realtime::{Consumer, Memory, Producer, ring};
+use crate::realtime::{Consumer, LockedMemory, Producer, ring};
 use nalgebra::Vector3;
 use std::collections::{BTreeSet, VecDeque};
 
@@ -177,8 +177,8 @@ impl Recorder {
     }
 
     /// What its end of the rings touches.
-    pub fn memory(&self) -> Memory {
-        let mut memory = Memory::default();
+    pub fn memory(&self) -> LockedMemory {
+        let mut memory = LockedMemory::default();
         self.records.add_to(&mut memory);
         self.keyframes.add_to(&mut memory);
         memory

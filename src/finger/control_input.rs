@@ -1,7 +1,7 @@
 //! What decides a finger's command in one cycle, beside its controller and that one's state. The servo and a replay both go
 //! through [`ControlInput::run`].
 
-use crate::control::{Activity, Command, Controller, Feedback, Report, State};
+use crate::control::{Activity, Controller, Feedback, MotorCommand, Report, State};
 use crate::finger::Fading;
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ impl ControlInput {
         previous: Option<&Controller>,
         state: &mut State,
         feedback: Option<&Feedback>,
-    ) -> (Command, Report) {
+    ) -> (MotorCommand, Report) {
         if let Some(found) = &self.anew_from {
             *state = previous.unwrap_or(controller).start(found);
         }

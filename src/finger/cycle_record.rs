@@ -1,6 +1,6 @@
 //! What a black box keeps of one cycle.
 
-use crate::control::{Command, Feedback, Report};
+use crate::control::{Feedback, MotorCommand, Report};
 use crate::finger::{ControlInput, Stage};
 use crate::model::configuration::ConfiguredFinger;
 use crate::realtime::CycleTiming;
@@ -36,7 +36,7 @@ pub struct ControlRecord {
     /// What it was told.
     pub input: ControlInput,
     /// What the motors were told in the next cycle.
-    pub command: Command,
+    pub command: MotorCommand,
     /// What it found and decided.
     pub report: Report,
 }

@@ -39,7 +39,7 @@ pub struct Borrower<T> {
 }
 
 /// Both ends.
-pub fn lending<T>() -> (Lender<T>, Borrower<T>) {
+pub fn link_handover<T>() -> (Lender<T>, Borrower<T>) {
     let (lend, lent) = ring(1);
     let (to_servo, from_mender) = ring(1);
     (Lender { lend, mended: from_mender }, Borrower { lent, mended: to_servo })

@@ -6,7 +6,7 @@
 
 use crate::control::SetPoint;
 use crate::finger::{Adjustable, Fault, FingerReport, Order, Stage};
-use crate::realtime::{Input, Memory, Output, Pages, SharedPages, triple_buffer};
+use crate::realtime::{Input, LockedMemory, Output, Pages, SharedPages, triple_buffer};
 use parking_lot::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -44,8 +44,8 @@ pub(super) struct ServoEnd {
 }
 
 /// A mailbox whose both ends hold `report`, with its set point, and `adjustable`; and the memory that they share.
-pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd, Memory) {
-    let mut memory = Memory::default();
+pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd, LockedMemory) {
+    let mut memory = LockedMemory::default();
     let sent = SentSetPoint { spring: report.springs, set_point: report.set_point };
     let (set_points_in, set_points_out) = shared(&sent, &mut memory);
     let (adjustments_in, adjustments_out) = shared(adjustable, &mut memory);
@@ -72,7 +72,7 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
 }
 
 /// A triple buffer, and where it is.
-fn shared<T: Clone + Send>(initial: &T, memory: &mut Memory) -> (Input<T>, Output<T>) {
+fn shared<T: Clone + Send>(initial: &T, memory: &mut LockedMemory) -> (Input<T>, Output<T>) {
     let ends = triple_buffer(initial);
     ends.0.add_to(memory);
     ends

@@ -1,7 +1,6 @@
 //! One finger's servo thread and its mailboxes: the shell around the pure core.
 
 mod adjustable;
-mod alarm;
 mod black_box;
 mod control_input;
 mod cycle_record;
@@ -17,15 +16,15 @@ mod report;
 mod servo;
 mod servo_thread;
 mod stage;
+mod stop_signal;
 mod supervision;
 
 pub use adjustable::Adjustable;
-pub use alarm::{Alarm, stop_all, stop_calls};
 pub use black_box::{BlackBox, Recorder};
 pub use control_input::ControlInput;
 pub use cycle_record::{ControlRecord, ControllerSource, CycleRecord, KeptRecord};
 pub use faults::{Description, Fault, FaultKind, PartKind, Quantity, Severity, Warnings};
-pub use link_handover::{Borrower, Lender, Lent, Mended, lending};
+pub use link_handover::{Borrower, Lender, Lent, Mended, link_handover};
 pub use link_watch::Fading;
 pub use losses::Losses;
 pub use mailbox::Mailbox;
@@ -36,3 +35,4 @@ pub use report::FingerReport;
 pub use servo::FingerServo;
 pub use servo_thread::{REPLY_WINDOW, ServedPort, Servo};
 pub use stage::Stage;
+pub use stop_signal::{StopSignal, stop_all, stop_calls};

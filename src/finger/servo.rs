@@ -9,14 +9,16 @@ mod life;
 use crate::board::LinkCounters;
 use crate::board::protocol::{Identity, Status};
 use crate::calibration::Verdict;
-use crate::control::{Activity, Command, Feedback, SetPoint, State};
+use crate::control::{Activity, Feedback, MotorCommand, SetPoint, State};
 use crate::finger::Adjustable;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::ServoEnd;
-use crate::finger::supervision::Watching;
-use crate::finger::{Alarm, ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage};
+use crate::finger::supervision::Supervision;
+use crate::finger::{
+    ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage, StopSignal,
+};
 use crate::model::configuration::EndState;
-use crate::realtime::{self, CycleTiming, Memory, Producer};
+use crate::realtime::{self, CycleTiming, LockedMemory, Producer};
 use calibration::Calibrating;
 
 /// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
@@ -33,7 +35,7 @@ pub struct FingerServo {
     feedback: Feedback,
     /// The state is to be made anew from the feedback.
     anew: bool,
-    command: Command,
+    command: MotorCommand,
     mailbox: ServoEnd,
     timing: CycleTiming,
     timings: Producer<CycleTiming>,
@@ -52,8 +54,8 @@ pub struct FingerServo {
     /// Sequence number of the reply that was taken last.
     last_answer: u8,
     link: LinkWatch,
-    watching: Watching,
-    alarm: Alarm,
+    supervision: Supervision,
+    alarm: StopSignal,
     /// The board's clock at the last measurement, us modulo 65 536; none before the first.
     sampled_at: Option<u16>,
     /// Periods from that measurement to this cycle.
@@ -69,7 +71,7 @@ pub struct FingerServo {
     initial: SetPoint,
     end_state: EndState,
     /// What of the finger is on the heap.
-    memory: Memory,
+    memory: LockedMemory,
 }
 
 /// Times of the configuration, in cycles where nothing else is said.
@@ -91,12 +93,12 @@ impl FingerServo {
     }
 
     /// What of the finger its servo touches and is not in this value itself.
-    pub fn memory(&self) -> &Memory {
+    pub fn memory(&self) -> &LockedMemory {
         &self.memory
     }
 
     /// The same finger, to be stopped by this alarm.
-    pub fn with(mut self, alarm: Alarm) -> Self {
+    pub fn with(mut self, alarm: StopSignal) -> Self {
         alarm.add_to(&mut self.memory);
         self.alarm = alarm;
         self
@@ -145,7 +147,7 @@ impl FingerServo {
         if self.under_control()
             // A machine that is busy is no noise on the line.
             && let Some(fault) =
-                self.watching.note_period(self.answered || self.link.in_step(), skipped, heard.damaged)
+                self.supervision.note_period(self.answered || self.link.in_step(), skipped, heard.damaged)
         {
             self.fault(fault);
         }
@@ -201,7 +203,7 @@ impl FingerServo {
     }
 
     /// Notes when a stage of this cycle began and ended, ns.
-    pub fn note(&mut self, stage: realtime::Stage, from: u64, to: u64) {
+    pub fn note(&mut self, stage: realtime::CycleStage, from: u64, to: u64) {
         self.timing.note(stage, from, to);
     }
 
@@ -233,7 +235,7 @@ impl FingerServo {
     /// The monitors of a finger that is a spring.
     fn watch(&mut self, adjusted: bool) {
         if adjusted {
-            self.watching.adjusted();
+            self.supervision.adjusted();
         }
         let spring = match &self.calibration {
             Some(calibration) => calibration.spring(),
@@ -241,7 +243,7 @@ impl FingerServo {
         };
         if let Some(Adjustable { controller, .. }) = spring {
             let feedback = self.answered.then_some(&self.feedback);
-            if let Some(fault) = self.watching.spring(controller, &self.state, feedback) {
+            if let Some(fault) = self.supervision.spring(controller, &self.state, feedback) {
                 self.fault(fault);
             }
         }
@@ -251,21 +253,21 @@ impl FingerServo {
             }
             _ => None,
         };
-        self.report.warnings.note(failed.or(self.watching.warning()), self.limits.warning);
+        self.report.warnings.note(failed.or(self.supervision.warning()), self.limits.warning);
     }
 
     fn count_replies(&mut self) {
         if self.answered {
             if self.link.answered() {
                 self.anew = true;
-                self.watching.begin();
+                self.supervision.begin();
             }
             return;
         }
         self.report.losses.lost_replies += 1;
         if let Some(lost) = self.link.missed() {
             let milliseconds = f64::from(lost) * self.limits.period_ms;
-            self.fault(self.watching.silence(milliseconds));
+            self.fault(self.supervision.silence(milliseconds));
         }
     }
 }

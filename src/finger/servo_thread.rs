@@ -3,7 +3,7 @@
 use crate::board::{Allowance, Link, LinkCounters, LinkError, OutgoingCommand, Transport};
 use crate::finger::{Fault, FaultKind, FingerServo, Lender, Lent, Mended};
 use crate::model::configuration::FINGERS;
-use crate::realtime::{Clock, Follower, Memory, Pages, Schedule, Stage};
+use crate::realtime::{Clock, CycleStage, Follower, LockedMemory, Pages, Schedule};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The part of a period, from the thread's awakening, in which replies are awaited; the rest is for computing.
@@ -72,8 +72,8 @@ impl<T: Transport, C: Clock> Servo<T, C> {
     }
 
     /// What the servo touches and is not in this value itself.
-    pub fn memory(&self) -> Memory {
-        let mut memory = Memory::default();
+    pub fn memory(&self) -> LockedMemory {
+        let mut memory = LockedMemory::default();
         memory.add(&self.ports);
         for port in self.ports.iter() {
             memory.add(&port.fingers);
@@ -117,8 +117,8 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         for port in self.ports.iter_mut() {
             port.send();
             let sent = self.clock.now();
-            port.note(Stage::WakeUp, beginning, began);
-            port.note(Stage::Write, sending, sent);
+            port.note(CycleStage::WakeUp, beginning, began);
+            port.note(CycleStage::Write, sending, sent);
             sending = sent;
         }
         for port in self.ports.iter_mut() {
@@ -137,8 +137,8 @@ impl<T: Transport, C: Clock> Servo<T, C> {
             for finger in port.fingers.iter_mut() {
                 finger.end(began, self.schedule.next(), overrun, &heard);
                 let computed = self.clock.now();
-                finger.note(Stage::Compute, computing, computed);
-                finger.note(Stage::Whole, beginning, computed);
+                finger.note(CycleStage::Compute, computing, computed);
+                finger.note(CycleStage::Whole, beginning, computed);
                 finger.tell();
                 computing = computed;
             }
@@ -242,9 +242,9 @@ impl<T: Transport> ServedPort<T> {
                     };
                     finger.take(&received);
                     let (ready, read) = link.arrival();
-                    finger.note(Stage::Wire, sent, ready);
-                    finger.note(Stage::Read, ready, read);
-                    finger.note(Stage::Decode, read, clock.now());
+                    finger.note(CycleStage::Wire, sent, ready);
+                    finger.note(CycleStage::Read, ready, read);
+                    finger.note(CycleStage::Decode, read, clock.now());
                 }
                 Ok(None) => break,
                 // The other fingers of the board may be as they were.
@@ -260,7 +260,7 @@ impl<T: Transport> ServedPort<T> {
         }
     }
 
-    fn note(&mut self, stage: Stage, from: u64, to: u64) {
+    fn note(&mut self, stage: CycleStage, from: u64, to: u64) {
         self.fingers.iter_mut().for_each(|finger| finger.note(stage, from, to));
     }
 

@@ -19,7 +19,7 @@ const UNUSABLE: f64 = 0.6;
 const DAMAGED: f64 = 0.25;
 
 /// Memory of the monitors of one finger.
-pub(super) struct Watching {
+pub(super) struct Supervision {
     watch: Watch,
     /// Periods from the sample before to the newest one.
     age: f64,
@@ -35,7 +35,7 @@ pub(super) struct Watching {
     warning: Option<Fault>,
 }
 
-impl Watching {
+impl Supervision {
     /// `patience`: cycles after which a finger without replies faults.
     pub fn new(rate: f64, patience: u32, gauge_bits: u8) -> Self {
         let warnings = LineQuality::new(rate * WARNING_WINDOW);

@@ -1,7 +1,7 @@
 //! The black boxes of an open hand, which are kept at all times.
 
 use crate::finger::{KeptRecord, Recording};
-use crate::hand::black_box_file::save;
+use crate::hand::black_box_file::save_recording;
 use crate::hand::{Hand, HandError};
 use std::path::Path;
 
@@ -28,6 +28,6 @@ impl Hand {
     /// # Errors
     /// No such finger, a file that cannot be written, a path that leads to something other than a regular file.
     pub fn write_black_box(&self, finger: i32, path: &Path) -> Result<(), HandError> {
-        save(&self.recording(finger)?, path)
+        save_recording(&self.recording(finger)?, path)
     }
 }

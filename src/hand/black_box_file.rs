@@ -3,7 +3,7 @@
 use crate::files::create_file;
 use crate::finger::Recording;
 use crate::hand::HandError;
-use crate::hand::announcement::say;
+use crate::hand::notice::print_notice;
 use crate::model::ShownPath;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -16,14 +16,14 @@ const MOST: u32 = 100;
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn save(recording: &Recording, path: &Path) -> Result<(), HandError> {
+pub fn save_recording(recording: &Recording, path: &Path) -> Result<(), HandError> {
     recording.save(path).map_err(|source| HandError::BlackBox { path: path.to_path_buf(), source })
 }
 
 /// Writes the recording of a fault into `folder`, as a new file, and says so; or why not.
 pub(super) fn keep(recording: &Recording, folder: &Path) {
     let finger = recording.origin.finger;
-    say(&match write_new(recording, folder) {
+    print_notice(&match write_new(recording, folder) {
         Ok(path) => {
             format!("finger {finger} faulted: its last two seconds are in {} (see sun2xp replay)", ShownPath(&path))
         }

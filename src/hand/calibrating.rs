@@ -2,10 +2,10 @@
 
 use crate::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
 use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
-use crate::hand::calibration_file::store;
+use crate::hand::calibration_file::store_findings;
 use crate::hand::opening::check;
 use crate::hand::{Found, Hand, HandError};
-use crate::model::Refusal;
+use crate::model::UnusableConfiguration;
 use crate::model::configuration::ConfiguredFinger;
 use std::path::PathBuf;
 use std::thread::sleep;
@@ -165,7 +165,7 @@ impl Hand {
     }
 
     /// Writes what calibrations of finger 1, 2 or 3 have found since the last such call into the configuration file
-    /// that the hand was opened with, by [`store`]. Whether there is such a file, and something to write.
+    /// that the hand was opened with, by [`store_findings`]. Whether there is such a file, and something to write.
     ///
     /// # Errors
     /// No such finger; [`HandError::NotStored`] with the reason. What was found stays in force until the hand is
@@ -202,10 +202,10 @@ impl ToStore {
     pub(crate) fn store(&self) -> Result<(), HandError> {
         let finger = self.found.finger();
         let not_stored = |source| HandError::NotStored { finger, source: Box::new(source) };
-        store(&self.file, std::slice::from_ref(&self.found)).map_err(not_stored)
+        store_findings(&self.file, std::slice::from_ref(&self.found)).map_err(not_stored)
     }
 }
 
 fn refusal(finger: i32, unusable: crate::model::configuration::Unusable) -> HandError {
-    Refusal { finger: Some(finger as usize - 1), unusable }.into() // 1 to 3: the finger was found
+    UnusableConfiguration { finger: Some(finger as usize - 1), unusable }.into() // 1 to 3: the finger was found
 }

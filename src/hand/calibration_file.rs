@@ -21,7 +21,7 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 /// # Errors
 /// A file that cannot be read, used or written; [`HandError::Unfit`] where the file has changed so that what was found
 /// does not fit. The file is as it was then, and nothing of what was found is written.
-pub fn store(path: &Path, found: &[Found]) -> Result<(), HandError> {
+pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), HandError> {
     update_file(path, LARGEST, |text| change(path, text, found)).map_err(|error| match error {
         UpdateError::File(source) => HandError::Store { path: path.to_path_buf(), source },
         UpdateError::Change(error) => error,
@@ -109,7 +109,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("hand.toml");
         fs::write(&path, text).expect("written");
-        let stored = store(&path, found);
+        let stored = store_findings(&path, found);
         let files = fs::read_dir(folder.path()).expect("a folder").count();
         assert_eq!(files, 1, "no temporary file is left");
         let after = fs::read_to_string(&path).expect("there");
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_written_is_named() {
-        let error = store(Path::new("/proc/version"), &[]).expect_err("no text of a configuration");
+        let error = store_findings(Path::new("/proc/version"), &[]).expect_err("no text of a configuration");
         assert!(error.to_string().contains("/proc/version"), "{error}");
     }
 }

@@ -6,7 +6,7 @@ mod values;
 mod wrong;
 
 use crate::files::{raised_privileges, read_regular_file};
-use crate::hand::announcement::say;
+use crate::hand::notice::print_notice;
 use crate::hand::{Fingers, HandError};
 use crate::model::ShownPath;
 use crate::model::configuration::{Configuration, FINGERS};
@@ -40,7 +40,7 @@ pub struct Configured {
 /// A file that is named or found and cannot be read or used. A missing file that `SUN2XP_CONFIG` names is an error too,
 /// and so is `SUN2XP_CONFIG` where it is not trusted: a planner that believes it moves a real hand must never get the
 /// simulation instead.
-pub fn configured() -> Result<Configured, HandError> {
+pub fn find_configuration() -> Result<Configured, HandError> {
     match place::locate()? {
         Some(path) => Configured::read(&path),
         None => Ok(Configured { configuration: Configuration::default(), file: None, ports_named: [false; FINGERS] }),
@@ -52,7 +52,7 @@ pub fn configured() -> Result<Configured, HandError> {
 /// # Errors
 /// [`HandError::Configuration`] with file, line and reason; [`HandError::ConfigurationFile`] where it cannot be read,
 /// is no regular file or is larger than 1 MiB.
-pub fn read(path: &Path) -> Result<Configuration, HandError> {
+pub fn read_configuration(path: &Path) -> Result<Configuration, HandError> {
     Configured::read(path).map(|configured| configured.configuration)
 }
 
@@ -65,7 +65,7 @@ impl Configured {
     /// Reads and checks one configuration file.
     ///
     /// # Errors
-    /// As [`read`].
+    /// As [`read_configuration`].
     pub fn read(path: &Path) -> Result<Self, HandError> {
         let file = path.to_path_buf();
         let text = read_regular_file(path, LARGEST)
@@ -79,7 +79,7 @@ impl Configured {
     /// Says in one line on standard error which of these fingers are simulated although nobody has asked for that.
     pub fn announce(&self, fingers: Fingers) {
         if let Some(line) = self.announcement(fingers) {
-            say(&line);
+            print_notice(&line);
         }
     }
 

@@ -11,7 +11,7 @@ use crate::hand::dispatcher::collecting::collect;
 use crate::hand::opening::Reached;
 use crate::hand::{Fingers, HandError};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
-use crate::realtime::{Distribution, Histograms, Priority, Stage, spawn};
+use crate::realtime::{CycleStage, Distribution, Histograms, Priority, spawn};
 use crossbeam_channel::{Sender, bounded};
 use nalgebra::Vector3;
 use parking_lot::{Mutex, MutexGuard, RwLock};
@@ -127,7 +127,7 @@ impl Dispatcher {
     }
 
     /// What was counted of a stage.
-    pub fn timing(&self, finger: i32, stage: Stage) -> Result<Distribution, HandError> {
+    pub fn timing(&self, finger: i32, stage: CycleStage) -> Result<Distribution, HandError> {
         let mut collected = self.collected(finger)?;
         collected.collect();
         Ok(collected.histograms.distribution(stage))

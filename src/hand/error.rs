@@ -5,10 +5,10 @@ mod errno;
 use crate::board::LinkError;
 use crate::calibration::Obstacle;
 use crate::finger::{Fault, FaultKind};
-use crate::hand::missing::Missing;
+use crate::hand::missing_permissions::MissingPermission;
 use crate::model::OutOfReach;
 use crate::model::configuration::Unusable;
-use crate::model::{ContactError, Refusal, Shown, ShownPath};
+use crate::model::{ContactError, Shown, ShownPath, UnusableConfiguration};
 use crate::realtime::with_remedy;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -246,7 +246,7 @@ pub enum HandError {
     #[error("no real time: {missing}, or set `hand.real_time = \"try\"` to do without")]
     NotRealTime {
         /// What cannot be had, why, and what to change.
-        missing: Missing,
+        missing: MissingPermission,
     },
     /// A calibration gave up.
     #[error(
@@ -379,8 +379,8 @@ pub enum HandError {
     NotSimulated(i32),
 }
 
-impl From<Refusal> for HandError {
-    fn from(refusal: Refusal) -> Self {
+impl From<UnusableConfiguration> for HandError {
+    fn from(refusal: UnusableConfiguration) -> Self {
         let section = refusal.finger.map_or("hand".into(), |index| format!("finger.{}", index + 1));
         Self::Unusable { section, unusable: refusal.unusable }
     }

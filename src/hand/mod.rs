@@ -3,7 +3,6 @@
 
 mod adjustment;
 mod admission;
-mod announcement;
 mod black_box;
 mod black_box_file;
 mod calibrating;
@@ -17,7 +16,8 @@ mod fingers;
 mod fingertip;
 mod found;
 mod identities;
-mod missing;
+mod missing_permissions;
+mod notice;
 mod opening;
 mod reconnection;
 mod recovery;
@@ -27,16 +27,16 @@ mod status;
 mod workshop;
 
 pub use crate::finger::stop_all;
-pub use black_box_file::save;
+pub use black_box_file::save_recording;
 pub use calibrating::{Calibrating, Standing};
-pub use calibration_file::store;
-pub use configuration_file::{Configured, Wrong, configured, deserialize, read};
+pub use calibration_file::store_findings;
+pub use configuration_file::{Configured, Wrong, deserialize, find_configuration, read_configuration};
 pub use error::HandError;
 pub use faults::FingerFault;
 pub use fingers::Fingers;
 pub use fingertip::FingerTip;
 pub use found::Found;
-pub use missing::{Missing, missing};
+pub use missing_permissions::{MissingPermission, missing_permissions};
 pub use opening::{check, ports, simulate};
 pub use recovery::Recovering;
 pub use root::Hand;

@@ -3,17 +3,17 @@
 use crate::board::protocol::Status;
 use crate::board::{Link, Port, Terms, capacity};
 use crate::control::AdmissibleDamping;
-use crate::finger::{Alarm, BlackBox, FingerServo, Mailbox, ServedPort, lending, stop_calls};
+use crate::finger::{BlackBox, FingerServo, Mailbox, ServedPort, StopSignal, link_handover, stop_calls};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
-use crate::hand::announcement::say;
 use crate::hand::damping_admission::DampingAdmission;
 use crate::hand::fingers::Fingers;
 use crate::hand::identities::Identities;
+use crate::hand::notice::print_notice;
 use crate::hand::workshop::{KnownBoard, Workshop};
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
-use crate::model::{Refusal, Shown, ShownPath};
+use crate::model::{Shown, ShownPath, UnusableConfiguration};
 use crate::realtime::{Consumer, CycleTiming, Priority, now, ring};
 use crate::simulated::{Pace, SimulatedBoard, SimulatedPort};
 use nalgebra::Matrix3;
@@ -57,10 +57,10 @@ pub(super) struct Line {
 }
 
 /// Everything about a configuration that can be refused without a port: values, the initial stiffness, what the lines carry.
-pub fn check(configuration: &Configuration) -> Result<(), Refusal> {
+pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration> {
     configuration.check()?;
     for index in 0..FINGERS {
-        let refused = |unusable| Refusal { finger: Some(index), unusable };
+        let refused = |unusable| UnusableConfiguration { finger: Some(index), unusable };
         initial_stiffness(configuration, index).map_err(refused)?;
         carries(configuration, index).map_err(refused)?;
     }
@@ -69,11 +69,11 @@ pub fn check(configuration: &Configuration) -> Result<(), Refusal> {
 
 /// The folder into which black boxes are written at a fault. It must be there before it is needed, and stays the same one
 /// when the planner goes to another working directory.
-pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<PathBuf>, Refusal> {
+pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<PathBuf>, UnusableConfiguration> {
     match &configuration.hand.black_box {
         Some(folder) if !Path::new(folder).is_dir() => {
             let reason = format!("{} is no folder: make it (mkdir -p), or name another", Shown(folder));
-            Err(Refusal { finger: None, unusable: Unusable { key: "black_box", reason } })
+            Err(UnusableConfiguration { finger: None, unusable: Unusable { key: "black_box", reason } })
         }
         folder => Ok(folder.as_ref().map(|folder| from_here(folder.into()))),
     }
@@ -98,7 +98,7 @@ pub fn simulate(
         }
         let board = SimulatedBoard::new(configuration, &[index]).map_err(|error| {
             let unusable = Unusable { key: "simulation", reason: error.to_string() };
-            Refusal { finger: Some(index), unusable }
+            UnusableConfiguration { finger: Some(index), unusable }
         })?;
         let fifo = match configuration.hand.real_time {
             RealTime::Ignore => 0,
@@ -120,7 +120,7 @@ pub(super) fn reach(
     limp: bool,
 ) -> Result<Connected, HandError> {
     // An emergency stop from here on counts.
-    let alarm = Alarm::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
+    let alarm = StopSignal::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
     let (mut lines, mut reached, mut workshops) = (Vec::new(), Vec::new(), Vec::new());
     let mut identities = Identities::default();
     for (path, sharing) in ports(configuration, fingers, simulated) {
@@ -137,7 +137,7 @@ pub(super) fn reach(
             reached.push(finger);
             boards.push(board);
         }
-        let (lender, borrower) = lending();
+        let (lender, borrower) = link_handover();
         lines.push(Line {
             thread: configuration.thread(first),
             port: ServedPort::new(link, servos).lent_through(lender),
@@ -173,7 +173,7 @@ pub fn ports(
 /// A USB bridge that holds replies back makes every cycle lose its reply.
 fn warn_of_latency(port: &Port) {
     if let Some(milliseconds) = port.latency_timer_ms().filter(|&milliseconds| milliseconds > 1) {
-        say(&format!(
+        print_notice(&format!(
             "{} holds bytes back for {milliseconds} ms (its latency timer): write 1 to latency_timer under \
              /sys/bus/usb-serial/devices, or let a udev rule do so",
             ShownPath(port.path())
@@ -204,7 +204,7 @@ fn shake_hands(
     let (identity, configured) =
         link.shake_hands(address, &terms, deadline).map_err(|source| HandError::Link { finger: index + 1, source })?;
     let longer = longer_watchdog(index + 1, hand.watchdog_ms, configured.terms.watchdog_ms);
-    longer.iter().for_each(|text| say(text));
+    longer.iter().for_each(|text| print_notice(text));
     let counts = identity.counts_per_revolution;
     if counts != 0 && finger.encoder.counts_per_revolution.iter().any(|&configured| configured != counts) {
         let reason = format!("the board of finger {} says that its encoders have {counts}", index + 1);

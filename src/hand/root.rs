@@ -5,7 +5,7 @@ use crate::hand::dispatcher::Dispatcher;
 use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach, simulate};
 use crate::hand::reconnection::Recovery;
 use crate::hand::servo_threads::{Given, PortServo, start};
-use crate::hand::{Configured, Fingers, Found, HandError, configured};
+use crate::hand::{Configured, Fingers, Found, HandError, find_configuration};
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{self, Distribution, now};
 use crate::simulated::{SimulatedFinger, SimulatedPort};
@@ -56,7 +56,7 @@ impl Hand {
     /// # Errors
     /// As [`Hand::open`], and a configuration file that cannot be read or used.
     pub fn open_configured() -> Result<Self, HandError> {
-        Self::open_as(configured()?)
+        Self::open_as(find_configuration()?)
     }
 
     /// Opens the hand that [`configured`] has found.
@@ -154,7 +154,7 @@ impl Hand {
     ///
     /// # Errors
     /// No such finger.
-    pub fn timing(&self, finger: i32, stage: realtime::Stage) -> Result<Distribution, HandError> {
+    pub fn timing(&self, finger: i32, stage: realtime::CycleStage) -> Result<Distribution, HandError> {
         self.dispatcher.timing(finger, stage)
     }
 

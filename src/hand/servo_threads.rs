@@ -3,8 +3,8 @@
 use crate::board::Port;
 use crate::finger::{ServedPort, Servo};
 use crate::hand::HandError;
-use crate::hand::announcement::say;
-use crate::hand::missing::{Missing, missing};
+use crate::hand::missing_permissions::{MissingPermission, missing_permissions};
+use crate::hand::notice::print_notice;
 use crate::hand::opening::Line;
 use crate::model::configuration::{Configuration, FINGERS, PeriodClock, RealTime};
 use crate::realtime::{LockedStack, MonotonicClock, Priority, Realtime, Schedule, now, spawn, touch_stack};
@@ -56,7 +56,7 @@ pub(super) fn start(
     }
     // Our own sender would keep the channel open where a thread died before it could report.
     drop(told);
-    let missing = missing(hear.iter().take(numbers.len()).collect());
+    let missing = missing_permissions(hear.iter().take(numbers.len()).collect());
     let given = Given::of(configuration, &numbers, &missing);
     accept(missing, real_time)?;
     let first = now() + HEAD_START;
@@ -111,27 +111,27 @@ fn run(
 }
 
 impl Given {
-    fn of(configuration: &Configuration, threads: &[u8], missing: &[Missing]) -> Self {
+    fn of(configuration: &Configuration, threads: &[u8], missing: &[MissingPermission]) -> Self {
         let tried = configuration.hand.real_time != RealTime::Ignore;
-        let lacks = |kind: fn(&Missing) -> bool| missing.iter().any(kind);
-        let refused = tried && lacks(|missing| matches!(missing, Missing::Scheduling(_)));
+        let lacks = |kind: fn(&MissingPermission) -> bool| missing.iter().any(kind);
+        let refused = tried && lacks(|missing| matches!(missing, MissingPermission::Scheduling(_)));
         Self {
             scheduling: tried && !refused && threads.iter().all(|&thread| priority(configuration, thread).fifo > 0),
             refused,
-            memory: tried && !lacks(|missing| matches!(missing, Missing::Memory(_))),
-            core: !lacks(|missing| matches!(missing, Missing::Core(_)))
+            memory: tried && !lacks(|missing| matches!(missing, MissingPermission::Memory(_))),
+            core: !lacks(|missing| matches!(missing, MissingPermission::Core(_)))
                 && (tried || configuration.fingers.iter().all(|finger| finger.core.is_none())),
         }
     }
 }
 
 /// Refuses what is missing where real time is enforced, and warns of it otherwise.
-fn accept(missing: Vec<Missing>, real_time: RealTime) -> Result<(), HandError> {
+fn accept(missing: Vec<MissingPermission>, real_time: RealTime) -> Result<(), HandError> {
     for missing in missing {
         match real_time {
             RealTime::Enforce => return Err(HandError::NotRealTime { missing }),
             RealTime::Try | RealTime::Ignore => {
-                say(&format!("{missing}. The hand runs without it, and cycles may be late"))
+                print_notice(&format!("{missing}. The hand runs without it, and cycles may be late"))
             }
         }
     }

@@ -54,7 +54,7 @@ impl Hand {
             on_core: self.given.core,
             rate,
             measured_rate: if seconds > 0.0 { intervals / seconds } else { 0.0 },
-            wake_up: self.timing(finger, realtime::Stage::WakeUp)?,
+            wake_up: self.timing(finger, realtime::CycleStage::WakeUp)?,
             losses,
             torque_scale: report.cycle.torque_scale,
             stiffness_scale: report.cycle.stiffness_scale,

@@ -20,4 +20,4 @@ pub use link_dynamics::LinkDynamics;
 pub use part::Part;
 pub use shown::{OneLine, Shown, ShownPath, one_line};
 pub use tendons::{Tendons, TendonsError};
-pub use validation::Refusal;
+pub use validation::UnusableConfiguration;

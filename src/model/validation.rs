@@ -12,7 +12,7 @@ use ranges::{each, path, unusable, within};
 
 /// A configuration that cannot be used: which finger's, or the hand's, and why.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Refusal {
+pub struct UnusableConfiguration {
     /// 0 to 2, or none for `[hand]`.
     pub finger: Option<usize>,
     /// The key and the reason.
@@ -24,19 +24,22 @@ impl Configuration {
     ///
     /// # Errors
     /// The first unusable value found.
-    pub fn check(&self) -> Result<(), Refusal> {
-        self.hand.check().map_err(|unusable| Refusal { finger: None, unusable })?;
+    pub fn check(&self) -> Result<(), UnusableConfiguration> {
+        self.hand.check().map_err(|unusable| UnusableConfiguration { finger: None, unusable })?;
         for (index, finger) in self.fingers.iter().enumerate() {
-            finger.check().map_err(|unusable| Refusal { finger: Some(index), unusable })?;
+            finger.check().map_err(|unusable| UnusableConfiguration { finger: Some(index), unusable })?;
             if finger.priority == 0 && self.hand.real_time == RealTime::Enforce {
                 let reason = "0 is not a real-time priority, but hand.real_time is \"enforce\": set 1 to 99".into();
-                return Err(Refusal { finger: Some(index), unusable: Unusable { key: "priority", reason } });
+                return Err(UnusableConfiguration {
+                    finger: Some(index),
+                    unusable: Unusable { key: "priority", reason },
+                });
             }
         }
         for second in 0..FINGERS {
             for first in 0..second {
                 let between = self.check_sharing(first, second);
-                between.map_err(|unusable| Refusal { finger: Some(second), unusable })?;
+                between.map_err(|unusable| UnusableConfiguration { finger: Some(second), unusable })?;
             }
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! Memory that a thread touches in real time: there before the first period, and kept from being taken away.
+//! LockedMemory that a thread touches in real time: there before the first period, and kept from being taken away.
 //!
 //! `mlockall` is not for a library: with MCL_FUTURE every later allocation of a planner with a small memlock limit would fail.
 #![allow(unsafe_code, reason = "locks of pages")]
@@ -12,9 +12,9 @@ use std::ops::Range;
 /// Each has pages of its own, and stays locked until the value is dropped. Locks do not nest: what shared a page with the planner's
 /// data could not be unlocked without unlocking those.
 #[derive(Clone, Debug, Default)]
-pub struct Memory(Vec<Range<usize>>);
+pub struct LockedMemory(Vec<Range<usize>>);
 
-impl Memory {
+impl LockedMemory {
     /// Adds the pages of a value. What that owns elsewhere is not in them.
     pub fn add<T: ?Sized>(&mut self, pages: &Pages<T>) {
         self.0.push(pages.range());
@@ -26,7 +26,7 @@ impl Memory {
     }
 
     /// Adds all places of another.
-    pub fn append(&mut self, other: &Memory) {
+    pub fn append(&mut self, other: &LockedMemory) {
         self.0.extend_from_slice(&other.0);
     }
 
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn what_was_added_is_locked_until_it_is_dropped() {
         let room = Pages::new([0u8; 1 << 20]);
-        let mut memory = Memory::default();
+        let mut memory = LockedMemory::default();
         memory.add(&room);
         let before = locked_kilobytes();
         memory.lock().expect("a mebibyte is within every usual limit");
@@ -81,6 +81,6 @@ mod tests {
 
     #[test]
     fn what_is_not_mapped_is_refused() {
-        assert!(Memory(vec![Range { start: 4096, end: 8192 }]).lock().is_err());
+        assert!(LockedMemory(vec![Range { start: 4096, end: 8192 }]).lock().is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! Values in their order from one thread to another, wait-free on both sides: a ring in pages of its own.
 #![allow(unsafe_code, reason = "places that two threads take turns at")]
 
-use super::Memory;
+use super::LockedMemory;
 use super::pages::{Pages, SharedPages};
 use std::cell::UnsafeCell;
 use std::mem::MaybeUninit;
@@ -74,7 +74,7 @@ impl<T> Producer<T> {
     }
 
     /// Adds its pages.
-    pub fn add_to(&self, memory: &mut Memory) {
+    pub fn add_to(&self, memory: &mut LockedMemory) {
         memory.add_shared(&self.0);
         memory.add(&self.0.places);
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A part of a finger's cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
+pub enum CycleStage {
     /// From the scheduled beginning of the cycle to the thread's first instruction.
     WakeUp,
     /// Handing the commands of the port to the system.
@@ -25,30 +25,30 @@ pub enum Stage {
     Age,
 }
 
-impl Stage {
+impl CycleStage {
     /// Every stage: the parts in the order of time, then what they add up to.
-    pub const ALL: [Stage; 8] = [
-        Stage::WakeUp,
-        Stage::Write,
-        Stage::Wire,
-        Stage::Read,
-        Stage::Decode,
-        Stage::Compute,
-        Stage::Whole,
-        Stage::Age,
+    pub const ALL: [CycleStage; 8] = [
+        CycleStage::WakeUp,
+        CycleStage::Write,
+        CycleStage::Wire,
+        CycleStage::Read,
+        CycleStage::Decode,
+        CycleStage::Compute,
+        CycleStage::Whole,
+        CycleStage::Age,
     ];
 }
 
-/// The times of one cycle of one finger, ns, by [`Stage::ALL`]; none where there was no such stage, as without a reply.
+/// The times of one cycle of one finger, ns, by [`CycleStage::ALL`]; none where there was no such stage, as without a reply.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct CycleTiming {
-    stages: [Option<u32>; Stage::ALL.len()],
+    stages: [Option<u32>; CycleStage::ALL.len()],
 }
 
 impl CycleTiming {
     /// Notes a stage that lasted from one time to another, ns.
-    pub fn note(&mut self, stage: Stage, from: u64, to: u64) {
+    pub fn note(&mut self, stage: CycleStage, from: u64, to: u64) {
         self.stages[stage as usize] = Some(u32::try_from(to.saturating_sub(from)).unwrap_or(u32::MAX));
     }
 }
@@ -73,7 +73,7 @@ pub struct Distribution {
 /// Distributions of every stage since they were last reset.
 #[derive(Clone, Debug)]
 pub struct Histograms {
-    stages: [Histogram<u32>; Stage::ALL.len()],
+    stages: [Histogram<u32>; CycleStage::ALL.len()],
 }
 
 impl Histograms {
@@ -83,7 +83,7 @@ impl Histograms {
             Histogram::new_with_bounds(1, u64::from(u32::MAX), 2)
                 .unwrap_or_else(|_| unreachable!("the bounds and digits are constants that the histogram takes"))
         };
-        Self { stages: Stage::ALL.map(empty) }
+        Self { stages: CycleStage::ALL.map(empty) }
     }
 
     /// Counts one cycle.
@@ -101,7 +101,7 @@ impl Histograms {
     }
 
     /// What was counted of a stage; zeros if nothing was.
-    pub fn distribution(&self, stage: Stage) -> Distribution {
+    pub fn distribution(&self, stage: CycleStage) -> Distribution {
         let histogram = &self.stages[stage as usize];
         let microseconds = |ns: u64| ns as f64 * 1e-3;
         if histogram.is_empty() {
@@ -133,31 +133,31 @@ mod tests {
         let mut histograms = Histograms::new();
         for cycle in 1..=1000u64 {
             let mut timing = CycleTiming::default();
-            timing.note(Stage::WakeUp, 5_000, 5_000 + 1000 * cycle);
+            timing.note(CycleStage::WakeUp, 5_000, 5_000 + 1000 * cycle);
             if cycle % 2 == 0 {
-                timing.note(Stage::Wire, 0, 70_000);
+                timing.note(CycleStage::Wire, 0, 70_000);
             }
             histograms.record(&timing);
         }
-        let wake_up = histograms.distribution(Stage::WakeUp);
+        let wake_up = histograms.distribution(CycleStage::WakeUp);
         assert_eq!(wake_up.count, 1000);
         for (is, exact) in
             [(wake_up.minimum, 1.0), (wake_up.median, 500.0), (wake_up.p99, 990.0), (wake_up.p999, 999.0)]
         {
             assert!((is / exact - 1.0).abs() < 0.011, "{wake_up:?}");
         }
-        assert_eq!(histograms.distribution(Stage::Wire).count, 500);
-        assert_eq!(histograms.distribution(Stage::Read), Distribution::default());
+        assert_eq!(histograms.distribution(CycleStage::Wire).count, 500);
+        assert_eq!(histograms.distribution(CycleStage::Read), Distribution::default());
         histograms.reset();
-        assert_eq!(histograms.distribution(Stage::WakeUp).count, 0);
+        assert_eq!(histograms.distribution(CycleStage::WakeUp).count, 0);
     }
 
     #[test]
     fn a_clock_that_seems_to_run_backward_counts_as_no_time() {
         let mut timing = CycleTiming::default();
-        timing.note(Stage::Whole, 10, 5);
+        timing.note(CycleStage::Whole, 10, 5);
         let mut histograms = Histograms::new();
         histograms.record(&timing);
-        assert!(histograms.distribution(Stage::Whole).maximum < 0.002);
+        assert!(histograms.distribution(CycleStage::Whole).maximum < 0.002);
     }
 }

@@ -2,7 +2,7 @@
 //! the reader's, and the third changes hands.
 #![allow(unsafe_code, reason = "places that two threads take turns at")]
 
-use super::Memory;
+use super::LockedMemory;
 use super::pages::{Pages, SharedPages};
 use std::cell::UnsafeCell;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -65,7 +65,7 @@ impl<T> Input<T> {
     }
 
     /// Adds its pages.
-    pub fn add_to(&self, memory: &mut Memory) {
+    pub fn add_to(&self, memory: &mut LockedMemory) {
         memory.add_shared(&self.places);
     }
 }

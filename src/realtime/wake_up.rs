@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use crate::realtime::{
-    Clock, CycleTiming, Distribution, Histograms, MonotonicClock, Priority, Realtime, Schedule, Stage, spawn,
+    Clock, CycleStage, CycleTiming, Distribution, Histograms, MonotonicClock, Priority, Realtime, Schedule, spawn,
 };
 use std::io;
 use std::thread::JoinHandle;
@@ -29,13 +29,13 @@ pub fn measure_wake_up(priority: Priority, mut schedule: Schedule, cycles: u64) 
             let beginning = schedule.next();
             MonotonicClock.sleep_until(beginning);
             let mut timing = CycleTiming::default();
-            timing.note(Stage::WakeUp, beginning, MonotonicClock.now());
+            timing.note(CycleStage::WakeUp, beginning, MonotonicClock.now());
             histograms.record(&timing);
             schedule.advance(MonotonicClock.now());
         }
         // SAFETY: PR_GET_TIMERSLACK takes nothing and tells of the calling thread; it does not fail.
         let timer_slack = u64::try_from(unsafe { libc::prctl(libc::PR_GET_TIMERSLACK) }).unwrap_or(0);
-        WakeUp { late: histograms.distribution(Stage::WakeUp), had, timer_slack }
+        WakeUp { late: histograms.distribution(CycleStage::WakeUp), had, timer_slack }
     })
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{Vector3, Vector4};
 use sun2xp::calibration::{Calibration, Findings, Obstacle, Sample, Task, Verdict};
-use sun2xp::control::{Activity, Command, Controller, Feedback, Report, SetPoint, State};
+use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report, SetPoint, State};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
@@ -14,7 +14,7 @@ pub struct Bench {
     sensors: Sensors,
     controller: Controller,
     state: State,
-    command: Command,
+    command: MotorCommand,
     /// What the finger does where no routine decides it.
     activity: Activity,
     pub report: Report,
@@ -49,7 +49,7 @@ impl Bench {
             sensors,
             controller,
             state,
-            command: Command::default(),
+            command: MotorCommand::default(),
             activity: Activity::Turn(Vector4::zeros()),
             report: Report::default(),
             dead_gauge: None,

@@ -4,7 +4,7 @@ use std::cell::{RefCell, RefMut};
 use std::rc::Rc;
 use sun2xp::board::protocol::Identity;
 use sun2xp::board::{Link, PortError, Terms, Transport};
-use sun2xp::finger::{BlackBox, Borrower, FingerServo, Mailbox, ServedPort, Servo, lending};
+use sun2xp::finger::{BlackBox, Borrower, FingerServo, Mailbox, ServedPort, Servo, link_handover};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, Consumer, CycleTiming, Schedule, ring};
 use sun2xp::simulated::{SimulatedBoard, SimulatedCable};
@@ -122,7 +122,7 @@ impl<W: Transport + Clock + Clone> ServedFinger<W> {
         let stiffness = finger.initial_stiffness();
         let (finger, mailbox) =
             FingerServo::new(belief, 0, stiffness, &identity, &configured, producer, recorder).expect("a finger");
-        let (lender, borrower) = lending();
+        let (lender, borrower) = link_handover();
         let ports = vec![ServedPort::new(link, vec![finger]).lent_through(lender)];
         let schedule = Schedule::new(Clock::now(world) + period, period);
         let servo = Servo::new(world.clone(), schedule, ports);

@@ -74,7 +74,7 @@ fn other_encodings_are_refused() {
         (b"[\0h\0a\0n\0d\0]\0\n\0", ":1: "),
     ] {
         std::fs::write(&file, bytes).expect("written");
-        let refusal = sun2xp::hand::read(&file).expect_err("refused").to_string();
+        let refusal = sun2xp::hand::read_configuration(&file).expect_err("refused").to_string();
         assert!(refusal.contains(reason), "{refusal}");
     }
 }
@@ -134,7 +134,7 @@ fn large_files_are_read_in_no_long_time() {
 fn a_file_of_ten_megabytes_is_refused_by_its_size() {
     let file = tempfile::NamedTempFile::new().expect("a file");
     std::fs::write(file.path(), "# a comment\n".repeat(10_000_000 / 12)).expect("written");
-    let refusal = sun2xp::hand::read(file.path()).expect_err("refused").to_string();
+    let refusal = sun2xp::hand::read_configuration(file.path()).expect_err("refused").to_string();
     assert!(refusal.contains("is larger than 1048576 bytes"), "{refusal}");
 }
 

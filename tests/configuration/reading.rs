@@ -10,7 +10,7 @@ pub fn read(text: &str) -> Result<Configuration, (Option<usize>, String)> {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("sun2xp.toml");
     fs::write(&file, text).expect("written");
-    hand::read(&file).map_err(|error| match error {
+    hand::read_configuration(&file).map_err(|error| match error {
         HandError::Configuration { line, reason, .. } => (line, reason),
         other => panic!("{other}"),
     })

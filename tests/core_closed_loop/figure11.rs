@@ -2,7 +2,7 @@
 
 use super::rig::{Loop, finger_with, poses, spring};
 use nalgebra::{Vector3, Vector4};
-use sun2xp::control::{Activity, Command, Controller, Feedback, Measured, Report};
+use sun2xp::control::{Activity, Controller, Feedback, Measured, MotorCommand, Report};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
@@ -91,7 +91,7 @@ impl Stuck {
     fn estimate(&mut self, cycles: usize, tension: Option<f64>) -> f64 {
         let feedback = tension.map(showing);
         let cycle = |_| self.controller.cycle(&mut self.state, feedback.as_ref(), &self.wanted).0;
-        let command: Command = (0..cycles).map(cycle).last().unwrap();
+        let command: MotorCommand = (0..cycles).map(cycle).last().unwrap();
         WANTED / (command.motor_torques[0] / 0.0475)
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::{Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::control::monitors::{Symptom, Watch};
-use sun2xp::control::{Activity, Command, Controller, Feedback, Report, SetPoint, State};
+use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report, SetPoint, State};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
@@ -19,7 +19,7 @@ pub struct Loop {
     /// Whom the controller takes over from in the next cycle.
     previous: Option<Controller>,
     state: State,
-    command: Command,
+    command: MotorCommand,
     /// Part of the replies that are lost, and their source of chance.
     loss: f64,
     random: Pcg64,
@@ -63,7 +63,7 @@ impl Loop {
             controller,
             previous: None,
             state,
-            command: Command { motor_torques },
+            command: MotorCommand { motor_torques },
             loss: 0.0,
             random: Pcg64::seed_from_u64(5),
             least_commanded: 0.0,
@@ -83,7 +83,7 @@ impl Loop {
     /// The controller starts anew with the finger as it is now.
     pub fn restart(mut self) -> Self {
         self.state = self.controller.start(&read(&mut self.sensors, &self.plant));
-        self.command = Command { motor_torques: self.plant.tensions() * 0.0475 };
+        self.command = MotorCommand { motor_torques: self.plant.tensions() * 0.0475 };
         self.forget();
         self
     }

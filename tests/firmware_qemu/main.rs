@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 use sun2xp::board::protocol::{Command, Status};
 use sun2xp::board::{Link, OutgoingCommand};
 use sun2xp::finger::{FaultKind, Stage};
-use sun2xp::hand::{Hand, HandError, read};
+use sun2xp::hand::{Hand, HandError, read_configuration};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 
@@ -42,7 +42,7 @@ fn configuration(port: &Path, keys: &str) -> Configuration {
     let text =
         format!("[hand]\nopen_timeout_ms = 60000\n{keys}\n[finger]\nthread = 1\nport = \"{}\"\n", port.display());
     std::fs::write(&path, text).expect("the configuration is written");
-    read(&path).expect("the configuration is good")
+    read_configuration(&path).expect("the configuration is good")
 }
 
 const TARGETS: [[f64; 3]; 3] = [[0.1, 0.4, 0.9], [-0.1, 0.6, 1.1], [0.0, 0.7, 0.8]];

@@ -3,7 +3,7 @@
 use crate::rig::{Board, PATIENT, close, settles, turn};
 use std::collections::BTreeMap;
 use std::path::Path;
-use sun2xp::hand::{Configured, Hand, read};
+use sun2xp::hand::{Configured, Hand, read_configuration};
 
 const PAGE: &str = include_str!("../../docs/configurations.md");
 const README: &str = include_str!("../../README.md");
@@ -31,7 +31,7 @@ fn works(what: &str, text: &str) {
     let folder = tempfile::tempdir().expect("a folder");
     let printed = folder.path().join("printed.toml");
     std::fs::write(&printed, text).expect("written");
-    let configuration = read(&printed).unwrap_or_else(|error| panic!("{what}: {error}"));
+    let configuration = read_configuration(&printed).unwrap_or_else(|error| panic!("{what}: {error}"));
 
     let mut on_ports: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for (index, finger) in configuration.fingers.iter().enumerate().filter(|(_, finger)| !finger.simulated()) {

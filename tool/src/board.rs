@@ -119,7 +119,7 @@ pub struct Arguments {
 /// Starts the board, and carries out orders until `quit`.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut configuration = match &arguments.config {
-        Some(file) => hand::read(file)?,
+        Some(file) => hand::read_configuration(file)?,
         None => Configuration::default(),
     };
     if let Some(seed) = arguments.seed {

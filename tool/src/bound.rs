@@ -57,8 +57,8 @@ fn rate(text: &str) -> Result<f64, String> {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut configuration = match &arguments.config {
-        Some(path) => hand::read(path)?,
-        None => hand::configured()?.configuration,
+        Some(path) => hand::read_configuration(path)?,
+        None => hand::find_configuration()?.configuration,
     };
     if let Some(scheme) = arguments.scheme {
         configuration.fingers.iter_mut().for_each(|finger| finger.controller.scheme = Some(scheme));
@@ -81,7 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let Some(path) = arguments.config.as_ref().filter(|_| arguments.write) else { return Ok(()) };
     let bounds = found.iter().map(|(index, bound)| Found::bound(bound.stiffness, *index as i32 + 1, &configuration));
-    hand::store(path, &bounds.collect::<Result<Vec<_>, _>>()?)?;
+    hand::store_findings(path, &bounds.collect::<Result<Vec<_>, _>>()?)?;
     writeln!(io::stdout(), "written to {}", ShownPath(path))?;
     Ok(())
 }

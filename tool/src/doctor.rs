@@ -8,7 +8,7 @@ mod ports;
 
 use crate::failure::Failure;
 use examination::examine;
-use finding::{Finding, Verdict};
+use finding::{Finding, Rating};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -42,11 +42,11 @@ struct Examination<'a> {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let configured = match &arguments.config {
         Some(path) => Configured::read(path)?,
-        None => hand::configured()?,
+        None => hand::find_configuration()?,
     };
     configured.announce(Fingers::ALL);
     let findings = examine(&configured.configuration, Path::new("/"), Duration::from_secs_f64(arguments.seconds))?;
-    let pass = findings.iter().all(|finding| finding.verdict < Verdict::Failure);
+    let pass = findings.iter().all(|finding| finding.verdict < Rating::Failure);
     let mut output = io::stdout().lock();
     if arguments.json {
         writeln!(output, "{}", serde_json::to_string_pretty(&Examination { pass, findings: &findings })?)?;
@@ -59,9 +59,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
 fn tell(output: &mut impl Write, finding: &Finding) -> io::Result<()> {
     let mark = match finding.verdict {
-        Verdict::Good => "good   ",
-        Verdict::Warning => "warning",
-        Verdict::Failure => "FAILURE",
+        Rating::Good => "good   ",
+        Rating::Warning => "warning",
+        Rating::Failure => "FAILURE",
     };
     writeln!(output, "{mark}  {}: {}", finding.subject, finding.found)?;
     if finding.advice.is_empty() { Ok(()) } else { writeln!(output, "         {}", finding.advice) }

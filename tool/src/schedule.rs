@@ -4,7 +4,7 @@
 mod off_line;
 
 use crate::failure::Failure;
-use off_line::{Costs, Limit, Scheduled, Sensor, fastest_rate, off_line_schedule};
+use off_line::{Costs, RateLimit, Scheduled, Sensor, fastest_rate, off_line_schedule};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
@@ -13,7 +13,7 @@ use sun2xp::files::read_regular_file;
 use sun2xp::hand::{self, Hand};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, RATES};
-use sun2xp::realtime::{Distribution, Stage};
+use sun2xp::realtime::{CycleStage, Distribution};
 
 /// The largest file of costs that is read, bytes: it holds four numbers.
 const LARGEST_COSTS: u64 = 1 << 16;
@@ -60,8 +60,8 @@ fn not_negative(text: &str) -> Result<f64, String> {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let configuration = match &arguments.config {
-        Some(file) => hand::read(file)?,
-        None => hand::configured()?.configuration,
+        Some(file) => hand::read_configuration(file)?,
+        None => hand::find_configuration()?.configuration,
     };
     let costs = match &arguments.costs {
         Some(file) => read(file)?,
@@ -112,10 +112,10 @@ fn measure(configuration: &Configuration, arguments: &Arguments) -> Result<Costs
         Ok(timings.collect::<Result<Vec<f64>, _>>()?.into_iter().fold(0.0, f64::max))
     };
     Ok(Costs {
-        wake_up: worst(Stage::WakeUp)?,
-        write: worst(Stage::Write)?,
-        read: worst(Stage::Read)? + worst(Stage::Decode)?,
-        compute: worst(Stage::Compute)?,
+        wake_up: worst(CycleStage::WakeUp)?,
+        write: worst(CycleStage::Write)?,
+        read: worst(CycleStage::Read)? + worst(CycleStage::Decode)?,
+        compute: worst(CycleStage::Compute)?,
     })
 }
 
@@ -150,10 +150,10 @@ fn limits(schedule: &[Scheduled]) -> String {
     first.unwrap_or_else(|| "the highest rate there is".into())
 }
 
-fn missed(limit: Limit) -> &'static str {
+fn missed(limit: RateLimit) -> &'static str {
     match limit {
-        Limit::Line => "the line is too busy",
-        Limit::Replies => "replies may come too late",
-        Limit::Cycle => "a cycle may not be done in time",
+        RateLimit::Line => "the line is too busy",
+        RateLimit::Replies => "replies may come too late",
+        RateLimit::Cycle => "a cycle may not be done in time",
     }
 }

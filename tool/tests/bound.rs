@@ -21,14 +21,14 @@ fn the_tool_stores_the_bound_and_keeps_the_rest_of_the_file() {
     let one = run(&["--finger", "2", "--write"]);
     let said = String::from_utf8(one.stdout).unwrap();
     assert!(said.contains("finger 2:") && !said.contains("finger 1:") && !said.contains("finger 3:"), "{said}");
-    let bounds = hand::read(&path).unwrap().fingers.map(|finger| finger.stiffness.bound.unwrap());
+    let bounds = hand::read_configuration(&path).unwrap().fingers.map(|finger| finger.stiffness.bound.unwrap());
     assert!(bounds[0] == 5.5 && bounds[1] >= 6.0 && bounds[2] == 5.5, "{bounds:?}");
     std::fs::write(&path, text).unwrap();
     let written = run(&["--write"]);
     assert!(written.status.success(), "{written:?}");
     let after = std::fs::read_to_string(&path).unwrap();
     assert!(after.starts_with(text), "{after}");
-    let hand = hand::read(&path).unwrap();
+    let hand = hand::read_configuration(&path).unwrap();
     let bound = hand.fingers[2].stiffness_bound(1000.0);
     assert!(bound >= 6.0, "{bound}");
     assert!(String::from_utf8(written.stdout).unwrap().contains(&format!("finger 3: {bound:.1} N/cm")));

@@ -6,7 +6,7 @@ use crate::control::motors::motor_heating::MotorHeating;
 use crate::control::motors::motor_torque::MotorTorque;
 use crate::control::number_checks::positive;
 use crate::control::sensing::joint_positions::JointPositions;
-use crate::control::sensing::sensors::Sensors;
+use crate::control::sensing::sensors::SensorScales;
 use crate::control::spring::admissible_stiffness::AdmissibleStiffness;
 use crate::control::spring::gravity_compensation::GravityCompensation;
 use crate::control::spring::joint_stiffness::JointStiffness;
@@ -62,7 +62,7 @@ impl Controller {
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
             monitors: Monitors::new(finger, &tendons, rate),
             period: 1.0 / rate,
-            sensors: Sensors::new(finger)?,
+            sensors: SensorScales::new(finger)?,
             speed_filter: LowPass::new(gains.speed_filter, rate),
             stretch_filter: LowPass::new(gains.stretch_filter, rate),
             joint_positions: JointPositions::new(finger, &tendons)?,

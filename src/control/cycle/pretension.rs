@@ -3,7 +3,7 @@
 use super::pulls::open_loop;
 use super::{Controller, Doing, State};
 use crate::control::take_up::slack::{Slackness, TakeUp};
-use crate::control::tendons::tension_distribution::Distribution;
+use crate::control::tendons::tension_distribution::DistributedTensions;
 use nalgebra::{Vector3, Vector4};
 
 impl Controller {
@@ -31,7 +31,7 @@ impl Controller {
             }
             TakeUp::Hold { torques, below, begins } => {
                 let torques = torques + gravity;
-                let Distribution { tensions, scale } = self.reachable(&limit).distribute(&torques);
+                let DistributedTensions { tensions, scale } = self.reachable(&limit).distribute(&torques);
                 self.bring(state, tensions - below + offset, &limit, begins);
                 state.report.joint_torques = torques;
                 state.report.torque_scale = scale;

@@ -5,7 +5,7 @@ use crate::control::signals::{Report, SetPoint};
 use crate::control::spring::soft_limits::Push;
 use crate::control::spring::spring_transition::Spring;
 use crate::control::state_feedback::decision::Decision;
-use crate::control::tendons::tension_distribution::Distribution;
+use crate::control::tendons::tension_distribution::DistributedTensions;
 use nalgebra::Matrix3;
 
 /// Damping over stiffness of the soft limits with the figures of the report, s.
@@ -29,7 +29,7 @@ impl Controller {
         let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
         let torques = torques + push.torque - damped + self.gravity.torques(joints);
         let limit = self.heating.limit(&state.heat);
-        let Distribution { tensions: desired, scale } = self.reachable(&limit).distribute(&torques);
+        let DistributedTensions { tensions: desired, scale } = self.reachable(&limit).distribute(&torques);
         self.bring(state, desired, &limit, begins);
         state.report.joint_torques = torques;
         state.report.torque_scale = scale;

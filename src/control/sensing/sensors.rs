@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Scales, signs and zeros of the eight sensors.
 #[derive(Clone, Debug)]
-pub(crate) struct Sensors {
+pub(crate) struct SensorScales {
     /// 2 pi / 2000 of eq. 28, with the sign of the encoder.
     radians_per_count: [f64; 4],
     /// m_0 of eq. 28.
@@ -17,7 +17,7 @@ pub(crate) struct Sensors {
     gauge_zero: [f64; 4],
 }
 
-impl Sensors {
+impl SensorScales {
     pub fn new(finger: &ConfiguredFinger) -> Result<Self, Unusable> {
         let encoder = &finger.encoder;
         signs("encoder.sign", &encoder.sign)?;

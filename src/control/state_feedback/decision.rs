@@ -6,7 +6,7 @@ use crate::control::spring::soft_limits::SoftLimits;
 use crate::control::spring::spring_transition::Spring;
 use crate::control::state_feedback::observer::TendonMotion;
 use crate::control::state_feedback::reference::ReferenceMotion;
-use crate::control::tendons::tension_distribution::{BoundedDistribution, Distribution};
+use crate::control::tendons::tension_distribution::{BoundedDistribution, DistributedTensions};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// What a cycle decides.
@@ -59,7 +59,8 @@ impl StateFeedback {
         let spring = Spring { joints: reference.joints, ..*spring };
         let inertia = self.dynamics.inertia(&state.joints);
         let joint_torques = self.joint_torques(state, &now, &spring, &reference, &inertia, (limits, gravity)) * 100.0;
-        let Distribution { tensions: distributed, scale: torque_scale } = distribution.distribute(&joint_torques);
+        let DistributedTensions { tensions: distributed, scale: torque_scale } =
+            distribution.distribute(&joint_torques);
         if begins {
             state.transition.begin(&now.tensions, &distributed);
         }

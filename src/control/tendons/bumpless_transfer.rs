@@ -8,11 +8,11 @@ const FADE: f64 = 0.02;
 
 /// What the commands still differ by from what the controller asks for, N at the tendon.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
-pub(crate) struct Transition {
+pub(crate) struct BumplessTransfer {
     rest: Vector4<f64>,
 }
 
-impl Transition {
+impl BumplessTransfer {
     /// From here on the command starts at `before` and fades to what is `asked`.
     pub fn begin(&mut self, before: &Vector4<f64>, asked: &Vector4<f64>) {
         self.rest = before - asked;

@@ -6,7 +6,7 @@ use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
 
 /// Tensions for a joint torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Distribution {
+pub struct DistributedTensions {
     /// N, each within the bounds: R `tensions` = `scale` tau.
     pub tensions: Vector4<f64>,
     /// The part of the torque that the bounds let through, 0 to 1: the largest possible.
@@ -76,7 +76,7 @@ impl TensionDistribution {
     }
 
     /// [`BoundedDistribution::distribute`] with motors that give what the bounds ask for.
-    pub fn distribute(&self, torques: &Vector3<f64>) -> Distribution {
+    pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         self.below(&self.maximum).distribute(torques)
     }
 }
@@ -86,7 +86,7 @@ impl BoundedDistribution<'_> {
     ///
     /// With the tau_g of eq. 20 some tendon j is at t_min, and tendon i then has s (A_i - A_j q_i/q_j) + t_min q_i/q_j,
     /// A = Q tau. That tau_g is the largest over j, so t_i <= t_max for all j is what bounds the scale s.
-    pub fn distribute(&self, torques: &Vector3<f64>) -> Distribution {
+    pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         let Self { of, maximum } = self;
         let wanted = of.from_torque * torques;
         let mut scale: f64 = 1.0;
@@ -104,6 +104,6 @@ impl BoundedDistribution<'_> {
         let ghost_torque = (Vector4::repeat(of.minimum) - wanted).component_mul(&of.inverse_ghost).max();
         // Eq. 20 leaves one tendon at t_min but for rounding, which must not put it below.
         let tensions = (wanted + of.ghost * ghost_torque).map(|tension| tension.max(of.minimum));
-        Distribution { tensions, scale }
+        DistributedTensions { tensions, scale }
     }
 }

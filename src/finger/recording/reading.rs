@@ -55,7 +55,7 @@ impl Recording {
         let first = next_line(&mut input, LARGEST).map_err(unreadable)?.unwrap_or_default();
         let foreign = |reason: String| RecordingError::Foreign(file.clone(), reason);
         let Identity { sun2xp_black_box: found, library } =
-            serde_json::from_slice(&first).map_err(|error| foreign(told(&error)))?;
+            serde_json::from_slice(&first).map_err(|error| foreign(describe(&error)))?;
         let library = Shown(&library).to_string();
         if found != VERSION {
             return Err(RecordingError::Version { file, found, library });
@@ -66,7 +66,7 @@ impl Recording {
             reason,
             library: library.clone(),
         };
-        let header: Header = serde_json::from_slice(&first).map_err(|error| wrong(1, told(&error)))?;
+        let header: Header = serde_json::from_slice(&first).map_err(|error| wrong(1, describe(&error)))?;
         if header.cycles > MOST_CYCLES {
             return Err(RecordingError::Long { file, most: MOST_CYCLES });
         }
@@ -76,7 +76,7 @@ impl Recording {
             if cycles.len() == header.cycles {
                 return Err(RecordingError::Long { file, most: header.cycles });
             }
-            let cycle: CycleRecord<String> = serde_json::from_slice(&line).map_err(|error| wrong(told(&error)))?;
+            let cycle: CycleRecord<String> = serde_json::from_slice(&line).map_err(|error| wrong(describe(&error)))?;
             if cycles.last().is_some_and(|last| last.cycle.checked_add(1) != Some(cycle.cycle)) {
                 return Err(wrong("its cycle does not follow the one before".into()));
             }
@@ -105,7 +105,7 @@ fn next_line(input: &mut impl BufRead, longest: u64) -> io::Result<Option<Vec<u8
 }
 
 /// What is wrong with a line. The parser sees one line, so of the place that it names only the column counts.
-fn told(error: &serde_json::Error) -> String {
+fn describe(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let reason = text.rsplit_once(" at line ").map_or(text.as_str(), |(reason, _)| reason);
     // The reason may hold any text of the file.

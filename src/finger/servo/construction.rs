@@ -2,12 +2,12 @@
 
 use super::{FingerServo, Limits, STOPS_AFTER_FAULT};
 use crate::board::protocol::{Configured, Identity};
-use crate::control::{Activity, Command, Controller, Feedback, SetPoint};
+use crate::control::{Activity, Controller, Feedback, MotorCommand, SetPoint};
 use crate::finger::Adjustable;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Mailbox, mailbox};
-use crate::finger::supervision::Watching;
-use crate::finger::{Alarm, FingerReport, Losses, Recorder, Stage, stop_calls};
+use crate::finger::supervision::Supervision;
+use crate::finger::{FingerReport, Losses, Recorder, Stage, StopSignal, stop_calls};
 use crate::model::configuration::{Configuration, ConfiguredHand, Unusable};
 use crate::realtime::{CycleTiming, Producer};
 use nalgebra::{Matrix3, Vector3};
@@ -85,7 +85,7 @@ impl FingerServo {
             status: configured.status,
             feedback,
             anew: false,
-            command: Command::default(),
+            command: MotorCommand::default(),
             mailbox: servo,
             timing: CycleTiming::default(),
             timings,
@@ -99,9 +99,9 @@ impl FingerServo {
             toggle: false,
             answered: true,
             last_answer: 0,
-            watching: Watching::new(hand.rate, link.most(), identity.gauge_bits),
+            supervision: Supervision::new(hand.rate, link.most(), identity.gauge_bits),
             link,
-            alarm: Alarm::new(false, stop_calls()),
+            alarm: StopSignal::new(false, stop_calls()),
             sampled_at: None,
             sample_age: 0,
             limits: Limits::new(hand),

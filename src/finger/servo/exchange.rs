@@ -4,7 +4,7 @@ use super::FingerServo;
 use crate::board::protocol::{Command, Status};
 use crate::board::{OutgoingCommand, Received};
 use crate::finger::{Fault, FaultKind};
-use crate::realtime::Stage;
+use crate::realtime::CycleStage;
 
 /// The board's clock wraps after 65.5 ms: after a longer silence, ms, it does not say how old a measurement is.
 const CLOCK_UNKNOWN_MS: f64 = 60.0;
@@ -68,13 +68,13 @@ impl FingerServo {
             && age * self.limits.period_ms < CLOCK_UNKNOWN_MS
         {
             let microseconds = reply.sampled_at.wrapping_sub(before);
-            self.timing.note(Stage::Age, 0, u64::from(microseconds) * 1000);
+            self.timing.note(CycleStage::Age, 0, u64::from(microseconds) * 1000);
             age = f64::from(microseconds) * 1e-3 / self.limits.period_ms;
         }
         (self.sampled_at, self.sample_age) = (Some(reply.sampled_at), 0);
         self.feedback.motor_counts = reply.counts_after(self.feedback.motor_counts);
         self.feedback.gauge_counts = reply.gauges;
-        self.watching.note_reply(reply.status, age);
+        self.supervision.note_reply(reply.status, age);
         let zero_lost = self.status.has(Status::ZERO_VALID) && !reply.status.has(Status::ZERO_VALID);
         self.status = reply.status;
         if reply.status.has(Status::FAULTS | Status::WATCHDOG_TRIPPED | Status::ENDED) {

@@ -2,7 +2,7 @@
 
 use super::{FingerServo, STOPS_AFTER_FAULT};
 use crate::board::protocol::Configured;
-use crate::control::{Activity, Command, Feedback, SetPoint};
+use crate::control::{Activity, Feedback, MotorCommand, SetPoint};
 use crate::finger::{Adjustable, Order};
 use crate::finger::{Fault, FaultKind, Stage};
 use crate::model::Part;
@@ -94,7 +94,7 @@ impl FingerServo {
                     self.report.set_point = SetPoint { joints, ..self.initial };
                     self.report.springs += 1;
                     self.activity = Activity::Follow(self.report.set_point);
-                    self.watching.begin();
+                    self.supervision.begin();
                     self.enter(Stage::Running);
                 }
             }
@@ -138,7 +138,7 @@ impl FingerServo {
         self.feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         self.status = configured.status;
         self.sampled_at = None;
-        self.command = Command::default();
+        self.command = MotorCommand::default();
         self.anew = true;
         self.link.answered();
         self.calibration = None;

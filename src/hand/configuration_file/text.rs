@@ -4,7 +4,7 @@ use super::values::deserialize;
 use super::wrong::Wrong;
 use crate::hand::opening::check;
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, FINGERS};
-use crate::model::{Refusal, Shown};
+use crate::model::{Shown, UnusableConfiguration};
 use std::ops::Range;
 use toml_edit::{Document, Item, Table, Value};
 
@@ -44,7 +44,7 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wron
 }
 
 /// A value that the checks refuse, with the place in the file that it comes from.
-fn unusable(root: &Table, refusal: &Refusal) -> Wrong {
+fn unusable(root: &Table, refusal: &UnusableConfiguration) -> Wrong {
     let key = refusal.unusable.key;
     let number = refusal.finger.map(|index| (index + 1).to_string());
     let (section, places) = match &number {

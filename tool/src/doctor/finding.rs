@@ -6,7 +6,7 @@ use sun2xp::model::configuration::{Configuration, RealTime};
 /// How serious a finding is, from harmless to grave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum Rating {
     /// As it should be.
     Good,
     /// The hand runs, but worse than it could.
@@ -21,7 +21,7 @@ pub struct Finding {
     /// What was looked at.
     pub subject: String,
     /// What is to be thought of it.
-    pub verdict: Verdict,
+    pub verdict: Rating,
     /// What is there, with numbers and units.
     pub found: String,
     /// What that means and how to mend it; empty where it is good.
@@ -30,11 +30,11 @@ pub struct Finding {
 
 impl Finding {
     pub(super) fn good(subject: impl Into<String>, found: impl Into<String>) -> Self {
-        Self::new(Verdict::Good, subject, found, "")
+        Self::new(Rating::Good, subject, found, "")
     }
 
     pub(super) fn new(
-        verdict: Verdict,
+        verdict: Rating,
         subject: impl Into<String>,
         found: impl Into<String>,
         advice: impl Into<String>,
@@ -46,8 +46,8 @@ impl Finding {
 /// What it is to lack something that makes a thread real-time.
 pub(super) fn lacking(configuration: &Configuration, subject: &str, found: String, advice: String) -> Finding {
     match configuration.hand.real_time {
-        RealTime::Enforce => Finding::new(Verdict::Failure, subject, found, advice),
-        RealTime::Try => Finding::new(Verdict::Warning, subject, found, advice),
+        RealTime::Enforce => Finding::new(Rating::Failure, subject, found, advice),
+        RealTime::Try => Finding::new(Rating::Warning, subject, found, advice),
         RealTime::Ignore => Finding::good(subject, found),
     }
 }

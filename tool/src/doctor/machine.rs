@@ -1,6 +1,6 @@
 //! What the files of /proc and /sys say of the kernel, its limits and its cores.
 
-use super::finding::{Finding, Verdict, lacking};
+use super::finding::{Finding, Rating, lacking};
 use std::fs::read_to_string;
 use std::path::Path;
 use sun2xp::model::configuration::Configuration;
@@ -42,7 +42,7 @@ fn kernel(version: &str, realtime: bool) -> Finding {
     }
     let advice = "An ordinary kernel mostly wakes threads up in time, but its worst wake-up has no bound. Install a \
                   PREEMPT_RT kernel (Debian: apt install linux-image-rt-amd64) and boot it";
-    Finding::new(Verdict::Warning, "kernel", format!("Linux {release}, without PREEMPT_RT"), advice)
+    Finding::new(Rating::Warning, "kernel", format!("Linux {release}, without PREEMPT_RT"), advice)
 }
 
 /// `runtime` us of every `period` us are left to real-time threads.
@@ -51,7 +51,7 @@ fn throttling(runtime: &str, period: &str) -> Finding {
     let mend = "sudo sysctl kernel.sched_rt_runtime_us=950000";
     match (runtime.parse::<i64>(), period.parse::<i64>()) {
         (Ok(-1), _) => Finding::new(
-            Verdict::Warning,
+            Rating::Warning,
             subject,
             "off",
             format!(
@@ -64,13 +64,13 @@ fn throttling(runtime: &str, period: &str) -> Finding {
             let found = format!("real-time threads get {share} % of the time, {runtime} of {period} us");
             match share {
                 0 => Finding::new(
-                    Verdict::Failure,
+                    Rating::Failure,
                     subject,
                     found,
                     format!("Real-time threads get no time at all. Change that: {mend}"),
                 ),
                 1..50 => Finding::new(
-                    Verdict::Warning,
+                    Rating::Warning,
                     subject,
                     found,
                     format!("The servos may be stopped in the middle of a period. Change that: {mend}"),
@@ -88,7 +88,7 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
     let limit = limit.unwrap_or(0);
     if wanted == 0 {
         let advice = "The servos have the jitter of ordinary threads: set finger.priority to 80";
-        return Finding::new(Verdict::Warning, subject, "finger.priority is 0", advice);
+        return Finding::new(Rating::Warning, subject, "finger.priority is 0", advice);
     }
     if capable || limit >= wanted.into() {
         let by = if capable { "CAP_SYS_NICE".into() } else { format!("the rtprio limit {limit}") };
@@ -132,11 +132,11 @@ fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -
         let advice = format!(
             "Other programs run on core {core} too and make the servo late: boot with isolcpus={core} nohz_full={core}"
         );
-        return Finding::new(Verdict::Warning, subject, found, advice);
+        return Finding::new(Rating::Warning, subject, found, advice);
     }
     if wanted.is_empty() && !isolated.is_empty() {
         let advice = "Nobody uses the isolated cores: set finger.core to one of them";
-        return Finding::new(Verdict::Warning, subject, found, advice);
+        return Finding::new(Rating::Warning, subject, found, advice);
     }
     Finding::good(subject, found)
 }
@@ -151,7 +151,7 @@ fn governor(online: &[usize], read: impl Fn(usize) -> Option<String>) -> Finding
         Some((core, governor)) => {
             let advice = "A core at a low frequency wakes up late. Set it to a high one: sudo cpupower frequency-set \
                           -g performance";
-            Finding::new(Verdict::Warning, subject, format!("{governor} on core {core}"), advice)
+            Finding::new(Rating::Warning, subject, format!("{governor} on core {core}"), advice)
         }
         None if online.iter().any(|&core| read(core).is_some()) => Finding::good(subject, "performance"),
         None => Finding::good(subject, "none: hypervisor or firmware decides"),
@@ -224,12 +224,12 @@ mod tests {
     fn a_good_machine_is_good() {
         let findings = found("proc/x", "", |_| {});
         assert_eq!(findings.len(), 6);
-        assert!(findings.iter().all(|finding| finding.verdict == Verdict::Good), "{findings:#?}");
+        assert!(findings.iter().all(|finding| finding.verdict == Rating::Good), "{findings:#?}");
     }
 
     #[test]
     fn every_fault_is_found_alone_with_its_remedy() {
-        use Verdict::{Failure, Warning};
+        use Rating::{Failure, Warning};
         let limits = |memory, priority| {
             format!("Max locked memory  {memory}  {memory} bytes\nMax realtime priority  {priority}  0\n")
         };
@@ -252,7 +252,7 @@ mod tests {
             ),
         ] {
             let findings = found(path, &text, |_| {});
-            let bad: Vec<_> = findings.iter().filter(|finding| finding.verdict != Verdict::Good).collect();
+            let bad: Vec<_> = findings.iter().filter(|finding| finding.verdict != Rating::Good).collect();
             assert_eq!(bad.len(), 1, "{path} {text}: {findings:#?}");
             assert_eq!((bad[0].subject.as_str(), bad[0].verdict), (subject, verdict), "{bad:?}");
             assert!(bad[0].advice.contains(remedy), "{bad:?}");
@@ -264,11 +264,11 @@ mod tests {
         let none = "Max locked memory  0  0 bytes\nMax realtime priority  0  0\n";
         let failures =
             found("proc/self/limits", none, |configuration| configuration.hand.real_time = RealTime::Enforce);
-        assert_eq!(failures.iter().filter(|finding| finding.verdict == Verdict::Failure).count(), 2, "{failures:#?}");
+        assert_eq!(failures.iter().filter(|finding| finding.verdict == Rating::Failure).count(), 2, "{failures:#?}");
 
         let (wanted, limits) = (Configuration::default(), Some(0));
-        assert_eq!(scheduling(&wanted, limits, true).verdict, Verdict::Good);
-        assert_eq!(memory(&wanted, limits, true).verdict, Verdict::Good);
+        assert_eq!(scheduling(&wanted, limits, true).verdict, Rating::Good);
+        assert_eq!(memory(&wanted, limits, true).verdict, Rating::Good);
         let status = "CapEff:\t0000000000804000\n";
         assert!(has(status, CAP_IPC_LOCK) && has(status, CAP_SYS_NICE) && !has(status, 0) && !has("", CAP_SYS_NICE));
     }

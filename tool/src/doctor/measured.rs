@@ -1,9 +1,9 @@
 //! Wake-ups of threads like the servo's, against the period.
 
-use super::finding::{Finding, Verdict, lacking};
+use super::finding::{Finding, Rating, lacking};
 use std::time::Duration;
 use sun2xp::hand::HandError;
-use sun2xp::hand::missing;
+use sun2xp::hand::missing_permissions;
 use sun2xp::hand::priority;
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{Schedule, WakeUp, measure_wake_up, now};
@@ -56,16 +56,16 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
         late.median, late.p99, late.maximum
     );
     let verdict = match late.p99 / period {
-        share if share > TOO_LATE => Verdict::Failure,
-        share if share > LATE => Verdict::Warning,
-        _ => Verdict::Good,
+        share if share > TOO_LATE => Rating::Failure,
+        share if share > LATE => Rating::Warning,
+        _ => Rating::Good,
     };
-    if verdict > Verdict::Good {
+    if verdict > Rating::Good {
         let advice = "Something keeps this thread from running: other real-time threads, a busy or paused virtual \
                       machine, power saving. Isolate a core for it (finger.core), or lower hand.rate";
         return Finding::new(verdict, subject, found, advice);
     }
-    if let Some(missing) = missing(vec![had]).first() {
+    if let Some(missing) = missing_permissions(vec![had]).first() {
         return lacking(configuration, &subject, found, missing.to_string());
     }
     Finding::good(subject, found)
@@ -82,7 +82,7 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
     let advice = "The kernel may wake this thread up late by this time, and has refused to change it (prctl, \
                   PR_SET_TIMERSLACK). Allow that call where a sandbox forbids it, or let the thread be real-time: \
                   finger.priority";
-    Finding::new(Verdict::Warning, subject, format!("{slack} ns"), advice)
+    Finding::new(Rating::Warning, subject, format!("{slack} ns"), advice)
 }
 
 #[cfg(test)]
@@ -98,12 +98,12 @@ mod tests {
             let late = Distribution { p99, ..Distribution::default() };
             judge(&configuration, 1, WakeUp { late, had, timer_slack: 1 })
         };
-        assert_eq!(judged(1000.0, 90.0, Realtime::default()).verdict, Verdict::Good);
-        assert_eq!(judged(1000.0, 110.0, Realtime::default()).verdict, Verdict::Warning);
-        assert_eq!(judged(5000.0, 110.0, Realtime::default()).verdict, Verdict::Failure);
+        assert_eq!(judged(1000.0, 90.0, Realtime::default()).verdict, Rating::Good);
+        assert_eq!(judged(1000.0, 110.0, Realtime::default()).verdict, Rating::Warning);
+        assert_eq!(judged(5000.0, 110.0, Realtime::default()).verdict, Rating::Failure);
         let scheduling = Some(std::io::Error::from_raw_os_error(libc::EPERM));
         let refused = judged(1000.0, 90.0, Realtime { scheduling, ..Realtime::default() });
-        assert!(refused.verdict == Verdict::Warning && refused.advice.contains("rtprio"), "{refused:?}");
+        assert!(refused.verdict == Rating::Warning && refused.advice.contains("rtprio"), "{refused:?}");
     }
 
     #[test]
@@ -113,9 +113,9 @@ mod tests {
             judge_slack(1, asked, &WakeUp { late: Distribution::default(), had, timer_slack }).verdict
         };
         let refused = || Some(std::io::Error::from_raw_os_error(libc::EPERM));
-        assert_eq!(judged(1, false, None), Verdict::Good);
-        assert_eq!(judged(50_000, true, None), Verdict::Good);
-        assert_eq!(judged(50_000, true, refused()), Verdict::Warning);
-        assert_eq!(judged(50_000, false, None), Verdict::Warning);
+        assert_eq!(judged(1, false, None), Rating::Good);
+        assert_eq!(judged(50_000, true, None), Rating::Good);
+        assert_eq!(judged(50_000, true, refused()), Rating::Warning);
+        assert_eq!(judged(50_000, false, None), Rating::Warning);
     }
 }

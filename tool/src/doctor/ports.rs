@@ -1,6 +1,6 @@
 //! The ports of a hand: whether they can be opened, hold bytes back, and how long a round trip to the board takes.
 
-use super::finding::{Finding, Verdict};
+use super::finding::{Finding, Rating};
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::time::Duration;
@@ -12,7 +12,9 @@ use sun2xp::hand::priority;
 use sun2xp::hand::{Fingers, HandError};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, FINGERS};
-use sun2xp::realtime::{Clock, CycleTiming, Distribution, Histograms, MonotonicClock, Schedule, Stage, now, spawn};
+use sun2xp::realtime::{
+    Clock, CycleStage, CycleTiming, Distribution, Histograms, MonotonicClock, Schedule, now, spawn,
+};
 use sun2xp::simulated::SimulatedPort;
 
 /// Round trips longer than this part of the reply window, 99 of 100, leave little room for a bad day.
@@ -35,7 +37,7 @@ pub(super) fn findings(
         let mut link = match Link::open(&path, configuration.fingers[fingers[0]].baud) {
             Ok(link) => link,
             Err(error) => {
-                findings.push(Finding::new(Verdict::Failure, subject, "cannot be opened", advice(&error, root, &path)));
+                findings.push(Finding::new(Rating::Failure, subject, "cannot be opened", advice(&error, root, &path)));
                 continue;
             }
         };
@@ -79,7 +81,7 @@ fn group_name(groups: &str, id: u32) -> Option<&str> {
 fn latency(subject: String, timer_ms: Option<u32>) -> Finding {
     match timer_ms {
         Some(milliseconds) if milliseconds > 1 => Finding::new(
-            Verdict::Failure,
+            Rating::Failure,
             subject,
             format!("opened; its adapter holds bytes back for {milliseconds} ms"),
             "Every reply waits for the adapter's latency timer: write 1 to latency_timer under \
@@ -132,20 +134,20 @@ fn round_trips(
         }
         if missing == 0 {
             let mut timing = CycleTiming::default();
-            timing.note(Stage::Wire, began, now());
+            timing.note(CycleStage::Wire, began, now());
             histograms.record(&timing);
         } else {
             lost += 1;
         }
         schedule.advance(now());
     }
-    Ok(Measured { times: histograms.distribution(Stage::Wire), lost })
+    Ok(Measured { times: histograms.distribution(CycleStage::Wire), lost })
 }
 
 fn judge(configuration: &Configuration, subject: String, measured: Result<Measured, LinkError>) -> Finding {
     let Measured { times, lost } = match measured {
         Ok(measured) => measured,
-        Err(error) => return Finding::new(Verdict::Failure, subject, "none", error.to_string()),
+        Err(error) => return Finding::new(Rating::Failure, subject, "none", error.to_string()),
     };
     let window = 1e6 / configuration.hand.rate * REPLY_WINDOW;
     let found = format!(
@@ -157,8 +159,8 @@ fn judge(configuration: &Configuration, subject: String, measured: Result<Measur
     );
     let share_lost = lost as f64 / (times.count + lost).max(1) as f64;
     let verdict = match times.p99 / window {
-        share if share > 1.0 || share_lost > TOO_MANY_LOST => Verdict::Failure,
-        share if share > LONG => Verdict::Warning,
+        share if share > 1.0 || share_lost > TOO_MANY_LOST => Rating::Failure,
+        share if share > LONG => Rating::Warning,
         _ => return Finding::good(subject, found),
     };
     let advice = "Replies come too late for their cycle: raise the baud rate of board and finger.baud, give the \
@@ -177,19 +179,19 @@ mod tests {
             judge(&Configuration::default(), "x".into(), Ok(Measured { times, lost })).verdict
         };
         // 850 us at 1000 Hz.
-        assert_eq!(judged(600.0, 0), Verdict::Good);
-        assert_eq!(judged(700.0, 5), Verdict::Warning);
-        assert_eq!(judged(900.0, 0), Verdict::Failure);
-        assert_eq!(judged(600.0, 20), Verdict::Failure);
+        assert_eq!(judged(600.0, 0), Rating::Good);
+        assert_eq!(judged(700.0, 5), Rating::Warning);
+        assert_eq!(judged(900.0, 0), Rating::Failure);
+        assert_eq!(judged(600.0, 20), Rating::Failure);
         let silent = Err(LinkError::Silent { milliseconds: 500 });
         let finding = judge(&Configuration::default(), "x".into(), silent);
-        assert!(finding.verdict == Verdict::Failure && finding.advice.contains("switched on"), "{finding:?}");
+        assert!(finding.verdict == Rating::Failure && finding.advice.contains("switched on"), "{finding:?}");
     }
 
     #[test]
     fn latency_timers_are_judged() {
         let verdicts = [None, Some(1), Some(2), Some(16)].map(|timer| latency("x".into(), timer).verdict);
-        assert_eq!(verdicts, [Verdict::Good, Verdict::Good, Verdict::Failure, Verdict::Failure]);
+        assert_eq!(verdicts, [Rating::Good, Rating::Good, Rating::Failure, Rating::Failure]);
     }
 
     #[test]

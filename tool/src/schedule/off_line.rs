@@ -74,12 +74,12 @@ pub struct Scheduled {
     /// no bound within the period.
     pub response: Option<(f64, f64)>,
     /// Which deadline may be missed first.
-    pub limit: Option<Limit>,
+    pub limit: Option<RateLimit>,
 }
 
 /// A deadline that may be missed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limit {
+pub enum RateLimit {
     /// The line is busy for more of a period than it may be.
     Line,
     /// Replies come after the part of a period in which they are awaited.
@@ -105,9 +105,9 @@ pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor:
             let window = task.wake_up as f64 * 1e-3 + REPLY_WINDOW * period;
             let response = response.map(|response| (response.waited as f64 * 1e-3, response.done as f64 * 1e-3));
             let limit = match response {
-                _ if line > USABLE_SHARE => Some(Limit::Line),
-                None => Some(Limit::Cycle),
-                Some((replies, _)) if replies > window => Some(Limit::Replies),
+                _ if line > USABLE_SHARE => Some(RateLimit::Line),
+                None => Some(RateLimit::Cycle),
+                Some((replies, _)) if replies > window => Some(RateLimit::Replies),
                 Some(_) => None,
             };
             let load = (task.before + task.after) as f64 * 1e-3 / period;
@@ -190,14 +190,14 @@ mod tests {
         }
         // The line is what ends it: 550 us are 80 % of a period at 1454.5 Hz.
         assert_eq!(fastest_rate(&hand, &COSTS, &Sensor::default(), 5000), 1454);
-        assert_eq!(off_line_schedule(&hand, 1455.0, &COSTS, &Sensor::default())[0].limit, Some(Limit::Line));
+        assert_eq!(off_line_schedule(&hand, 1455.0, &COSTS, &Sensor::default())[0].limit, Some(RateLimit::Line));
         // Ten bytes more are 100 us more; at 2 megabaud 225 + 100 + 50 us, 80 % of a period at 2133 Hz.
         let sensor = Sensor { bytes: 10, compute: 50.0 };
         assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &sensor)[0].response, Some((760.0, 830.0)));
         hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
         // 100 + 10 + 375 + 70 = 555: the cycle would be done at up to 1801 Hz.
         assert_eq!(fastest_rate(&hand, &COSTS, &sensor, 5000), 1801);
-        assert_eq!(off_line_schedule(&hand, 1802.0, &COSTS, &sensor)[0].limit, Some(Limit::Cycle));
+        assert_eq!(off_line_schedule(&hand, 1802.0, &COSTS, &sensor)[0].limit, Some(RateLimit::Cycle));
     }
 
     /// On one core each may have to wait for two cycles of both others: 680 + 4 * 30.
@@ -221,7 +221,7 @@ mod tests {
         assert_eq!(thread.response, Some((680.0, 740.0)));
         // On one port the replies are behind each other: 100 + 10 + 170 + 100 + 3 * 280 + 60 is more than a period.
         hand.fingers.iter_mut().for_each(|finger| finger.port = "/dev/ttyUSB0".into());
-        assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[0].limit, Some(Limit::Line));
+        assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[0].limit, Some(RateLimit::Line));
         hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
         let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
         assert_eq!(schedule[0].response, Some((715.0, 775.0)));
@@ -238,6 +238,6 @@ mod tests {
         let mut apart = hand.clone();
         apart.fingers.iter_mut().enumerate().for_each(|(core, finger)| finger.core = Some(core));
         let costs = Costs { wake_up: 9.0, write: 310.0, ..costs };
-        assert_eq!(off_line_schedule(&apart, 1000.0, &costs, &Sensor::default())[0].limit, Some(Limit::Replies));
+        assert_eq!(off_line_schedule(&apart, 1000.0, &costs, &Sensor::default())[0].limit, Some(RateLimit::Replies));
     }
 }

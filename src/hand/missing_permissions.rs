@@ -6,7 +6,7 @@ use thiserror::Error;
 
 /// Something that a servo thread was to have and cannot have. The texts name the remedy.
 #[derive(Debug, Error)]
-pub enum Missing {
+pub enum MissingPermission {
     /// SCHED_FIFO.
     #[error("the servo cannot run under SCHED_FIFO ({0}): permit it by CAP_SYS_NICE or an rtprio limit (ulimit -r)")]
     Scheduling(io::Error),
@@ -22,7 +22,7 @@ pub enum Missing {
     Core(io::Error),
 }
 
-impl Missing {
+impl MissingPermission {
     /// What the system said.
     pub fn errno(&self) -> i32 {
         let (Self::Scheduling(source) | Self::Memory(source) | Self::Core(source)) = self;
@@ -31,13 +31,17 @@ impl Missing {
 }
 
 /// What is missing to any of the threads, one of a kind.
-pub fn missing(had: Vec<Realtime>) -> Vec<Missing> {
+pub fn missing_permissions(had: Vec<Realtime>) -> Vec<MissingPermission> {
     let (mut scheduling, mut memory, mut core) = (None, None, None);
     for had in had {
         scheduling = scheduling.or(had.scheduling);
         memory = memory.or(had.memory);
         core = core.or(had.core);
     }
-    let kinds = [scheduling.map(Missing::Scheduling), memory.map(Missing::Memory), core.map(Missing::Core)];
+    let kinds = [
+        scheduling.map(MissingPermission::Scheduling),
+        memory.map(MissingPermission::Memory),
+        core.map(MissingPermission::Core),
+    ];
     kinds.into_iter().flatten().collect()
 }

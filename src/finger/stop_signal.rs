@@ -1,7 +1,7 @@
 //! What stops a finger that nothing is wrong with: an emergency stop, or another finger that faults.
 
 use crate::finger::FaultKind;
-use crate::realtime::{Memory, Pages, SharedPages};
+use crate::realtime::{LockedMemory, Pages, SharedPages};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Emergency stops called for in this process so far. Counted, so that a finger that recovers from one hears the next.
@@ -22,21 +22,21 @@ pub fn stop_calls() -> u32 {
 
 /// One finger's ear.
 #[derive(Clone)]
-pub struct Alarm {
+pub struct StopSignal {
     calls_heard: u32,
     /// Faults of all fingers that stop together; none: each stops alone.
     together: Option<SharedPages<AtomicU32>>,
     faults_heard: u32,
 }
 
-impl Alarm {
+impl StopSignal {
     /// `together`: the fingers with clones of it stop together. `calls_heard`: of [`stop_calls`], from before anything moved.
     pub fn new(together: bool, calls_heard: u32) -> Self {
         Self { calls_heard, together: together.then(|| Pages::new(AtomicU32::new(0)).into()), faults_heard: 0 }
     }
 
     /// Adds the pages of what the fingers share.
-    pub(super) fn add_to(&self, memory: &mut Memory) {
+    pub(super) fn add_to(&self, memory: &mut LockedMemory) {
         self.together.iter().for_each(|together| memory.add_shared(together));
     }
 

@@ -4,6 +4,6 @@ use crate::model::one_line;
 use crate::realtime::print_line;
 
 /// One line.
-pub(super) fn say(text: &str) {
+pub(super) fn print_notice(text: &str) {
     print_line(&one_line(text));
 }
