@@ -1,4 +1,5 @@
-//! What the timing figures cost a cycle of one finger: the readings of the clock, the notes and the ring, as in `Servo::cycle`.
+//! What the timing figures cost a cycle of one finger: the readings of the clock, the notes and the ring, as in
+//! `Servo::cycle`.
 
 use divan::{Bencher, black_box};
 use sun2xp::realtime::ring;

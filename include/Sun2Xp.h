@@ -481,10 +481,10 @@ int OpenHand(void);
 
      int CloseHand(void);
 
- Brings every finger to the configured end state - release: the torque ramps to zero;
- hold: the board keeps the last torque, up to hand.hold_torque_limit, for
- hand.hold_time_ms, also after this call has returned - and ends the servos. With no hand open it does nothing and returns 0. After it OpenHand may be
- called again. A planner that exits without it has it called for it.
+ Brings every finger to the configured end state - release: the torque ramps to zero; hold: the board keeps the last
+ torque, up to hand.hold_torque_limit, for hand.hold_time_ms, also after this call has returned - and ends the
+ servos. With no hand open it does nothing and returns 0. After it OpenHand may be called again. A planner that exits
+ without it has it called for it.
 
  Returns 0, or -1 with
    EPERM    forked child

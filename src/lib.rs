@@ -1,8 +1,8 @@
 //! The parallel stiffness controller of the Stanford/JPL hand (COINS TR 90-48, 1990) as a library.
 //!
-//! C planners use `include/Sun2Xp.h`. Rust planners open a [`Hand`], whose fingers are numbered 1 to 3, and send set points to it.
-//! Each fingertip is then a spring of the stiffness that it was told. Lengths are in cm, forces in N, torques in N cm,
-//! angles in rad and stiffnesses in N/cm.
+//! C planners use `include/Sun2Xp.h`. Rust planners open a [`Hand`], whose fingers are numbered 1 to 3, and send set
+//! points to it. Each fingertip is then a spring of the stiffness that it was told. Lengths are in cm, forces in N,
+//! torques in N cm, angles in rad and stiffnesses in N/cm.
 //!
 //! ```no_run
 #![doc = include_str!("../examples/spring.rs")]
@@ -10,8 +10,9 @@
 //!
 //! # Features
 //!
-//! `internals` exports the modules behind the types of this page: the pure core, the board protocol, the simulated boards, the physics
-//! and the search for the bound of Kx. Benchmarks, tools and simulators outside of this project use them. They change without notice.
+//! `internals` exports the modules behind the types of this page: the pure core, the board protocol, the simulated
+//! boards, the physics and the search for the bound of Kx. Benchmarks, tools and simulators outside of this project use
+//! them. They change without notice.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]

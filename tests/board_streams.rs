@@ -1,4 +1,5 @@
-//! Random and mutated byte streams into the decoder: no panic, nothing accepted that was not sent whole, and the next frame found.
+//! Random and mutated byte streams into the decoder: no panic, nothing accepted that was not sent whole, and the next
+//! frame found.
 //!
 //! `SUN2XP_STREAMS=10000000 cargo test --test board_streams -- --nocapture` for ten million of them.
 

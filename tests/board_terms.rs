@@ -83,7 +83,8 @@ fn a_limit_beyond_the_boards_is_refused() {
     assert_eq!(told.expect("good terms").torque_limits, [23_750; 4]);
 }
 
-/// The page lets a board need up to 20 ms. Such a board works with the default, and no board is given more than that unasked.
+/// The page lets a board need up to 20 ms. Such a board works with the default, and no board is given more than that
+/// unasked.
 #[test]
 fn a_board_gets_the_shortest_watchdog_that_it_can_keep() {
     let terms = terms(4.75, 1.0, 2.34);

@@ -1,5 +1,6 @@
-//! Boards in C: a second board, written from the page of the protocol alone, and the reference firmware. If the library settles
-//! the fingers of the one, then the page says all that a board has to know; the other is what a lab begins with.
+//! Boards in C: a second board, written from the page of the protocol alone, and the reference firmware. If the library
+//! settles the fingers of the one, then the page says all that a board has to know; the other is what a lab begins
+//! with.
 
 #[path = "common/attempts.rs"]
 mod attempts;
@@ -187,13 +188,13 @@ fn settles_three_fingers_and_notices_a_dead_board(program: &Path, folder: &Path)
     });
 }
 
-/// A servo that hears nothing for 10 ms lets its motors go and begins anew (docs/architecture.md). A hand survives that, but
-/// the frictionless fingers of these boards may not survive five times as long.
+/// A servo that hears nothing for 10 ms lets its motors go and begins anew (docs/architecture.md). A hand survives
+/// that, but the frictionless fingers of these boards may not survive five times as long.
 const BEARS: Duration = Duration::from_millis(50);
 
 fn configuration(boards: &[Board; 3], folder: &Path) -> Configuration {
-    // The boards let a finger move for 2 ms after a Command, so a late Command does no harm at this rate. A busy machine may keep
-    // servo or board from running for longer than the usual watchdog.
+    // The boards let a finger move for 2 ms after a Command, so a late Command does no harm at this rate. A busy
+    // machine may keep servo or board from running for longer than the usual watchdog.
     let mut text = "[hand]\nrate = 500.0\nwatchdog_ms = 1000\n[finger.controller]\nset_point_speed = 1.0\n".to_string();
     for (finger, board) in (1..).zip(boards) {
         text += &format!("[finger.{finger}]\nport = \"{}\"\n", board.port);

@@ -54,8 +54,8 @@ const WORDS: &[&str] = &[
     "__inline",
 ];
 
-/// Macros of the header itself, and the calls that these use. A planner that defines one too sees a compiler's complaint,
-/// or makes the call another one.
+/// Macros of the header itself, and the calls that these use. A planner that defines one too sees a compiler's
+/// complaint, or makes the call another one.
 const MACROS_OF_THE_HEADER: &[&str] = &["SendPos", "SendKx", "GetPos", "SendPosD", "SendKxD", "GetPosD"];
 
 fn words(text: &str) -> impl Iterator<Item = &str> {
@@ -113,8 +113,8 @@ fn every_word_of_c_may_be_a_macro() {
     );
 }
 
-/// Macros that stay while the planner calls: those of planners for compilers that do not know a word, and those that make every
-/// `float` a `double`.
+/// Macros that stay while the planner calls: those of planners for compilers that do not know a word, and those that
+/// make every `float` a `double`.
 #[test]
 fn calls_compile_where_words_of_c_are_macros() {
     let bench = Bench::new();

@@ -1,5 +1,5 @@
-//! What the library does to the process of a planner, and what a planner may do to it: signals, cancellation, floating-point
-//! environments, stacks, locked memory and the end of the process.
+//! What the library does to the process of a planner, and what a planner may do to it: signals, cancellation,
+//! floating-point environments, stacks, locked memory and the end of the process.
 
 #[allow(dead_code)]
 mod c;
@@ -8,8 +8,8 @@ use c::{Bench, STRICT, c_compiler, said};
 use std::fs;
 use std::process::Command;
 
-/// A scratch folder whose configuration has ZeroFinger read the pose that the finger is in, which takes a second: a search for the
-/// stops takes most of a minute, and these tests are about the call and not about what it finds.
+/// A scratch folder whose configuration has ZeroFinger read the pose that the finger is in, which takes a second: a
+/// search for the stops takes most of a minute, and these tests are about the call and not about what it finds.
 fn bench() -> Bench {
     let bench = Bench::new();
     let configuration = "[finger]\nport = \"simulated\"\n[finger.zeroing]\nmethod = \"pose\"\n";
@@ -63,8 +63,8 @@ fn a_cancelled_thread_ends_after_its_call() {
     succeed(&["cancelled.c"]);
 }
 
-/// Rounding, flushed denormals and trapping exceptions of a planner are its own: they reach neither the servos, whose cycles
-/// are computed again to the last bit by the replay, nor what the calls compute.
+/// Rounding, flushed denormals and trapping exceptions of a planner are its own: they reach neither the servos, whose
+/// cycles are computed again to the last bit by the replay, nor what the calls compute.
 #[test]
 fn the_floating_point_environment_of_a_planner_is_its_own() {
     let bench = bench();

@@ -60,8 +60,9 @@ proptest! {
             }
             low
         };
-        // A tension is a sum of four products of at most 300 N, each rounded to some 1e-16 of itself. Where a tension hardly changes with
-        // the scale, that rounding decides over much of the scale: so the tolerance is one of tension, and bounds the scale from both sides.
+        // A tension is a sum of four products of at most 300 N, each rounded to some 1e-16 of itself. Where a tension
+        // hardly changes with the scale, that rounding decides over much of the scale: so the tolerance is one of
+        // tension, and bounds the scale from both sides.
         let rounding = 1e-14 * (100.0 + size);
         let (lowest, highest) = (largest(-rounding), largest(rounding));
         // The bisection itself ends with an interval of 1e-18.
@@ -69,8 +70,8 @@ proptest! {
         prop_assert!((lowest - 1e-15..=highest + 1e-15).contains(&scale), "{scale}, not {lowest} to {highest}");
     }
 
-    /// Whatever else gives the same torque is larger, in the 1-, 2- and infinity-norm: R's null vector is all positive, so
-    /// every other choice above t_min adds a positive multiple of it.
+    /// Whatever else gives the same torque is larger, in the 1-, 2- and infinity-norm: R's null vector is all positive,
+    /// so every other choice above t_min adds a positive multiple of it.
     #[test]
     fn tensions_are_the_least(direction in prop::array::uniform3(-1.0..1.0f64), more in 1e-6..10.0f64) {
         let tendons = tendons(None);
@@ -111,7 +112,8 @@ proptest! {
         }
     }
 
-    /// Work of the joint torques is work of a tip spring, eq. 5, also for a Kx that mixes directions; at rest no damping.
+    /// Work of the joint torques is work of a tip spring, eq. 5, also for a Kx that mixes directions; at rest no
+    /// damping.
     #[test]
     fn joint_torques_are_those_of_the_tip_spring(
         theta in prop::array::uniform3(-1.0..1.0f64), away in prop::array::uniform3(-0.2..0.2f64),
@@ -140,7 +142,8 @@ fn without_stiffness_only_damping_is_left() {
     assert!(law.torques(&set_point.into(), &Vector3::zeros(), &rates).angle(&-rates) < 1e-6);
 }
 
-/// Section 5.5 prints +1.09 for entry (2, 4): with the printed ghost row singular, with any other a hand that cannot hold.
+/// Section 5.5 prints +1.09 for entry (2, 4): with the printed ghost row singular, with any other a hand that cannot
+/// hold.
 #[test]
 fn printed_r_is_refused() {
     for ghost in [None, Some([1.0; 4])] {

@@ -152,10 +152,10 @@ proptest! {
         // What went from springs into motion, or was lost to friction.
         let swing = fastest.max(start - energies.iter().copied().fold(start, f64::min));
         let highest = energies.iter().copied().fold(start, f64::max);
-        // Semi-implicit Euler keeps H - h/2 dq/dt dV/dq and not H. A mode of w rad/s therefore shows an energy that is off
-        // by up to w h/2 of what swings. The stiffest mode is that of the last link, 2.1e-5 kg m^2 with the tip, between
-        // the wall (16 N m/rad at 4 cm), the tendons and a stop: 1100 rad/s with the other links fixed. Free links let it
-        // swing faster, but not with 2000 rad/s, which is 0.1.
+        // Semi-implicit Euler keeps H - h/2 dq/dt dV/dq and not H. A mode of w rad/s therefore shows an energy that is
+        // off by up to w h/2 of what swings. The stiffest mode is that of the last link, 2.1e-5 kg m^2 with the tip,
+        // between the wall (16 N m/rad at 4 cm), the tendons and a stop: 1100 rad/s with the other links fixed. Free
+        // links let it swing faster, but not with 2000 rad/s, which is 0.1.
         prop_assert!(highest - start <= 0.1 * swing + 1e-7, "from {start} J to {highest} J; {swing} J swing");
         // Over 100 ms that evens out, and the mean only falls.
         let mean: Vec<f64> = energies.chunks(1000).map(|part| part.iter().sum::<f64>() / 1000.0).collect();

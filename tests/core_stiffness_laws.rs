@@ -30,8 +30,8 @@ fn theta() -> impl Strategy<Value = Vector3<f64>> {
         .prop_filter("5 mm off the axis", |theta| LINKS.reach(theta).abs() > 0.5)
 }
 
-/// With a lever of 5 mm and less joint 0 is held as a lever of 5 mm would, by both laws; a spring without stiffness there does not
-/// hold it, and at 5 mm the torque has no jump.
+/// With a lever of 5 mm and less joint 0 is held as a lever of 5 mm would, by both laws; a spring without stiffness
+/// there does not hold it, and at 5 mm the torque has no jump.
 #[test]
 fn near_its_axis_joint_0_is_held() {
     // Joint 1 at 90 degrees; l0 = -l2 C12 puts the tip on the axis.

@@ -26,7 +26,8 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     assert!(steps.contains(&Step::TryingMotors));
     assert_eq!(stage(2), Stage::Limp);
 
-    // Against its stops: a simulated finger has some, and no other method is configured. Its controller believes the true zeros.
+    // Against its stops: a simulated finger has some, and no other method is configured. Its controller believes the
+    // true zeros.
     let zeros = hand.zero(2, |_| {}).expect("zeros");
     let Findings::Zeros(zeros) = zeros else { panic!("{zeros:?}") };
     for tendon in 0..4 {
@@ -85,7 +86,8 @@ fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
     assert!(matches!(hand.zero(4, |_| {}), Err(HandError::NoSuchFinger(4))));
 }
 
-/// Two fingers at once: one is zeroed against its stops, the other, whose tendons are not as stiff as configured, identified.
+/// Two fingers at once: one is zeroed against its stops, the other, whose tendons are not as stiff as configured,
+/// identified.
 #[test]
 fn fingers_are_zeroed_against_their_stops_and_identified() {
     let mut configuration = read_default();

@@ -25,8 +25,8 @@ const OTHER_CALLS: &[&str] = &[
 const WORDS_OF_THE_TRAILER: &[&str] =
     &["class", "extern", "inline", "reinterpret_cast", "return", "sizeof", "template", "typedef", "volatile"];
 
-/// The header makes macros of three of these itself, so it cannot give back a planner's macro of the same name. Those macros
-/// use the other three.
+/// The header makes macros of three of these itself, so it cannot give back a planner's macro of the same name. Those
+/// macros use the other three.
 const MACROS: &[&str] = &["GetPos", "GetPosD", "SendKx", "SendKxD", "SendPos", "SendPosD"];
 
 /// A constant for each fault.

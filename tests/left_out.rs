@@ -24,7 +24,8 @@ fn a_test_that_needs_clang() {
     }
 }
 
-/// A program cannot be started while a process that was forked in between still has it open for writing, so tests take turns.
+/// A program cannot be started while a process that was forked in between still has it open for writing, so tests take
+/// turns.
 static TURN: Mutex<()> = Mutex::new(());
 
 /// Runs `a_test_that_needs_clang` where there is no program at all.

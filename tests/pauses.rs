@@ -105,8 +105,8 @@ fn failures_are_excused_only_as_long_as_the_passed_attempts_outnumber_them() {
     assert_eq!(Tally::default().judge(false, BEARS / 2, BEARS), Verdict::Failed);
 }
 
-/// On a machine that never pauses a defect that shows in half of the attempts fails half of the runs. On one that always pauses for long
-/// enough it fails a quarter at least.
+/// On a machine that never pauses a defect that shows in half of the attempts fails half of the runs. On one that
+/// always pauses for long enough it fails a quarter at least.
 #[test]
 fn a_defect_that_shows_in_half_of_the_attempts_does_not_stay_green() {
     let mut random = Pcg64::seed_from_u64(1);

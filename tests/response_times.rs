@@ -1,5 +1,5 @@
-//! The off-line analysis against a simulation of the scheduler that knows nothing of it: no simulated cycle may take longer than
-//! the bound, whatever the phases, and however much less than its worst case each part takes.
+//! The off-line analysis against a simulation of the scheduler that knows nothing of it: no simulated cycle may take
+//! longer than the bound, whatever the phases, and however much less than its worst case each part takes.
 
 use proptest::prelude::*;
 use rand_pcg::Pcg64;
@@ -33,8 +33,8 @@ impl Running<'_> {
     }
 }
 
-/// The longest a cycle of each thread took, from its scheduled beginning, in so many ticks. One tick is 1 ns; every core runs the
-/// ready thread of the highest priority.
+/// The longest a cycle of each thread took, from its scheduled beginning, in so many ticks. One tick is 1 ns; every
+/// core runs the ready thread of the highest priority.
 fn simulate(threads: &[PeriodicThread], cores: usize, ticks: u64, seed: u64) -> Vec<u64> {
     let mut random = Pcg64::seed_from_u64(seed);
     // Mostly the worst case, sometimes anything below.
@@ -127,7 +127,8 @@ proptest! {
     }
 }
 
-/// Without wake-up and waiting, and with all phases alike, the bound is what happens: an analysis that always says "late" fails.
+/// Without wake-up and waiting, and with all phases alike, the bound is what happens: an analysis that always says
+/// "late" fails.
 #[test]
 fn the_bound_is_reached() {
     let threads = [(3, 7, 3), (2, 12, 3), (1, 20, 5)].map(|(priority, period, after)| PeriodicThread {

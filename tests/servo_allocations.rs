@@ -1,4 +1,5 @@
-//! No allocation in the servo loop, nor in the thread that collects its reports: an allocator that counts what they ask for.
+//! No allocation in the servo loop, nor in the thread that collects its reports: an allocator that counts what they ask
+//! for.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -50,7 +51,8 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     let hand = Hand::open(Configuration::default()).expect("the simulated hand");
     assert!(BY_SERVOS.load(Relaxed) > 0, "starting a thread allocates: the counter must see it");
     let before = BY_SERVOS.load(Relaxed);
-    // With the black boxes empty, and for longer than they need to fill: where memory has run out an allocation ends the process.
+    // With the black boxes empty, and for longer than they need to fill: where memory has run out an allocation ends
+    // the process.
     let reports_before = BY_REPORTS.load(Relaxed);
     assert!(reports_before > 0, "the counter must see the thread that collects reports");
     let cycles = |finger| hand.report(finger).expect("a report").losses.cycles;

@@ -1,4 +1,5 @@
-//! No page fault in the servo loop. Alone in its process: where another test forks, the threads meet each of their pages once more.
+//! No page fault in the servo loop. Alone in its process: where another test forks, the threads meet each of their
+//! pages once more.
 
 use std::fs;
 use sun2xp::hand::Hand;

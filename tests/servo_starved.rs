@@ -1,4 +1,5 @@
-//! A servo and its simulated board on a machine that runs neither in time, nor what carries their bytes, on simulated time.
+//! A servo and its simulated board on a machine that runs neither in time, nor what carries their bytes, on simulated
+//! time.
 
 #[allow(dead_code)]
 #[path = "common/finger_on_a_cable.rs"]

@@ -1,4 +1,5 @@
-//! Periods of a servo on simulated time: what is late is counted and skipped, the age of the feedback, and the board's clock.
+//! Periods of a servo on simulated time: what is late is counted and skipped, the age of the feedback, and the board's
+//! clock.
 
 #[allow(dead_code)]
 #[path = "common/finger_on_a_cable.rs"]

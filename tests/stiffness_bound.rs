@@ -1,4 +1,5 @@
-//! The bound of Kx: what the search finds, that it can fail, and that the default is right for every controller and rate.
+//! The bound of Kx: what the search finds, that it can fail, and that the default is right for every controller and
+//! rate.
 
 use nalgebra::{Matrix3, Vector3};
 use rand_pcg::Pcg64;
@@ -34,7 +35,8 @@ const RATES: usize = 40;
 /// At each rate, beside the pose that carries least: tips 3 cm and more from the axis of joint 0, which holds nothing.
 const POSES: usize = 4;
 
-/// At the Kx that a finger begins with and at its default bound, with the least, the controller's own and the most damping.
+/// At the Kx that a finger begins with and at its default bound, with the least, the controller's own and the most
+/// damping.
 fn stable_at_every_rate(scheme: Scheme) {
     let finger = finger(scheme);
     let links = finger.links();
@@ -136,8 +138,8 @@ fn other_fingers(scheme: Scheme) -> Vec<(&'static str, ConfiguredFinger)> {
     ]
 }
 
-/// Each is limited by what its tendons carry, not by the loop: the numbers of state feedback follow from the configuration. The gains
-/// of the figures do not, and leave most of these fingers unstable.
+/// Each is limited by what its tendons carry, not by the loop: the numbers of state feedback follow from the
+/// configuration. The gains of the figures do not, and leave most of these fingers unstable.
 #[test]
 fn state_feedback_is_made_for_the_finger_that_is_configured() {
     for (name, finger) in other_fingers(Scheme::StateFeedback) {

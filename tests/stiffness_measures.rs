@@ -1,5 +1,5 @@
-//! The measuring instruments of `cargo bench --bench stiffness`, where they could lie: each against something known, and against
-//! fingers that must fail.
+//! The measuring instruments of `cargo bench --bench stiffness`, where they could lie: each against something known,
+//! and against fingers that must fail.
 
 #![allow(dead_code, reason = "the bench uses the rest of these files")]
 
@@ -154,8 +154,8 @@ fn a_pose_that_carries_less_shows_its_scale_and_no_error() {
     assert!(found.scale < 0.97 && found.error < 0.01, "{} of {}", found.error, found.scale);
 }
 
-/// A motor model that is believed 20 % wrong is no matter between tension and torque. In (RM)^-T, where M is geometry, it is: the joints
-/// are measured wrong by as much, and with them where the tip is held.
+/// A motor model that is believed 20 % wrong is no matter between tension and torque. In (RM)^-T, where M is geometry,
+/// it is: the joints are measured wrong by as much, and with them where the tip is held.
 #[test]
 fn a_motor_model_in_the_kinematics_is_found_out() {
     let case = case(Scheme::Figure11);

@@ -1,5 +1,6 @@
-//! Lists what this run of `cargo test` has left out, because tools are missing. Test programs run in the order of the alphabet, so this
-//! one is the last. It is no libtest program: a filter of test names would keep it from running, and its output would be captured.
+//! Lists what this run of `cargo test` has left out, because tools are missing. Test programs run in the order of the
+//! alphabet, so this one is the last. It is no libtest program: a filter of test names would keep it from running, and
+//! its output would be captured.
 
 #[allow(dead_code)]
 #[path = "common/tools.rs"]

@@ -2,8 +2,8 @@
 //!
 //!     cargo bench --bench handwritten
 //!
-//! First a closed loop is run and recorded, and both must give the same motor torques in every cycle of it. Then both repeat it in
-//! turn. Statistics are off in both: what is timed is from counts to motor torques and report.
+//! First a closed loop is run and recorded, and both must give the same motor torques in every cycle of it. Then both
+//! repeat it in turn. Statistics are off in both: what is timed is from counts to motor torques and report.
 
 mod by_hand;
 mod parameters;

@@ -3,8 +3,8 @@
 //!     cargo bench --bench instructions                    counts, and compares with recorded.toml
 //!     cargo bench --bench instructions -- --record        counts, and writes recorded.toml anew
 //!
-//! More than 2 % above what is recorded is a failure. Another compiler or C library makes other code: then nothing is compared, and
-//! said so. Record again when such a version becomes the usual one, or when a rise is meant.
+//! More than 2 % above what is recorded is a failure. Another compiler or C library makes other code: then nothing is
+//! compared, and said so. Record again when such a version becomes the usual one, or when a rise is meant.
 
 #[allow(dead_code, reason = "what the comparison with C needs of it")]
 #[path = "../recorded_run/mod.rs"]
@@ -31,7 +31,8 @@ const RISE: f64 = 0.02;
 
 const RECORD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions/recorded.toml");
 
-/// The C library chooses its sines by what the processor has: without these it takes those that every processor can run.
+/// The C library chooses its sines by what the processor has: without these it takes those that every processor can
+/// run.
 const PLAIN_PROCESSOR: &str =
     "glibc.cpu.hwcaps=-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-FMA4,-AVX_Fast_Unaligned_Load,-ERMS";
 

@@ -1,4 +1,5 @@
-//! Late cycles and what made them late: a clock that notes what it is asked, and watchers that note when their core stood still.
+//! Late cycles and what made them late: a clock that notes what it is asked, and watchers that note when their core
+//! stood still.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -25,8 +26,9 @@ pub struct LateCycle {
     pub computed: u64,
 }
 
-/// What a servo asks of its clock in one cycle: to sleep until the beginning; the time when it has woken; and last the times when it
-/// begins to compute and when it has. So the clock knows of every late cycle, and the library that is measured is the one that is used.
+/// What a servo asks of its clock in one cycle: to sleep until the beginning; the time when it has woken; and last the
+/// times when it begins to compute and when it has. So the clock knows of every late cycle, and the library that is
+/// measured is the one that is used.
 pub struct NotingClock {
     period: u64,
     beginning: Cell<u64>,
@@ -186,10 +188,12 @@ pub enum Cause {
     WakeUp,
     /// A core stood still meanwhile to a thread above all servos, for as long as the cycle was late.
     Pause,
-    /// It was kept from its core: by a poll that returned after its deadline, or by other threads. It ran for so short a time that it would
-    /// have been done with what is left of a period after the latest reply, had it run when it was due.
+    /// It was kept from its core: by a poll that returned after its deadline, or by other threads. It ran for so short
+    /// a time that it would have been done with what is left of a period after the latest reply, had it run when it was
+    /// due.
     Kept,
-    /// It ran for longer than that, but would have been late without its computation too: write, wait and read took long.
+    /// It ran for longer than that, but would have been late without its computation too: write, wait and read took
+    /// long.
     Exchange,
     /// None of these: the library itself, in its computation.
     Library,

@@ -5,8 +5,8 @@
 //!     cargo bench --bench realtime -- planner [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- long-run [--minutes 30]
 //!
-//! wake-up and long-run need cyclictest (Debian: rt-tests), and wake-up stress-ng. What is compared is measured in one run, in turn.
-//! Without a name all but the long run are done.
+//! wake-up and long-run need cyclictest (Debian: rt-tests), and wake-up stress-ng. What is compared is measured in one
+//! run, in turn. Without a name all but the long run are done.
 
 mod cyclictest;
 mod explain;

@@ -1,5 +1,5 @@
-//! Cycles a second without a rate limit: what is left is the system's terminals, the codec and the core. A cycle whose reply was lost is
-//! not counted.
+//! Cycles a second without a rate limit: what is left is the system's terminals, the codec and the core. A cycle whose
+//! reply was lost is not counted.
 
 use crate::Failure;
 use crate::fingers::reach;
@@ -48,8 +48,8 @@ const OPEN: u8 = 0;
 const MEASURE: u8 = 1;
 const END: u8 = 2;
 
-/// A clock that waits only while the fingers come under tension. They do so at an ordinary rate: on a machine with other work a servo that
-/// never waits keeps the bytes of its own terminals from being carried.
+/// A clock that waits only while the fingers come under tension. They do so at an ordinary rate: on a machine with
+/// other work a servo that never waits keeps the bytes of its own terminals from being carried.
 #[derive(Clone)]
 struct UnlimitedClock {
     phase: Arc<AtomicU8>,
@@ -85,8 +85,8 @@ impl Drop for Phase {
     }
 }
 
-/// Of one finger: cycles a second with a reply, how many replies were lost, and what ended the measurement early; or why nothing was
-/// measured.
+/// Of one finger: cycles a second with a reply, how many replies were lost, and what ended the measurement early; or
+/// why nothing was measured.
 type Row = Result<(f64, u64, Option<String>), String>;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {

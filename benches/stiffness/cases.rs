@@ -44,8 +44,8 @@ impl Case {
         ConfiguredFinger::default().stiffness_bound(self.rate)
     }
 
-    /// A finger with this controller, at `pose`, that knows its own friction as identification finds it. Set points are not
-    /// slowed down: steps are steps.
+    /// A finger with this controller, at `pose`, that knows its own friction as identification finds it. Set points are
+    /// not slowed down: steps are steps.
     pub fn finger(&self, pose: &Vector3<f64>, friction: Friction) -> ConfiguredFinger {
         let mut finger = ConfiguredFinger::default();
         finger.controller.scheme = Some(self.scheme);

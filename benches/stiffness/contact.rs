@@ -21,8 +21,8 @@ pub struct Residual {
     pub early: f64,
 }
 
-/// How many poses do not come to rest within 2 s against a wall, from any side, without friction to help; and the largest
-/// residual motion, cm rms.
+/// How many poses do not come to rest within 2 s against a wall, from any side, without friction to help; and the
+/// largest residual motion, cm rms.
 pub fn against_walls(case: &Case, stiffness: f64) -> (usize, f64) {
     let of_pose = each(&case.poses(), |_, pose| {
         let runs = WALLS.iter().flat_map(|&wall| axes().map(move |outward| (wall, outward)));
@@ -76,8 +76,8 @@ pub struct OverLimit {
     pub scale: f64,
 }
 
-/// A set point far beyond the mechanical stop of joint 1, by the report's law, so that joints press against the stop with more than
-/// the tendons may carry.
+/// A set point far beyond the mechanical stop of joint 1, by the report's law, so that joints press against the stop
+/// with more than the tendons may carry.
 pub fn over_limit(case: &Case) -> OverLimit {
     let all = each(&case.poses(), |_, pose| {
         let mut pose = *pose;

@@ -3,8 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 pub use sun2xp::stability::growth;
 
-/// The relative error of a spring in its worst direction: the largest singular value of S K S - 1 with S = Kx^-1/2, K being
-/// the stiffness that forces (N) and deflections (cm) show together. So u^T K u is within (1 +- e) u^T Kx u for every u.
+/// The relative error of a spring in its worst direction: the largest singular value of S K S - 1 with S = Kx^-1/2, K
+/// being the stiffness that forces (N) and deflections (cm) show together. So u^T K u is within (1 +- e) u^T Kx u for
+/// every u.
 pub fn spring_error(forces: &[Vector3<f64>], deflections: &[Vector3<f64>], kx: &Matrix3<f64>) -> f64 {
     let found = apparent_stiffness(forces, deflections);
     let mut eigen = kx.symmetric_eigen();

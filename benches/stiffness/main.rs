@@ -3,7 +3,8 @@
 //!     cargo bench --bench stiffness -- [--quick] [--poses N] [--seed N] [--rates 500,1000,2000] [--controllers "figure 9,state feedback"]
 //!                                      [--only TEXT] [--out FOLDER] [--write docs/stiffness.md]
 //!
-//! The pure core against the simulated finger, in memory and on simulated time, with one cycle between sample and torque.
+//! The pure core against the simulated finger, in memory and on simulated time, with one cycle between sample and
+//! torque.
 
 mod cases;
 mod closed_loop;
@@ -42,8 +43,8 @@ struct Arguments {
     /// Hz, separated by commas; 500, 1000 and 2000, or 1000 if quick.
     #[arg(long, value_delimiter = ',')]
     rates: Option<Vec<f64>>,
-    /// Tendon controllers, as in the configuration, separated by commas. Figure 10 is measured first in any case: it is what the
-    /// others are compared with.
+    /// Tendon controllers, as in the configuration, separated by commas. Figure 10 is measured first in any case: it is
+    /// what the others are compared with.
     #[arg(long, value_delimiter = ',', value_parser = scheme, default_values = ["figure 10", "state feedback"])]
     controllers: Vec<Scheme>,
     /// Only rows whose names contain this, or one of several texts separated by semicolons.

@@ -77,7 +77,8 @@ fn step(finger: &mut ClosedLoop, direction: &Vector3<f64>) -> Step {
     Step { time, overshoot, least_true: finger.least_true, least_commanded: finger.least_commanded }
 }
 
-/// How far the tip has gone in the course of one step, parts of it, over time, s: every pose's first direction with room.
+/// How far the tip has gone in the course of one step, parts of it, over time, s: every pose's first direction with
+/// room.
 pub fn step_responses(case: &Case, stiffness: f64, seconds: f64) -> Vec<Vec<(f64, f64)>> {
     let mut cases = case.poses_and_directions(ROOM);
     cases.dedup_by_key(|(pose, _)| *pose);
@@ -93,8 +94,8 @@ pub fn step_responses(case: &Case, stiffness: f64, seconds: f64) -> Vec<Vec<(f64
     })
 }
 
-/// A reach of 30 mm over 200 ms, minimum jerk, Kx 3: the largest error from 100 ms after its end on, cm, and the least true
-/// tension, N.
+/// A reach of 30 mm over 200 ms, minimum jerk, Kx 3: the largest error from 100 ms after its end on, cm, and the least
+/// true tension, N.
 pub fn reach(case: &Case) -> (f64, f64) {
     const WAY: f64 = 3.0;
     let all = each(&case.poses_and_directions(WAY), |_, (pose, direction)| {
@@ -114,8 +115,8 @@ pub fn reach(case: &Case) -> (f64, f64) {
     (worst(all.iter().map(|one| one.0)), least(all.iter().map(|one| one.1)))
 }
 
-/// A finger that holds its pose, with friction: how much the commanded pull of a tendon changes from cycle to cycle, N rms, and how
-/// much the tip moves, cm rms; worst over poses and tendons.
+/// A finger that holds its pose, with friction: how much the commanded pull of a tendon changes from cycle to cycle, N
+/// rms, and how much the tip moves, cm rms; worst over poses and tendons.
 pub fn at_rest(case: &Case, stiffness: f64) -> (f64, f64) {
     let all = each(&case.poses(), |_, pose| {
         let mut finger = ClosedLoop::at(case, pose, Friction::Default, &(Matrix3::identity() * stiffness));

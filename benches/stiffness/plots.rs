@@ -45,8 +45,9 @@ fn step_responses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The forces that a deflection by 1 mm in every direction of a coordinate plane wants (black) and finds (red): sections through
-/// the ellipsoids of Kx = diag(1, 5, 2) and of the apparent stiffness; friction on. One row a controller, one column a pose.
+/// The forces that a deflection by 1 mm in every direction of a coordinate plane wants (black) and finds (red):
+/// sections through the ellipsoids of Kx = diag(1, 5, 2) and of the apparent stiffness; friction on. One row a
+/// controller, one column a pose.
 fn ellipses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
     const PLANE: [usize; 2] = [0, 1];
     let kx = Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0));

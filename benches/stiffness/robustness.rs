@@ -51,8 +51,8 @@ pub fn tendon_stiffness(case: &Case, stiffness: f64, ratios: &[[f64; 4]]) -> Fid
     Fidelity::worst(&ratios.iter().map(with).collect::<Vec<_>>())
 }
 
-/// With tendons that are off by each of these, and a controller that has identified them: the worst error of what it then believes of
-/// a tendon, and the apparent stiffness at each of `stiffnesses`.
+/// With tendons that are off by each of these, and a controller that has identified them: the worst error of what it
+/// then believes of a tendon, and the apparent stiffness at each of `stiffnesses`.
 pub fn identified_tendons(
     case: &Case,
     stiffnesses: [f64; 2],

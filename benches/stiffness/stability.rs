@@ -32,8 +32,8 @@ pub struct Stability {
 /// Samples for each pose of the other rows.
 const DENSITY: usize = 20;
 
-/// Poses within `limits`, springs up to the bound, small loads: without one the tendons 1 and 4 share t_min, where eq. 20 has
-/// a kink.
+/// Poses within `limits`, springs up to the bound, small loads: without one the tendons 1 and 4 share t_min, where eq.
+/// 20 has a kink.
 fn samples(case: &Case, limits: &[[f64; 2]; 3]) -> Vec<Sample> {
     let mut random = Pcg64::seed_from_u64(case.seed + 2);
     let bound = case.bound();
@@ -86,8 +86,8 @@ fn measure(case: &Case, samples: &[Sample]) -> Stability {
     }
 }
 
-/// The largest modulus of an eigenvalue of the one-cycle map; none where the finger does not come to rest, or has lost a tendon
-/// or the wall.
+/// The largest modulus of an eigenvalue of the one-cycle map; none where the finger does not come to rest, or has lost
+/// a tendon or the wall.
 ///
 /// Two fingers, one of them nudged by next to nothing: how their difference goes on is the linear map and nothing else.
 pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> Option<f64> {

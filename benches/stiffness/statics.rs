@@ -9,7 +9,8 @@ use nalgebra::{Matrix3, Vector3};
 /// How well a tip is its spring.
 #[derive(Clone, Copy)]
 pub struct Fidelity {
-    /// Of the apparent stiffness, in the worst direction, against what the controller reports that it gives: a part of Kx.
+    /// Of the apparent stiffness, in the worst direction, against what the controller reports that it gives: a part of
+    /// Kx.
     pub error: f64,
     /// That part: less than 1 where the tendons of the pose carry no more.
     pub scale: f64,
@@ -97,7 +98,8 @@ pub fn triangle(case: &Case, stiffness: f64) -> f64 {
     }))
 }
 
-/// Error of the stiffness that the deflection along the push shows, when pushed from rest with Kx times `deflection` cm for 3 s.
+/// Error of the stiffness that the deflection along the push shows, when pushed from rest with Kx times `deflection` cm
+/// for 3 s.
 pub fn pushed_from_rest(case: &Case, friction: Friction, stiffness: f64, deflection: f64) -> f64 {
     worst(each(&case.poses(), |_, pose| {
         worst(axes().map(|direction| {

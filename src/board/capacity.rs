@@ -6,7 +6,8 @@ use thiserror::Error;
 /// Start bit, eight data bits, stop bit.
 const BITS_PER_BYTE: f64 = 10.0;
 
-/// The part of a period that the line may take. The rest is for waking up, computing, and a UART's or USB bridge's buffers.
+/// The part of a period that the line may take. The rest is for waking up, computing, and a UART's or USB bridge's
+/// buffers.
 pub const USABLE_SHARE: f64 = 0.8;
 
 /// A rate that the line cannot carry.
@@ -41,10 +42,11 @@ pub struct TooFast {
     pub fastest_rate: f64,
 }
 
-/// How long one exchange with so many fingers takes on the line, us. `more`: bytes that a reply may once have in addition.
+/// How long one exchange with so many fingers takes on the line, us. `more`: bytes that a reply may once have in
+/// addition.
 ///
-/// The line is full duplex: the first reply may begin while the second command is still going out, and replies are longer
-/// than commands, so that an exchange takes one command, the board's turnaround and all replies.
+/// The line is full duplex: the first reply may begin while the second command is still going out, and replies are
+/// longer than commands, so that an exchange takes one command, the board's turnaround and all replies.
 pub fn exchange_microseconds(baud: u32, fingers: usize, more: usize) -> f64 {
     let bytes = Kind::Command.wire_length() + fingers * (Kind::Reply.wire_length() + more);
     bytes as f64 * BITS_PER_BYTE / f64::from(baud) * 1e6 + f64::from(TURNAROUND_MICROSECONDS)

@@ -142,8 +142,8 @@ impl<T: Transport> Link<T> {
     /// Sends the Commands of all fingers on the port, 15 at most, in one write. What the port does not take at once is
     /// lost and counted: the missing Reply will tell the same.
     pub fn send(&mut self, commands: &[OutgoingCommand]) -> Result<(), LinkError> {
-        // Half a Reply of the last period is of no use any more, and must not take the next one with it. Where reading was cut short, its
-        // other half comes next.
+        // Half a Reply of the last period is of no use any more, and must not take the next one with it. Where reading
+        // was cut short, its other half comes next.
         if self.unread.is_empty() && !self.cut_short {
             self.decoder.abandon();
         }
@@ -162,13 +162,15 @@ impl<T: Transport> Link<T> {
         self.write(&mut bytes[..length])
     }
 
-    /// The next Reply, or none at `deadline` (ns on the transport's clock). With a deadline in the past: a Reply that is
-    /// there already. A refused Command is an error: the board lost its configuration, or is no longer the board it was.
+    /// The next Reply, or none at `deadline` (ns on the transport's clock). With a deadline in the past: a Reply that
+    /// is there already. A refused Command is an error: the board lost its configuration, or is no longer the board it
+    /// was.
     pub fn receive(&mut self, deadline: u64) -> Result<Option<Received>, LinkError> {
         self.receive_within(&mut Allowance::for_replies(deadline))
     }
 
-    /// The same for one of several Replies that are awaited together: all calls share one allowance. None when it is used up.
+    /// The same for one of several Replies that are awaited together: all calls share one allowance. None when it is
+    /// used up.
     pub fn receive_within(&mut self, allowance: &mut Allowance) -> Result<Option<Received>, LinkError> {
         while let Some(Message { address, sequence, frame }) = self.next_message(allowance)? {
             match frame {

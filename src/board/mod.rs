@@ -1,4 +1,5 @@
-//! The host's end of the cable: the protocol of `docs/board-protocol.md`, the serial link that speaks it, and the ports.
+//! The host's end of the cable: the protocol of `docs/board-protocol.md`, the serial link that speaks it, and the
+//! ports.
 
 mod capacity;
 pub(crate) mod descriptor;

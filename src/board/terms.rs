@@ -5,7 +5,8 @@ use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState};
 use nalgebra::Vector4;
 use thiserror::Error;
 
-/// The protocol lets a board need a watchdog of up to so many ms. It gets what it needs, even where a shorter one is configured.
+/// The protocol lets a board need a watchdog of up to so many ms. It gets what it needs, even where a shorter one is
+/// configured.
 const LONGEST_NEEDED_MS: u16 = 20;
 
 /// A board's torque unit is this part of a motor's torque limit at most: rounding takes as much off the limit.
@@ -133,7 +134,8 @@ fn count(board: &Identity, limit: f64) -> u16 {
     board.torque_count(limit).max(0) as u16
 }
 
-/// A torque constant, N cm/A, in uN m/A, rounded up: the board divides a torque by it, and a larger one makes the current smaller.
+/// A torque constant, N cm/A, in uN m/A, rounded up: the board divides a torque by it, and a larger one makes the
+/// current smaller.
 fn micro(constant: f64) -> u32 {
     let nearest = (constant * MICRO_PER_CENTI).round();
     let up = if nearest / MICRO_PER_CENTI < constant { nearest + 1.0 } else { nearest };

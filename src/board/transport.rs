@@ -5,8 +5,8 @@ pub trait Transport {
     /// Sends bytes without waiting; what does not fit now is lost. How many were sent.
     fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError>;
 
-    /// Waits for bytes, at most until `deadline` (ns on this transport's clock), and takes what is there: at least one byte,
-    /// or none at the deadline. Bytes that are there already are taken even after the deadline.
+    /// Waits for bytes, at most until `deadline` (ns on this transport's clock), and takes what is there: at least one
+    /// byte, or none at the deadline. Bytes that are there already are taken even after the deadline.
     fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError>;
 
     /// When the bytes that were last taken could be read, ns: the reading itself comes after.

@@ -1,8 +1,9 @@
 //! Gains of the gauges relative to each other: the tensions of a free finger lie along the null vector of R.
 //!
-//! R G^-1 t = g + friction, with what the gauges show t, their gains G and gravity g. At two levels of common tension, in the same
-//! poses, g is the same and falls out of the difference; friction falls out of the mean of two ways in opposite directions.
-//! So t_high - t_low is along G n, n the null vector. That tells G but for one common factor, which no free finger shows.
+//! R G^-1 t = g + friction, with what the gauges show t, their gains G and gravity g. At two levels of common tension,
+//! in the same poses, g is the same and falls out of the difference; friction falls out of the mean of two ways in
+//! opposite directions. So t_high - t_low is along G n, n the null vector. That tells G but for one common factor,
+//! which no free finger shows.
 
 use super::average::Average;
 use super::instruments::Instruments;

@@ -3,8 +3,8 @@
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Vector3, Vector4};
 
-/// `tendon.stiffness_tolerance` of what was identified. On the simulated finger it is right to 0.2 %; a real tendon is no straight
-/// spring.
+/// `tendon.stiffness_tolerance` of what was identified. On the simulated finger it is right to 0.2 %; a real tendon is
+/// no straight spring.
 const STIFFNESS_TOLERANCE: f64 = 0.03;
 
 /// Results of one routine.
@@ -53,11 +53,11 @@ pub struct Identified {
     pub motor_coulomb: Vector4<f64>,
     /// `friction.conduit`.
     pub conduit: Vector4<f64>,
-    /// What `gauge.newton_per_count` is to be multiplied by. Relative to each other the gains are measured; their mean is taken
-    /// from `gauge.reference`.
+    /// What `gauge.newton_per_count` is to be multiplied by. Relative to each other the gains are measured; their mean
+    /// is taken from `gauge.reference`.
     pub gauge_gain: Vector4<f64>,
-    /// True torque of each motor over the commanded one, if the gauges are right by now: without a known weight a common error of
-    /// the gauges cannot be told from one of the motors.
+    /// True torque of each motor over the commanded one, if the gauges are right by now: without a known weight a
+    /// common error of the gauges cannot be told from one of the motors.
     pub motor_ratio: Vector4<f64>,
     /// `friction.joint_coulomb`, N cm.
     pub joint_coulomb: Vector3<f64>,

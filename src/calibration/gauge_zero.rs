@@ -1,5 +1,5 @@
-//! Gauge offsets with the motors off. Friction in motor and conduit keeps a tendon under tension though its motor is off, so
-//! every motor first lets its tendon out.
+//! Gauge offsets with the motors off. Friction in motor and conduit keeps a tendon under tension though its motor is
+//! off, so every motor first lets its tendon out.
 
 use super::average::Average;
 use super::instruments::Instruments;
@@ -11,7 +11,8 @@ use std::ops::ControlFlow::{self, Break, Continue};
 
 /// How far every tendon is let out, cm: several times the stretch of the pretension.
 const LET_OUT: f64 = 0.15;
-/// Part of t_min that a motor pushes with to let out: more than its friction, which a motor that shall control t_min has.
+/// Part of t_min that a motor pushes with to let out: more than its friction, which a motor that shall control t_min
+/// has.
 const PUSH: f64 = 0.8;
 /// s.
 const LETTING_OUT_LIMIT: f64 = 5.0;

@@ -1,5 +1,5 @@
-//! Whether something holds a limp finger in its pose: each joint is pushed lightly both ways, as in a search for stops, and a joint
-//! that is held does not give way.
+//! Whether something holds a limp finger in its pose: each joint is pushed lightly both ways, as in a search for stops,
+//! and a joint that is held does not give way.
 
 use super::instruments::Instruments;
 use super::joint_lead::JointLead;
@@ -36,7 +36,8 @@ impl Grip {
         Self { lead, start: lead.joints, push: 0, seconds: 0.0 }
     }
 
-    /// What the finger does, and whether all joints were pushed and the finger is at rest again. `speed` of the pushes, rad/s.
+    /// What the finger does, and whether all joints were pushed and the finger is at rest again. `speed` of the pushes,
+    /// rad/s.
     pub fn step(
         &mut self,
         instruments: &Instruments,

@@ -1,7 +1,7 @@
 //! Friction of the joints: the torque R t that it takes to move one to and fro, slowly and less slowly.
 //!
-//! (R t)_j = g + s (C + b |v|): Coulomb and viscous friction are told apart by the two speeds, and what does not change with
-//! direction (gravity) is left out.
+//! (R t)_j = g + s (C + b |v|): Coulomb and viscous friction are told apart by the two speeds, and what does not change
+//! with direction (gravity) is left out.
 
 use super::instruments::Instruments;
 use super::joint_lead::JointLead;
@@ -15,8 +15,8 @@ use nalgebra::Vector3;
 const SWINGS: [(f64, f64); 2] = [(0.15, 0.4), (0.6, 0.8)];
 /// Distance kept from the stop, rad.
 const CLEAR: f64 = 0.1;
-/// Left out after every change of direction, s: an extended finger swings for so long, and its inertia takes as much torque as
-/// its friction.
+/// Left out after every change of direction, s: an extended finger swings for so long, and its inertia takes as much
+/// torque as its friction.
 const RUN_UP: f64 = 0.5;
 /// A joint that pulls at its limit for so long is blocked, s.
 const BLOCKED: f64 = 0.3;

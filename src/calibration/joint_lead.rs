@@ -1,5 +1,5 @@
-//! Leading the joints: a soft spring in joint space whose torque is bounded, and whose anchor does not run away from a joint
-//! that is held.
+//! Leading the joints: a soft spring in joint space whose torque is bounded, and whose anchor does not run away from a
+//! joint that is held.
 
 use super::instruments::Instruments;
 use super::step::Sample;

@@ -1,7 +1,8 @@
 //! Zeroing and identification of a finger: routines that move it and learn from what it does.
 //!
-//! Each is a state machine of the pure core: measurement in, activity out, one step a servo cycle. It knows no clock and
-//! allocates nothing. What it found, or why it gave up, is its verdict; storing and applying that is the hand's business.
+//! Each is a state machine of the pure core: measurement in, activity out, one step a servo cycle. It knows no clock
+//! and allocates nothing. What it found, or why it gave up, is its verdict; storing and applying that is the hand's
+//! business.
 
 mod average;
 mod balance;

@@ -19,7 +19,8 @@ pub enum Task {
     Signs,
     /// Zeros of gauges and encoders, the latter by the configured method.
     Zero,
-    /// Gains of the gauges, friction of motors and joints, stiffness of tendons. The finger moves to its lower stops and presses against them.
+    /// Gains of the gauges, friction of motors and joints, stiffness of tendons. The finger moves to its lower stops
+    /// and presses against them.
     Identify,
 }
 
@@ -34,7 +35,8 @@ pub enum Verdict {
     Refused(Obstacle),
 }
 
-/// A routine under way. In the beginning it may leave the finger to what controls it: it has taken over once a cycle yields an activity.
+/// A routine under way. In the beginning it may leave the finger to what controls it: it has taken over once a cycle
+/// yields an activity.
 #[derive(Clone, Debug)]
 pub struct Calibration {
     instruments: Instruments,
@@ -73,9 +75,9 @@ impl Calibration {
         })
     }
 
-    /// The same finger as its controller must be made while a routine runs at `rate`, Hz: by Figure 10, whatever is configured. State
-    /// feedback is built upon the stiffness, friction and zeros that are looked for, and Figure 11 adapts to what the gauges show.
-    /// Gains of Figure 10 that are configured stay.
+    /// The same finger as its controller must be made while a routine runs at `rate`, Hz: by Figure 10, whatever is
+    /// configured. State feedback is built upon the stiffness, friction and zeros that are looked for, and Figure 11
+    /// adapts to what the gauges show. Gains of Figure 10 that are configured stay.
     pub fn controlled(finger: &ConfiguredFinger, rate: f64) -> ConfiguredFinger {
         let configured = &finger.controller;
         let controller = match configured.scheme(rate) {
@@ -90,8 +92,9 @@ impl Calibration {
         }
     }
 
-    /// One cycle that has a measurement: what the finger shall do, and how it goes. Without an activity the finger goes on with what it
-    /// did before the routine, under the controller that it had. Not to be called again after a verdict.
+    /// One cycle that has a measurement: what the finger shall do, and how it goes. Without an activity the finger goes
+    /// on with what it did before the routine, under the controller that it had. Not to be called again after a
+    /// verdict.
     pub fn cycle(&mut self, sample: &Sample) -> (Option<Activity>, Verdict) {
         let (activity, verdict) = self.step(sample);
         self.in_charge |= activity.is_some();

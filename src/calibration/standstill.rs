@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 /// A joint may be so far from where it is taken to be, rad. The zeros are wrong by at most as much.
 pub(super) const TOLERANCE: f64 = 0.004;
 
-/// Time constant of the low-pass on the joints, s. It removes the noise of the gauges and the shaking of state feedback.
+/// Time constant of the low-pass on the joints, s. It removes the noise of the gauges and the shaking of state
+/// feedback.
 const SMOOTHING: f64 = 0.02;
 
 /// Mean and extremes of the joints over a stretch of time.

@@ -1,8 +1,8 @@
 //! The stiffness of every tendon from motor travel against tension.
 //!
-//! x_i = R_i^T theta + t_i / k_i + const for every tendon. The null vector n of R takes the joints out, whatever they do:
-//! n . x = sum n_i t_i / k_i + const, four unknown compliances in one equation a sample. They are told apart where the four
-//! tensions vary independently, which takes joint torques, and so something that holds the finger.
+//! x_i = R_i^T theta + t_i / k_i + const for every tendon. The null vector n of R takes the joints out, whatever they
+//! do: n . x = sum n_i t_i / k_i + const, four unknown compliances in one equation a sample. They are told apart where
+//! the four tensions vary independently, which takes joint torques, and so something that holds the finger.
 
 use super::instruments::Instruments;
 use super::least_squares::LeastSquares;

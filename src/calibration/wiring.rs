@@ -1,7 +1,8 @@
 //! Whether every motor pulls at the tendon whose gauge has its number.
 //!
-//! At rest a free finger shares every pull among all its tendons, so that says nothing. But a pull reaches the other tendons
-//! only by moving the links, and they are inert: for some milliseconds after a sudden one its own gauge is far ahead.
+//! At rest a free finger shares every pull among all its tendons, so that says nothing. But a pull reaches the other
+//! tendons only by moving the links, and they are inert: for some milliseconds after a sudden one its own gauge is far
+//! ahead.
 
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
@@ -40,8 +41,8 @@ impl Wiring {
         Self { motor: 0, jerks: 0, seconds: 0.0, base: zeros, bases: 0.0, risen: zeros, samples: 0.0 }
     }
 
-    /// The pull that jerks a motor inward in this cycle, N at each tendon; none when every motor has been. `tensions`, N, need no
-    /// zero, but the signs of the gauges.
+    /// The pull that jerks a motor inward in this cycle, N at each tendon; none when every motor has been. `tensions`,
+    /// N, need no zero, but the signs of the gauges.
     pub fn step(
         &mut self,
         instruments: &Instruments,

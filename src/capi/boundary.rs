@@ -1,8 +1,9 @@
-//! What every call does on its way in and out. No panic leaves a call, no cancellation enters it, and the planner's errno,
-//! floating-point environment and signal mask are after it what they were before.
+//! What every call does on its way in and out. No panic leaves a call, no cancellation enters it, and the planner's
+//! errno, floating-point environment and signal mask are after it what they were before.
 //!
-//! A quick call runs in the planner's thread. A slow one runs in a thread of its own, for which the planner's waits: it needs little
-//! of the planner's stack then, and a signal handler that jumps out of it (siglongjmp) leaves nothing locked. The call goes on.
+//! A quick call runs in the planner's thread. A slow one runs in a thread of its own, for which the planner's waits: it
+//! needs little of the planner's stack then, and a signal handler that jumps out of it (siglongjmp) leaves nothing
+//! locked. The call goes on.
 
 use crate::capi::forked::is_forked_child;
 use crate::capi::process;
@@ -34,8 +35,8 @@ pub(super) fn guarded(name: &'static str, call: impl FnOnce() -> Result<(), Refu
     })
 }
 
-/// Runs a slow call in a thread of its own: 0 where it is done, -1 where it is refused. `prepare` copies the arguments in the
-/// planner's thread. The call is refused where less than `memory` is free, bytes.
+/// Runs a slow call in a thread of its own: 0 where it is done, -1 where it is refused. `prepare` copies the arguments
+/// in the planner's thread. The call is refused where less than `memory` is free, bytes.
 #[inline(always)]
 pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
     name: &'static str,
@@ -57,8 +58,8 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
     })
 }
 
-/// Runs a slow call as [`delegated`] does, but in the planner's thread where there is no memory for another or the system refuses
-/// it: for what must not fail.
+/// Runs a slow call as [`delegated`] does, but in the planner's thread where there is no memory for another or the
+/// system refuses it: for what must not fail.
 #[inline(always)]
 pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<(), Refusal>) -> c_int {
     uncancelled(|| {
@@ -78,8 +79,8 @@ pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<()
     })
 }
 
-/// Everything of a slow call but the wait itself is done with all signals blocked: nothing there can be jumped out of. During the
-/// wait the thread has the planner's floating-point environment, which a jump would leave as it is.
+/// Everything of a slow call but the wait itself is done with all signals blocked: nothing there can be jumped out of.
+/// During the wait the thread has the planner's floating-point environment, which a jump would leave as it is.
 fn waited_for(name: &str, _blocked: &SignalsBlocked, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
     let errno = process::errno();
     let outcome = admitted(call);
@@ -91,8 +92,8 @@ fn waited_for(name: &str, _blocked: &SignalsBlocked, call: impl FnOnce() -> Resu
 
 /// Keeps cancellation out of `call`, which must not panic and whose result needs no destructor.
 ///
-/// This becomes a part of the exported function, in which nothing has a destructor: a thread with asynchronous cancellation may be
-/// unwound there before and after the call.
+/// This becomes a part of the exported function, in which nothing has a destructor: a thread with asynchronous
+/// cancellation may be unwound there before and after the call.
 #[inline(always)]
 pub(super) fn uncancelled<R, F: FnOnce() -> R>(call: F) -> R {
     let mut call = ManuallyDrop::new(call);

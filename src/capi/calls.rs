@@ -1,6 +1,6 @@
-//! The calls of 1990, and HandError. Their comments are the C manual: cbindgen copies them into `include/Sun2Xp.h`, whose opening
-//! chapters stand in `cbindgen.toml`. So they are written for C programmers, indented as they shall be read, and must not
-//! close a C comment.
+//! The calls of 1990, and HandError. Their comments are the C manual: cbindgen copies them into `include/Sun2Xp.h`,
+//! whose opening chapters stand in `cbindgen.toml`. So they are written for C programmers, indented as they shall be
+//! read, and must not close a C comment.
 
 // The names of 1990.
 #![allow(non_snake_case)]
@@ -48,10 +48,10 @@ pub extern "C" fn OpenHand() -> c_int {
 ///
 ///     int CloseHand(void);
 ///
-/// Brings every finger to the configured end state - release: the torque ramps to zero;
-/// hold: the board keeps the last torque, up to hand.hold_torque_limit, for
-/// hand.hold_time_ms, also after this call has returned - and ends the servos. With no hand open it does nothing and returns 0. After it OpenHand may be
-/// called again. A planner that exits without it has it called for it.
+/// Brings every finger to the configured end state - release: the torque ramps to zero; hold: the board keeps the last
+/// torque, up to hand.hold_torque_limit, for hand.hold_time_ms, also after this call has returned - and ends the
+/// servos. With no hand open it does nothing and returns 0. After it OpenHand may be called again. A planner that exits
+/// without it has it called for it.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child

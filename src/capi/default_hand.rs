@@ -44,7 +44,8 @@ pub(super) fn close() -> Result<(), Refusal> {
 
 fn close_at_exit() {
     let Some(_closing) = LIFE.try_lock_for(PATIENCE_AT_EXIT) else { return };
-    // Ended and not closed: a signal handler may have called exit in the middle of malloc, and then freeing would wait for ever.
+    // Ended and not closed: a signal handler may have called exit in the middle of malloc, and then freeing would wait
+    // for ever.
     if let Some(hand) = HAND.try_read_for(PATIENCE_AT_EXIT)
         && let Some(hand) = &*hand
     {
@@ -59,8 +60,8 @@ pub(super) fn with<T, E: Into<Refusal>>(call: impl FnOnce(&Hand) -> Result<T, E>
     call(hand).map_err(E::into)
 }
 
-/// Makes a faulted finger of the open hand a spring again. The hand is looked at from time to time and not kept from being closed, nor
-/// other calls from being made.
+/// Makes a faulted finger of the open hand a spring again. The hand is looked at from time to time and not kept from
+/// being closed, nor other calls from being made.
 pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
     let recovering = with(|hand| Recovering::begin(hand, finger))?;
     // Without the hand: ports are slow. Was it closed meanwhile, that is what there is to tell.
@@ -72,8 +73,8 @@ pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Calibrates a finger of the open hand and stores what was found. The hand is looked at from time to time and not kept from
-/// being closed, nor other calls from being made.
+/// Calibrates a finger of the open hand and stores what was found. The hand is looked at from time to time and not kept
+/// from being closed, nor other calls from being made.
 pub(super) fn calibrate(finger: i32, task: Task) -> Result<(), Refusal> {
     let mut calibrating = with(|hand| Calibrating::begin(hand, finger, task))?;
     while let Standing::Going(_) = with(|hand| calibrating.poll(hand))? {

@@ -15,7 +15,8 @@ pub(super) static TEXTS: LazyLock<Vec<CString>> = LazyLock::new(|| {
     FaultKind::ALL.iter().map(text).collect()
 });
 
-/// Composes the texts, before the process forks: a child may find the lock of a thread that composes them taken for ever.
+/// Composes the texts, before the process forks: a child may find the lock of a thread that composes them taken for
+/// ever.
 pub(super) fn compose_texts() {
     LazyLock::force(&TEXTS);
 }

@@ -1,5 +1,5 @@
-//! The exported functions that speak of the fingertip, and of what else may change while a finger runs. As in `calls.rs`, their
-//! comments are the C manual.
+//! The exported functions that speak of the fingertip, and of what else may change while a finger runs. As in
+//! `calls.rs`, their comments are the C manual.
 
 // Named like the calls of 1990.
 #![allow(non_snake_case)]

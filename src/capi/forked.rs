@@ -8,19 +8,21 @@ const OWN: u8 = 1;
 static BEFORE_OPENING: AtomicU8 = AtomicU8::new(OWN);
 static IN_CHILD: AtomicU8 = AtomicU8::new(0);
 
-/// Points to the mark of this process. From the first OpenHand on that is a byte which the system sets to 0 in every child: a child
-/// of fork, of _Fork and of a raw system call alike, and before any handler of pthread_atfork runs. A look at it costs a nanosecond,
-/// and asking for the process number 200.
+/// Points to the mark of this process. From the first OpenHand on that is a byte which the system sets to 0 in every
+/// child: a child of fork, of _Fork and of a raw system call alike, and before any handler of pthread_atfork runs. A
+/// look at it costs a nanosecond, and asking for the process number 200.
 static MARK: AtomicPtr<AtomicU8> = AtomicPtr::new((&raw const BEFORE_OPENING).cast_mut());
 
 /// Whether this process was forked from one that has called OpenHand.
 pub(super) fn is_forked_child() -> bool {
-    // SAFETY: it points to an atomic that is there as long as the process, and that nobody writes to after it was published.
+    // SAFETY: it points to an atomic that is there as long as the process, and that nobody writes to after it was
+    // published.
     let mark = unsafe { &*MARK.load(Ordering::Acquire) };
     mark.load(Ordering::Relaxed) != OWN
 }
 
-/// Marks this process, to be called once. Linux before 4.14 has no such pages: there only the handler of pthread_atfork tells a child.
+/// Marks this process, to be called once. Linux before 4.14 has no such pages: there only the handler of pthread_atfork
+/// tells a child.
 pub(super) fn mark_this_process() {
     let protection = libc::PROT_READ | libc::PROT_WRITE;
     // SAFETY: a new mapping of one byte, which the system makes a page. It is never given back.

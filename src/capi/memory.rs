@@ -21,8 +21,8 @@ pub(super) unsafe fn load<T, const N: usize>(array: *const T, name: &'static str
     Ok(unsafe { array.cast::<[T; N]>().read_unaligned() })
 }
 
-/// The size of a struct up to and with a member: the smallest that a program can have been compiled with, where that member was the
-/// last of the first version.
+/// The size of a struct up to and with a member: the smallest that a program can have been compiled with, where that
+/// member was the last of the first version.
 macro_rules! size_up_to {
     ($Struct:ty, $Member:ident: $Type:ty) => {
         std::mem::offset_of!($Struct, $Member) + size_of::<$Type>()
@@ -30,11 +30,12 @@ macro_rules! size_up_to {
 }
 pub(super) use size_up_to;
 
-/// Fills a struct of the caller's with what the open hand tells: at most as much as its first member, Size, says that there is room
-/// for, and leaves in Size how much that is. `least`: see [`size_up_to`].
+/// Fills a struct of the caller's with what the open hand tells: at most as much as its first member, Size, says that
+/// there is room for, and leaves in Size how much that is. `least`: see [`size_up_to`].
 ///
 /// # Safety
-/// `T` is `repr(C)` and begins with a Size of type `c_uint`. `out` is null, or points to a Size and to as many bytes as that says.
+/// `T` is `repr(C)` and begins with a Size of type `c_uint`. `out` is null, or points to a Size and to as many bytes as
+/// that says.
 pub(super) unsafe fn fill<T>(
     out: *mut T,
     name: &'static str,

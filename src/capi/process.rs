@@ -9,8 +9,8 @@ use std::sync::OnceLock;
 /// What exit calls; set with the first open.
 static CLOSE: OnceLock<fn()> = OnceLock::new();
 
-/// Watches for fork and exit from now on, and keeps ports away from the standard descriptors. To be called at every open: a
-/// planner may have closed one since the last. `close`: what exit calls.
+/// Watches for fork and exit from now on, and keeps ports away from the standard descriptors. To be called at every
+/// open: a planner may have closed one since the last. `close`: what exit calls.
 pub(super) fn watch(close: fn()) {
     keep_standard_descriptors();
     // Neither handler can be taken back.
@@ -18,7 +18,8 @@ pub(super) fn watch(close: fn()) {
         compose_texts();
         mark_this_process();
         // SAFETY: both handlers are functions of this library, which stays loaded (`-z nodelete`), and no panic leaves
-        // them. Out of memory is the only failure; then a planner's exit is what its death is: the boards' watchdogs act.
+        // them. Out of memory is the only failure; then a planner's exit is what its death is: the boards' watchdogs
+        // act.
         unsafe {
             libc::pthread_atfork(None, None, Some(in_forked_child));
             libc::atexit(at_exit);
@@ -27,8 +28,8 @@ pub(super) fn watch(close: fn()) {
     });
 }
 
-/// Opens /dev/null as those of descriptors 0 to 2 that the planner has closed: a board's port must not become its standard
-/// error, or every text would go to the board.
+/// Opens /dev/null as those of descriptors 0 to 2 that the planner has closed: a board's port must not become its
+/// standard error, or every text would go to the board.
 fn keep_standard_descriptors() {
     loop {
         // SAFETY: a constant path; the descriptor that comes back is closed here or meant to stay.

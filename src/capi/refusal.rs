@@ -104,7 +104,8 @@ static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
 /// Leaves errno, the text of the calling thread and, at the first of its kind, a line on standard error.
 pub(super) fn refuse(name: &str, refusal: &Refusal) {
     TEXT.with(|slot| {
-        // A signal handler may have broken into this very place and make a call that it may not make: errno still tells.
+        // A signal handler may have broken into this very place and make a call that it may not make: errno still
+        // tells.
         let Ok(mut text) = slot.try_borrow_mut() else { return };
         text.compose(format_args!("{name}: {refusal}"));
         if PRINT.load(Ordering::Relaxed) && is_first_of_its_kind(refusal.kind()) {

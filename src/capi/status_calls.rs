@@ -1,4 +1,5 @@
-//! The exported function that tells how the servo of a finger is doing. As in `calls.rs`, its comments are the C manual.
+//! The exported function that tells how the servo of a finger is doing. As in `calls.rs`, its comments are the C
+//! manual.
 
 // Named like the calls of 1990.
 #![allow(non_snake_case)]

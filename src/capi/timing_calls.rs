@@ -1,4 +1,5 @@
-//! The exported functions that tell where the time of a finger's cycles goes. As in `calls.rs`, their comments are the C manual.
+//! The exported functions that tell where the time of a finger's cycles goes. As in `calls.rs`, their comments are the
+//! C manual.
 
 // Named like the calls of 1990.
 #![allow(non_snake_case)]
@@ -13,31 +14,31 @@ use crate::model::configuration::FINGERS;
 use crate::realtime::{CycleStage, Distribution};
 use std::ffi::{c_int, c_uint, c_ulong};
 
-/// CycleStage for GetTiming: from the scheduled beginning of a cycle to the thread's first
+/// Stage for GetTiming: from the scheduled beginning of a cycle to the thread's first
 /// instruction.
 pub const TIMING_WAKE_UP: c_int = 0;
 
-/// CycleStage for GetTiming: handing the commands of the port to the system.
+/// Stage for GetTiming: handing the commands of the port to the system.
 pub const TIMING_WRITE: c_int = 1;
 
-/// CycleStage for GetTiming: from there until the reply can be read: both ways on the line, and
+/// Stage for GetTiming: from there until the reply can be read: both ways on the line, and
 /// the board.
 pub const TIMING_WIRE: c_int = 2;
 
-/// CycleStage for GetTiming: reading the reply.
+/// Stage for GetTiming: reading the reply.
 pub const TIMING_READ: c_int = 3;
 
-/// CycleStage for GetTiming: from bytes to the finger's reply, checks included.
+/// Stage for GetTiming: from bytes to the finger's reply, checks included.
 pub const TIMING_DECODE: c_int = 4;
 
-/// CycleStage for GetTiming: the controller.
+/// Stage for GetTiming: the controller.
 pub const TIMING_COMPUTE: c_int = 5;
 
-/// CycleStage for GetTiming: from the scheduled beginning of a cycle to the end of its
+/// Stage for GetTiming: from the scheduled beginning of a cycle to the end of its
 /// computation.
 pub const TIMING_CYCLE: c_int = 6;
 
-/// CycleStage for GetTiming: how old the newest measurement is when the command that was
+/// Stage for GetTiming: how old the newest measurement is when the command that was
 /// computed from it takes effect, by the board's clock. One period where nothing is late.
 pub const TIMING_AGE: c_int = 7;
 
@@ -53,7 +54,7 @@ pub struct FingerTiming {
     /// In: bytes of room, sizeof *Timing. Out: bytes that were filled, never more.
     pub Size: c_uint,
     /// The stage that was asked for.
-    pub CycleStage: c_int,
+    pub Stage: c_int,
     /// Cycles that had this stage.
     pub Count: c_ulong,
     /// The shortest.
@@ -87,10 +88,10 @@ pub struct FingerTiming {
 
 /// GetTiming - where the time of a finger's cycles goes
 ///
-///     int GetTiming(int i, int CycleStage, struct FingerTiming *Timing);
+///     int GetTiming(int i, int Stage, struct FingerTiming *Timing);
 ///
 ///   i        finger, 1 to 3
-///   CycleStage    TIMING_WAKE_UP to TIMING_AGE
+///   Stage    TIMING_WAKE_UP to TIMING_AGE
 ///   Timing   Timing->Size is set by the caller, all else is filled in. Written only if
 ///            the call returns 0
 ///
@@ -100,7 +101,7 @@ pub struct FingerTiming {
 ///   EPERM    forked child
 ///   EFAULT   Timing is null
 ///   ENODEV   no hand is open
-///   EINVAL   Size is too small; no such finger; no such CycleStage
+///   EINVAL   Size is too small; no such finger; no such Stage
 ///
 /// Threads: any. Never waits for a servo; some us.
 ///
@@ -111,16 +112,16 @@ pub struct FingerTiming {
 ///     if (GetTiming(1, TIMING_WIRE, &Timing) == 0)
 ///         printf("%lu ns\n", Timing.P99);
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn GetTiming(i: c_int, CycleStage: c_int, Timing: *mut FingerTiming) -> c_int {
+pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTiming) -> c_int {
     guarded("GetTiming", || {
         let least = size_up_to!(FingerTiming, CorruptReplies: c_ulong);
         let tell = |hand: &Hand| {
             // The finger's number is looked at first.
             hand.report(i)?;
             // Times first: then there are no more of them than cycles.
-            let times = hand.timing(i, stage(CycleStage).ok_or(HandError::NoSuchStage(CycleStage))?)?;
+            let times = hand.timing(i, stage(Stage).ok_or(HandError::NoSuchStage(Stage))?)?;
             let losses = hand.losses(i)?;
-            Ok(told(CycleStage, &times, &losses))
+            Ok(told(Stage, &times, &losses))
         };
         // SAFETY: the manual's contract: null, or as much room as its first member says.
         unsafe { fill(Timing, "Timing", least, tell) }
@@ -169,7 +170,7 @@ fn told(stage: c_int, times: &Distribution, losses: &Losses) -> FingerTiming {
     let ns = |microseconds: f64| (microseconds * 1e3).round() as c_ulong;
     FingerTiming {
         Size: 0, // until the caller's room is known
-        CycleStage: stage,
+        Stage: stage,
         Count: count(times.count),
         Minimum: ns(times.minimum),
         Median: ns(times.median),

@@ -133,11 +133,11 @@ impl Controller {
         }
     }
 
-    /// One cycle that goes on from the state of another controller of the same finger, with the same encoders and at the same
-    /// rate, without a jump in torque.
+    /// One cycle that goes on from the state of another controller of the same finger, with the same encoders and at
+    /// the same rate, without a jump in torque.
     ///
-    /// It goes on from what `previous` would command in this very cycle, and not from its last command: so a planner that adjusts
-    /// in every cycle neither stops the feedback nor delays it.
+    /// It goes on from what `previous` would command in this very cycle, and not from its last command: so a planner
+    /// that adjusts in every cycle neither stops the feedback nor delays it.
     pub fn take_over(
         &self,
         previous: &Self,
@@ -156,15 +156,15 @@ impl Controller {
         self.cycle(state, feedback, activity)
     }
 
-    /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates rests,
-    /// but a release goes on, and so does state feedback for some cycles, from what it predicts.
+    /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates
+    /// rests, but a release goes on, and so does state feedback for some cycles, from what it predicts.
     pub fn cycle(&self, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) -> (MotorCommand, Report) {
         let measured = feedback.map(|feedback| self.sensors.measured(feedback));
         self.cycle_measured(state, measured.as_ref(), activity)
     }
 
-    /// [`Controller::cycle`] from the sensors' values instead of their counts, so without quantisation: the smooth map that a
-    /// linear analysis needs.
+    /// [`Controller::cycle`] from the sensors' values instead of their counts, so without quantisation: the smooth map
+    /// that a linear analysis needs.
     pub fn cycle_measured(
         &self,
         state: &mut State,
@@ -212,8 +212,8 @@ impl Controller {
         (MotorCommand { motor_torques }, state.report)
     }
 
-    /// What is wrong with a finger that follows, after a cycle with `feedback`, `age` periods after the one before. `full_scale`: the
-    /// gauges' largest count.
+    /// What is wrong with a finger that follows, after a cycle with `feedback`, `age` periods after the one before.
+    /// `full_scale`: the gauges' largest count.
     pub fn watch(&self, watch: &mut Watch, state: &State, feedback: &Feedback, age: f64, full_scale: u16) -> Alarms {
         let heat = self.heating.part(&state.heat);
         // The cycle has turned the counts into units.

@@ -3,8 +3,8 @@
 use nalgebra::Matrix3;
 use std::f64::consts::TAU;
 
-/// The three real eigenvalues, the largest first, by the cosine formula. For symmetric matrices, and for products of two
-/// positive semi-definite ones. Inlined, so that who needs only the largest pays for one cosine.
+/// The three real eigenvalues, the largest first, by the cosine formula. For symmetric matrices, and for products of
+/// two positive semi-definite ones. Inlined, so that who needs only the largest pays for one cosine.
 #[inline]
 pub(super) fn eigenvalues(matrix: &Matrix3<f64>) -> [f64; 3] {
     let square = matrix * matrix;

@@ -12,8 +12,8 @@ pub(super) type Row<Numbers> = (f64, Numbers);
 /// The numbers of a table for `rate`, Hz: between two rates each number is a power of the rate, beyond the last ones it
 /// stays.
 ///
-/// The nearest row will not do: gains of a higher rate act on a delay for which they are too large, and were unstable in
-/// every pose tried.
+/// The nearest row will not do: gains of a higher rate act on a delay for which they are too large, and were unstable
+/// in every pose tried.
 pub(super) fn at<Numbers: Tuned>(table: &[Row<Numbers>], rate: f64) -> Numbers {
     let above = table.iter().position(|row| row.0 >= rate).unwrap_or(table.len() - 1);
     let ((low, lower), (high, upper)) = (table[above.saturating_sub(1)], table[above]);

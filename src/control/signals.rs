@@ -30,11 +30,11 @@ pub struct SetPoint {
     pub joints: Vector3<f64>,
     /// How deflections become torques.
     pub law: Law,
-    /// K of [`Contact::stiffness`](crate::model::Contact::stiffness) in the finger's frame; symmetric: rows and columns 0 to
-    /// 2 translation, N/cm, 3 to 5 rotation, N cm/rad.
+    /// K of [`Contact::stiffness`](crate::model::Contact::stiffness) in the finger's frame; symmetric: rows and columns
+    /// 0 to 2 translation, N/cm, 3 to 5 rotation, N cm/rad.
     pub stiffness: Matrix6<f64>,
-    /// Damping relative to what the controller chooses from the stiffness: 1 is that. [`AdmissibleDamping`](crate::control::AdmissibleDamping)
-    /// has the range.
+    /// Damping relative to what the controller chooses from the stiffness: 1 is that.
+    /// [`AdmissibleDamping`](crate::control::AdmissibleDamping) has the range.
     pub damping: f64,
 }
 
@@ -57,8 +57,8 @@ pub fn spatial(kx: &Matrix3<f64>) -> Matrix6<f64> {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[expect(clippy::large_enum_variant, reason = "a set point in a box would be allocated and freed in the servo")]
 pub enum Activity {
-    /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is; the joints are held where
-    /// they are.
+    /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is; the
+    /// joints are held where they are.
     TakeUpSlack,
     /// The same by gauges that are known to show so much too much, N, and whatever the joints are. For calibration.
     Tighten(Vector4<f64>),
@@ -100,7 +100,8 @@ pub struct Report {
     pub joint_rates: Vector3<f64>,
     /// Measured tensions, N.
     pub tensions: Vector4<f64>,
-    /// Commanded tensions, N, with the dither of state feedback: never below t_min but while slack is taken up and during a release.
+    /// Commanded tensions, N, with the dither of state feedback: never below t_min but while slack is taken up and
+    /// during a release.
     pub desired_tensions: Vector4<f64>,
     /// Joint torques that the stiffness law asked for, N cm.
     pub joint_torques: Vector3<f64>,
@@ -108,8 +109,8 @@ pub struct Report {
     pub torque_scale: f64,
     /// The part of the set point's stiffness that the pose can carry, 0 to 1.
     pub stiffness_scale: f64,
-    /// Every tendon has at least 0.8 t_min, and the motors are at rest: slack is taken up. Not before the tensions have risen to
-    /// where they shall be.
+    /// Every tendon has at least 0.8 t_min, and the motors are at rest: slack is taken up. Not before the tensions have
+    /// risen to where they shall be.
     pub under_tension: bool,
     /// While slack is taken up, the tendon that is farthest from being under tension, 0 to 3.
     pub slackest: usize,

@@ -1,9 +1,9 @@
-//! The last two seconds of a finger, kept at all times: the servo leaves one record a cycle in a ring, whoever collects the reports
-//! keeps the newest.
+//! The last two seconds of a finger, kept at all times: the servo leaves one record a cycle in a ring, whoever collects
+//! the reports keeps the newest.
 //!
-//! A replay needs the state of the controller where the records begin. The servo leaves a copy of it every few cycles, and the
-//! records that are kept begin at such a keyframe. Rejected: the state in every record, which takes three times the memory; a second
-//! controller that follows two seconds behind, which computes everything twice.
+//! A replay needs the state of the controller where the records begin. The servo leaves a copy of it every few cycles,
+//! and the records that are kept begin at such a keyframe. Rejected: the state in every record, which takes three times
+//! the memory; a second controller that follows two seconds behind, which computes everything twice.
 
 use crate::control::State;
 use crate::finger::recording::{Origin, Recording};
@@ -54,8 +54,8 @@ pub struct BlackBox {
 }
 
 impl BlackBox {
-    /// An empty one for the finger with this index, 0 to 2, whose first controller is made from `configuration`; and the servo's end
-    /// of it.
+    /// An empty one for the finger with this index, 0 to 2, whose first controller is made from `configuration`; and
+    /// the servo's end of it.
     pub fn new(configuration: &Configuration, index: usize) -> (Recorder, Self) {
         let (hand, finger) = (&configuration.hand, configuration.fingers[index].clone());
         let cycles = |seconds: f64| (seconds * hand.rate).ceil() as usize;
@@ -84,9 +84,10 @@ impl BlackBox {
         self.controllers.last().map_or(0, |last| last.number + 1)
     }
 
-    /// Keeps what the next controller is made from, to be called before a record of the servo's that names it is collected. `taken`:
-    /// the number of the one that the servo had taken ([`FingerReport::controller`](crate::finger::FingerReport::controller)) before
-    /// the records were collected. What is older, and named by no record, is forgotten: it was overtaken before it was used.
+    /// Keeps what the next controller is made from, to be called before a record of the servo's that names it is
+    /// collected. `taken`: the number of the one that the servo had taken
+    /// ([`FingerReport::controller`](crate::finger::FingerReport::controller)) before the records were collected. What
+    /// is older, and named by no record, is forgotten: it was overtaken before it was used.
     pub fn announce(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
         let controls = self.records.iter().filter_map(|record| record.control.as_ref());
         let named: BTreeSet<u32> = controls.flat_map(|control| [control.controller, control.previous]).collect();
@@ -97,7 +98,8 @@ impl BlackBox {
         self.controllers.push(ControllerSource { number, gravity, finger });
     }
 
-    /// The same for a controller that a calibration computes with once it takes over. Others may be announced before that.
+    /// The same for a controller that a calibration computes with once it takes over. Others may be announced before
+    /// that.
     pub fn announce_calibration(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
         self.awaited = None;
         self.announce(finger, gravity, taken);
@@ -108,7 +110,8 @@ impl BlackBox {
     pub fn collect(&mut self) {
         while let Some(record) = self.arriving.pop() {
             self.faulted |= matches!(record.stage, Stage::Faulted(_));
-            // A gap: nobody collected for too long, or the finger was faulted. What was before cannot be replayed across it.
+            // A gap: nobody collected for too long, or the finger was faulted. What was before cannot be replayed
+            // across it.
             if self.records.back().is_some_and(|last| last.cycle + 1 != record.cycle) {
                 self.records.clear();
             }

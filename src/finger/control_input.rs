@@ -1,5 +1,5 @@
-//! What decides a finger's command in one cycle, beside its controller and that one's state. The servo and a replay both go
-//! through [`ControlInput::run`].
+//! What decides a finger's command in one cycle, beside its controller and that one's state. The servo and a replay
+//! both go through [`ControlInput::run`].
 
 use crate::control::{Activity, Controller, Feedback, MotorCommand, Report, State};
 use crate::finger::Fading;
@@ -19,8 +19,8 @@ pub struct ControlInput {
 }
 
 impl ControlInput {
-    /// The command, and what the controller reports. `previous`: the controller before this one, where they change in this cycle.
-    /// `feedback`: none where the reply was lost.
+    /// The command, and what the controller reports. `previous`: the controller before this one, where they change in
+    /// this cycle. `feedback`: none where the reply was lost.
     pub fn run(
         &self,
         controller: &Controller,

@@ -1,5 +1,5 @@
-//! A servo lends its link to whoever mends it: opening ports and shaking hands take long, and are not for a servo. Whole values in
-//! rings of one place; neither side waits.
+//! A servo lends its link to whoever mends it: opening ports and shaking hands take long, and are not for a servo.
+//! Whole values in rings of one place; neither side waits.
 
 use crate::board::Link;
 use crate::board::protocol::Configured;

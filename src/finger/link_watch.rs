@@ -1,5 +1,5 @@
-//! Lost replies in a row. At first the last command is held, or what follows from it is predicted; then the motors are led to what
-//! they do at rest; at last the finger faults, while its board's watchdog is not yet over.
+//! Lost replies in a row. At first the last command is held, or what follows from it is predicted; then the motors are
+//! led to what they do at rest; at last the finger faults, while its board's watchdog is not yet over.
 
 use crate::model::configuration::{ConfiguredHand, EndState};
 use nalgebra::Vector4;
@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 /// So long, ms, the last command is held.
 const HELD_MS: f64 = 3.0;
 
-/// After so long, ms, the motors are at rest: a torque that nobody watches winds a tendon up, or off its motor, within some ms,
-/// and the watchdog does not see it, as commands go on.
+/// After so long, ms, the motors are at rest: a torque that nobody watches winds a tendon up, or off its motor, within
+/// some ms, and the watchdog does not see it, as commands go on.
 const BLIND_MS: f64 = 10.0;
 
 /// At slow rates so many lost replies in a row are let pass all the same.
@@ -18,7 +18,8 @@ const LEAST_BLIND: u32 = 3;
 /// At slow rates one lost reply is no fault all the same.
 const LEAST_LOST: u32 = 2;
 
-/// A built-in simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to stop the hand.
+/// A built-in simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to
+/// stop the hand.
 const SIMULATION_PATIENCE_MS: f64 = 5000.0;
 
 /// So long, ms, such a board has to answer before its command is sent again: either may have been thrown away.
@@ -64,7 +65,8 @@ impl LinkWatch {
     /// `simulated`: the finger has a built-in board.
     pub fn new(hand: &ConfiguredHand, simulated: bool) -> Self {
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
-        // The board is told to stop one period after the last lost reply: within the watchdog's time after the last good one.
+        // The board is told to stop one period after the last lost reply: within the watchdog's time after the last
+        // good one.
         let within_watchdog = (f64::from(hand.watchdog_ms) * 1e-3 * hand.rate).floor() as u32;
         Self {
             simulated,
@@ -83,10 +85,10 @@ impl LinkWatch {
         }
     }
 
-    /// Whether the finger and its controller go on together, as built-in ones do: the next command leaves when the last one was
-    /// answered, however late, and a cycle without a reply is none for the controller. The board stands still meanwhile. A controller
-    /// that counted time which did not pass at the finger, or physics that went on without their controller, would throw the
-    /// finger about on a busy machine.
+    /// Whether the finger and its controller go on together, as built-in ones do: the next command leaves when the last
+    /// one was answered, however late, and a cycle without a reply is none for the controller. The board stands still
+    /// meanwhile. A controller that counted time which did not pass at the finger, or physics that went on without
+    /// their controller, would throw the finger about on a busy machine.
     pub fn in_step(&self) -> bool {
         self.simulated
     }
@@ -96,7 +98,8 @@ impl LinkWatch {
         self.in_a_row.is_multiple_of(self.repeat)
     }
 
-    /// A reply came: whether the finger was not seen for so long that its controller begins anew, with what the tendons pull now.
+    /// A reply came: whether the finger was not seen for so long that its controller begins anew, with what the tendons
+    /// pull now.
     pub fn answered(&mut self) -> bool {
         std::mem::take(&mut self.in_a_row) >= self.blind && !self.in_step()
     }

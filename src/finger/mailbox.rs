@@ -1,8 +1,8 @@
 //! Between planners and one finger's servo: set points down, reports up, neither side waiting for the other.
 //!
 //! Both ways go through a triple buffer: whole values, wait-free. A lock would let a planner stop a servo (no priority
-//! inheritance), and a channel is not lock-free when a real-time thread shares a core with a preempted sender. The planners'
-//! own side is locked among themselves only.
+//! inheritance), and a channel is not lock-free when a real-time thread shares a core with a preempted sender. The
+//! planners' own side is locked among themselves only.
 
 use crate::control::SetPoint;
 use crate::finger::{Adjustable, Fault, FingerReport, Order, Stage};
@@ -25,8 +25,9 @@ struct PlannersEnd {
     reports: Output<FingerReport>,
 }
 
-/// A set point for one stretch of a finger's life as a spring. Servo and planners tell stretches by their number, because planners
-/// change parts of a set point: what they start from must be what the servo holds, and when that changes is the servo's to say.
+/// A set point for one stretch of a finger's life as a spring. Servo and planners tell stretches by their number,
+/// because planners change parts of a set point: what they start from must be what the servo holds, and when that
+/// changes is the servo's to say.
 #[derive(Clone, Copy)]
 struct SentSetPoint {
     /// [`FingerReport::springs`].
@@ -89,15 +90,16 @@ impl Mailbox {
         look(self.planners.lock().reports.read())
     }
 
-    /// Whether the servo has nothing more to do for the finger; none where a planner's call is just using the mailbox, perhaps one
-    /// that the calling thread has left for a signal handler, so that waiting for it would be for ever.
+    /// Whether the servo has nothing more to do for the finger; none where a planner's call is just using the mailbox,
+    /// perhaps one that the calling thread has left for a signal handler, so that waiting for it would be for ever.
     pub fn ended(&self) -> Option<bool> {
         let mut planners = self.planners.try_lock()?;
         Some(matches!(planners.reports.read().stage, Stage::Closed | Stage::Faulted(_)))
     }
 
-    /// Changes the set point that was sent last and sends it whole, unless the finger is faulted. Where none was sent since it became
-    /// a spring, that is the one it holds. It counts for this spring only: a finger that faults meanwhile forgets it.
+    /// Changes the set point that was sent last and sends it whole, unless the finger is faulted. Where none was sent
+    /// since it became a spring, that is the one it holds. It counts for this spring only: a finger that faults
+    /// meanwhile forgets it.
     ///
     /// # Errors
     /// The fault; nothing is sent then.
@@ -109,7 +111,8 @@ impl Mailbox {
         Ok(())
     }
 
-    /// The same with a change that may refuse the set point that it starts from. It is made in a copy, which takes longer.
+    /// The same with a change that may refuse the set point that it starts from. It is made in a copy, which takes
+    /// longer.
     ///
     /// # Errors
     /// The fault, or inside it what the change refuses; nothing is sent then.
@@ -146,8 +149,8 @@ impl Mailbox {
         Ok(())
     }
 
-    /// Gives an order and its number, which is that of [`FingerReport::orders`] as soon as it is taken; none while another
-    /// order is being carried out.
+    /// Gives an order and its number, which is that of [`FingerReport::orders`] as soon as it is taken; none while
+    /// another order is being carried out.
     ///
     /// # Errors
     /// The fault; nothing is ordered then.

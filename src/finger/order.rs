@@ -18,7 +18,8 @@ pub enum Order {
     },
 }
 
-/// A calibration with what the servo computes with until its verdict. What it was handed besides is kept for afterwards.
+/// A calibration with what the servo computes with until its verdict. What it was handed besides is kept for
+/// afterwards.
 #[derive(Clone, Debug)]
 pub struct CalibrationRun {
     /// The routine.

@@ -11,13 +11,13 @@ pub struct FingerReport {
     pub stage: Stage,
     /// The set point in force.
     pub set_point: SetPoint,
-    /// How often it has become a spring that holds the pose it was found in: at open, after a fault, after a calibration. What was
-    /// sent before is gone.
+    /// How often it has become a spring that holds the pose it was found in: at open, after a fault, after a
+    /// calibration. What was sent before is gone.
     pub springs: u32,
     /// What the last cycle found and decided.
     pub cycle: Report,
-    /// Number of the controller that planners have handed over last and the servo has taken: it is computed with, or will be after a
-    /// calibration.
+    /// Number of the controller that planners have handed over last and the servo has taken: it is computed with, or
+    /// will be after a calibration.
     pub controller: u32,
     /// How many orders have been taken.
     pub orders: u32,
@@ -38,8 +38,9 @@ pub struct FingerReport {
 }
 
 impl FingerReport {
-    /// Whole periods, of `period` ns, that have passed without a cycle and are not counted in [`Losses::skipped_periods`] yet,
-    /// because the servo counts at the end of its next cycle. `now`: ns of the monotonic clock.
+    /// Whole periods, of `period` ns, that have passed without a cycle and are not counted in
+    /// [`Losses::skipped_periods`] yet, because the servo counts at the end of its next cycle. `now`: ns of the
+    /// monotonic clock.
     pub fn missing_periods(&self, now: u64, period: u64) -> u64 {
         if self.losses.cycles == 0 || self.stage == Stage::Closed {
             return 0;

@@ -21,7 +21,8 @@ use crate::model::configuration::EndState;
 use crate::realtime::{self, CycleTiming, LockedMemory, Producer};
 use calibration::Calibrating;
 
-/// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose one.
+/// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose
+/// one.
 const STOPS_AFTER_FAULT: u8 = 3;
 
 /// One finger: its controller, its place in the protocol, its mailbox.
@@ -130,8 +131,8 @@ impl FingerServo {
         }
     }
 
-    /// Ends a cycle: computes the next command. `next`: when the next cycle shall begin, ns. `overrun`: the next cycle should have
-    /// begun already, and so many periods are skipped.
+    /// Ends a cycle: computes the next command. `next`: when the next cycle shall begin, ns. `overrun`: the next cycle
+    /// should have begun already, and so many periods are skipped.
     pub fn end(&mut self, began: u64, next: u64, overrun: Option<u64>, heard: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
         self.sample_age += 1 + skipped;
@@ -207,16 +208,16 @@ impl FingerServo {
         self.timing.note(stage, from, to);
     }
 
-    /// Leaves the timing and the record of this cycle to whoever collects them, and then reports: who knows the report of a cycle
-    /// finds its record.
+    /// Leaves the timing and the record of this cycle to whoever collects them, and then reports: who knows the report
+    /// of a cycle finds its record.
     pub fn tell(&mut self) {
         let timing = std::mem::take(&mut self.timing);
         if let Some(record) = self.record.take() {
             self.black_box.record(CycleRecord { timing, ..record });
         }
         self.mailbox.publish(self.report);
-        // After the report: no more timings than cycles are ever counted. A full ring means that nobody collects: the cycle is worth
-        // more than its figure.
+        // After the report: no more timings than cycles are ever counted. A full ring means that nobody collects: the
+        // cycle is worth more than its figure.
         let _ = self.timings.push(timing);
     }
 

@@ -82,8 +82,8 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         memory
     }
 
-    /// Runs until every finger is closed, or faulted and asked to close. A panic is a defect, but it must not leave the last torque
-    /// on the motors: it faults every finger, and every board is told to stop.
+    /// Runs until every finger is closed, or faulted and asked to close. A panic is a defect, but it must not leave the
+    /// last torque on the motors: it faults every finger, and every board is told to stop.
     pub fn run(&mut self) {
         let cycles = || {
             while !self.finished() {
@@ -161,8 +161,8 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         self.confirm_stops();
     }
 
-    /// Tells every board to stop, until it confirms that or the line fails: closing a port throws away what has not left it
-    /// yet. Nothing else is left to do in time, so this waits.
+    /// Tells every board to stop, until it confirms that or the line fails: closing a port throws away what has not
+    /// left it yet. Nothing else is left to do in time, so this waits.
     fn confirm_stops(&mut self) {
         self.send_stops();
         for port in self.ports.iter_mut() {

@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// Emergency stops called for in this process so far. Counted, so that a finger that recovers from one hears the next.
 static CALLS: AtomicU32 = AtomicU32::new(0);
 
-/// Emergency stop: every finger of every open hand of this process faults at the beginning of its next cycle. It stays so until it
-/// recovers, or its hand is opened anew.
+/// Emergency stop: every finger of every open hand of this process faults at the beginning of its next cycle. It stays
+/// so until it recovers, or its hand is opened anew.
 ///
 /// Adds to an atomic number and does nothing else: it serves in any thread and in a signal handler.
 pub fn stop_all() {
@@ -30,7 +30,8 @@ pub struct StopSignal {
 }
 
 impl StopSignal {
-    /// `together`: the fingers with clones of it stop together. `calls_heard`: of [`stop_calls`], from before anything moved.
+    /// `together`: the fingers with clones of it stop together. `calls_heard`: of [`stop_calls`], from before anything
+    /// moved.
     pub fn new(together: bool, calls_heard: u32) -> Self {
         Self { calls_heard, together: together.then(|| Pages::new(AtomicU32::new(0)).into()), faults_heard: 0 }
     }

@@ -1,4 +1,5 @@
-//! What a finger's servo watches beside its controller: the monitors of the core, and how well the line and the machine do.
+//! What a finger's servo watches beside its controller: the monitors of the core, and how well the line and the machine
+//! do.
 
 use crate::board::protocol::Status;
 use crate::control::monitors::{LineQuality, Watch};
@@ -12,7 +13,8 @@ const WARNING_WINDOW: f64 = 1.0;
 const NOISY: f64 = 0.02;
 const OVERRUN: f64 = 0.02;
 
-/// Most of the window's replies were damaged: no luck, but a line that cannot be used. One in two still controls a finger.
+/// Most of the window's replies were damaged: no luck, but a line that cannot be used. One in two still controls a
+/// finger.
 const UNUSABLE: f64 = 0.6;
 
 /// Where replies stay away altogether, so many damaged ones among them tell why.
@@ -59,8 +61,8 @@ impl Supervision {
         self.clipped = status.has(Status::TORQUE_CLIPPED);
     }
 
-    /// One period: whether the reply came, how many periods were skipped, how many frames have come in damaged in all. A line
-    /// that cannot be used is a fault.
+    /// One period: whether the reply came, how many periods were skipped, how many frames have come in damaged in all.
+    /// A line that cannot be used is a fault.
     pub fn note_period(&mut self, answered: bool, skipped: u64, damaged_frames: u64) -> Option<Fault> {
         let count = |wrong: bool| f64::from(u8::from(wrong));
         let damaged = !answered && damaged_frames != self.damaged_frames;

@@ -1,4 +1,5 @@
-//! Changing a finger's configuration while it runs: a new controller is made here, beside the servo, and handed to it whole.
+//! Changing a finger's configuration while it runs: a new controller is made here, beside the servo, and handed to it
+//! whole.
 
 use crate::control::SetPoint;
 use crate::finger::Adjustable;
@@ -12,8 +13,8 @@ use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, Unusabl
 use nalgebra::Matrix6;
 use toml_edit::{Document, Item, Table};
 
-/// Keys, with dots, and tables of keys that count only at open: what the port, the thread and the board were opened with, what
-/// the servo's state is measured in, and the simulated finger.
+/// Keys, with dots, and tables of keys that count only at open: what the port, the thread and the board were opened
+/// with, what the servo's state is measured in, and the simulated finger.
 const PERMANENT: &[&str] = &[
     "port",
     "baud",
@@ -33,17 +34,17 @@ const PERMANENT: &[&str] = &[
 ];
 
 impl Hand {
-    /// Changes keys of the configuration of finger 1, 2 or 3 while it runs: `keys` are lines of TOML as they would stand under
-    /// `[finger.N]`, such as `tendon.minimum = 6`. All of them take effect together, within a cycle and without a jump in
-    /// torque. What is not named stays. `controller.law` counts from the next set point on.
+    /// Changes keys of the configuration of finger 1, 2 or 3 while it runs: `keys` are lines of TOML as they would
+    /// stand under `[finger.N]`, such as `tendon.minimum = 6`. All of them take effect together, within a cycle and
+    /// without a jump in torque. What is not named stays. `controller.law` counts from the next set point on.
     ///
-    /// A configured `stiffness.bound` was found for one controller. Under another `controller.scheme` it counts only if it is less than
-    /// the default one, or if `keys` name it too.
+    /// A configured `stiffness.bound` was found for one controller. Under another `controller.scheme` it counts only if
+    /// it is less than the default one, or if `keys` name it too.
     ///
     /// # Errors
-    /// No such finger, keys that cannot be read, that cannot change while the hand is open, or that make a configuration that cannot
-    /// be used; limits that the set point sent last is outside of, unless commands are clamped; finger faulted. Nothing is
-    /// changed then.
+    /// No such finger, keys that cannot be read, that cannot change while the hand is open, or that make a
+    /// configuration that cannot be used; limits that the set point sent last is outside of, unless commands are
+    /// clamped; finger faulted. Nothing is changed then.
     pub fn adjust(&self, finger: i32, keys: &str) -> Result<(), HandError> {
         let member = self.dispatcher.member(finger)?;
         let index = finger as usize - 1; // the member is there: 1 to 3

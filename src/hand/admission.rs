@@ -81,8 +81,8 @@ impl Admission {
         }
     }
 
-    /// Joint angles, rad, for a tip position, cm, nearest to the `present` ones. Never clamped: the nearest point of the
-    /// workspace may be on the other side of an object.
+    /// Joint angles, rad, for a tip position, cm, nearest to the `present` ones. Never clamped: the nearest point of
+    /// the workspace may be on the other side of an object.
     pub fn tip(&self, tip: [f64; 3], present: &Vector3<f64>) -> Result<Vector3<f64>, HandError> {
         self.finite("Tip", &tip)?;
         let found = self.inverse_kinematics.joints(&Vector3::from(tip), present);

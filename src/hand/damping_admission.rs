@@ -6,8 +6,8 @@ use crate::model::Contact;
 use crate::model::configuration::OutOfRange;
 use nalgebra::Matrix6;
 
-/// The check of one finger. A copy of it goes along with each change of a set point, because it must see damping and stiffness in the
-/// step that sends them: two planners may change one each at the same time.
+/// The check of one finger. A copy of it goes along with each change of a set point, because it must see damping and
+/// stiffness in the step that sends them: two planners may change one each at the same time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampingAdmission {
     /// 1 to 3.

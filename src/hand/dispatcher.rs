@@ -1,4 +1,5 @@
-//! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for none.
+//! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for
+//! none.
 
 mod collected;
 mod collecting;
@@ -55,8 +56,8 @@ impl Dispatcher {
         Self { members, collected: Arc::new(collected), collector: None }
     }
 
-    /// Starts the thread that collects timings and black boxes, so that none is lost while nobody asks, and that has the
-    /// black box of a finger that faults written into `folder`.
+    /// Starts the thread that collects timings and black boxes, so that none is lost while nobody asks, and that has
+    /// the black box of a finger that faults written into `folder`.
     pub fn start_collecting(&mut self, folder: Option<PathBuf>) -> io::Result<()> {
         let (stop, stopped) = bounded(0);
         let fingers = self.collected.clone();
@@ -91,8 +92,8 @@ impl Dispatcher {
         })
     }
 
-    /// Sends the change that `admit` lets through. Both are one step: limits do not change between them. The change itself may still
-    /// refuse the set point that it starts from.
+    /// Sends the change that `admit` lets through. Both are one step: limits do not change between them. The change
+    /// itself may still refuse the set point that it starts from.
     pub fn send<C: FnOnce(&mut SetPoint) -> Result<(), HandError>>(
         &self,
         finger: i32,
@@ -136,8 +137,8 @@ impl Dispatcher {
     /// What went wrong.
     pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
         let index = self.index(finger)?;
-        // The report is read under the lock: a reset of another thread's is then before both or after both. A servo reports a cycle
-        // before it tells its times: whoever reads these first counts none that is no cycle yet.
+        // The report is read under the lock: a reset of another thread's is then before both or after both. A servo
+        // reports a cycle before it tells its times: whoever reads these first counts none that is no cycle yet.
         let collected = self.collected(finger)?;
         Ok(self.members[index].mailbox.report().losses.since(&collected.losses_before))
     }
@@ -146,8 +147,8 @@ impl Dispatcher {
     pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
         let index = self.index(finger)?;
         let mut collected = self.collected(finger)?;
-        // Before the times, for the same reason: those of a cycle that is not counted are collected here, but for one that is just
-        // being told.
+        // Before the times, for the same reason: those of a cycle that is not counted are collected here, but for one
+        // that is just being told.
         collected.losses_before = self.members[index].mailbox.report().losses;
         collected.collect();
         collected.histograms.reset();
@@ -168,8 +169,8 @@ impl Dispatcher {
         Ok(collected.black_box.record(cycle))
     }
 
-    /// Lets `give` hand a finger what was made from this configuration, under the number that it gets here. The black box keeps the
-    /// configuration if that is done, and nothing of it where it is refused.
+    /// Lets `give` hand a finger what was made from this configuration, under the number that it gets here. The black
+    /// box keeps the configuration if that is done, and nothing of it where it is refused.
     pub fn hand_over<T>(
         &self,
         finger: i32,

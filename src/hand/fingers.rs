@@ -3,8 +3,9 @@
 use crate::hand::HandError;
 use crate::model::configuration::FINGERS;
 
-/// Some fingers of a hand, one at least: those that are opened. The ports of the others are not touched, and calls for them are refused
-/// with [`HandError::NotOpened`]. The configuration still describes the whole hand, and all of it is checked.
+/// Some fingers of a hand, one at least: those that are opened. The ports of the others are not touched, and calls for
+/// them are refused with [`HandError::NotOpened`]. The configuration still describes the whole hand, and all of it is
+/// checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingers([bool; FINGERS]);
 

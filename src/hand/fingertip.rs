@@ -7,8 +7,9 @@ use crate::hand::{Hand, HandError};
 use crate::model::Contact;
 use nalgebra::{Matrix3, Vector3};
 
-/// A direction of the fingertip that moves by less than this, cm for a turn of the joints by 1 rad, is not felt in their
-/// torques: an error of 0.1 N cm would be a third of a newton. The default finger is so within 9 degrees of straight.
+/// A direction of the fingertip that moves by less than this, cm for a turn of the joints by 1 rad, is not felt in
+/// their torques: an error of 0.1 N cm would be a third of a newton. The default finger is so within 9 degrees of
+/// straight.
 const FELT: f64 = 0.3;
 
 /// What is known of a fingertip.
@@ -16,9 +17,9 @@ const FELT: f64 = 0.3;
 pub struct FingerTip {
     /// Where it is in the finger's frame, cm: from the measured joint angles.
     pub tip: [f64; 3],
-    /// What it does to the thing it touches, in the finger's frame, N: J^-T R t (eqs. 1 and 13) with the measured tensions t.
-    /// So friction and weight of the finger and the torque that accelerates it are in it. Never NaN: along a direction in
-    /// which a pose near the straight one leaves the joints without feeling it is zero.
+    /// What it does to the thing it touches, in the finger's frame, N: J^-T R t (eqs. 1 and 13) with the measured
+    /// tensions t. So friction and weight of the finger and the torque that accelerates it are in it. Never NaN: along
+    /// a direction in which a pose near the straight one leaves the joints without feeling it is zero.
     pub force: [f64; 3],
     /// How many directions the joints feel: 3, and fewer near a singular pose.
     pub felt: usize,
@@ -28,11 +29,13 @@ pub struct FingerTip {
 
 impl Hand {
     /// Where the tip of finger 1, 2 or 3 shall be, cm, in the finger's frame. The fingertip is the exact spring there,
-    /// tau = J^T Kx (x_d - x), with the stiffness sent last; of several joint solutions within the limits it takes the one that is
-    /// nearest to the present pose. Takes effect within a cycle; the way there is straight in the joints, at their bounded speed.
+    /// tau = J^T Kx (x_d - x), with the stiffness sent last; of several joint solutions within the limits it takes the
+    /// one that is nearest to the present pose. Takes effect within a cycle; the way there is straight in the joints,
+    /// at their bounded speed.
     ///
     /// # Errors
-    /// No such finger, NaN or infinity, out of reach or of the joint limits (also where commands are clamped), finger faulted.
+    /// No such finger, NaN or infinity, out of reach or of the joint limits (also where commands are clamped), finger
+    /// faulted.
     pub fn send_tip(&self, finger: i32, tip: [f64; 3]) -> Result<(), HandError> {
         let present = self.dispatcher.last_report(finger)?.cycle.joints;
         self.dispatcher.send(finger, |admission| {
@@ -44,12 +47,12 @@ impl Hand {
         })
     }
 
-    /// What finger 1, 2 or 3 may exchange with an object: its tip becomes the spring of that contact, without a jump in torque. Takes
-    /// the place of the Kx sent last, as a Kx takes its.
+    /// What finger 1, 2 or 3 may exchange with an object: its tip becomes the spring of that contact, without a jump in
+    /// torque. Takes the place of the Kx sent last, as a Kx takes its.
     ///
     /// # Errors
-    /// No such finger, stiffer than the bound, too stiff for the damping sent last, finger faulted. A rotation counts for the bound by how far it moves the last
-    /// joint: k N cm/rad as k / l2^2 N/cm.
+    /// No such finger, stiffer than the bound, too stiff for the damping sent last, finger faulted. A rotation counts
+    /// for the bound by how far it moves the last joint: k N cm/rad as k / l2^2 N/cm.
     pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
         self.dispatcher.send(finger, |admission| {
             let (stiffness, damping) = (admission.contact(&contact)?, admission.damping);
@@ -60,8 +63,9 @@ impl Hand {
         })
     }
 
-    /// Damping of finger 1, 2 or 3 relative to what the controller chooses from the stiffness: 1 is that, and is in force after open.
-    /// The range depends on controller, rate and stiffness ([`AdmissibleDamping`](crate::control::AdmissibleDamping)).
+    /// Damping of finger 1, 2 or 3 relative to what the controller chooses from the stiffness: 1 is that, and is in
+    /// force after open. The range depends on controller, rate and stiffness
+    /// ([`AdmissibleDamping`](crate::control::AdmissibleDamping)).
     ///
     /// # Errors
     /// No such finger, NaN or infinity, outside the range of the stiffness sent last, finger faulted.

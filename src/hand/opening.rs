@@ -56,7 +56,8 @@ pub(super) struct Line {
     pub port: ServedPort<Port>,
 }
 
-/// Everything about a configuration that can be refused without a port: values, the initial stiffness, what the lines carry.
+/// Everything about a configuration that can be refused without a port: values, the initial stiffness, what the lines
+/// carry.
 pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration> {
     configuration.check()?;
     for index in 0..FINGERS {
@@ -67,8 +68,8 @@ pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration>
     Ok(())
 }
 
-/// The folder into which black boxes are written at a fault. It must be there before it is needed, and stays the same one
-/// when the planner goes to another working directory.
+/// The folder into which black boxes are written at a fault. It must be there before it is needed, and stays the same
+/// one when the planner goes to another working directory.
 pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<PathBuf>, UnusableConfiguration> {
     match &configuration.hand.black_box {
         Some(folder) if !Path::new(folder).is_dir() => {

@@ -17,8 +17,8 @@ const LOOKING_FOR_PORTS: Duration = Duration::from_millis(100);
 pub(super) struct Place {
     /// 1 to 3.
     pub fingers: Vec<i32>,
-    /// How often the line was repaired and given back to its servo. The recoveries of its fingers reach this number when
-    /// the servo takes it.
+    /// How often the line was repaired and given back to its servo. The recoveries of its fingers reach this number
+    /// when the servo takes it.
     pub mended: AtomicU32,
     /// Locked while ports are opened and hands shaken, which takes long. None once the hand is closed.
     pub workshop: Mutex<Option<Workshop>>,

@@ -1,7 +1,9 @@
-//! Going on after a fault: ports are opened again, boards shake hands anew, and the finger comes under tension as after OpenHand.
+//! Going on after a fault: ports are opened again, boards shake hands anew, and the finger comes under tension as after
+//! OpenHand.
 //!
-//! The servo lends its link for that when every finger on it is at rest, because opening a port and shaking hands take long. They
-//! happen on the planner's thread, in a recover call, and before that on a thread of their own where `finger.reconnect` asks for it.
+//! The servo lends its link for that when every finger on it is at rest, because opening a port and shaking hands take
+//! long. They happen on the planner's thread, in a recover call, and before that on a thread of their own where
+//! `finger.reconnect` asks for it.
 
 use crate::finger::{Stage, stop_calls};
 use crate::hand::reconnection::Place;
@@ -40,8 +42,8 @@ struct Task {
 }
 
 impl Recovering {
-    /// Notes how finger 1, 2 or 3 stands, with every other finger of its port. Nothing is to be done for a finger that is not
-    /// faulted.
+    /// Notes how finger 1, 2 or 3 stands, with every other finger of its port. Nothing is to be done for a finger that
+    /// is not faulted.
     ///
     /// # Errors
     /// No such finger.
@@ -65,19 +67,21 @@ impl Recovering {
         Ok(Self { task: Some(Task { finger, place, recoveries, fingers, running, stop_calls }), begun })
     }
 
-    /// Mends what the finger is connected by and lets it take up slack, with every other finger of the port. Ports are opened and
-    /// hands shaken here: it may take a second. Only those wait for it who mend the same port or close the hand.
+    /// Mends what the finger is connected by and lets it take up slack, with every other finger of the port. Ports are
+    /// opened and hands shaken here: it may take a second. Only those wait for it who mend the same port or close the
+    /// hand.
     ///
     /// # Errors
-    /// A finger that runs on the same port; a port or board that does not serve, or is another than at open; a servo that has
-    /// failed or does not run; a hand that was closed.
+    /// A finger that runs on the same port; a port or board that does not serve, or is another than at open; a servo
+    /// that has failed or does not run; a hand that was closed.
     pub fn mend(&self) -> Result<(), HandError> {
         let Some(Task { finger, ref place, recoveries, running, stop_calls, .. }) = self.task else { return Ok(()) };
         let waiting = Instant::now();
         loop {
             if let Some(workshop) = &mut *place.workshop.lock() {
                 if place.mended.load(Ordering::Acquire) != recoveries {
-                    // Somebody who recovers a finger of the same port was faster. Perhaps the servo has not taken it back yet.
+                    // Somebody who recovers a finger of the same port was faster. Perhaps the servo has not taken it
+                    // back yet.
                     return Ok(());
                 }
                 if workshop.servo_ended() {
@@ -123,8 +127,8 @@ impl Recovering {
     }
 }
 
-/// What is wrong where a servo has not lent the link of a finger for so long, if that is too long. `running`: another finger of the port,
-/// which was not faulted in the beginning.
+/// What is wrong where a servo has not lent the link of a finger for so long, if that is too long. `running`: another
+/// finger of the port, which was not faulted in the beginning.
 fn not_lent(finger: i32, running: Option<i32>, waited: Duration) -> Option<HandError> {
     match running {
         Some(other) if waited > LENDING => Some(HandError::PortInUse { finger, other }),
@@ -134,8 +138,9 @@ fn not_lent(finger: i32, running: Option<i32>, waited: Duration) -> Option<HandE
 }
 
 impl Hand {
-    /// Makes a faulted finger 1, 2 or 3 a spring again, that holds the pose it is in at its initial stiffness; and with it the
-    /// other faulted fingers on its port. What made it fault must be mended. Does nothing for a finger that is not faulted.
+    /// Makes a faulted finger 1, 2 or 3 a spring again, that holds the pose it is in at its initial stiffness; and with
+    /// it the other faulted fingers on its port. What made it fault must be mended. Does nothing for a finger that is
+    /// not faulted.
     ///
     /// # Errors
     /// As [`Recovering::begin`], [`Recovering::mend`] and [`Recovering::poll`].

@@ -50,8 +50,8 @@ pub struct Hand {
 }
 
 impl Hand {
-    /// Opens the hand that the configuration file describes; where there is no such file the simulated one. One line on standard error
-    /// says which fingers are simulated because no file names their ports.
+    /// Opens the hand that the configuration file describes; where there is no such file the simulated one. One line on
+    /// standard error says which fingers are simulated because no file names their ports.
     ///
     /// # Errors
     /// As [`Hand::open`], and a configuration file that cannot be read or used.
@@ -68,18 +68,19 @@ impl Hand {
         Self::open_from(configured.configuration, configured.file, Fingers::ALL, false)
     }
 
-    /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons and returns when every finger holds the
-    /// pose it is in at its initial stiffness.
+    /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons and returns when every finger
+    /// holds the pose it is in at its initial stiffness.
     ///
     /// # Errors
-    /// A configuration that cannot be used, a port or board that does not serve, a finger that faults. Everything that was
-    /// opened is closed again then, and every motor is in its end state.
+    /// A configuration that cannot be used, a port or board that does not serve, a finger that faults. Everything that
+    /// was opened is closed again then, and every motor is in its end state.
     pub fn open(configuration: Configuration) -> Result<Self, HandError> {
         Self::open_from(configuration, None, Fingers::ALL, false)
     }
 
-    /// Opens these fingers of the hand, with their motors off: to find signs and zeros before anything pulls. `file`: where calibration
-    /// shall be stored. A finger becomes a spring when it has been calibrated by [`Hand::zero`] or [`Hand::identify`].
+    /// Opens these fingers of the hand, with their motors off: to find signs and zeros before anything pulls. `file`:
+    /// where calibration shall be stored. A finger becomes a spring when it has been calibrated by [`Hand::zero`] or
+    /// [`Hand::identify`].
     ///
     /// # Errors
     /// As [`Hand::open`].
@@ -128,8 +129,8 @@ impl Hand {
     /// jump in torque: 95 % of the change is there after 50 ms.
     ///
     /// # Errors
-    /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, too stiff for the damping sent last,
-    /// finger faulted.
+    /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, too stiff for the
+    /// damping sent last, finger faulted.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         self.dispatcher.send_stiffness(finger, rows)
     }
@@ -158,7 +159,8 @@ impl Hand {
         self.dispatcher.timing(finger, stage)
     }
 
-    /// How many cycles finger 1, 2 or 3 has had, and what went wrong in them, since open or since the timings were last reset.
+    /// How many cycles finger 1, 2 or 3 has had, and what went wrong in them, since open or since the timings were last
+    /// reset.
     ///
     /// # Errors
     /// No such finger.
@@ -192,8 +194,9 @@ impl Hand {
         Ok(())
     }
 
-    /// Asks every finger to go to its end state, and waits until that should be done. Waits for no lock and frees nothing, so that it
-    /// serves where a process is about to end, even in a signal handler. The hand is of no use afterwards.
+    /// Asks every finger to go to its end state, and waits until that should be done. Waits for no lock and frees
+    /// nothing, so that it serves where a process is about to end, even in a signal handler. The hand is of no use
+    /// afterwards.
     pub fn end(&self) {
         let members = self.dispatcher.members();
         members.iter().for_each(|member| member.mailbox.close());

@@ -22,11 +22,13 @@ pub struct FingerStatus {
     pub measured_rate: f64,
     /// From the scheduled beginning of a cycle to its first instruction, microseconds: the servo's jitter.
     pub wake_up: Distribution,
-    /// Its cycles since open, and what went wrong in them. The skipped periods include those that are missing up to now.
+    /// Its cycles since open, and what went wrong in them. The skipped periods include those that are missing up to
+    /// now.
     pub losses: Losses,
     /// The part of the wanted joint torque that the tension limits let through in the last cycle, 0 to 1.
     pub torque_scale: f64,
-    /// The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where its tendons carry no more in this pose.
+    /// The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where its tendons carry no more
+    /// in this pose.
     pub stiffness_scale: f64,
     /// The part of the calibration under way that is done, 0 to 1; 0 where there is none.
     pub calibration: f64,

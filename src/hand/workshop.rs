@@ -39,8 +39,8 @@ pub(super) struct KnownBoard {
 }
 
 impl Workshop {
-    /// `path` and `baud`: how the port is opened. `reconnect`: whether it is, once it has failed. `boards` in the order of the
-    /// servo's fingers.
+    /// `path` and `baud`: how the port is opened. `reconnect`: whether it is, once it has failed. `boards` in the order
+    /// of the servo's fingers.
     pub fn new(path: PathBuf, baud: u32, reconnect: bool, boards: Vec<KnownBoard>, borrower: Borrower<Port>) -> Self {
         Self { path, baud, reconnect, boards, borrower, lent: false, link: None, checked: false }
     }
@@ -83,7 +83,8 @@ impl Workshop {
         let mut all = [None; FINGERS];
         for (board, place) in self.boards.iter().zip(&mut all) {
             let KnownBoard { finger, address, ref terms, .. } = *board;
-            // One whose port had failed was not told to stop; cable and power may be back before its watchdog's time is over.
+            // One whose port had failed was not told to stop; cable and power may be back before its watchdog's time is
+            // over.
             let _ = link.stop(address, 0);
             let (identity, configured) = link
                 .shake_hands(address, terms, now() + ANSWER)

@@ -1,4 +1,5 @@
-//! What a fingertip may exchange with an object, section 4.2: D x D springs of every contact type as one spatial stiffness.
+//! What a fingertip may exchange with an object, section 4.2: D x D springs of every contact type as one spatial
+//! stiffness.
 
 use crate::model::direction;
 use nalgebra::allocator::Allocator;
@@ -9,8 +10,8 @@ use thiserror::Error;
 /// planner that works in `float`.
 const ROUNDING: f64 = 1e-3;
 
-/// The spring of a contact, as a symmetric, positive semi-definite 6 x 6 stiffness at the tip, in the axes of the finger's
-/// frame: rows and columns 0 to 2 translation (N/cm), 3 to 5 rotation (N cm/rad), between them N/rad.
+/// The spring of a contact, as a symmetric, positive semi-definite 6 x 6 stiffness at the tip, in the axes of the
+/// finger's frame: rows and columns 0 to 2 translation (N/cm), 3 to 5 rotation (N cm/rad), between them N/rad.
 ///
 /// A contact of D dimensions is a D x D stiffness K and the D x 6 selection S of the tip's motion that it feels:
 /// S^T K S. So the D x 3 Jacobian of eq. 6 is S J with the 6 x 3 J of [`Links::spatial_jacobian`], and
@@ -83,8 +84,8 @@ impl Contact {
         Self::felt(&stiffness, &selection)
     }
 
-    /// Any contact: `stiffness` K of D dimensions, `selection` S the part of the tip's translation (cm) and rotation (rad)
-    /// that each of them is.
+    /// Any contact: `stiffness` K of D dimensions, `selection` S the part of the tip's translation (cm) and rotation
+    /// (rad) that each of them is.
     ///
     /// # Errors
     /// K is no spring, or an entry of S is not finite.
@@ -118,16 +119,16 @@ impl Contact {
         &self.0
     }
 
-    /// The largest eigenvalue of the stiffness, N/cm, with a rotation measured by the way it moves a point at `lever` (cm, 1e-3 or more)
-    /// from the tip. With the length of the last link it is comparable with that of a Kx: turning joint 2 does both. The largest
-    /// finite number, where it is beyond that.
+    /// The largest eigenvalue of the stiffness, N/cm, with a rotation measured by the way it moves a point at `lever`
+    /// (cm, 1e-3 or more) from the tip. With the length of the last link it is comparable with that of a Kx: turning
+    /// joint 2 does both. The largest finite number, where it is beyond that.
     pub fn largest_eigenvalue(&self, lever: f64) -> f64 {
         let (size, measured) = self.measured(lever);
         (measured.symmetric_eigenvalues().max() * size).min(f64::MAX)
     }
 
-    /// The nearest contact without an eigenvalue, in the sense of [`Contact::largest_eigenvalue`], above `bound` or below
-    /// zero: it keeps its principal directions.
+    /// The nearest contact without an eigenvalue, in the sense of [`Contact::largest_eigenvalue`], above `bound` or
+    /// below zero: it keeps its principal directions.
     pub fn clamped(&self, bound: f64, lever: f64) -> Self {
         let (size, measured) = self.measured(lever);
         let mut eigen = measured.symmetric_eigen();
@@ -136,8 +137,8 @@ impl Contact {
         Self(symmetrised(&recomposed))
     }
 
-    /// A size, N/cm, and the stiffness over it, with rotations measured by `lever`. Taken out before they are: where the lever is short the
-    /// product may be beyond all finite numbers, and the eigenvalues of such a matrix NaN.
+    /// A size, N/cm, and the stiffness over it, with rotations measured by `lever`. Taken out before they are: where
+    /// the lever is short the product may be beyond all finite numbers, and the eigenvalues of such a matrix NaN.
     fn measured(&self, lever: f64) -> (f64, Matrix6<f64>) {
         let size = self.0.amax().max(f64::MIN_POSITIVE);
         (size, symmetrised(&scaled(&(self.0 / size), 1.0 / lever)))
@@ -150,12 +151,12 @@ fn scaled(stiffness: &Matrix6<f64>, factor: f64) -> Matrix6<f64> {
     Matrix6::from_fn(|row, column| stiffness[(row, column)] * scale(row) * scale(column))
 }
 
-/// A symmetric stiffness with its rounding averaged away, and its smallest and largest eigenvalue; refused where it is no spring.
-/// Of any rank.
+/// A symmetric stiffness with its rounding averaged away, and its smallest and largest eigenvalue; refused where it is
+/// no spring. Of any rank.
 ///
 /// # Errors
-/// NaN or infinity; not symmetric by more than a thousandth of the largest entry; an eigenvalue below minus a thousandth
-/// of the largest.
+/// NaN or infinity; not symmetric by more than a thousandth of the largest entry; an eigenvalue below minus a
+/// thousandth of the largest.
 pub fn spring<const D: usize>(asked: &SMatrix<f64, D, D>) -> Result<(SMatrix<f64, D, D>, (f64, f64)), ContactError>
 where
     Const<D>: DimSub<U1>,
@@ -181,10 +182,10 @@ where
     Ok((symmetric, (smallest, largest)))
 }
 
-/// A matrix that is symmetric but for rounding, averaged so that its eigenvalues can be computed whatever its finite entries
-/// are. Halved before they are added, because a sum may be infinite. Entries that are rounding errors of the largest become
-/// zeros, because the squares of much smaller ones underflow in the iteration. Either would make eigenvalues NaN, which
-/// pass every comparison with a bound.
+/// A matrix that is symmetric but for rounding, averaged so that its eigenvalues can be computed whatever its finite
+/// entries are. Halved before they are added, because a sum may be infinite. Entries that are rounding errors of the
+/// largest become zeros, because the squares of much smaller ones underflow in the iteration. Either would make
+/// eigenvalues NaN, which pass every comparison with a bound.
 fn symmetrised<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
     let negligible = f64::EPSILON * matrix.amax();
     (matrix * 0.5 + matrix.transpose() * 0.5).map(|entry| if entry.abs() < negligible { 0.0 } else { entry })
@@ -194,8 +195,8 @@ fn finite(values: &[f64]) -> Result<(), ContactError> {
     values.iter().find(|value| !value.is_finite()).map_or(Ok(()), |&value| Err(ContactError::NotFinite(value)))
 }
 
-/// The spring and the unit normal of a contact that has a direction. Where several things are wrong, the first of this order
-/// is reported: a normal that is not finite, a K that is no spring, a normal that is zero.
+/// The spring and the unit normal of a contact that has a direction. Where several things are wrong, the first of this
+/// order is reported: a normal that is not finite, a K that is no spring, a normal that is zero.
 fn directed<const D: usize>(
     stiffness: &SMatrix<f64, D, D>,
     normal: Vector3<f64>,

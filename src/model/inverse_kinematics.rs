@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use std::f64::consts::PI;
 use thiserror::Error;
 
-/// So far beyond a joint limit, rad, a solution is at the limit: the rounding of a tip kept as `float`. Its tip is less than
-/// a hundredth of a millimetre away.
+/// So far beyond a joint limit, rad, a solution is at the limit: the rounding of a tip kept as `float`. Its tip is less
+/// than a hundredth of a millimetre away.
 const LIMIT_ROUNDING: f64 = 1e-5;
 
 /// A tip so near to the axis of joint 0, cm, leaves its angle open: the present one is kept.
@@ -71,8 +71,8 @@ impl InverseKinematics {
         Self { links, low: limits.0, high: limits.1 }
     }
 
-    /// The joint angles, rad, within the limits, that put the tip at `tip` (cm, in the finger's frame): of several solutions
-    /// the one whose farthest joint is nearest to `present`, so the one that the finger is at first.
+    /// The joint angles, rad, within the limits, that put the tip at `tip` (cm, in the finger's frame): of several
+    /// solutions the one whose farthest joint is nearest to `present`, so the one that the finger is at first.
     ///
     /// # Errors
     /// No solution at all, or none within the limits.
@@ -88,8 +88,8 @@ impl InverseKinematics {
         }
     }
 
-    /// Every solution, rad, in -pi to pi, whatever the limits: joint 0 toward the tip or away from it (the finger then bends
-    /// over its own base), each with both elbows. `open`: the angle of joint 0 for a tip on its axis.
+    /// Every solution, rad, in -pi to pi, whatever the limits: joint 0 toward the tip or away from it (the finger then
+    /// bends over its own base), each with both elbows. `open`: the angle of joint 0 for a tip on its axis.
     ///
     /// # Errors
     /// There is none.

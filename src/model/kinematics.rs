@@ -46,16 +46,16 @@ impl Links {
         )
     }
 
-    /// Rotation of the last link in the finger's frame: its own z axis points from joint 2 to the tip. Joint 0 turns about y,
-    /// joints 1 and 2 about the x axis that joint 0 has turned. A quaternion, because the angle of a small rotation is lost in
-    /// the trace of a matrix.
+    /// Rotation of the last link in the finger's frame: its own z axis points from joint 2 to the tip. Joint 0 turns
+    /// about y, joints 1 and 2 about the x axis that joint 0 has turned. A quaternion, because the angle of a small
+    /// rotation is lost in the trace of a matrix.
     pub fn tip_rotation(&self, theta: &Vector3<f64>) -> UnitQuaternion<f64> {
         UnitQuaternion::from_axis_angle(&Vector3::y_axis(), theta[0])
             * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), theta[1] + theta[2])
     }
 
-    /// Jacobian of the tip's whole motion in the finger's frame: rows 0 to 2 as [`Links::jacobian`], cm/rad; rows 3 to 5 the
-    /// rotation of [`Links::tip_rotation`], rad/rad, whose columns are the axes of the joints.
+    /// Jacobian of the tip's whole motion in the finger's frame: rows 0 to 2 as [`Links::jacobian`], cm/rad; rows 3 to
+    /// 5 the rotation of [`Links::tip_rotation`], rad/rad, whose columns are the axes of the joints.
     pub fn spatial_jacobian(&self, theta: &Vector3<f64>) -> Matrix6x3<f64> {
         let (s0, c0) = theta[0].sin_cos();
         let mut jacobian = Matrix6x3::zeros();

@@ -1,7 +1,8 @@
 //! Inertia, Coriolis and gravity torques of the three links, uniform cylinders, and of the tip, a point.
 //!
 //! The angular velocity of links 1 and 2 is the rate of joint 0 about the vertical plus a rate about the normal of the
-//! finger's plane. The two directions are principal for every link, so joint 0 has no inertia in common with the others.
+//! finger's plane. The two directions are principal for every link, so joint 0 has no inertia in common with the
+//! others.
 
 use crate::model::Links;
 use nalgebra::{Matrix3, Vector3};

@@ -61,7 +61,8 @@ impl Tendons {
     }
 }
 
-/// The direction in tendon space that R sends to zero, of length 1, with a positive sum; none where R has a rank below 3.
+/// The direction in tendon space that R sends to zero, of length 1, with a positive sum; none where R has a rank below
+/// 3.
 fn null_vector(r: &Matrix3x4<f64>) -> Option<RowVector4<f64>> {
     // Cofactors of the 3x4 matrix: exact, and it needs no tolerance.
     let minor = |skip: usize| r.remove_column(skip).determinant();

@@ -16,8 +16,8 @@ pub const PLANT_STEP_SECONDS: f64 = 1e-4;
 
 /// One finger. Its state is theta, theta_dot, m, m_dot; it is integrated by semi-implicit Euler.
 ///
-/// Until [`Plant::release_brake`] the rotors are locked: a hand stands braked at its homing pretension until its board is
-/// told to drive it.
+/// Until [`Plant::release_brake`] the rotors are locked: a hand stands braked at its homing pretension until its board
+/// is told to drive it.
 #[derive(Clone, Debug)]
 pub struct Plant {
     links: Links,
@@ -74,14 +74,14 @@ impl Plant {
         })
     }
 
-    /// With steps of so many seconds, more than 0, instead of [`PLANT_STEP_SECONDS`]: for periods that are no multiple of that. Longer steps
-    /// may swing by themselves.
+    /// With steps of so many seconds, more than 0, instead of [`PLANT_STEP_SECONDS`]: for periods that are no multiple
+    /// of that. Longer steps may swing by themselves.
     pub fn with_step(self, seconds: f64) -> Self {
         Self { step: seconds, ..self }
     }
 
-    /// Advances by a step, [`PLANT_STEP_SECONDS`] by default. `motor_torques`: what the board commands, N m: a positive one pulls where
-    /// `motor.sign` is +1. The motors give at most their torque limit.
+    /// Advances by a step, [`PLANT_STEP_SECONDS`] by default. `motor_torques`: what the board commands, N m: a positive
+    /// one pulls where `motor.sign` is +1. The motors give at most their torque limit.
     pub fn step(&mut self, motor_torques: [f64; 4]) {
         let h = self.step;
         self.tendons.slip(&self.theta, &self.motor);

@@ -1,10 +1,10 @@
-//! Coulomb friction of the joints as impulses: each as large as it takes to stop its joint, bounded by what the friction
-//! torque delivers in one step. All three together, because stopping one joint moves its neighbour.
+//! Coulomb friction of the joints as impulses: each as large as it takes to stop its joint, bounded by what the
+//! friction torque delivers in one step. All three together, because stopping one joint moves its neighbour.
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Sweeps of projected Gauss-Seidel. The coupling of joints 1 and 2 shrinks the error at least to three quarters a sweep,
-/// with the default masses; sweeping ends early when nothing changes.
+/// Sweeps of projected Gauss-Seidel. The coupling of joints 1 and 2 shrinks the error at least to three quarters a
+/// sweep, with the default masses; sweeping ends early when nothing changes.
 const SWEEPS: usize = 60;
 
 /// The joint rates after friction. `rates`: without it; `bound`: largest impulses, N m s.

@@ -3,7 +3,8 @@
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
-/// N m/rad. A motor at its torque limit bends a stop by about a degree; the lightest link still resolves it in one step.
+/// N m/rad. A motor at its torque limit bends a stop by about a degree; the lightest link still resolves it in one
+/// step.
 const STIFFNESS: f64 = 100.0;
 /// N m s/rad.
 const DAMPING: f64 = 0.02;

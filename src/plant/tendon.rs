@@ -4,7 +4,8 @@ use crate::model::TendonsError;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
-/// Springs t = k max(0, r m - R^T theta + t_home / k), so that motor angle zero is theta = 0 with the homing pretension.
+/// Springs t = k max(0, r m - R^T theta + t_home / k), so that motor angle zero is theta = 0 with the homing
+/// pretension.
 #[derive(Clone, Debug)]
 pub(super) struct ElasticTendons {
     /// R, m.

@@ -1,5 +1,5 @@
-//! Keeps pthread_cancel away from the code of this library. A cancelled thread unwinds its stack, which no Rust frame with
-//! anything to drop survives, and it would leave locks taken.
+//! Keeps pthread_cancel away from the code of this library. A cancelled thread unwinds its stack, which no Rust frame
+//! with anything to drop survives, and it would leave locks taken.
 #![allow(unsafe_code, reason = "functions of C that the libc crate does not have")]
 
 use std::ffi::c_int;
@@ -15,11 +15,11 @@ const DEFERRED: c_int = 0;
 /// PTHREAD_CANCEL_DISABLE of every C library of Linux.
 const DISABLE: c_int = 1;
 
-/// A thread that is cancelled only at cancellation points, and not at any instruction. Where it was so before, as in almost every
-/// planner, this only reads: it costs less than to disable cancellation.
+/// A thread that is cancelled only at cancellation points, and not at any instruction. Where it was so before, as in
+/// almost every planner, this only reads: it costs less than to disable cancellation.
 ///
-/// Without a destructor, so that the frame that holds it has nothing to drop: an asynchronous cancellation takes effect in
-/// [`DeferredCancellation::end`], and unwinds that frame.
+/// Without a destructor, so that the frame that holds it has nothing to drop: an asynchronous cancellation takes effect
+/// in [`DeferredCancellation::end`], and unwinds that frame.
 #[must_use]
 pub struct DeferredCancellation(c_int);
 
@@ -60,8 +60,8 @@ impl NoCancellation {
 impl Drop for NoCancellation {
     fn drop(&mut self) {
         let mut before = DISABLE;
-        // SAFETY: the state that the thread had, and room for the one before. What was cancelled meanwhile takes effect later: this
-        // is used only where cancellation is deferred, or ended by nobody.
+        // SAFETY: the state that the thread had, and room for the one before. What was cancelled meanwhile takes effect
+        // later: this is used only where cancellation is deferred, or ended by nobody.
         unsafe { pthread_setcancelstate(self.0, &mut before) };
     }
 }

@@ -1,5 +1,6 @@
-//! Work that a thread of this library does for a planner's thread, which waits. The planner's handlers run on its own thread
-//! meanwhile, and one that leaves the wait by siglongjmp leaves nothing locked: it waits for a word in memory, and holds nothing.
+//! Work that a thread of this library does for a planner's thread, which waits. The planner's handlers run on its own
+//! thread meanwhile, and one that leaves the wait by siglongjmp leaves nothing locked: it waits for a word in memory,
+//! and holds nothing.
 #![allow(unsafe_code, reason = "the futex system call")]
 
 use super::cancellation::NoCancellation;
@@ -26,7 +27,8 @@ struct Desk<T> {
 }
 
 thread_local! {
-    /// The thread that works for this one. What is found here when the next one begins works for a call that was jumped out of.
+    /// The thread that works for this one. What is found here when the next one begins works for a call that was jumped
+    /// out of.
     static WORKING: RefCell<Option<JoinHandle<()>>> = const { RefCell::new(None) };
 }
 
@@ -45,12 +47,14 @@ impl<T: Send + 'static> Errand<T> {
             theirs.done.store(1, Ordering::Release);
             wake(&theirs.done);
         })?;
-        // Where the calling thread is just ending there is no such place any more: then nobody waits for the worker's end.
+        // Where the calling thread is just ending there is no such place any more: then nobody waits for the worker's
+        // end.
         let _ = WORKING.try_with(|working| working.replace(Some(worker)));
         Ok(Self(desk))
     }
 
-    /// Waits for the work to be done, with the signals of the calling thread let in; none where there is a reason to give up.
+    /// Waits for the work to be done, with the signals of the calling thread let in; none where there is a reason to
+    /// give up.
     pub fn wait(self, blocked: &SignalsBlocked, give_up: impl Fn() -> bool) -> Option<T> {
         let done = &self.0.done;
         // Outside of this a signal handler could not be left by siglongjmp: there is memory in use, and the desk.

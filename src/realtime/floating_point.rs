@@ -1,6 +1,6 @@
-//! The floating-point environment: rounding, flushed denormals and trapping exceptions belong to a thread, and a new thread
-//! inherits them from the one that starts it. The library computes in the default environment everywhere: a planner's must
-//! neither stop a servo nor change the last bit of what it computes.
+//! The floating-point environment: rounding, flushed denormals and trapping exceptions belong to a thread, and a new
+//! thread inherits them from the one that starts it. The library computes in the default environment everywhere: a
+//! planner's must neither stop a servo nor change the last bit of what it computes.
 //!
 //! On x86-64 a call changes only MXCSR: nothing in this library computes with the x87 unit.
 #![allow(unsafe_code, reason = "no Rust function reads or writes these registers")]

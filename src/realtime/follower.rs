@@ -3,19 +3,19 @@
 /// What the clock that is followed counts, ns a count. It wraps at 65 536.
 const NS_A_COUNT: i64 = 1000;
 
-/// Natural frequency of the loop, rad/s: it settles in some seconds. A command that arrives 1 ms late on a busy machine moves the next
-/// period by a microsecond.
+/// Natural frequency of the loop, rad/s: it settles in some seconds. A command that arrives 1 ms late on a busy machine
+/// moves the next period by a microsecond.
 const NATURAL: f64 = 1.0;
 
 /// Damping ratio of the loop.
 const DAMPING: f64 = 1.0;
 
-/// Most that a period is lengthened or shortened, as a part of it: crystals differ by 100 ppm, ceramic resonators by 3000 ppm and more.
-/// What differs by more than this is no clock.
+/// Most that a period is lengthened or shortened, as a part of it: crystals differ by 100 ppm, ceramic resonators by
+/// 3000 ppm and more. What differs by more than this is no clock.
 const MOST: f64 = 5e-3;
 
-/// Makes periods last as long as they should by somebody else's clock, which counts microseconds modulo 65 536 and is read once a
-/// period at best.
+/// Makes periods last as long as they should by somebody else's clock, which counts microseconds modulo 65 536 and is
+/// read once a period at best.
 #[derive(Clone, Copy, Debug)]
 pub struct Follower {
     /// ns.
@@ -37,8 +37,9 @@ impl Follower {
         Self { period: period as f64, ahead: None, last: 0, periods: 0, rate: 0.0, rest: 0.0 }
     }
 
-    /// By how much the next beginning has to be later than it would be, ns. To be called once a cycle, with what the other clock said in
-    /// it, and with how many `periods` the next cycle comes later: 1, and more where some are skipped.
+    /// By how much the next beginning has to be later than it would be, ns. To be called once a cycle, with what the
+    /// other clock said in it, and with how many `periods` the next cycle comes later: 1, and more where some are
+    /// skipped.
     ///
     /// Readings more than 32 ms from what is expected are taken to be nearer: the clock wraps.
     pub fn correction(&mut self, reading: Option<u16>, periods: u64) -> i64 {
@@ -72,8 +73,9 @@ mod tests {
 
     const PERIOD: u64 = 1_000_000;
 
-    /// Runs a loop against a clock that is faster by `drift`, and returns the mean period and the spread of the beginnings about it, ns
-    /// of that clock, in the last of `seconds`. `late` says how late each cycle's command arrives, ns, none: no reply.
+    /// Runs a loop against a clock that is faster by `drift`, and returns the mean period and the spread of the
+    /// beginnings about it, ns of that clock, in the last of `seconds`. `late` says how late each cycle's command
+    /// arrives, ns, none: no reply.
     fn run(drift: f64, seconds: u64, start: f64, mut late: impl FnMut(u64) -> Option<u64>) -> (f64, f64) {
         let mut follower = Follower::new(PERIOD);
         let other = |host: f64| start + host * (1.0 + drift);

@@ -1,13 +1,13 @@
-//! Tells work that cannot be done without memory that there is none, before it begins: in the middle of it a failed allocation would
-//! end the process, and with it a hand in motion.
+//! Tells work that cannot be done without memory that there is none, before it begins: in the middle of it a failed
+//! allocation would end the process, and with it a hand in motion.
 
 use std::hint::black_box;
 
 /// Small enough that the C library takes it from its heap. A larger one would change how it serves the planner later.
 const BLOCK_BYTES: usize = 64 * 1024;
 
-/// Whether the allocator has so much memory to give at this moment, in blocks of 64 KiB. Nothing keeps it from being taken by others
-/// afterwards.
+/// Whether the allocator has so much memory to give at this moment, in blocks of 64 KiB. Nothing keeps it from being
+/// taken by others afterwards.
 pub fn is_memory_free(bytes: usize) -> bool {
     let count = bytes.div_ceil(BLOCK_BYTES);
     let mut blocks: Vec<Vec<u8>> = Vec::new();

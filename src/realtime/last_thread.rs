@@ -1,5 +1,5 @@
-//! A process ends with its last thread. Threads of this library do not count: they serve the planner's, and would keep a process
-//! alive that nobody can end but by SIGKILL, because they block every signal.
+//! A process ends with its last thread. Threads of this library do not count: they serve the planner's, and would keep
+//! a process alive that nobody can end but by SIGKILL, because they block every signal.
 
 use super::clock::now;
 use super::threads::{own_threads, spawn_alike};
@@ -28,9 +28,9 @@ impl PlannerWatch {
         }
         self.next_look = now() + LOOKING;
         if planner_has_ended() {
-            // As the last thread would have: with the status 0, after the exit handlers. They run in a thread of their own, because one
-            // of them may call CloseHand, which waits for the other threads of the library. Where no thread can be had, a later look
-            // may find one.
+            // As the last thread would have: with the status 0, after the exit handlers. They run in a thread of their
+            // own, because one of them may call CloseHand, which waits for the other threads of the library. Where no
+            // thread can be had, a later look may find one.
             self.ending = spawn_alike("sun2xp exit", || exit(0)).is_ok();
         }
     }

@@ -1,6 +1,7 @@
-//! LockedMemory that a thread touches in real time: there before the first period, and kept from being taken away.
+//! Memory that a thread touches in real time: there before the first period, and kept from being taken away.
 //!
-//! `mlockall` is not for a library: with MCL_FUTURE every later allocation of a planner with a small memlock limit would fail.
+//! `mlockall` is not for a library: with MCL_FUTURE every later allocation of a planner with a small memlock limit
+//! would fail.
 #![allow(unsafe_code, reason = "locks of pages")]
 
 use super::pages::{Pages, SharedPages};
@@ -9,8 +10,8 @@ use std::ops::Range;
 
 /// Places in memory, to be locked together.
 ///
-/// Each has pages of its own, and stays locked until the value is dropped. Locks do not nest: what shared a page with the planner's
-/// data could not be unlocked without unlocking those.
+/// Each has pages of its own, and stays locked until the value is dropped. Locks do not nest: what shared a page with
+/// the planner's data could not be unlocked without unlocking those.
 #[derive(Clone, Debug, Default)]
 pub struct LockedMemory(Vec<Range<usize>>);
 

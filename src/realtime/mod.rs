@@ -1,5 +1,5 @@
-//! Clock, periods, priorities, locked memory and timing figures of the servo threads; and what keeps threads of this library and of
-//! planners apart: signals, cancellation, floating-point environments.
+//! Clock, periods, priorities, locked memory and timing figures of the servo threads; and what keeps threads of this
+//! library and of planners apart: signals, cancellation, floating-point environments.
 
 mod cancellation;
 mod clock;

@@ -1,6 +1,6 @@
-//! Values in memory pages of their own. A servo's are locked, and a lock counts for whole pages: in a page of the heap it would lock
-//! what the planner has there too, and unlocking it would unlock what the planner has locked. Pages of their own are given back to
-//! the system when the value is dropped, and are unlocked by that.
+//! Values in memory pages of their own. A servo's are locked, and a lock counts for whole pages: in a page of the heap
+//! it would lock what the planner has there too, and unlocking it would unlock what the planner has locked. Pages of
+//! their own are given back to the system when the value is dropped, and are unlocked by that.
 #![allow(unsafe_code, reason = "mappings")]
 
 use std::alloc::{Layout, handle_alloc_error};
@@ -14,7 +14,8 @@ pub struct Pages<T: ?Sized> {
     mapping: Mapping,
 }
 
-/// The same for several owners. Reaching the value touches its own pages only, and not those where the owners are counted.
+/// The same for several owners. Reaching the value touches its own pages only, and not those where the owners are
+/// counted.
 pub struct SharedPages<T: ?Sized> {
     place: NonNull<T>,
     owner: Arc<Pages<T>>,

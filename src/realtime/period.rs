@@ -1,7 +1,7 @@
 //! Periods by absolute deadlines.
 
-/// When the cycles of a servo begin: every `period` ns from a first one. Errors do not add up, because each beginning is
-/// counted from the first and not from the cycle before.
+/// When the cycles of a servo begin: every `period` ns from a first one. Errors do not add up, because each beginning
+/// is counted from the first and not from the cycle before.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule {
     next: u64,
@@ -14,8 +14,8 @@ impl Schedule {
         Self { next: first, period }
     }
 
-    /// The schedule of one of `of` threads, 0 to `of` - 1, that share cores and whatever else is shared: their cycles begin as far from
-    /// each other as they can.
+    /// The schedule of one of `of` threads, 0 to `of` - 1, that share cores and whatever else is shared: their cycles
+    /// begin as far from each other as they can.
     pub fn staggered(first: u64, period: u64, place: usize, of: usize) -> Self {
         Self::new(first + period * place as u64 / of as u64, period)
     }
@@ -30,8 +30,8 @@ impl Schedule {
         self.period
     }
 
-    /// Moves to the next cycle after one that ended at `now`. Whole periods that have passed meanwhile are skipped, never
-    /// made up in a burst; returns how many.
+    /// Moves to the next cycle after one that ended at `now`. Whole periods that have passed meanwhile are skipped,
+    /// never made up in a burst; returns how many.
     pub fn advance(&mut self, now: u64) -> u64 {
         self.next += self.period;
         let skipped = now.saturating_sub(self.next) / self.period;

@@ -1,7 +1,7 @@
 //! Response times of periodic threads, found off-line: what section 6.2 of the report asks for.
 
-/// One servo thread as the analysis sees it: in every period it computes, waits for the line without the core, and computes
-/// again. Times in ns, all of them worst cases.
+/// One servo thread as the analysis sees it: in every period it computes, waits for the line without the core, and
+/// computes again. Times in ns, all of them worst cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeriodicThread {
     /// The core it is bound to; none: any, so that it may meet every other thread on one core.
@@ -38,8 +38,8 @@ impl PeriodicThread {
         self.wake_up + self.before + self.waiting + self.after
     }
 
-    /// Whether `other` may keep this one from its core. Threads of one priority run in the order in which they became ready:
-    /// each may have to wait for the other, but never longer than if the other had the higher priority.
+    /// Whether `other` may keep this one from its core. Threads of one priority run in the order in which they became
+    /// ready: each may have to wait for the other, but never longer than if the other had the higher priority.
     fn waits_for(&self, other: &Self) -> bool {
         let meet = match (self.core, other.core) {
             (Some(own), Some(others)) => own == others,
@@ -49,12 +49,12 @@ impl PeriodicThread {
     }
 }
 
-/// A bound for each thread, whatever their phases; none where a thread may still be busy when its next period begins, or waits
-/// for one that may.
+/// A bound for each thread, whatever their phases; none where a thread may still be busy when its next period begins,
+/// or waits for one that may.
 ///
-/// Within any window w thread j computes no more than ceil((w + R_j - C_j) / T_j) times its C_j, wherever it waits in between:
-/// a cycle that reaches into the window began R_j before it at the earliest. So the least solution of
-/// R_i = wake-up + computing + waiting + sum over j of ceil((R_i + R_j - C_j) / T_j) C_j, for all i at once, is a bound.
+/// Within any window w thread j computes no more than ceil((w + R_j - C_j) / T_j) times its C_j, wherever it waits in
+/// between: a cycle that reaches into the window began R_j before it at the earliest. So the least solution of R_i =
+/// wake-up + computing + waiting + sum over j of ceil((R_i + R_j - C_j) / T_j) C_j, for all i at once, is a bound.
 pub fn response_times(threads: &[PeriodicThread]) -> Vec<Option<Response>> {
     let mut done: Vec<Option<u64>> = threads.iter().map(|thread| within(thread, thread.alone())).collect();
     loop {
@@ -122,7 +122,8 @@ mod tests {
     fn without_waiting_it_is_the_classical_analysis() {
         let tasks =
             [(3, 7, 3), (2, 12, 3), (1, 20, 5)].map(|(priority, period, c)| thread(0, priority, period, [0, c, 0, 0]));
-        // R_j - C_j is 0 for the first and 3 for the second: R_3 = 5 + 3 ceil(R/7) + 3 ceil((R + 3)/12) = 5 + 9 + 6 = 20.
+        // R_j - C_j is 0 for the first and 3 for the second: R_3 = 5 + 3 ceil(R/7) + 3 ceil((R + 3)/12) = 5 + 9 + 6 =
+        // 20.
         assert_eq!(done(&tasks), [Some(3), Some(6), Some(20)]);
     }
 

@@ -13,8 +13,8 @@ pub struct Producer<T>(SharedPages<Ring<T>>);
 /// The reader's end.
 pub struct Consumer<T>(SharedPages<Ring<T>>);
 
-/// Both numbers count to twice the number of places and begin again: so a full ring differs from an empty one. From `taken` to
-/// `left` the places have values.
+/// Both numbers count to twice the number of places and begin again: so a full ring differs from an empty one. From
+/// `taken` to `left` the places have values.
 struct Ring<T> {
     left: Line<AtomicUsize>,
     taken: Line<AtomicUsize>,

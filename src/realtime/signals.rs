@@ -1,14 +1,17 @@
-//! Signals are the planner's: none reaches a thread of this library, and none comes from what it does in a planner's thread.
+//! Signals are the planner's: none reaches a thread of this library, and none comes from what it does in a planner's
+//! thread.
 #![allow(unsafe_code, reason = "signal masks")]
 
 use std::ffi::c_int;
 use std::mem::MaybeUninit;
 
-/// Signals by which the system reports a fault of an instruction to the thread that executes it: an access to memory, a number, a
-/// system call that a sandbox traps. Where such a signal is blocked the system ends the process and calls no handler.
+/// Signals by which the system reports a fault of an instruction to the thread that executes it: an access to memory, a
+/// number, a system call that a sandbox traps. Where such a signal is blocked the system ends the process and calls no
+/// handler.
 const FAULTS: [c_int; 6] = [libc::SIGSEGV, libc::SIGBUS, libc::SIGFPE, libc::SIGILL, libc::SIGTRAP, libc::SIGSYS];
 
-/// Signals that the calling thread takes only when this is dropped. Threads that are started meanwhile have them blocked for good.
+/// Signals that the calling thread takes only when this is dropped. Threads that are started meanwhile have them
+/// blocked for good.
 pub struct SignalsBlocked(libc::sigset_t);
 
 impl SignalsBlocked {
@@ -33,8 +36,8 @@ impl SignalsBlocked {
         under(libc::SIG_SETMASK, &self.0, wait)
     }
 
-    /// Runs `read`, which reads memory of the planner's, with the signals of faults let in that the thread had let in: a planner may
-    /// have a handler that makes a page accessible when it is first touched.
+    /// Runs `read`, which reads memory of the planner's, with the signals of faults let in that the thread had let in:
+    /// a planner may have a handler that makes a page accessible when it is first touched.
     pub fn faults_let_in<T>(&self, read: impl FnOnce() -> T) -> T {
         let mut let_in = set_of(&[]);
         for signal in FAULTS {
@@ -50,7 +53,8 @@ impl SignalsBlocked {
 
     fn set(signals: &libc::sigset_t) -> Self {
         let mut before = MaybeUninit::uninit();
-        // SAFETY: a valid set, and room for the mask before, which is written: the call cannot fail with valid arguments.
+        // SAFETY: a valid set, and room for the mask before, which is written: the call cannot fail with valid
+        // arguments.
         Self(unsafe {
             libc::pthread_sigmask(libc::SIG_BLOCK, signals, before.as_mut_ptr());
             before.assume_init()

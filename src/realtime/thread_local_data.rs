@@ -4,16 +4,18 @@
 use std::ffi::c_void;
 use std::mem::MaybeUninit;
 
-/// Bytes that the C library takes from the stack of every thread before the thread runs. glibc puts the thread-local data of the
-/// program and of its libraries there: a planner with large `__thread` arrays makes this large. A C library without this function,
-/// such as musl, adds the thread-local data to the stack that a program asks for, and takes nothing from it.
+/// Bytes that the C library takes from the stack of every thread before the thread runs. glibc puts the thread-local
+/// data of the program and of its libraries there: a planner with large `__thread` arrays makes this large. A C library
+/// without this function, such as musl, adds the thread-local data to the stack that a program asks for, and takes
+/// nothing from it.
 pub(super) fn taken_by_the_c_library() -> usize {
     // SAFETY: a constant name. The address is null where no library has such a function.
     let function = unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"__pthread_get_minstack".as_ptr()) };
     if function.is_null() {
         return 0;
     }
-    // SAFETY: the type that the function has in every glibc since 2.15. The standard library of Rust calls it in this way too.
+    // SAFETY: the type that the function has in every glibc since 2.15. The standard library of Rust calls it in this
+    // way too.
     let least_stack: unsafe extern "C" fn(*const libc::pthread_attr_t) -> usize =
         unsafe { std::mem::transmute::<*mut c_void, _>(function) };
     let mut attributes = MaybeUninit::uninit();

@@ -10,8 +10,8 @@ use std::io;
 use std::mem::MaybeUninit;
 use std::thread::{Builder, JoinHandle};
 
-/// Small, so that a planner that locks its memory (mlockall) locks little of ours; many times what a servo cycle uses. Every thread
-/// gets this beside the part of its stack that the C library takes.
+/// Small, so that a planner that locks its memory (mlockall) locks little of ours; many times what a servo cycle uses.
+/// Every thread gets this beside the part of its stack that the C library takes.
 const STACK_BYTES: usize = 256 * 1024;
 
 /// Opening a hand takes 290 KiB.
@@ -40,9 +40,9 @@ pub struct Realtime {
     pub memory: Option<io::Error>,
 }
 
-/// Starts a thread with all signals blocked, so that it takes none of the planner's: not one that the process receives, nor
-/// one that its own system calls let in; and with the default floating-point environment. `body` runs after the thread has the
-/// priority it could get, and is told.
+/// Starts a thread with all signals blocked, so that it takes none of the planner's: not one that the process receives,
+/// nor one that its own system calls let in; and with the default floating-point environment. `body` runs after the
+/// thread has the priority it could get, and is told.
 ///
 /// # Errors
 /// The system refuses a thread.
@@ -100,8 +100,8 @@ impl Drop for OwnThread {
     }
 }
 
-/// The locked stack of the thread that has it, which drops it before it ends: the C library keeps the stacks of threads that have
-/// ended for others.
+/// The locked stack of the thread that has it, which drops it before it ends: the C library keeps the stacks of threads
+/// that have ended for others.
 #[derive(Debug)]
 pub struct LockedStack {
     lowest: *mut libc::c_void,

@@ -1,5 +1,5 @@
-//! Where the time of a cycle goes, as data: the servo writes one small record a finger and cycle, whoever collects the reports
-//! counts them.
+//! Where the time of a cycle goes, as data: the servo writes one small record a finger and cycle, whoever collects the
+//! reports counts them.
 
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
@@ -39,7 +39,8 @@ impl CycleStage {
     ];
 }
 
-/// The times of one cycle of one finger, ns, by [`CycleStage::ALL`]; none where there was no such stage, as without a reply.
+/// The times of one cycle of one finger, ns, by [`CycleStage::ALL`]; none where there was no such stage, as without a
+/// reply.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct CycleTiming {

@@ -1,5 +1,5 @@
-//! The newest value of one thread for another, wait-free on both sides: three places in pages of their own. One is the writer's, one
-//! the reader's, and the third changes hands.
+//! The newest value of one thread for another, wait-free on both sides: three places in pages of their own. One is the
+//! writer's, one the reader's, and the third changes hands.
 #![allow(unsafe_code, reason = "places that two threads take turns at")]
 
 use super::LockedMemory;
@@ -35,7 +35,8 @@ struct Places<T> {
 #[repr(align(128))]
 struct Line<T>(T);
 
-// SAFETY: a place is reached by one end at a time, the one that has its number, and values go from one thread to another.
+// SAFETY: a place is reached by one end at a time, the one that has its number, and values go from one thread to
+// another.
 unsafe impl<T: Send> Sync for Places<T> {}
 
 /// Both ends, with the same value in every place.
@@ -116,8 +117,8 @@ mod tests {
         assert_eq!(*output.read(), 3);
     }
 
-    /// A value that two threads reached at once would have entries of different ages, and a value that comes late would be older
-    /// than one before it.
+    /// A value that two threads reached at once would have entries of different ages, and a value that comes late would
+    /// be older than one before it.
     #[test]
     fn values_are_whole_and_in_order() {
         const LAST: u64 = 200_000;

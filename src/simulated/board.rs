@@ -1,6 +1,6 @@
-//! A board without hardware: bytes in, bytes out, and the physics of its fingers in between. It has no clock and no thread;
-//! [`SimulatedPort`](crate::simulated::SimulatedPort) puts it behind a serial port, [`SimulatedCable`](crate::simulated::SimulatedCable) runs it
-//! on simulated time.
+//! A board without hardware: bytes in, bytes out, and the physics of its fingers in between. It has no clock and no
+//! thread; [`SimulatedPort`](crate::simulated::SimulatedPort) puts it behind a serial port,
+//! [`SimulatedCable`](crate::simulated::SimulatedCable) runs it on simulated time.
 
 use crate::board::protocol::{
     ANY_ADDRESS, Decoder, Frame, HIGHEST_ADDRESS, Kind, Malformed, Message, Packet, Reason, Refused, WireFrame,
@@ -27,8 +27,8 @@ pub enum SimulatedBoardError {
     },
 }
 
-/// A board with its fingers, as far as its port can tell. A command takes effect when its last byte arrives, and its reply
-/// says what was measured at that instant.
+/// A board with its fingers, as far as its port can tell. A command takes effect when its last byte arrives, and its
+/// reply says what was measured at that instant.
 #[derive(Debug)]
 pub struct SimulatedBoard {
     decoder: Decoder,
@@ -43,8 +43,8 @@ const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
 const _: () = assert!(STEP == 100_000, "the conversion to whole nanoseconds lost something");
 
 impl SimulatedBoard {
-    /// A board with these `fingers` (0 to 2) of a hand at their configured addresses, braked at their start poses. Every finger
-    /// has noise of its own.
+    /// A board with these `fingers` (0 to 2) of a hand at their configured addresses, braked at their start poses.
+    /// Every finger has noise of its own.
     pub fn new(hand: &Configuration, fingers: &[usize]) -> Result<Self, SimulatedBoardError> {
         let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), time: None };
         for &index in fingers {
@@ -62,8 +62,8 @@ impl SimulatedBoard {
         Ok(board)
     }
 
-    /// The same board with its own number in the unique numbers of its fingers: no two boards of one hand may have the same fingers
-    /// and the same number.
+    /// The same board with its own number in the unique numbers of its fingers: no two boards of one hand may have the
+    /// same fingers and the same number.
     pub fn numbered(mut self, number: u32) -> Self {
         self.fingers.iter_mut().for_each(|finger| finger.set_board_number(number));
         self

@@ -30,8 +30,8 @@ impl SimulatedCable {
         &mut self.board
     }
 
-    /// The line becomes bad: this happens to each frame from the board with this probability, until `until`, ns. A stall always
-    /// happens. Chance begins anew with this seed.
+    /// The line becomes bad: this happens to each frame from the board with this probability, until `until`, ns. A
+    /// stall always happens. Chance begins anew with this seed.
     pub fn inject(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
         self.line.inject(fault, probability, until, seed);
     }
@@ -47,7 +47,8 @@ impl SimulatedCable {
         self.line_to_board.clear();
     }
 
-    /// Pulls the cable out, or puts it in again: reads and writes meet a port that has vanished, and what was on its way is lost.
+    /// Pulls the cable out, or puts it in again: reads and writes meet a port that has vanished, and what was on its
+    /// way is lost.
     pub fn set_plugged(&mut self, plugged: bool) {
         self.plugged = plugged;
         if !plugged {

@@ -17,7 +17,8 @@ pub enum Defect {
     },
     /// A motor is blocked.
     JammedMotor(u8),
-    /// A motor is so hot that its driver switches off: all motors lose their torque, as with any fault that the board finds.
+    /// A motor is so hot that its driver switches off: all motors lose their torque, as with any fault that the board
+    /// finds.
     HotMotor(u8),
     /// A gauge shows the same for ever.
     DeadGauge {

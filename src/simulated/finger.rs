@@ -38,7 +38,8 @@ pub struct SimulatedFinger {
     state: State,
     /// Where its physics has got to, ns.
     clock: u64,
-    /// When the last Command that was obeyed came, and when silence or a Stop last ended that, ns; none: not since the last Configure.
+    /// When the last Command that was obeyed came, and when silence or a Stop last ended that, ns; none: not since the
+    /// last Configure.
     commanded_at: Option<u64>,
     ended_at: Option<u64>,
     terms: Configure,
@@ -65,7 +66,8 @@ impl SimulatedFinger {
         gravity: Vector3<f64>,
     ) -> Result<Self, TendonsError> {
         let strongest = finger.motor.torque_limit.into_iter().fold(0.0, f64::max);
-        // The finest unit, in whole nN m, in which the strongest motor's limit is 30 000 units at most. 1 N cm = 1e7 nN m.
+        // The finest unit, in whole nN m, in which the strongest motor's limit is 30 000 units at most. 1 N cm = 1e7 nN
+        // m.
         let torque_unit = (strongest * 1e7 / 30_000.0).ceil().max(1.0);
         let counts = finger.encoder.counts_per_revolution;
         Ok(Self {

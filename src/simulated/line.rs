@@ -1,4 +1,5 @@
-//! One direction of a simulated cable: whole frames go in, and what a bad line makes of them comes out. The same seed makes the same.
+//! One direction of a simulated cable: whole frames go in, and what a bad line makes of them comes out. The same seed
+//! makes the same.
 
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
@@ -64,8 +65,8 @@ impl SimulatedLine {
         }
     }
 
-    /// From now on a fault happens to each frame with this probability, until `until`, ns. A stall always happens. Chance begins
-    /// anew with this seed.
+    /// From now on a fault happens to each frame with this probability, until `until`, ns. A stall always happens.
+    /// Chance begins anew with this seed.
     pub fn inject(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
         self.random = Pcg64::seed_from_u64(seed);
         self.injected.push(Injected { fault, probability, until });

@@ -3,8 +3,9 @@
 /// The most that one wake-up of the board's thread counts, ns.
 const LONGEST_STEP: u64 = 2_000_000;
 
-/// For so long, ns, a [`Pace::Patient`] board takes silence for a pause of the machine. Cycles of a host that is not real-time can
-/// be some 10 ms apart on a busy machine, and an answer that was thrown away is missed for a hundred of them.
+/// For so long, ns, a [`Pace::Patient`] board takes silence for a pause of the machine. Cycles of a host that is not
+/// real-time can be some 10 ms apart on a busy machine, and an answer that was thrown away is missed for a hundred of
+/// them.
 const PATIENCE: u64 = 2_000_000_000;
 
 /// How the time of a simulated board passes.
@@ -14,12 +15,13 @@ const PATIENCE: u64 = 2_000_000_000;
 pub enum Pace {
     /// As on the wall: a host that falls silent meets the watchdog in time.
     RealTime,
-    /// It also stands still, for up to two seconds, while commands stay away. Bytes in a pseudo-terminal are carried by an
-    /// ordinary kernel thread, which a busy machine keeps waiting for tens of ms, and so it does a servo: no reason to stop a
-    /// simulated hand.
+    /// It also stands still, for up to two seconds, while commands stay away. Bytes in a pseudo-terminal are carried by
+    /// an ordinary kernel thread, which a busy machine keeps waiting for tens of ms, and so it does a servo: no reason
+    /// to stop a simulated hand.
     Patient {
-        /// How far the board goes on after the last bytes, ns. No longer than a finger can do without its controller: with 10 ms
-        /// of an old torque, again and again, joints turned by radians, and with 1.5 ms at 1000 Hz they shook.
+        /// How far the board goes on after the last bytes, ns. No longer than a finger can do without its controller:
+        /// with 10 ms of an old torque, again and again, joints turned by radians, and with 1.5 ms at 1000 Hz they
+        /// shook.
         ahead: u64,
     },
 }
@@ -49,7 +51,8 @@ impl PacedTime {
         Self { pace, board: 0, woken: now, heard: 0, silence: 0 }
     }
 
-    /// The board's thread wakes up at `now` on the wall, ns, and finds that bytes have come, or none: the time on the board, ns.
+    /// The board's thread wakes up at `now` on the wall, ns, and finds that bytes have come, or none: the time on the
+    /// board, ns.
     pub fn wake(&mut self, now: u64, bytes: bool) -> u64 {
         let passed = (now - self.woken).min(LONGEST_STEP);
         self.woken = now;

@@ -1,8 +1,8 @@
 //! A simulated board behind a real serial port, as far as its user can tell: a pseudo-terminal and a thread.
 //!
-//! The time of the simulated board does not pass while the machine does not let its thread run: each wake-up counts as 2 ms
-//! at most. Otherwise a virtual machine that is paused for 50 ms, which stops the host's servo just the same, would trip a
-//! watchdog that no real board would trip, and the finger would fall on for 50 ms without its controller.
+//! The time of the simulated board does not pass while the machine does not let its thread run: each wake-up counts as
+//! 2 ms at most. Otherwise a virtual machine that is paused for 50 ms, which stops the host's servo just the same,
+//! would trip a watchdog that no real board would trip, and the finger would fall on for 50 ms without its controller.
 
 use crate::realtime::{self, Priority, spawn};
 use crate::simulated::board::SimulatedBoard;
@@ -84,8 +84,8 @@ impl SimulatedPort {
         Ok(())
     }
 
-    /// The line becomes bad: this happens to each frame from the board with this probability, for so long, ns. A stall always
-    /// happens. Chance begins anew with this seed.
+    /// The line becomes bad: this happens to each frame from the board with this probability, for so long, ns. A stall
+    /// always happens. Chance begins anew with this seed.
     pub fn inject(&self, fault: LineFault, probability: f64, time: u64, seed: u64) {
         let mut shared = self.shared.lock();
         let until = shared.time.saturating_add(time);

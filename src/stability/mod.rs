@@ -1,5 +1,5 @@
-//! Whether a finger under its controller comes to rest: the one-cycle map of the core and the plant together, and the largest
-//! stiffness for which it does. For tools and measurements; no servo thread runs any of it.
+//! Whether a finger under its controller comes to rest: the one-cycle map of the core and the plant together, and the
+//! largest stiffness for which it does. For tools and measurements; no servo thread runs any of it.
 
 mod one_cycle_map;
 mod recurrence;

@@ -29,8 +29,8 @@ const LOST: f64 = 1e-4;
 /// A finger that has moved by so much is not at its rest any more, rad.
 const FAR: f64 = 0.1;
 
-/// A finger as it is left to itself: at `joints`, rad, which a force on the tip holds `deflection`, rad, away from where its
-/// spring Kx, N/cm, is anchored.
+/// A finger as it is left to itself: at `joints`, rad, which a force on the tip holds `deflection`, rad, away from
+/// where its spring Kx, N/cm, is anchored.
 #[derive(Clone, Copy, Debug)]
 pub struct Rest {
     /// rad.
@@ -57,8 +57,8 @@ pub struct OneCycleMap {
 }
 
 impl OneCycleMap {
-    /// The finger with its configured scheme, law and gains at `rate`, Hz. A period is a whole number of plant steps, of at most the
-    /// usual length.
+    /// The finger with its configured scheme, law and gains at `rate`, Hz. A period is a whole number of plant steps,
+    /// of at most the usual length.
     ///
     /// # Errors
     /// The key that makes no controller.
@@ -84,10 +84,11 @@ impl OneCycleMap {
         finger.report.stiffness_scale
     }
 
-    /// The largest modulus of an eigenvalue of the one-cycle map at `rest`; none where the finger does not stay there, or loses
-    /// a tendon.
+    /// The largest modulus of an eigenvalue of the one-cycle map at `rest`; none where the finger does not stay there,
+    /// or loses a tendon.
     ///
-    /// Two fingers, one of them nudged by next to nothing: how their difference goes on is the linear map and nothing else.
+    /// Two fingers, one of them nudged by next to nothing: how their difference goes on is the linear map and nothing
+    /// else.
     pub fn largest_eigenvalue(&self, rest: &Rest) -> Option<f64> {
         let links = self.finger.links();
         let jacobian = links.jacobian(&rest.joints);
@@ -186,8 +187,8 @@ struct Moving {
     report: Report,
 }
 
-/// A simulation of what the controller believes of the finger, without Coulomb friction and noise; the controller knows. Set
-/// points are not slowed down.
+/// A simulation of what the controller believes of the finger, without Coulomb friction and noise; the controller
+/// knows. Set points are not slowed down.
 fn as_believed(finger: &ConfiguredFinger) -> ConfiguredFinger {
     let mut finger = finger.clone();
     finger.motor.sign = [1; 4];

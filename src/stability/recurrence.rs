@@ -12,14 +12,14 @@ const LARGEST_ORDER: usize = 8;
 /// Of the last sample: a root with less of it is none.
 const PART: f64 = 0.01;
 
-/// By which factor the slowest mode of a freely decaying (or growing) linear system changes from one sample to the next: its
-/// largest eigenvalue's modulus. `samples`: one vector of channels an instant, equally
-/// spaced, the channels in proportion to one another.
+/// By which factor the slowest mode of a freely decaying (or growing) linear system changes from one sample to the
+/// next: its largest eigenvalue's modulus. `samples`: one vector of channels an instant, equally spaced, the channels
+/// in proportion to one another.
 ///
-/// After the fast modes have gone the last samples obey a short recurrence y[k] = a1 y[k-1] + ... + ap y[k-p], the same in
-/// every channel, and its roots are the eigenvalues left (Prony). The shortest one that explains them has hardly any others, and of
-/// these the motion has no part. Where none explains them, as at a joint limit that one motion touches and the other does not, roots
-/// say nothing, and the mean change of the samples does.
+/// After the fast modes have gone the last samples obey a short recurrence y[k] = a1 y[k-1] + ... + ap y[k-p], the same
+/// in every channel, and its roots are the eigenvalues left (Prony). The shortest one that explains them has hardly any
+/// others, and of these the motion has no part. Where none explains them, as at a joint limit that one motion touches
+/// and the other does not, roots say nothing, and the mean change of the samples does.
 pub fn growth(samples: &[DVector<f64>]) -> f64 {
     if samples.iter().any(|sample| !sample.norm().is_finite()) {
         return f64::NAN;
@@ -38,13 +38,14 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
     mean_change(window)
 }
 
-/// Whether what `follows` shows that a root is none: of a mode that grows so fast, with the least part that counts, something would be
-/// left above `rounding`.
+/// Whether what `follows` shows that a root is none: of a mode that grows so fast, with the least part that counts,
+/// something would be left above `rounding`.
 fn has_died(follows: &[DVector<f64>], root: f64, rounding: f64) -> bool {
     root.powi(follows.len() as i32) * PART > 1.0 && follows.iter().all(|sample| sample.norm() <= rounding)
 }
 
-/// From the largest sample of the first half to that of the second, as a factor from one to the next. NaN of less than two.
+/// From the largest sample of the first half to that of the second, as a factor from one to the next. NaN of less than
+/// two.
 fn mean_change(window: &[DVector<f64>]) -> f64 {
     let half = window.len() / 2;
     if half == 0 {
@@ -75,7 +76,8 @@ fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f6
 
 /// The largest modulus among those roots of z^p - a1 z^(p-1) - ... - ap that the last sample has a part of.
 ///
-/// The slowest mode has most of it. A root beyond it fits a last digit somewhere, and would foretell a motion that is not there.
+/// The slowest mode has most of it. A root beyond it fits a last digit somewhere, and would foretell a motion that is
+/// not there.
 fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
     let order = coefficients.len();
     let companion = DMatrix::from_fn(order, order, |row, column| match (row, column) {

@@ -92,8 +92,8 @@ pub fn paths(tree: &UseTree, module: &[String]) -> Vec<(String, Vec<String>)> {
     found.into_iter().map(|(name, path)| (name, from_root(&path, module))).collect()
 }
 
-/// A path as a file writes it, from the crate's root. A path that begins with neither `crate`, `super` nor `self` may name a
-/// module below this one.
+/// A path as a file writes it, from the crate's root. A path that begins with neither `crate`, `super` nor `self` may
+/// name a module below this one.
 pub fn from_root(path: &[String], module: &[String]) -> Vec<String> {
     let mut at = module.to_vec();
     for (place, name) in path.iter().enumerate() {

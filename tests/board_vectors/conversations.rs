@@ -1,4 +1,5 @@
-//! Every conversation as lines of the file, and as a test of the simulated board: both follow the state diagram of a board.
+//! Every conversation as lines of the file, and as a test of the simulated board: both follow the state diagram of a
+//! board.
 
 use super::json::{hex, list, object, text};
 use super::scripts::conversations;

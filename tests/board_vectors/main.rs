@@ -1,5 +1,5 @@
-//! protocol/vectors.json: what any board and any host can be tested against. The codec makes the file, and it must agree
-//! with it ever after; the simulated board must hold every conversation in it, and so must the reference firmware
+//! protocol/vectors.json: what any board and any host can be tested against. The codec makes the file, and it must
+//! agree with it ever after; the simulated board must hold every conversation in it, and so must the reference firmware
 //! (tests/c_boards.rs).
 
 mod conversations;

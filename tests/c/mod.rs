@@ -1,5 +1,5 @@
-//! Compiles the C programs of this folder against the header and the library that the same `cargo test` has built, and runs
-//! them where no configuration of the machine can be found.
+//! Compiles the C programs of this folder against the header and the library that the same `cargo test` has built, and
+//! runs them where no configuration of the machine can be found.
 
 pub mod board;
 #[allow(dead_code)]
@@ -56,8 +56,8 @@ pub fn cpp_compilers() -> Vec<&'static str> {
     cpp_compiler().into_iter().chain(clang).collect()
 }
 
-/// A scratch folder with the library under the names that programs look for. There is one at a time: three servo threads and
-/// their boards want the machine, and no compiler beside them.
+/// A scratch folder with the library under the names that programs look for. There is one at a time: three servo
+/// threads and their boards want the machine, and no compiler beside them.
 pub struct Bench {
     folder: TempDir,
     _turn: MutexGuard<'static, ()>,
@@ -111,7 +111,8 @@ impl Bench {
         command
     }
 
-    /// Compiles, links and runs one program that must exit with 0. Without a compiler of C++ a program in C++ is left out.
+    /// Compiles, links and runs one program that must exit with 0. Without a compiler of C++ a program in C++ is left
+    /// out.
     pub fn succeed(&self, flags: &[&str], sources: &[&str]) {
         let compiler = if sources[0].ends_with("cpp") { cpp_compiler() } else { Some(c_compiler()) };
         let Some(compiler) = compiler else { return };

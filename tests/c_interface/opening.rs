@@ -63,7 +63,8 @@ fn a_configuration_that_cannot_be_used_is_told_with_its_line() {
     }
 }
 
-/// The working directory's before the user's, the user's before the system's. None of them can be used, so the refusal names it.
+/// The working directory's before the user's, the user's before the system's. None of them can be used, so the refusal
+/// names it.
 #[test]
 fn the_nearest_configuration_file_counts() {
     let bench = Bench::new();

@@ -1,4 +1,5 @@
-//! Planners in every dialect of C, and in C++: they compile without a warning, move the hand, and see the right results.
+//! Planners in every dialect of C, and in C++: they compile without a warning, move the hand, and see the right
+//! results.
 
 use crate::c::{Bench, STRICT, c_compiler, said, tool};
 use crate::{strict, succeed};

@@ -85,7 +85,8 @@ fn a_board_that_kept_its_counts_keeps_the_zero_but_not_that_of_the_gauges() {
     }
 }
 
-/// The goal that all this is for: a finger whose tendons are 10 % stiffer than configured is the spring it is told to be.
+/// The goal that all this is for: a finger whose tendons are 10 % stiffer than configured is the spring it is told to
+/// be.
 #[test]
 fn a_calibrated_finger_is_the_spring_it_is_told_to_be() {
     let mut truth = truth();

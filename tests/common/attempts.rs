@@ -27,9 +27,9 @@ pub enum Verdict {
 }
 
 impl Tally {
-    /// Judges an attempt during which the machine paused for so long, and which fails by itself only if nothing is paused for as long as
-    /// it `bears`. Every excused failure has to be made up for by a passed attempt, so that a defect that shows in some attempts only
-    /// does not hide behind a machine that always pauses.
+    /// Judges an attempt during which the machine paused for so long, and which fails by itself only if nothing is
+    /// paused for as long as it `bears`. Every excused failure has to be made up for by a passed attempt, so that a
+    /// defect that shows in some attempts only does not hide behind a machine that always pauses.
     pub fn judge(&mut self, passed: bool, paused: Duration, bears: Duration) -> Verdict {
         match passed {
             true => self.passed += 1,
@@ -46,9 +46,9 @@ impl Tally {
     }
 }
 
-/// Makes attempts until more have passed than failed, and returns what the passed ones found. An attempt may fail only if the machine was
-/// measured to pause the hand and its boards for as long as the attempt `bears`, or longer. The attempt gets the watch so that it can
-/// name the processes of its boards.
+/// Makes attempts until more have passed than failed, and returns what the passed ones found. An attempt may fail only
+/// if the machine was measured to pause the hand and its boards for as long as the attempt `bears`, or longer. The
+/// attempt gets the watch so that it can name the processes of its boards.
 ///
 /// # Panics
 /// If an attempt fails without such a pause, or if more than three fail.

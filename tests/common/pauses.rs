@@ -1,8 +1,9 @@
 //! How long the machine kept threads from running, by the kernel's account.
 //!
-//! A test in real time can fail because the machine paused it. Such a failure is excused only where the pause was measured. The kernel
-//! counts for every thread how long it was ready to run and had no core (`/proc/PID/task/TID/schedstat`). A thread that sleeps, waits for
-//! bytes or was stopped by a signal is not ready, so a defect of that kind is no pause.
+//! A test in real time can fail because the machine paused it. Such a failure is excused only where the pause was
+//! measured. The kernel counts for every thread how long it was ready to run and had no core
+//! (`/proc/PID/task/TID/schedstat`). A thread that sleeps, waits for bytes or was stopped by a signal is not ready, so
+//! a defect of that kind is no pause.
 
 #[path = "waits.rs"]
 mod waits;
@@ -62,7 +63,8 @@ impl PauseWatch {
         self.shared.processes().push((process, part));
     }
 
-    /// Closes all files and forgets what was measured, until the guard is dropped: for tests that count what the process holds.
+    /// Closes all files and forgets what was measured, until the guard is dropped: for tests that count what the
+    /// process holds.
     pub fn rest(&self) -> Rest<'_> {
         let [asked, done] = &self.shared.rests;
         asked.store(true, Relaxed);

@@ -1,4 +1,5 @@
-//! The priority that simulated boards have in the library, for boards of the tests: a microcontroller does not wait for compilers.
+//! The priority that simulated boards have in the library, for boards of the tests: a microcontroller does not wait for
+//! compilers.
 
 use std::os::unix::process::CommandExt;
 use std::process::Command;

@@ -1,4 +1,5 @@
-//! The tool `sun2xp`, which is a package of its own: tests of the library build it once, as cargo builds it for its own tests.
+//! The tool `sun2xp`, which is a package of its own: tests of the library build it once, as cargo builds it for its own
+//! tests.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,6 +1,6 @@
-//! What the tests need besides Rust, and what was left out because it is missing. `tests/tools.txt` names the tools and their Debian
-//! packages. Without a tool the tests that need it pass, and tests/zz_left_out.rs lists them at the end of `cargo test`. With CI=true
-//! they fail.
+//! What the tests need besides Rust, and what was left out because it is missing. `tests/tools.txt` names the tools and
+//! their Debian packages. Without a tool the tests that need it pass, and tests/zz_left_out.rs lists them at the end of
+//! `cargo test`. With CI=true they fail.
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -26,8 +26,8 @@ fn tools() -> impl Iterator<Item = Tool> {
     })
 }
 
-/// Whether the tests can use a tool of `tests/tools.txt`. If not, `part` of the current test is noted as left out; with CI=true the
-/// test fails.
+/// Whether the tests can use a tool of `tests/tools.txt`. If not, `part` of the current test is noted as left out; with
+/// CI=true the test fails.
 pub fn available(name: &str, part: &str) -> bool {
     let tool = tools().find(|tool| tool.name == name).expect("tests/tools.txt has a line for the tool");
     let mut probe = Command::new("sh");
@@ -71,7 +71,8 @@ fn note(line: &str) {
     }
 }
 
-/// Takes what the children of a process have left out, in the order of the alphabet, and forgets what earlier runs have left out.
+/// Takes what the children of a process have left out, in the order of the alphabet, and forgets what earlier runs have
+/// left out.
 pub fn take_left_out(parent: u32) -> Vec<String> {
     let folder = folder_of_runs();
     let this = run(parent);
@@ -94,11 +95,12 @@ fn folder_of_runs() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("left_out")
 }
 
-/// One run of the tests: its parent process by number and by when it started, because numbers are used again. None where there is no
-/// such process.
+/// One run of the tests: its parent process by number and by when it started, because numbers are used again. None
+/// where there is no such process.
 fn run(parent: u32) -> Option<String> {
     let stat = fs::read_to_string(format!("/proc/{parent}/stat")).ok()?;
-    // The name of the program is in parentheses and may contain any character. The start is field 22, the state after the name field 3.
+    // The name of the program is in parentheses and may contain any character. The start is field 22, the state after
+    // the name field 3.
     let start = stat.rsplit_once(')')?.1.split_whitespace().nth(22 - 3)?;
     Some(format!("{parent}-{start}"))
 }

@@ -11,8 +11,8 @@ pub enum Part {
     Servo,
     /// Whatever plays a board: threads of this process, other processes, an emulator.
     Board,
-    /// Workers of the kernel, which carry the bytes of pseudo-terminals. The watch itself counts as one, because they are not seen from
-    /// a container, and it waits for a core as they do.
+    /// Workers of the kernel, which carry the bytes of pseudo-terminals. The watch itself counts as one, because they
+    /// are not seen from a container, and it waits for a core as they do.
     Carrier,
     /// The whole machine: a guest that its host did not run.
     Machine,
@@ -62,8 +62,8 @@ impl Waits {
         Self { noted: self.noted.iter().copied().filter(recent).collect(), lasted: seconds.min(self.lasted) }
     }
 
-    /// The longest time for which the machine kept one servo, one board and one carrier of bytes, one after the other, from running within
-    /// any `span`. A wait that began before the span counts whole.
+    /// The longest time for which the machine kept one servo, one board and one carrier of bytes, one after the other,
+    /// from running within any `span`. A wait that began before the span counts whole.
     pub fn most_within(&self, span: Duration) -> Duration {
         self.worst(span).values().sum()
     }

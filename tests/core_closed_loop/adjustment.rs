@@ -28,8 +28,8 @@ const CHANGES: &[Change] = &[
     ("motor radius", |finger| finger.geometry.motor_radius = [0.0480; 4], true),
 ];
 
-/// Largest change of a command from one cycle to the next, N at the tendon, of a pushed finger: at rest, by the adjustment, and
-/// by the controller's replacement without ado.
+/// Largest change of a command from one cycle to the next, N at the tendon, of a pushed finger: at rest, by the
+/// adjustment, and by the controller's replacement without ado.
 fn jumps(scheme: Scheme, change: fn(&mut ConfiguredFinger)) -> [f64; 3] {
     let mut finger = quiet(scheme);
     let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);

@@ -133,8 +133,9 @@ fn the_model_rests_where_tensions_say_nothing_about_the_motor() {
     assert!((after - before).abs() < 0.03, "{before}, {after}");
 }
 
-/// A finger whose motors give 1.2 times what is commanded, led to a pose for 2 s, with exact sensors: where its joints are off in the
-/// end, and how fast they are, rad and rad/s. `geometry`: whether the adapted M also turns motor angles into joint angles.
+/// A finger whose motors give 1.2 times what is commanded, led to a pose for 2 s, with exact sensors: where its joints
+/// are off in the end, and how fast they are, rad and rad/s. `geometry`: whether the adapted M also turns motor angles
+/// into joint angles.
 fn with_adapted_kinematics(pose: Vector3<f64>, geometry: bool) -> (f64, f64) {
     let finger = frictionless([1.2; 4]);
     let mut plant = Plant::new(&finger, Vector3::zeros()).unwrap();

@@ -90,8 +90,8 @@ fn a_motor_that_is_warm_is_limited_to_what_it_can_give_for_ever() {
     assert!(squares.max() > 0.8, "{:?} N^2 cm^2: blind", squares.as_slice());
 }
 
-/// One motor that may give 21 N for ever, three that may give 53 N, and a torque against a stop that asks for more of all of them.
-/// Figure 11 has no gain on the tension error, and leaves the friction of the motors.
+/// One motor that may give 21 N for ever, three that may give 53 N, and a torque against a stop that asks for more of
+/// all of them. Figure 11 has no gain on the tension error, and leaves the friction of the motors.
 #[test]
 fn a_warm_motor_does_not_turn_the_torque() {
     for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback] {
@@ -129,8 +129,8 @@ fn soon_warm(scheme: Scheme) -> ConfiguredFinger {
     finger
 }
 
-/// Warm motors that pull 21 N while 55 N are asked for, for long; then 10 N are asked for. What winds up holds the motors at
-/// their limit after that. Figure 11 has no integral; a gauge that does not move teaches it a weak motor.
+/// Warm motors that pull 21 N while 55 N are asked for, for long; then 10 N are asked for. What winds up holds the
+/// motors at their limit after that. Figure 11 has no integral; a gauge that does not move teaches it a weak motor.
 #[test]
 fn a_warm_motor_does_not_wind_up_the_integral() {
     for scheme in [Scheme::Figure9, Scheme::Figure10] {
@@ -155,8 +155,8 @@ fn a_warm_motor_does_not_wind_up_the_integral() {
     }
 }
 
-/// A finger pressed against a stop with all that its motors have, then called back: by how much the true tensions are over the
-/// desired ones at most, from 30 ms after the call on, N.
+/// A finger pressed against a stop with all that its motors have, then called back: by how much the true tensions are
+/// over the desired ones at most, from 30 ms after the call on, N.
 fn excess_after_a_stop(finger: &ConfiguredFinger, rate: f64) -> f64 {
     let mut finger = finger.clone();
     finger.controller.set_point_speed = Some(1e3);

@@ -1,4 +1,5 @@
-//! The servo's core with a finger that is not what it believes, at the bound of Kx, and with feedback that makes no sense.
+//! The servo's core with a finger that is not what it believes, at the bound of Kx, and with feedback that makes no
+//! sense.
 
 use super::rig::{Loop, SCHEMES, finger_with, poses, spring};
 use nalgebra::{Matrix3, Vector3};

@@ -7,8 +7,8 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::control::{Activity, SetPoint};
 use sun2xp::model::configuration::ConfiguredFinger;
 
-/// How far the joints are from where they were when the finger has come under tension and holds its pose, rad, and how long it
-/// took, s.
+/// How far the joints are from where they were when the finger has come under tension and holds its pose, rad, and how
+/// long it took, s.
 fn drift(finger: &ConfiguredFinger, slack: &Vector4<f64>, rate: f64, take_up: &Activity) -> (f64, f64) {
     let mut servo =
         Loop::with_belief(finger, &ConfiguredFinger { simulation: Default::default(), ..finger.clone() }, rate);

@@ -27,7 +27,8 @@ fn exact(joints: Vector3<f64>, stiffness: f64) -> Activity {
     Activity::Follow(SetPoint { law: Law::Exact, ..set_point })
 }
 
-/// Joint angles with the tip `way` (cm) from where it is at `joints`, by Newton; none beyond the joint limits or near to straight.
+/// Joint angles with the tip `way` (cm) from where it is at `joints`, by Newton; none beyond the joint limits or near
+/// to straight.
 pub fn shifted(finger: &ConfiguredFinger, joints: &Vector3<f64>, way: &Vector3<f64>) -> Option<Vector3<f64>> {
     let (links, (low, high)) = (finger.links(), finger.joint_limits());
     let target = links.tip(joints) + way;
@@ -146,8 +147,8 @@ fn motor_constants_a_fifth_off_do_not_matter() {
     }
 }
 
-/// Deflection under a force over what it should be, less 1: the largest over poses and directions of a spring of 3 N/cm, pushed
-/// `way` cm.
+/// Deflection under a force over what it should be, less 1: the largest over poses and directions of a spring of 3
+/// N/cm, pushed `way` cm.
 fn push_error(way: f64, change: impl Fn(&mut ConfiguredFinger)) -> f64 {
     let mut worst = 0.0f64;
     for pose in poses_of(SEED).into_iter().step_by(3) {

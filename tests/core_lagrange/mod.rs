@@ -1,5 +1,6 @@
 //! A frictionless finger derived a second time: its kinetic energy is summed over points with the mass and the second
-//! moments of the links, and Lagrange's equations come from it by numeric differentiation. It shares no code with the plant.
+//! moments of the links, and Lagrange's equations come from it by numeric differentiation. It shares no code with the
+//! plant.
 
 use nalgebra::{Matrix3, Rotation3, SVector, Vector3, Vector4};
 
@@ -112,8 +113,8 @@ fn inertia(theta: &Vector3<f64>) -> Matrix3<f64> {
     h
 }
 
-/// Eight points a link: two along the axis at Gauss's places, four around it at radius / sqrt 2, have the mass, the centre
-/// and the second moments of a uniform cylinder. The tip is the last point.
+/// Eight points a link: two along the axis at Gauss's places, four around it at radius / sqrt 2, have the mass, the
+/// centre and the second moments of a uniform cylinder. The tip is the last point.
 fn points(theta: &Vector3<f64>) -> Vec<(f64, Vector3<f64>)> {
     let mut turn = Rotation3::identity();
     let mut origin = Vector3::zeros();

@@ -27,8 +27,8 @@ pub struct Injected {
     pub drift: Vector4<f64>,
 }
 
-/// A fault can be known from the beginning of the first stretch of so many ms on during which this holds for what the finger
-/// truly is.
+/// A fault can be known from the beginning of the first stretch of so many ms on during which this holds for what the
+/// finger truly is.
 #[derive(Clone, Copy)]
 pub struct Knowable {
     pub holds: fn(&Truth, &Injected, &ConfiguredFinger) -> bool,

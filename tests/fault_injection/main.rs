@@ -1,5 +1,5 @@
-//! Faults injected into a finger in motion, at random moments: each is named as it should be, the motors come to the end
-//! state in time, and the finger recovers. `docs/faults.md` has the figures of the long run.
+//! Faults injected into a finger in motion, at random moments: each is named as it should be, the motors come to the
+//! end state in time, and the finger recovers. `docs/faults.md` has the figures of the long run.
 
 mod cases;
 #[allow(dead_code)]

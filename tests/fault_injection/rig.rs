@@ -268,8 +268,8 @@ impl Bench {
         });
     }
 
-    /// Does what RecoverHand does with a finger that has faulted: takes the link that the servo lends, or a new one, shakes hands,
-    /// gives it back, and waits until the finger is a spring.
+    /// Does what RecoverHand does with a finger that has faulted: takes the link that the servo lends, or a new one,
+    /// shakes hands, gives it back, and waits until the finger is a spring.
     pub fn recover(&mut self) {
         let before = self.report().recoveries;
         // What was on its way comes.

@@ -1,4 +1,5 @@
-//! A board that sends valid frames without end: its finger faults in time, is stopped, and recovers when the flood is over.
+//! A board that sends valid frames without end: its finger faults in time, is stopped, and recovers when the flood is
+//! over.
 
 use crate::rig::{Bench, MILLISECOND, TARGET};
 use sun2xp::board::Transport;

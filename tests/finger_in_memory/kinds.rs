@@ -1,5 +1,5 @@
-//! Faults and warnings that the finger's servo names itself, each made to happen. Those of tendons, gauges, encoders and motors are in
-//! tests/fault_injection, those of opening a port in tests/hand_ports.
+//! Faults and warnings that the finger's servo names itself, each made to happen. Those of tendons, gauges, encoders
+//! and motors are in tests/fault_injection, those of opening a port in tests/hand_ports.
 
 use crate::rig::{Bench, MILLISECOND, TARGET};
 use nalgebra::Vector3;

@@ -12,7 +12,8 @@ fn impatient(configuration: &mut Configuration) {
     configuration.hand.open_timeout_ms = TIMEOUT_MS;
 }
 
-/// Cycles until the finger no longer opens; everything else on the machine takes so long after each, ms. What stopped it, and when, ms.
+/// Cycles until the finger no longer opens; everything else on the machine takes so long after each, ms. What stopped
+/// it, and when, ms.
 fn opens_on_a_machine_with(bench: &mut Bench, pause: u64) -> (Fault, f64) {
     let begun = bench.world.now();
     while bench.stage() == Stage::Opening {

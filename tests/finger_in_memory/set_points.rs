@@ -1,4 +1,5 @@
-//! Which set point a finger holds after open, after a fault and after a calibration: its own, until a planner sends another.
+//! Which set point a finger holds after open, after a fault and after a calibration: its own, until a planner sends
+//! another.
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;

@@ -35,8 +35,8 @@ pub struct Machine {
     process: Child,
     /// One for all three fingers.
     pub port: PathBuf,
-    /// Keeps the terminal's host end open: the emulator throws away what it sends to a closed one, and looks only once a second
-    /// whether it was opened.
+    /// Keeps the terminal's host end open: the emulator throws away what it sends to a closed one, and looks only once
+    /// a second whether it was opened.
     _end: File,
     _folder: TempDir,
     requests: File,
@@ -132,8 +132,8 @@ pub struct Finger {
     time: Option<u32>,
     /// Time that is not a whole step yet, s.
     rest: f64,
-    /// How much further it may move before the next sample, s. No real finger waits, but on a busy machine planner, emulator
-    /// and plant are all later than any loop can bear.
+    /// How much further it may move before the next sample, s. No real finger waits, but on a busy machine planner,
+    /// emulator and plant are all later than any loop can bear.
     motion_left: f64,
     /// Present from now on.
     pub faults: Status,

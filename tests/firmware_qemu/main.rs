@@ -1,5 +1,5 @@
-//! The library against the reference firmware on an emulated Cortex-M3: the same protocol core that a lab ports, compiled for
-//! a microcontroller, with its own interrupts and its own time.
+//! The library against the reference firmware on an emulated Cortex-M3: the same protocol core that a lab ports,
+//! compiled for a microcontroller, with its own interrupts and its own time.
 
 #[path = "../common/attempts.rs"]
 mod attempts;
@@ -86,8 +86,8 @@ fn settled(hand: &Hand) -> Result<[[f64; 3]; 3], String> {
     }
 }
 
-/// Attempts to open a hand on the firmware and to do something with it, each with a new machine. An emulator gets what its machine
-/// leaves it.
+/// Attempts to open a hand on the firmware and to do something with it, each with a new machine. An emulator gets what
+/// its machine leaves it.
 fn with_hand(what: &str, work: impl Fn(&Machine, &Hand) -> Result<(), String>) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let image = build(folder.path());
@@ -102,7 +102,8 @@ fn with_hand(what: &str, work: impl Fn(&Machine, &Hand) -> Result<(), String>) {
     });
 }
 
-/// A servo that hears nothing for 10 ms lets its motors go and begins anew (docs/architecture.md). A hand survives that.
+/// A servo that hears nothing for 10 ms lets its motors go and begins anew (docs/architecture.md). A hand survives
+/// that.
 const BEARS: Duration = Duration::from_millis(50);
 
 const KEYS: &str = "rate = 500.0\nwatchdog_ms = 1000";
@@ -201,8 +202,9 @@ fn wait_until(patience: Duration, mut holds: impl FnMut() -> bool) -> bool {
     false
 }
 
-/// Whether the firmware says that its watchdog ended all fingers. A pause of the machine can end them otherwise: the planner meets
-/// a fault then and stops the fingers itself, with frames that may reach the firmware after the planner was killed.
+/// Whether the firmware says that its watchdog ended all fingers. A pause of the machine can end them otherwise: the
+/// planner meets a fault then and stops the fingers itself, with frames that may reach the firmware after the planner
+/// was killed.
 fn ended_by_watchdog(machine: &Machine) -> bool {
     let mut link = Link::open(&machine.port, 1_000_000).expect("nobody else holds the port");
     // What the killed planner did not read any more.
@@ -221,7 +223,8 @@ fn ended_by_watchdog(machine: &Machine) -> bool {
     })
 }
 
-/// Kills a planner: how long after the arrival of its last command each finger's watchdog set the currents, us in the firmware's time.
+/// Kills a planner: how long after the arrival of its last command each finger's watchdog set the currents, us in the
+/// firmware's time.
 fn kill_a_planner(
     machine: &Machine,
     planner: &mut Planner,

@@ -139,7 +139,8 @@ fn a_planner_that_leaves_past_every_handler_is_left_to_the_watchdogs() {
     }
 }
 
-/// Who configures *hold* has something that must not fall, and that counts for StopHand too: bounded in torque and time.
+/// Who configures *hold* has something that must not fall, and that counts for StopHand too: bounded in torque and
+/// time.
 #[test]
 fn an_emergency_stop_releases_at_once_or_holds_for_a_while_as_configured() {
     let _turn = turn();

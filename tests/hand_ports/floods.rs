@@ -15,8 +15,8 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
 
-/// No call may take longer because a board sends without end. A busy machine needs most of this; before reads had a bound, a flood held a
-/// servo for longer.
+/// No call may take longer because a board sends without end. A busy machine needs most of this; before reads had a
+/// bound, a flood held a servo for longer.
 const PROMPT: Duration = Duration::from_secs(1);
 
 /// A board with finger 2 that sends one frame again and again while it is told to, and has no room for answers then.

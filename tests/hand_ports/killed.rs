@@ -50,8 +50,8 @@ impl Drop for Planner {
     }
 }
 
-/// Kills the planner of three boards while all its fingers run. Of each finger: ms from its last command to its end state, and at most so
-/// many from when the planner was gone.
+/// Kills the planner of three boards while all its fingers run. Of each finger: ms from its last command to its end
+/// state, and at most so many from when the planner was gone.
 fn kill_planner(
     mut planner: Planner,
     boards: &mut [Board; 3],

@@ -1,5 +1,5 @@
-//! Everything that can happen to a finger on a port, again and again: it recovers every time, and the process holds no more
-//! than before.
+//! Everything that can happen to a finger on a port, again and again: it recovers every time, and the process holds no
+//! more than before.
 
 use crate::pauses::name_pauses;
 use crate::recovery::{fault, held};

@@ -108,7 +108,8 @@ fn slack_tendons_are_taken_up_when_the_hand_is_opened_again() {
     // It holds the pose that it was found in, and goes on from there.
     let held = hand.report(2).expect("report").set_point.joints;
     assert!((Vector3::from(hand.position(2).expect("position")) - held).amax() < 0.02);
-    // Here every tendon hangs, and the first one that is tight turns the joints: by 0.09 to 0.13 rad, as the push has left the motors.
+    // Here every tendon hangs, and the first one that is tight turns the joints: by 0.09 to 0.13 rad, as the push has
+    // left the motors.
     assert!((held - Vector3::from_column_slice(&found.joints)).amax() < 0.16, "found at {found:?}, held at {held}");
     goes(&hand, 2, TARGET);
     goes(&hand, 2, START);

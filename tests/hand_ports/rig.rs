@@ -50,7 +50,8 @@ pub struct State {
 }
 
 impl Board {
-    /// A board with these fingers. It asks for the priority that simulated boards have in the library, and is as patient.
+    /// A board with these fingers. It asks for the priority that simulated boards have in the library, and is as
+    /// patient.
     pub fn start(fingers: &[&str]) -> Self {
         Self::start_with(&PATIENT, fingers)
     }
@@ -164,9 +165,9 @@ pub fn three_boards() -> [Board; 3] {
     ["1", "2", "3"].map(|finger| Board::start(&[finger]))
 }
 
-/// A hand on these ports. A busy machine carries the bytes of a pseudo-terminal some ms late, and now and then many: periods are
-/// twice as long as by default, watchdogs as patient as they can be, and set points move slowly, so that a finger that the servo
-/// does not see for a moment does not run far.
+/// A hand on these ports. A busy machine carries the bytes of a pseudo-terminal some ms late, and now and then many:
+/// periods are twice as long as by default, watchdogs as patient as they can be, and set points move slowly, so that a
+/// finger that the servo does not see for a moment does not run far.
 pub fn on_ports(ports: [&str; 3]) -> Configuration {
     let mut configuration = Configuration::default();
     (configuration.hand.rate, configuration.hand.watchdog_ms) = (500.0, 1000);

@@ -18,8 +18,8 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 /// Runs a simulated board behind a serial port of its own.
 ///
-/// The first line of standard output is the port's path. Then each line of standard input is an order, and each is answered with one
-/// line: `ok`, `state ...` or `error ...`.
+/// The first line of standard output is the port's path. Then each line of standard input is an order, and each is
+/// answered with one line: `ok`, `state ...` or `error ...`.
 ///
 ///     force FINGER X Y Z                     push the fingertip, N
 ///     wall FINGER PX PY PZ NX NY NZ K        a wall through P with normal N, stiffness K N/cm
@@ -32,8 +32,8 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 ///                                            Configure; status bits as in a Reply
 ///     quit
 ///
-/// What is broken stays so until `mend` or `good`. Parts are counted from 1 to 4; a probability is of each frame from the board, or
-/// with `commands` before it to the board, and without MS it is for ever:
+/// What is broken stays so until `mend` or `good`. Parts are counted from 1 to 4; a probability is of each frame from
+/// the board, or with `commands` before it to the board, and without MS it is for ever:
 ///
 ///     cut FINGER TENDON                      a torn tendon
 ///     slack FINGER TENDON GRIP               a tendon that slips and bears no more than GRIP, N
@@ -57,8 +57,8 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 ///     good                                   a good line again, both ways
 ///     unplug, replug                         the port vanishes; another one comes, whose path is answered
 ///
-/// Positions and forces are in the finger's frame, lengths in cm. The end of standard input does not end the program, so that it
-/// can run detached; `quit` or a signal does.
+/// Positions and forces are in the finger's frame, lengths in cm. The end of standard input does not end the program,
+/// so that it can run detached; `quit` or a signal does.
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -103,15 +103,15 @@ pub struct Arguments {
     /// An order to carry out at the start; may be repeated.
     #[arg(long = "order", value_name = "ORDER")]
     orders: Vec<String>,
-    /// A symbolic link to the port, made now and removed by `quit`. A symbolic link that is there is replaced. A board that is started
-    /// again with the same link is the same board for its host: its unique number comes from this path.
+    /// A symbolic link to the port, made now and removed by `quit`. A symbolic link that is there is replaced. A board
+    /// that is started again with the same link is the same board for its host: its unique number comes from this path.
     #[arg(long, value_name = "PATH")]
     link: Option<PathBuf>,
     /// SCHED_FIFO priority of the board, where permitted; 0: not real-time.
     #[arg(long, value_name = "P", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=99))]
     priority: u8,
-    /// Stand still, for up to two seconds, while the commands of a host of RATE cycles a second stay away: for a busy machine,
-    /// which carries the bytes of a pseudo-terminal late. The watchdog waits so much longer.
+    /// Stand still, for up to two seconds, while the commands of a host of RATE cycles a second stay away: for a busy
+    /// machine, which carries the bytes of a pseudo-terminal late. The watchdog waits so much longer.
     #[arg(long, value_name = "RATE", value_parser = rate)]
     patient: Option<f64>,
 }
@@ -167,8 +167,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The board's number: by its link, so that it stays when the board is started again, or else by its process. Processes have numbers
-/// of less than 31 bits, and links of more.
+/// The board's number: by its link, so that it stays when the board is started again, or else by its process. Processes
+/// have numbers of less than 31 bits, and links of more.
 fn number(link: Option<&Path>) -> io::Result<u32> {
     match link {
         Some(link) => Ok(check(std::path::absolute(link)?.as_os_str().as_bytes()) | 1 << 31),

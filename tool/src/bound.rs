@@ -13,9 +13,10 @@ use sun2xp::stability::{Limit, Search, StiffnessBound};
 
 /// Finds the bound on the largest eigenvalue of Kx: the stiffness up to which a finger is stable in every pose.
 ///
-/// Controller, links, tendons and motors are those of the configuration, in simulation: without friction, exactly measured, with
-/// one cycle of delay. Poses within the joint limits, axes of Kx and loads are random. Where a pose carries less than the bound the
-/// servo scales Kx down, as it does here; no pose gets less than half. Takes up to a minute for each kind of finger.
+/// Controller, links, tendons and motors are those of the configuration, in simulation: without friction, exactly
+/// measured, with one cycle of delay. Poses within the joint limits, axes of Kx and loads are random. Where a pose
+/// carries less than the bound the servo scales Kx down, as it does here; no pose gets less than half. Takes up to a
+/// minute for each kind of finger.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file. Without it: the one that OpenHand would take.

@@ -14,11 +14,12 @@ use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 
 /// Finds signs, zeros, friction and stiffness of the fingers and writes them into the configuration file.
 ///
-/// Without --signs, --zero and --identify it does all three, in this order. The motors are off in the beginning. Signs: every
-/// motor turns a little, to and fro. Zero: tendons are let out and gauges read, then the encoders are zeroed as
-/// `finger.zeroing.method` says: without it, against the stops of the finger where `finger.zeroing` says where they are, and else at a pose
-/// that you are asked to hold the finger in. A pose that is not held is refused. Identify: the finger goes to its lower stops, moves its joints to and fro and presses. Needs
-/// the room that the joints can reach, and nothing in the hand. Only what was found is written; all else in the file stays.
+/// Without --signs, --zero and --identify it does all three, in this order. The motors are off in the beginning. Signs:
+/// every motor turns a little, to and fro. Zero: tendons are let out and gauges read, then the encoders are zeroed as
+/// `finger.zeroing.method` says: without it, against the stops of the finger where `finger.zeroing` says where they
+/// are, and else at a pose that you are asked to hold the finger in. A pose that is not held is refused. Identify: the
+/// finger goes to its lower stops, moves its joints to and fro and presses. Needs the room that the joints can reach,
+/// and nothing in the hand. Only what was found is written; all else in the file stays.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file. The tool reads it, and writes what it has found into it after each task.

@@ -16,7 +16,8 @@ use std::process::ExitCode;
 use std::time::Duration;
 use sun2xp::hand::{self, Configured, Fingers};
 
-/// Looks at kernel, limits, cores and ports, measures wake-ups and round trips, and says what to change. Motors stay off.
+/// Looks at kernel, limits, cores and ports, measures wake-ups and round trips, and says what to change. Motors stay
+/// off.
 ///
 /// Exit status 0: the hand can run as configured. 1: it cannot, or not at its rate.
 #[derive(clap::Args)]

@@ -1,5 +1,5 @@
-//! `sun2xp schedule`: whether every cycle of a configured hand ends in time, at which rate that ends, and what another sensor
-//! would cost.
+//! `sun2xp schedule`: whether every cycle of a configured hand ends in time, at which rate that ends, and what another
+//! sensor would cost.
 
 mod off_line;
 
@@ -18,12 +18,13 @@ use sun2xp::realtime::{CycleStage, Distribution};
 /// The largest file of costs that is read, bytes: it holds four numbers.
 const LARGEST_COSTS: u64 = 1 << 16;
 
-/// Whether every cycle of the hand ends in time: response times from worst cases, line times and the allocation of fingers.
+/// Whether every cycle of the hand ends in time: response times from worst cases, line times and the allocation of
+/// fingers.
 ///
-/// The worst cases of this machine are measured on the simulated hand, with the rate, threads, cores and priorities of the
-/// configuration, or read from --costs: a TOML file with `wake_up`, `write` (of one port), `read` (and decode one reply) and
-/// `compute` (one finger), all in us. Lines are as configured; a simulated port counts as a serial line of its baud. The analysis
-/// holds for any phases of the threads. Exit status 1: a deadline may be missed.
+/// The worst cases of this machine are measured on the simulated hand, with the rate, threads, cores and priorities of
+/// the configuration, or read from --costs: a TOML file with `wake_up`, `write` (of one port), `read` (and decode one
+/// reply) and `compute` (one finger), all in us. Lines are as configured; a simulated port counts as a serial line of
+/// its baud. The analysis holds for any phases of the threads. Exit status 1: a deadline may be missed.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file. Without it: the one that OpenHand would take.
@@ -40,7 +41,8 @@ pub struct Arguments {
         value_parser = clap::value_parser!(u64).range(1..=86_400)
     )]
     measure: u64,
-    /// Leave out one cycle in a thousand of each cost: on a virtual machine a pause of the whole machine is in every maximum.
+    /// Leave out one cycle in a thousand of each cost: on a virtual machine a pause of the whole machine is in every
+    /// maximum.
     #[arg(long)]
     p999: bool,
     /// Another sensor: bytes more in each reply.

@@ -1,7 +1,7 @@
 //! How long, and how much, is read while something is awaited: a board that sends without end must not hold its reader.
 
-/// The most that one receive takes, bytes: ten times what the 15 fingers of a port answer in a period, and more than a line at 12 Mbaud
-/// carries in the longest one.
+/// The most that one receive takes, bytes: ten times what the 15 fingers of a port answer in a period, and more than a
+/// line at 12 Mbaud carries in the longest one.
 const MOST_BYTES: usize = 4096;
 
 /// What may still be read.
@@ -16,7 +16,8 @@ pub struct Allowance {
 }
 
 impl Allowance {
-    /// For the Replies of one period: until `deadline` (ns on the transport's clock), and no more than a line can carry.
+    /// For the Replies of one period: until `deadline` (ns on the transport's clock), and no more than a line can
+    /// carry.
     pub fn for_replies(deadline: u64) -> Self {
         Self { bytes: Some(MOST_BYTES), ..Self::until(deadline) }
     }
@@ -31,7 +32,8 @@ impl Allowance {
         self.deadline
     }
 
-    /// Whether there may be one more read at `now`. One at or after the deadline is allowed: it takes what is there already.
+    /// Whether there may be one more read at `now`. One at or after the deadline is allowed: it takes what is there
+    /// already.
     pub(super) fn permits(&mut self, now: u64) -> bool {
         let permitted = !self.used_up;
         self.used_up |= now >= self.deadline;

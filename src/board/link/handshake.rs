@@ -9,13 +9,14 @@ use crate::board::protocol::{
 use crate::board::terms::Terms;
 use crate::board::transport::Transport;
 
-/// How long an answer to a handshake frame may take before the frame is sent again, ns. A USB bridge in its slowest setting
-/// answers after some 35 ms.
+/// How long an answer to a handshake frame may take before the frame is sent again, ns. A USB bridge in its slowest
+/// setting answers after some 35 ms.
 const PATIENCE: u64 = 50_000_000;
 
 impl<T: Transport> Link<T> {
-    /// Finds the finger `address`, 1 to 15, and agrees on `terms` with it. Tries until `deadline` (ns on the transport's
-    /// clock), because a board may still be starting; gives up at once where waiting cannot help. The motors stay off.
+    /// Finds the finger `address`, 1 to 15, and agrees on `terms` with it. Tries until `deadline` (ns on the
+    /// transport's clock), because a board may still be starting; gives up at once where waiting cannot help. The
+    /// motors stay off.
     ///
     /// Not for the servo's cycle: it throws away Replies of other fingers on the port.
     pub fn shake_hands(
@@ -38,7 +39,8 @@ impl<T: Transport> Link<T> {
         let hello = Frame::Hello(Hello { lowest_version: VERSION, highest_version: VERSION });
         let mut attempts = 0u32;
         while self.transport.now() < deadline {
-            // After two attempts in vain every other one asks whoever is there, to tell a wrong address from a dead board.
+            // After two attempts in vain every other one asks whoever is there, to tell a wrong address from a dead
+            // board.
             let asked = if attempts >= 2 && attempts.is_multiple_of(2) { ANY_ADDRESS } else { address };
             attempts = attempts.saturating_add(1);
             let Some(answer) = self.ask(asked, hello, deadline)? else { continue };
@@ -90,9 +92,9 @@ impl<T: Transport> Link<T> {
         })
     }
 
-    /// Tells the finger to go to its end state now, as well as that can be done: whether it confirmed by `deadline` (ns on
-    /// the transport's clock). Without an answer its watchdog does the same a little later.
-    /// Replies that come meanwhile are thrown away.
+    /// Tells the finger to go to its end state now, as well as that can be done: whether it confirmed by `deadline` (ns
+    /// on the transport's clock). Without an answer its watchdog does the same a little later. Replies that come
+    /// meanwhile are thrown away.
     pub fn stop(&mut self, address: u8, deadline: u64) -> Result<bool, LinkError> {
         let answer = self.ask(address, Frame::Stop(Stop), deadline)?;
         Ok(matches!(answer, Some(Message { frame: Frame::Stopped(_), .. })))

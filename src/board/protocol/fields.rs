@@ -46,8 +46,8 @@ impl<'a> FieldReader<'a> {
     }
 }
 
-/// Appends numbers to a frame. The buffer is as large as the largest frame, which a test checks for each kind; what does
-/// not fit is left out.
+/// Appends numbers to a frame. The buffer is as large as the largest frame, which a test checks for each kind; what
+/// does not fit is left out.
 pub(super) struct FieldWriter<'a> {
     buffer: &'a mut [u8],
     length: usize,

@@ -127,8 +127,8 @@ impl Identity {
         fields.u32(self.capabilities.0);
     }
 
-    /// A torque in N cm as the board counts it, rounded toward zero: what is within a limit stays within it. The nearest
-    /// count that exists for one out of range. NaN becomes 0.
+    /// A torque in N cm as the board counts it, rounded toward zero: what is within a limit stays within it. The
+    /// nearest count that exists for one out of range. NaN becomes 0.
     pub fn torque_count(&self, newton_centimetres: f64) -> i16 {
         let exact = newton_centimetres * NANO_PER_CENTI / f64::from(self.torque_unit);
         // `as` turns NaN into 0. -32 768 is no torque that a board has, and has no positive counterpart.

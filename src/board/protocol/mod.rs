@@ -1,4 +1,5 @@
-//! The board protocol as bytes. No input, no output, no clock, no heap. The page that counts is `docs/board-protocol.md`.
+//! The board protocol as bytes. No input, no output, no clock, no heap. The page that counts is
+//! `docs/board-protocol.md`.
 
 mod command;
 mod configure;

@@ -40,8 +40,8 @@ impl Reply {
         fields.u16(self.sampled_at);
     }
 
-    /// The whole encoder counts, from those of the reply before. Right as long as no encoder moved by 32768 counts or more
-    /// between the two.
+    /// The whole encoder counts, from those of the reply before. Right as long as no encoder moved by 32768 counts or
+    /// more between the two.
     pub fn counts_after(&self, before: [i32; 4]) -> [i32; 4] {
         std::array::from_fn(|motor| {
             let moved = self.encoders[motor].wrapping_sub(before[motor] as u16) as i16;

@@ -7,8 +7,8 @@ use crate::control::tendons::tension_distribution::DistributedTensions;
 use nalgebra::{Vector3, Vector4};
 
 impl Controller {
-    /// Pretension, with the joints held where they are when the last tendon comes taut. `offset`: what the gauges show too much, N;
-    /// `gravity`: what holds the links there, N cm.
+    /// Pretension, with the joints held where they are when the last tendon comes taut. `offset`: what the gauges show
+    /// too much, N; `gravity`: what holds the links there, N cm.
     pub(super) fn take_up_slack(&self, state: &mut State, offset: &Vector4<f64>, gravity: Vector3<f64>) {
         let now = Slackness {
             travel: state.motor_angles.component_mul(&self.radius),

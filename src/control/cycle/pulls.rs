@@ -6,8 +6,8 @@ use crate::control::tendons::tension_distribution::BoundedDistribution;
 use crate::control::tendons::tension_integral::{TendonInput, TendonState};
 use nalgebra::{Vector3, Vector4};
 
-/// Below this part of its desired tension a tendon counts as slack while slack is taken up: well under what a motor with
-/// the friction and the error of its torque constant reaches without the integral.
+/// Below this part of its desired tension a tendon counts as slack while slack is taken up: well under what a motor
+/// with the friction and the error of its torque constant reaches without the integral.
 const SLACK: f64 = 0.2;
 
 impl Controller {

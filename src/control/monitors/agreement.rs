@@ -1,10 +1,10 @@
-//! Gauges against encoders. Joints have three freedoms and tendons are four, so that four motor angles and four tensions
-//! are one more than it takes: for n with R n = 0,
+//! Gauges against encoders. Joints have three freedoms and tendons are four, so that four motor angles and four
+//! tensions are one more than it takes: for n with R n = 0,
 //!
 //! n^T (r m - (t - t_home) / k) = 0
 //!
-//! whatever the joints do, or with three tendons the tension of the fourth, t = k (r m - R^T theta) + t_home. What it is
-//! when watching begins is taken for zero: encoders that were never zeroed are no reason to stop a finger.
+//! whatever the joints do, or with three tendons the tension of the fourth, t = k (r m - R^T theta) + t_home. What it
+//! is when watching begins is taken for zero: encoders that were never zeroed are no reason to stop a finger.
 
 use super::alarm::{Alarm, Symptom};
 use super::sample::Sample;

@@ -13,8 +13,8 @@ const MARGIN: f64 = 1.25;
 /// Counts beside that: the last bit flickers at both ends of two differences.
 const FLICKER: f64 = 4.0;
 
-/// Part of a period that a speed is measured over at least: a late cycle is followed by one at once, in which nothing turns, and
-/// over next to no time the last bit would make a speed of its own.
+/// Part of a period that a speed is measured over at least: a late cycle is followed by one at once, in which nothing
+/// turns, and over next to no time the last bit would make a speed of its own.
 const SHORTEST: f64 = 0.75;
 
 #[derive(Clone, Debug)]

@@ -1,5 +1,5 @@
-//! A gauge that shows the same count for ever. A live one flickers in its last bits: how much, each gauge has shown before. Gauges
-//! without noise are all still at rest: one is judged only while others flicker.
+//! A gauge that shows the same count for ever. A live one flickers in its last bits: how much, each gauge has shown
+//! before. Gauges without noise are all still at rest: one is judged only while others flicker.
 
 use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
@@ -15,26 +15,28 @@ const KNOWN: u32 = 256;
 /// A gauge that shows one count in so many samples while all others are known to flicker was dead in the beginning.
 const NEVER: u32 = 512;
 
-/// A dead gauge is also off from the tension that is commanded by more than this part of t_min, before long: a controller goes on, and
-/// the dither that is commanded does at rest. One without noise whose tendon is where it shall be may show one count for ever, and did
-/// while others flickered.
+/// A dead gauge is also off from the tension that is commanded by more than this part of t_min, before long: a
+/// controller goes on, and the dither that is commanded does at rest. One without noise whose tendon is where it shall
+/// be may show one count for ever, and did while others flickered.
 const OFF: f64 = 0.015;
 
-/// The chance at which a live gauge that flickers as before would show one count for so long, as a natural logarithm: once
-/// in 10^11 samples, a year of four gauges at 1000 Hz.
+/// The chance at which a live gauge that flickers as before would show one count for so long, as a natural logarithm:
+/// once in 10^11 samples, a year of four gauges at 1000 Hz.
 const UNLIKELY: f64 = -25.3;
 
-/// No gauge is taken to repeat itself less often than this: one in motion hardly does, and its flicker at rest is to be known still.
+/// No gauge is taken to repeat itself less often than this: one in motion hardly does, and its flicker at rest is to be
+/// known still.
 const LEAST_REPEATS: f64 = 0.2;
 
 /// A gauge that repeats itself more often than this is not known to flicker: without noise, or converted slowly.
 const MOST_REPEATS: f64 = 0.7;
 
-/// So many of the samples of a gauge with noise turn back from where the one before them went: about half do. Motion does not turn
-/// back, so that a gauge without noise that comes to rest is not taken for a dead one.
+/// So many of the samples of a gauge with noise turn back from where the one before them went: about half do. Motion
+/// does not turn back, so that a gauge without noise that comes to rest is not taken for a dead one.
 const LEAST_REVERSALS: f64 = 0.15;
 
-/// Part of the way that the mean of the reversals goes in a sample: slowly, because noise does not show in a fast motion.
+/// Part of the way that the mean of the reversals goes in a sample: slowly, because noise does not show in a fast
+/// motion.
 const LEARNING_REVERSALS: f64 = 1.0 / 512.0;
 
 /// Part of t_min below which a tendon may hang.
@@ -49,7 +51,8 @@ const SILENT: u32 = 10;
 /// Without flicker a gauge is dead only for its tendon's sake; see `tension_lost`.
 #[derive(Clone, Debug)]
 pub(super) struct GaugeStuck {
-    /// Below so much, N, a tendon may hang, and where its gauge ends noise shows on one side only: no witness for another.
+    /// Below so much, N, a tendon may hang, and where its gauge ends noise shows on one side only: no witness for
+    /// another.
     slack: f64,
     /// N.
     off: f64,

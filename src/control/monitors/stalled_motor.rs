@@ -6,8 +6,8 @@ use crate::control::motors::motor_friction::MotorFriction;
 use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
 
-/// Out-of-balance that friction may hold: the configured friction so many times, because it is known badly, and this part of
-/// the pull, for the error of the torque constant.
+/// Out-of-balance that friction may hold: the configured friction so many times, because it is known badly, and this
+/// part of the pull, for the error of the torque constant.
 const FRICTION: f64 = 3.0;
 const TORQUE_CONSTANT: f64 = 0.3;
 

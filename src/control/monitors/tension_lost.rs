@@ -1,9 +1,9 @@
 //! Tendons that lose their tension: torn, slipping, or with a gauge that is dead.
 //!
-//! A fast motion or a blow makes a whole tendon slack for a moment. Then it hangs; one that is torn, slips, or has a dead gauge
-//! has no tension although the other three and the encoders say that it is stretched. They say so from one sample to the next: where
-//! it grew while the gauge still showed tension, a gauge drifts, and its controller keeps the tendon at what the gauge shows; that is
-//! for `agreement` to say.
+//! A fast motion or a blow makes a whole tendon slack for a moment. Then it hangs; one that is torn, slips, or has a
+//! dead gauge has no tension although the other three and the encoders say that it is stretched. They say so from one
+//! sample to the next: where it grew while the gauge still showed tension, a gauge drifts, and its controller keeps the
+//! tendon at what the gauge shows; that is for `agreement` to say.
 
 use super::alarm::{Alarm, Alarms, Symptom, first_of};
 use super::gauge_stuck::{self, Flicker};
@@ -18,7 +18,8 @@ const LOW: f64 = 0.3;
 /// Its tension is gone below this part.
 const GONE: f64 = 0.1;
 
-/// From this part of t_min on a low tendon is missed: its stretch says that it should have so much, and did not before it went low.
+/// From this part of t_min on a low tendon is missed: its stretch says that it should have so much, and did not before
+/// it went low.
 const MISSED: f64 = 0.3;
 
 /// Time constant, s, of what it said before.
@@ -33,8 +34,8 @@ const TOO_LONG: f64 = 0.5;
 /// So long, s, tension must be gone for a warning.
 const NOTICED: f64 = 0.003;
 
-/// A gauge that flickered, and has shown one count in this many samples since its tendon is low, is dead. Where a gauge ends at no
-/// tension noise shows on one side only, and that of a torn tendon shows one count now and then.
+/// A gauge that flickered, and has shown one count in this many samples since its tendon is low, is dead. Where a gauge
+/// ends at no tension noise shows on one side only, and that of a torn tendon shows one count now and then.
 const CERTAIN: u32 = 15;
 
 #[derive(Clone, Debug)]

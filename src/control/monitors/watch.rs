@@ -75,7 +75,8 @@ impl Monitors {
         }
     }
 
-    /// One sample of a finger that is a spring. `age`: periods since the last one; `pulls`: what the cycle has just commanded, N.
+    /// One sample of a finger that is a spring. `age`: periods since the last one; `pulls`: what the cycle has just
+    /// commanded, N.
     #[allow(clippy::too_many_arguments)]
     pub fn watch(
         &self,

@@ -4,7 +4,8 @@ use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};
 
-/// From this part of the continuous heat on the limit falls. It has reached the continuous torque when the heat is whole.
+/// From this part of the continuous heat on the limit falls. It has reached the continuous torque when the heat is
+/// whole.
 const WARM: f64 = 0.8;
 
 /// h' = (tau^2 - h) / T: the heat of a winding as the mean square of its torque, which its current is proportional to.

@@ -37,7 +37,8 @@ impl MotorTorque {
         pulls.component_mul(&self.signed_radius)
     }
 
-    /// The tension, N, that a motor with so much pull, N, brings about whichever way it turns: its friction may hold against it.
+    /// The tension, N, that a motor with so much pull, N, brings about whichever way it turns: its friction may hold
+    /// against it.
     pub fn tensions(&self, pulls: &Vector4<f64>) -> Vector4<f64> {
         (pulls - self.friction.coulomb).component_mul(&self.past_conduit)
     }

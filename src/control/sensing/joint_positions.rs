@@ -32,8 +32,8 @@ impl JointPositions {
         })
     }
 
-    /// theta, rad. `tensions` must be low-passed: the correction closes a positive feedback around the tendon controller,
-    /// which is stable only where it is slow.
+    /// theta, rad. `tensions` must be low-passed: the correction closes a positive feedback around the tendon
+    /// controller, which is stable only where it is slow.
     pub fn joints(&self, motor_angles: &Vector4<f64>, tensions: &Vector4<f64>) -> Vector3<f64> {
         self.from_motors * motor_angles + self.from_tensions * (tensions - self.home)
     }

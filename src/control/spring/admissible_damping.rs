@@ -11,15 +11,17 @@ const SLOW: f64 = 1000.0;
 
 /// The relative damping for which a fingertip comes to rest: a range that narrows as the spring gets stiffer.
 ///
-/// The lines were drawn inside what was found stable on the default finger, with a margin of about a tenth: in the one-cycle map at
-/// poses anywhere within the joint limits, and in the closed loop after steps of 5 mm and pushes, with and without friction, at 500 to
-/// 4000 Hz and 0.3 to 6 N/cm. Too little damping loses the finger. Too much swings with the delay of a cycle. The figures of the report
-/// are damped hardly enough by themselves, so none of them offers less. A ratio of 1 is always admitted: it is the controller's own
-/// damping, whose stability the bound of Kx covers.
+/// The lines were drawn inside what was found stable on the default finger, with a margin of about a tenth: in the
+/// one-cycle map at poses anywhere within the joint limits, and in the closed loop after steps of 5 mm and pushes, with
+/// and without friction, at 500 to 4000 Hz and 0.3 to 6 N/cm. Too little damping loses the finger. Too much swings with
+/// the delay of a cycle. The figures of the report are damped hardly enough by themselves, so none of them offers less.
+/// A ratio of 1 is always admitted: it is the controller's own damping, whose stability the bound of Kx covers.
 ///
-/// A finger with other links or tendons has the range of the default finger whose spring is the same part of what its tendons carry.
+/// A finger with other links or tendons has the range of the default finger whose spring is the same part of what its
+/// tendons carry.
 ///
-/// Both limits are straight lines, so a change from one admitted pair of stiffness and damping to another passes through admitted pairs.
+/// Both limits are straight lines, so a change from one admitted pair of stiffness and damping to another passes
+/// through admitted pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdmissibleDamping {
     /// Limits of a finger without stiffness, and how much they change by each N/cm of Kx.
@@ -30,7 +32,8 @@ pub struct AdmissibleDamping {
 }
 
 impl AdmissibleDamping {
-    /// For the controller of `finger` at `rate`, Hz. Where R has no rank of 3, which makes no controller either, only 1 is admitted.
+    /// For the controller of `finger` at `rate`, Hz. Where R has no rank of 3, which makes no controller either, only 1
+    /// is admitted.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Self {
         let scheme = finger.controller.scheme(rate);
         let correspondence = carried(finger).map_or(f64::INFINITY, |carried| DEFAULT_CARRIED / carried);
@@ -42,8 +45,8 @@ impl AdmissibleDamping {
         Self { least, most, correspondence }
     }
 
-    /// The least and the greatest ratio for a spring whose largest eigenvalue is `stiffness`, N/cm. Multiples of 0.01, so that the range
-    /// that a planner reads is the range that counts.
+    /// The least and the greatest ratio for a spring whose largest eigenvalue is `stiffness`, N/cm. Multiples of 0.01,
+    /// so that the range that a planner reads is the range that counts.
     pub fn range(&self, stiffness: f64) -> (f64, f64) {
         let at = |(limit, slope): (f64, f64)| limit + slope * (stiffness * self.correspondence);
         // Whole steps of 0.01, except for the rounding of the product.
@@ -53,8 +56,8 @@ impl AdmissibleDamping {
     }
 }
 
-/// The stiffness that locked tendons give the tip at least in one direction, N/cm, in the middle of the joints' ranges: the smallest
-/// eigenvalue of J^-T (R k R^T) J^-1.
+/// The stiffness that locked tendons give the tip at least in one direction, N/cm, in the middle of the joints' ranges:
+/// the smallest eigenvalue of J^-T (R k R^T) J^-1.
 fn carried(finger: &ConfiguredFinger) -> Option<f64> {
     let (low, high) = finger.joint_limits();
     let jacobian = finger.links().jacobian(&((low + high) * 0.5));

@@ -5,8 +5,8 @@ use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Scheme};
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 
-/// The part of the stiffness of the locked tendons that K_theta may have: as far as the loop was found stable, so less below
-/// 750 Hz, and less with Figure 11, which has no gain on the tension error, at every rate.
+/// The part of the stiffness of the locked tendons that K_theta may have: as far as the loop was found stable, so less
+/// below 750 Hz, and less with Figure 11, which has no gain on the tension error, at every rate.
 fn share(scheme: Scheme, rate: f64) -> f64 {
     match scheme {
         Scheme::Figure11 => 0.7,
@@ -17,8 +17,8 @@ fn share(scheme: Scheme, rate: f64) -> f64 {
     }
 }
 
-/// Locked tendons hold the joints with R k R^T = L L^T. The largest eigenvalue of L^-1 K_theta L^-T is the largest part of
-/// that, over all directions, which K_theta asks for.
+/// Locked tendons hold the joints with R k R^T = L L^T. The largest eigenvalue of L^-1 K_theta L^-T is the largest part
+/// of that, over all directions, which K_theta asks for.
 #[derive(Clone, Debug)]
 pub(crate) struct AdmissibleStiffness {
     /// L^-1, (N cm/rad)^(-1/2).
@@ -38,9 +38,11 @@ impl AdmissibleStiffness {
         Some(Self { inverse, compliance, share: share(finger.controller.scheme(rate), rate) })
     }
 
-    /// The factor, 0 to 1, that K_theta has to be scaled by beside what joints at their limits have of their own; all N cm/rad.
+    /// The factor, 0 to 1, that K_theta has to be scaled by beside what joints at their limits have of their own; all N
+    /// cm/rad.
     ///
-    /// The largest eigenvalue of a sum is at most the sum of the largest ones, and that of the limits at most their trace.
+    /// The largest eigenvalue of a sum is at most the sum of the largest ones, and that of the limits at most their
+    /// trace.
     pub fn scale(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> f64 {
         let [largest, ..] = eigenvalues(&(self.inverse * k_theta * self.inverse.transpose()));
         let left = self.share - limits.dot(&self.compliance);

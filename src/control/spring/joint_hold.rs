@@ -22,8 +22,8 @@ impl JointHold {
         Self { damping: Vector3::new(l0 + l1 + l2, l1 + l2, l2) * DAMPING }
     }
 
-    /// N cm; `deflection`: theta_d - theta, rad; `slip`: theta_dot - theta_dot_d, rad/s. The spring's part of every joint is at most
-    /// `limit`.
+    /// N cm; `deflection`: theta_d - theta, rad; `slip`: theta_dot - theta_dot_d, rad/s. The spring's part of every
+    /// joint is at most `limit`.
     pub fn torques(&self, deflection: &Vector3<f64>, slip: &Vector3<f64>, limit: f64) -> Vector3<f64> {
         let spring = (deflection * HOLDING_STIFFNESS).map(|torque| torque.clamp(-limit, limit));
         spring - slip.component_mul(&self.damping)

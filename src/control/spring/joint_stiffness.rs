@@ -10,22 +10,23 @@ const REFERENCE_STIFFNESS: f64 = 3.0;
 /// Damping of a finger without stiffness, N cm s/rad: a few times what its joints have, a fifth of what a spring needs.
 const LIMP_DAMPING: f64 = 0.2;
 
-/// What joint 0's lever counts as at least, cm. On that axis no stiffness of the tip holds the joint, and near it a force on the tip
-/// turns the joint away: one that presses the spring together by d toward the axis takes k d r of its k r^2. With a least lever of
-/// 5 mm, deflections of up to 5 mm leave the joint held.
+/// What joint 0's lever counts as at least, cm. On that axis no stiffness of the tip holds the joint, and near it a
+/// force on the tip turns the joint away: one that presses the spring together by d toward the axis takes k d r of its
+/// k r^2. With a least lever of 5 mm, deflections of up to 5 mm leave the joint held.
 const LEAST_LEVER: f64 = 0.5;
 
-/// tau = spring - z (B K_theta B + d) theta_dot, with K_theta = J^T K J, a diagonal B, a small d and the set point's relative
-/// damping z.
+/// tau = spring - z (B K_theta B + d) theta_dot, with K_theta = J^T K J, a diagonal B, a small d and the set point's
+/// relative damping z.
 ///
-/// J is the 6 x 3 Jacobian of the tip's motion, K the 6 x 6 stiffness of the contact: with the D x 6 selection S of what the
-/// contact feels, S^T K S and J_c = S J give the D x D stiffness and the D x 3 Jacobian of eq. 6.
+/// J is the 6 x 3 Jacobian of the tip's motion, K the 6 x 6 stiffness of the contact: with the D x 6 selection S of
+/// what the contact feels, S^T K S and J_c = S J give the D x D stiffness and the D x 3 Jacobian of eq. 6.
 ///
-/// B^2 is beta where K_theta has its reference value, and is scaled with 1/sqrt(K_theta), joint by joint: the damping ratio
-/// stays where Kx or the lever of a joint changes. A tip near the axis of joint 0, which then is soft, needs it.
+/// B^2 is beta where K_theta has its reference value, and is scaled with 1/sqrt(K_theta), joint by joint: the damping
+/// ratio stays where Kx or the lever of a joint changes. A tip near the axis of joint 0, which then is soft, needs it.
 ///
-/// Nearer to that axis than a least lever, r < rho, joint 0 has n^T K n (rho^2 - r^2) of its own beside, n being the way that it moves
-/// the tip: a spring to theta_d that begins with nothing at rho, and that a spring without stiffness there does not have.
+/// Nearer to that axis than a least lever, r < rho, joint 0 has n^T K n (rho^2 - r^2) of its own beside, n being the
+/// way that it moves the tip: a spring to theta_d that begins with nothing at rho, and that a spring without stiffness
+/// there does not have.
 #[derive(Clone, Debug)]
 pub struct JointStiffness {
     links: Links,
@@ -69,8 +70,8 @@ impl JointStiffness {
         self.posed(spring, joints).k_theta
     }
 
-    /// tau of the spring alone, N cm: K_theta (theta_d - theta) by eqs. 3 and 6, or J^T f by eqs. 1 and 2 with the deflection
-    /// of the tip itself.
+    /// tau of the spring alone, N cm: K_theta (theta_d - theta) by eqs. 3 and 6, or J^T f by eqs. 1 and 2 with the
+    /// deflection of the tip itself.
     pub fn spring(&self, spring: &Spring, joints: &Vector3<f64>) -> Vector3<f64> {
         self.posed(spring, joints).torques(&spring.joints)
     }
@@ -88,8 +89,9 @@ impl JointStiffness {
 
     /// Translation (cm) and rotation vector (rad) from the tip's pose at `joints` to that at `desired`.
     ///
-    /// The rotation is the whole one between the two poses, not J (theta_d - theta): like x_d - x it is a function of the two
-    /// poses alone, so that the exact law has no deflection where the tip is in place, whichever way the joints went.
+    /// The rotation is the whole one between the two poses, not J (theta_d - theta): like x_d - x it is a function of
+    /// the two poses alone, so that the exact law has no deflection where the tip is in place, whichever way the joints
+    /// went.
     fn deflection(&self, desired: &Vector3<f64>, joints: &Vector3<f64>) -> Vector6<f64> {
         let translation = self.links.tip(desired) - self.links.tip(joints);
         let rotation = self.links.tip_rotation(desired) * self.links.tip_rotation(joints).inverse();
@@ -136,8 +138,8 @@ impl PosedSpring<'_> {
         torques
     }
 
-    /// tau of the damper, N cm, at joint rates, rad/s: its matrix is symmetric, positive definite, and in proportion to the
-    /// spring's relative damping.
+    /// tau of the damper, N cm, at joint rates, rad/s: its matrix is symmetric, positive definite, and in proportion to
+    /// the spring's relative damping.
     pub fn damper(&self, rates: &Vector3<f64>) -> Vector3<f64> {
         // beta^2 K_ref / K_jj to the power 1/4; without stiffness in a joint there is nothing to damp it with.
         let stiffness = self.k_theta.diagonal();

@@ -1,7 +1,7 @@
 //! The set point as the finger follows it: a step becomes a straight line in joint space at a bounded speed.
 //!
-//! The tip of a spring let go far from its anchor does not go straight there. Joint 2 may be thrown straight on the way, where
-//! J is singular and the spring has no torque left to bend it again.
+//! The tip of a spring let go far from its anchor does not go straight there. Joint 2 may be thrown straight on the
+//! way, where J is singular and the spring has no torque left to bend it again.
 
 use nalgebra::Vector3;
 

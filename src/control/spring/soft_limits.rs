@@ -9,11 +9,13 @@ const STIFFNESS: f64 = 150.0;
 /// The part of what a pose can carry that the limit of a joint takes at most: all three leave something for the tip.
 const PART: f64 = 0.3;
 
-/// A limit has its whole stiffness from this depth on, rad: a finger that rests at its limit must not switch it on and off.
+/// A limit has its whole stiffness from this depth on, rad: a finger that rests at its limit must not switch it on and
+/// off.
 const DEPTH: f64 = 0.0175;
 
-/// A joint that is d beyond a limit is pushed back with k d^2 / 2 D, and with k (d - D/2) from the depth D on: its stiffness grows from
-/// nothing to k, without a step. Within the limits nothing is added: the spring of the fingertip stays exact.
+/// A joint that is d beyond a limit is pushed back with k d^2 / 2 D, and with k (d - D/2) from the depth D on: its
+/// stiffness grows from nothing to k, without a step. Within the limits nothing is added: the spring of the fingertip
+/// stays exact.
 #[derive(Clone, Debug)]
 pub(crate) struct SoftLimits {
     /// rad.

@@ -43,9 +43,9 @@ impl Spring {
     }
 }
 
-/// Two equal first-order stages in a row, so that the torque does not even bend sharply, and a planner that sends a new spring in
-/// every cycle is followed all the while. The spring itself goes over, and not its torque: between two springs within the bound
-/// every one is within it.
+/// Two equal first-order stages in a row, so that the torque does not even bend sharply, and a planner that sends a new
+/// spring in every cycle is followed all the while. The spring itself goes over, and not its torque: between two
+/// springs within the bound every one is within it.
 #[derive(Clone, Debug)]
 pub(crate) struct SpringTransition {
     /// What a stage moves by in a cycle.

@@ -5,10 +5,10 @@ use nalgebra::Matrix3;
 
 /// D = 2 zeta (W # (K + f^2 W)) + lag sym(H W^-1 K).
 ///
-/// W # K = W (W^-1 K)^(1/2) is the geometric mean: for one dimension 2 zeta sqrt(W K), and in general the damper that damps
-/// every mode of the pair (W, K) with the same ratio zeta. The floor f keeps a finger without stiffness, or with a K that is
-/// not of full rank, damped. Tensions follow what is asked of them late by `lag`; what the links feel of the spring, the
-/// share H W^-1, needs that much rate in advance.
+/// W # K = W (W^-1 K)^(1/2) is the geometric mean: for one dimension 2 zeta sqrt(W K), and in general the damper that
+/// damps every mode of the pair (W, K) with the same ratio zeta. The floor f keeps a finger without stiffness, or with
+/// a K that is not of full rank, damped. Tensions follow what is asked of them late by `lag`; what the links feel of
+/// the spring, the share H W^-1, needs that much rate in advance.
 #[derive(Clone, Debug)]
 pub(crate) struct DampingDesign {
     /// zeta.
@@ -20,8 +20,8 @@ pub(crate) struct DampingDesign {
 }
 
 impl DampingDesign {
-    /// D, N m s/rad: W, the inertia that the spring feels, and H, that of the links alone, kg m^2; K, N m/rad; `relative`
-    /// scales zeta.
+    /// D, N m s/rad: W, the inertia that the spring feels, and H, that of the links alone, kg m^2; K, N m/rad;
+    /// `relative` scales zeta.
     pub fn damping(
         &self,
         felt: &Matrix3<f64>,

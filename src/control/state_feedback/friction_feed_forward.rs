@@ -8,8 +8,9 @@ const CREEP: f64 = 0.001;
 
 /// sat(v / creep) (Coulomb + conduit t), N at the tendon.
 ///
-/// v is the observed speed: with the speed of the reference in its place friction leaves a limit cycle at high stiffness. The
-/// observer must be told the pull without this, or its disturbance would compensate the same friction a second time.
+/// v is the observed speed: with the speed of the reference in its place friction leaves a limit cycle at high
+/// stiffness. The observer must be told the pull without this, or its disturbance would compensate the same friction a
+/// second time.
 #[derive(Clone, Debug)]
 pub(crate) struct FrictionFeedForward(pub MotorFriction);
 

@@ -1,4 +1,5 @@
-//! What the encoder and the gauge of one tendon do not show: speeds of motor and joint side, and the motor's disturbance.
+//! What the encoder and the gauge of one tendon do not show: speeds of motor and joint side, and the motor's
+//! disturbance.
 
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Matrix6x2, Vector2, Vector6};
 use serde::{Deserialize, Serialize};
@@ -42,11 +43,11 @@ pub(crate) struct ObserverDesign {
 ///
 /// mu' = v, v' = (u - t_home + d - k (mu - lambda) - b v) / m, lambda' = w, w' = a, a' = jerk + noise, d' = noise,
 ///
-/// measured: mu and t - t_home = k (mu - lambda). mu is the travel of the motor r m, lambda that of the joints R^T theta, d
-/// what acts on the motor beyond the command.
+/// measured: mu and t - t_home = k (mu - lambda). mu is the travel of the motor r m, lambda that of the joints R^T
+/// theta, d what acts on the motor beyond the command.
 ///
-/// The links are a triple integrator without a model: any share of their dynamics would read an external force as motion,
-/// and the damper would answer it for ever. Without the state a, lambda lags, and k times the lag acts as mass.
+/// The links are a triple integrator without a model: any share of their dynamics would read an external force as
+/// motion, and the damper would answer it for ever. Without the state a, lambda lags, and k times the lag acts as mass.
 #[derive(Clone, Debug)]
 pub(crate) struct TendonObserver {
     tendon: ElasticTendon,
@@ -82,8 +83,8 @@ pub(crate) struct TendonMotion {
 }
 
 impl TendonObserver {
-    /// Discretises over `period` (s) and iterates the Riccati equation to its fixed point. None where the numbers are so far
-    /// apart that it has none.
+    /// Discretises over `period` (s) and iterates the Riccati equation to its fixed point. None where the numbers are
+    /// so far apart that it has none.
     pub fn new(tendon: ElasticTendon, design: &ObserverDesign, period: f64) -> Option<Self> {
         let ElasticTendon { mass, viscous, stiffness, .. } = tendon;
         let mut rates = Matrix6::zeros();
@@ -148,8 +149,8 @@ impl TendonObserver {
         TendonEstimate { x, since_loss: RECOVERY }
     }
 
-    /// Goes on from the estimate of another observer of the same tendon, whose motor travels `ratio` times less: position and
-    /// tension stay, whatever the two believe of stiffness and homing pretension.
+    /// Goes on from the estimate of another observer of the same tendon, whose motor travels `ratio` times less:
+    /// position and tension stay, whatever the two believe of stiffness and homing pretension.
     pub fn take_over(&self, previous: &Self, estimate: &mut TendonEstimate, ratio: f64) {
         let tension = previous.tension(&estimate.x);
         estimate.x[0] *= ratio;
@@ -202,8 +203,8 @@ impl TendonObserver {
     }
 }
 
-/// e^(A T) and the integral of e^(A s) over s from 0 to T: Taylor's series over a part of T that is short for the fastest motion
-/// in A, doubled until it is T.
+/// e^(A T) and the integral of e^(A s) over s from 0 to T: Taylor's series over a part of T that is short for the
+/// fastest motion in A, doubled until it is T.
 fn exponential(rates: &Matrix6<f64>, time: f64) -> (Matrix6<f64>, Matrix6<f64>) {
     // The fastest motion is the motor on its tendon: A(1, 0) = - omega^2.
     let turns = time * rates[(1, 0)].abs().sqrt();
@@ -238,8 +239,8 @@ mod tests {
         ObserverDesign { link: 2000.0, disturbance, encoder_step: 1.5e-6, gauge_step: 0.024, gauge_noise: 0.03 }
     }
 
-    /// A motor that pulls a resting joint with 20 N, of which friction takes 3: tension and d that the observer finds. Integrated
-    /// by small steps, not by the observer's own matrices.
+    /// A motor that pulls a resting joint with 20 N, of which friction takes 3: tension and d that the observer finds.
+    /// Integrated by small steps, not by the observer's own matrices.
     fn found(disturbance: f64) -> (f64, f64) {
         let observer = TendonObserver::new(TENDON, &design(disturbance), 1e-3).expect("an observer");
         let (mut travel, mut speed) = (0.0f64, 0.0f64);

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 /// Poles of the filter.
 const ORDER: usize = 5;
 
-/// Five equal first-order stages s in a row: the motor torque of an elastic finger depends on the fourth derivative of where
-/// the joints shall be (snap), and a filter of order n makes the derivative n - 1 continuous.
+/// Five equal first-order stages s in a row: the motor torque of an elastic finger depends on the fourth derivative of
+/// where the joints shall be (snap), and a filter of order n makes the derivative n - 1 continuous.
 ///
 /// The filter works on joint angles, not on the tip: joint rates are then there without J^-1, which has no bound.
 #[derive(Clone, Debug)]

@@ -1,8 +1,8 @@
 //! Taking up slack with the joints left where they are.
 //!
-//! A free finger gives way to the first tendon that comes taut until another one holds against it: wound in all together, unequal
-//! slack turns the joints by more than a radian. So every motor winds slowly until it feels its tendon, and waits there until all
-//! have. From then on the joints show, and are held while the tensions rise.
+//! A free finger gives way to the first tendon that comes taut until another one holds against it: wound in all
+//! together, unequal slack turns the joints by more than a radian. So every motor winds slowly until it feels its
+//! tendon, and waits there until all have. From then on the joints show, and are held while the tensions rise.
 
 use crate::control::spring::joint_hold::JointHold;
 use crate::model::{Links, Tendons};
@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 const SPEED: f64 = 0.003;
 const HASTE: f64 = 0.002;
 
-/// A tendon is felt when its tension has risen by this part of t_min from the lowest one, wherever the gauge has its zero, or
-/// is at this part of t_min.
+/// A tendon is felt when its tension has risen by this part of t_min from the lowest one, wherever the gauge has its
+/// zero, or is at this part of t_min.
 const FELT: f64 = 0.04;
 const TAUT: f64 = 0.2;
 

@@ -15,11 +15,12 @@ const SATURATED: f64 = 0.98;
 /// Below this part of its desired tension a tendon counts as slack.
 const SLACK: f64 = 0.2;
 
-/// (t_d - K_delta v) / g, with an estimate g of the tension over the pull that was commanded for it: the M^-1 of eq. 22 is
-/// multiplied by 1/g. It follows t / pull, the pull being the one that acted when t was measured, with a time constant.
+/// (t_d - K_delta v) / g, with an estimate g of the tension over the pull that was commanded for it: the M^-1 of eq. 22
+/// is multiplied by 1/g. It follows t / pull, the pull being the one that acted when t was measured, with a time
+/// constant.
 ///
-/// What adapts is the way from tension to torque only. In (RM)^-T the same M is geometry: an estimate there would move the
-/// measured joints, by them the tensions, and by these itself.
+/// What adapts is the way from tension to torque only. In (RM)^-T the same M is geometry: an estimate there would move
+/// the measured joints, by them the tensions, and by these itself.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure11 {
     /// Part of the way that the estimate goes in a cycle.

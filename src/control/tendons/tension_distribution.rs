@@ -39,7 +39,8 @@ pub struct BoundedDistribution<'a> {
 }
 
 impl TensionDistribution {
-    /// Bounds in N: `minimum` of all tendons, `maximum` of each, by its own strength and its motor's. Refused unless there are tensions within them that leave the joints without torque.
+    /// Bounds in N: `minimum` of all tendons, `maximum` of each, by its own strength and its motor's. Refused unless
+    /// there are tensions within them that leave the joints without torque.
     pub fn new(tendons: &Tendons, minimum: f64, maximum: Vector4<f64>) -> Result<Self, Unusable> {
         crate::control::number_checks::positive("tendon.minimum", &[minimum])?;
         crate::control::number_checks::positive("tendon.maximum", maximum.as_slice())?;
@@ -69,8 +70,9 @@ impl TensionDistribution {
         })
     }
 
-    /// Within the bounds and with no more than `limit`, N, in any tendon: what its motor can give now. A limit under what the tendon of
-    /// a finger without torque has counts as that: then no torque is let through that would raise it.
+    /// Within the bounds and with no more than `limit`, N, in any tendon: what its motor can give now. A limit under
+    /// what the tendon of a finger without torque has counts as that: then no torque is let through that would raise
+    /// it.
     pub fn below(&self, limit: &Vector4<f64>) -> BoundedDistribution<'_> {
         BoundedDistribution { of: self, maximum: self.maximum.inf(limit).sup(&self.at_rest) }
     }

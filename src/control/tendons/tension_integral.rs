@@ -1,5 +1,5 @@
-//! What tendon controllers see and remember, and the integral on the tension error that Figures 9 and 10 share, with its
-//! anti-windup.
+//! What tendon controllers see and remember, and the integral on the tension error that Figures 9 and 10 share, with
+//! its anti-windup.
 
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};

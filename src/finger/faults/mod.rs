@@ -1,4 +1,5 @@
-//! Faults with names: what can go wrong with a finger, in numbers that never change and in words for the person at the bench.
+//! Faults with names: what can go wrong with a finger, in numbers that never change and in words for the person at the
+//! bench.
 
 mod at_link;
 mod description;

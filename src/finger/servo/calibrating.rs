@@ -15,8 +15,8 @@ impl FingerServo {
         self.enter(Stage::Calibrating);
     }
 
-    /// One step of the calibration, if there is one: it decides what the finger does. What the finger was computed with until now, if
-    /// the routine takes over in this cycle.
+    /// One step of the calibration, if there is one: it decides what the finger does. What the finger was computed with
+    /// until now, if the routine takes over in this cycle.
     pub(super) fn calibrate(&mut self) -> Option<Adjustable> {
         let Calibrating { run, before } = self.calibration.as_mut()?;
         if !self.answered {
@@ -44,7 +44,8 @@ impl FingerServo {
 
     /// Nothing was done to the finger. What it was computed with until now, if planners have changed that meanwhile.
     fn go_on_from(&mut self, before: Before) -> Option<Adjustable> {
-        // The set points that planners have sent meanwhile had no effect. They must not come into force with the next one either.
+        // The set points that planners have sent meanwhile had no effect. They must not come into force with the next
+        // one either.
         self.report.springs += u32::from(before.stage == Stage::Running);
         self.enter(before.stage);
         (before.adjustable.number != self.adjustable.number).then_some(before.adjustable)

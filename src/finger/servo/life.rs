@@ -9,8 +9,8 @@ use crate::model::Part;
 use crate::model::configuration::EndState;
 use nalgebra::Vector4;
 
-/// While its tendons hang after a blow a joint seems to be so much further, rad, than any at rest does. Of 100 fingers that a force of
-/// 6 N flung aside one seemed to be 0.55 rad beyond its limits, and came back.
+/// While its tendons hang after a blow a joint seems to be so much further, rad, than any at rest does. Of 100 fingers
+/// that a force of 6 N flung aside one seemed to be 0.55 rad beyond its limits, and came back.
 const FLUNG: f64 = 0.3;
 
 /// A machine that runs less than this part of the cycles of a finger while it opens explains why it takes long.
@@ -36,7 +36,8 @@ impl FingerServo {
             }
             self.carry_out(order);
         }
-        // One that was sent before the order for a calibration counts: the finger moves to it, and the routine must see that.
+        // One that was sent before the order for a calibration counts: the finger moves to it, and the routine must see
+        // that.
         if let Some(set_point) = self.mailbox.new_set_point(self.report.springs)
             && running
         {
@@ -105,8 +106,8 @@ impl FingerServo {
         }
     }
 
-    /// Stops a finger that has been opening for too long in the cycle that begins at `began`, ns. By the clock and not by cycles, because
-    /// a machine that runs few of them must not keep a planner waiting.
+    /// Stops a finger that has been opening for too long in the cycle that begins at `began`, ns. By the clock and not
+    /// by cycles, because a machine that runs few of them must not keep a planner waiting.
     pub(super) fn limit_opening(&mut self, began: u64) {
         if self.report.stage != Stage::Opening {
             return;
@@ -142,7 +143,8 @@ impl FingerServo {
         self.anew = true;
         self.link.answered();
         self.calibration = None;
-        // What was ordered before the fault and not begun is gone with it; what was handed over stays, but nothing goes over to it.
+        // What was ordered before the fault and not begun is gone with it; what was handed over stays, but nothing goes
+        // over to it.
         self.report.orders += u32::from(self.mailbox.new_order().is_some());
         if let Some(new) = self.mailbox.new_adjustable() {
             self.adjustable = new.clone();

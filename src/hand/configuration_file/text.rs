@@ -109,8 +109,8 @@ fn span_of(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
     parent.as_table_like()?.key(last)?.span()
 }
 
-/// Where the innermost table around a dotted key begins. A default does not fit what the file says, so the key itself is not
-/// there, but what it does not fit mostly stands beside it.
+/// Where the innermost table around a dotted key begins. A default does not fit what the file says, so the key itself
+/// is not there, but what it does not fit mostly stands beside it.
 fn nearest_table(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
     let (path, _) = dotted.rsplit_once('.').unwrap_or(("", dotted));
     let mut item = section?;

@@ -1,5 +1,5 @@
-//! Collects what the servos leave behind, so that none is lost while nobody asks, and has the black box of a finger that faults written.
-//! It allocates nothing before that: a planner that is out of memory keeps its hand.
+//! Collects what the servos leave behind, so that none is lost while nobody asks, and has the black box of a finger
+//! that faults written. It allocates nothing before that: a planner that is out of memory keeps its hand.
 
 use crate::finger::Recording;
 use crate::hand::black_box_file::keep;

@@ -26,7 +26,8 @@ pub enum Law {
     /// tau = J^T Kx J (theta_d - theta), eqs. 3 and 6: the spring for small deflections.
     #[default]
     Report,
-    /// tau = J^T Kx (x_d - x): the spring at any deflection, but blind to which of two joint solutions has the tip at x_d.
+    /// tau = J^T Kx (x_d - x): the spring at any deflection, but blind to which of two joint solutions has the tip at
+    /// x_d.
     Exact,
 }
 
@@ -90,9 +91,9 @@ impl Default for ConfiguredController {
 }
 
 impl ConfiguredController {
-    /// The tendon controller at `rate`, Hz. Unless one is configured, state feedback from 750 Hz up, and Figure 10 below: at 500 Hz
-    /// state feedback is better in most respects, but not in all, and does not bear a link that loses a tenth of the replies
-    /// (`docs/stiffness.md`).
+    /// The tendon controller at `rate`, Hz. Unless one is configured, state feedback from 750 Hz up, and Figure 10
+    /// below: at 500 Hz state feedback is better in most respects, but not in all, and does not bear a link that loses
+    /// a tenth of the replies (`docs/stiffness.md`).
     pub fn scheme(&self, rate: f64) -> Scheme {
         self.scheme.unwrap_or(if rate >= 750.0 { Scheme::StateFeedback } else { Scheme::Figure10 })
     }

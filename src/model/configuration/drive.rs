@@ -119,7 +119,8 @@ pub struct ConfiguredTendon {
     pub maximum: f64,
     /// Stiffness between motor pulley and joint, N/cm, for the stretch that the encoders do not see.
     pub stiffness: [f64; 4],
-    /// How well `stiffness` is known, as a part of it: what it explains when gauges and encoders disagree. Identification sets it.
+    /// How well `stiffness` is known, as a part of it: what it explains when gauges and encoders disagree.
+    /// Identification sets it.
     pub stiffness_tolerance: f64,
 }
 

@@ -55,8 +55,8 @@ pub enum PeriodClock {
     /// The host's CLOCK_MONOTONIC.
     #[default]
     Host,
-    /// The clock of the board, which its replies tell; of the first, where a thread serves several. Threads that follow different boards
-    /// do not stay staggered.
+    /// The clock of the board, which its replies tell; of the first, where a thread serves several. Threads that follow
+    /// different boards do not stay staggered.
     Board,
 }
 
@@ -64,7 +64,8 @@ pub enum PeriodClock {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredHand {
-    /// Cycles of every finger servo in a second, Hz: 500 to 5000. No gains are known that keep a finger stable at much less.
+    /// Cycles of every finger servo in a second, Hz: 500 to 5000. No gains are known that keep a finger stable at much
+    /// less.
     pub rate: f64,
     /// Whose clock the rate is counted by.
     pub clock: PeriodClock,
@@ -111,8 +112,9 @@ impl Default for ConfiguredHand {
             hold_time_ms: 2000,
             hold_torque_limit: 1.0,
             release_ramp_ms: 200,
-            // A finger shall be in its end state 20 ms after the last good reply, or the death of its planner. A board's timer may
-            // be 1 ms coarse and 1 % slow, and with 20 ms in whole periods a Stop that leaves a moment late would come too late.
+            // A finger shall be in its end state 20 ms after the last good reply, or the death of its planner. A
+            // board's timer may be 1 ms coarse and 1 % slow, and with 20 ms in whole periods a Stop that leaves a
+            // moment late would come too late.
             watchdog_ms: 18,
             open_timeout_ms: 5000,
             on_fault: OnFault::Finger,

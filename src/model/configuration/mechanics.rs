@@ -1,5 +1,5 @@
-//! What the controller believes of the bodies and the friction of a finger. The defaults are those of a simulated finger,
-//! whose truth is its own table, `[finger.simulation]`: the two differ where an experiment wants them to.
+//! What the controller believes of the bodies and the friction of a finger. The defaults are those of a simulated
+//! finger, whose truth is its own table, `[finger.simulation]`: the two differ where an experiment wants them to.
 
 use serde::{Deserialize, Serialize};
 

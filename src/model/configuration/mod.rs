@@ -50,7 +50,8 @@ pub struct ConfiguredFinger {
     pub port: String,
     /// Bits a second on the port.
     pub baud: u32,
-    /// Whether a port that has failed is looked for and opened again. The finger goes on only when it is told to recover.
+    /// Whether a port that has failed is looked for and opened again. The finger goes on only when it is told to
+    /// recover.
     pub reconnect: bool,
     /// Address of the finger on its board, 1 to 15; 0: the finger's number.
     pub address: u8,
@@ -179,8 +180,8 @@ impl Default for ConfiguredStiffness {
 }
 
 impl ConfiguredStiffness {
-    /// The bound that holds for the default finger under every controller at `rate` Hz, N/cm: less than what `sun2xp bound` finds for any
-    /// of them (`docs/stiffness.md`).
+    /// The bound that holds for the default finger under every controller at `rate` Hz, N/cm: less than what `sun2xp
+    /// bound` finds for any of them (`docs/stiffness.md`).
     pub fn default_bound(rate: f64) -> f64 {
         if rate >= 1000.0 { 6.0 } else { 5.0 }
     }
@@ -227,8 +228,9 @@ impl ConfiguredFinger {
         (radians(self.joints.minimum_degrees), radians(self.joints.maximum_degrees))
     }
 
-    /// How the zero of the encoders is found: as configured. Where nothing is configured, by the mechanical stops if it is known where
-    /// they are: both `zeroing.lower_stop_degrees` and `zeroing.upper_stop_degrees` are given, or the finger is simulated. Else by the pose.
+    /// How the zero of the encoders is found: as configured. Where nothing is configured, by the mechanical stops if it
+    /// is known where they are: both `zeroing.lower_stop_degrees` and `zeroing.upper_stop_degrees` are given, or the
+    /// finger is simulated. Else by the pose.
     pub fn zeroing_method(&self) -> ZeroingMethod {
         let stops = self.zeroing.lower_stop_degrees.is_some() && self.zeroing.upper_stop_degrees.is_some();
         self.zeroing.method.unwrap_or(match stops || self.simulated() {

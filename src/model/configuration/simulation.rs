@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The parameters of a simulated finger: `[finger.simulation]`. Defaults: chosen to be plausible for a finger of this size
-/// driven by small geared motors; nothing was compared with the real hand. SI units, but cm where lengths are geometry.
+/// The parameters of a simulated finger: `[finger.simulation]`. Defaults: chosen to be plausible for a finger of this
+/// size driven by small geared motors; nothing was compared with the real hand. SI units, but cm where lengths are
+/// geometry.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredSimulation {
@@ -15,8 +16,8 @@ pub struct ConfiguredSimulation {
     pub joint_viscous_friction: [f64; 3],
     /// Coulomb friction of each joint, N m. Harsh: 2e-3.
     pub joint_coulomb_friction: [f64; 3],
-    /// Stiffness of each tendon between motor pulley and joint, N/cm: what the simulated tendon has. The controller's belief
-    /// is `tendon.stiffness`; they differ where an experiment wants them to.
+    /// Stiffness of each tendon between motor pulley and joint, N/cm: what the simulated tendon has. The controller's
+    /// belief is `tendon.stiffness`; they differ where an experiment wants them to.
     pub tendon_stiffness: [f64; 4],
     /// Inertia of each rotor, kg m^2.
     pub rotor_inertia: [f64; 4],

@@ -7,8 +7,8 @@ use std::time::Duration;
 use sun2xp::hand::{Fingers, HandError, check, simulate};
 use sun2xp::model::configuration::Configuration;
 
-/// Looks at the machine, whose files are below `root` (`/`, but for tests), and at the ports of a hand, which must be closed. Measures for
-/// about `duration`. Motors stay off.
+/// Looks at the machine, whose files are below `root` (`/`, but for tests), and at the ports of a hand, which must be
+/// closed. Measures for about `duration`. Motors stay off.
 ///
 /// # Errors
 /// A configuration that cannot be used, a system that refuses a thread or a pseudo-terminal.

@@ -17,7 +17,8 @@ const LATE: f64 = 0.1;
 /// Later than this, and a period is lost every now and then.
 const TOO_LATE: f64 = 0.5;
 
-/// What the kernel may add to the wake-up of a thread that is not real-time, ns: servos ask for 1. The kernel's own default is 50 us.
+/// What the kernel may add to the wake-up of a thread that is not real-time, ns: servos ask for 1. The kernel's own
+/// default is 50 us.
 const SLACK: u64 = 1000;
 
 /// What wakes up as the servos would, all at once and staggered as they are.

@@ -1,5 +1,5 @@
-//! Whether every cycle of a configured hand ends in time, found off-line, as section 6.2 of the report wants: from worst cases,
-//! the times on the lines, and which finger is on which thread, core and port.
+//! Whether every cycle of a configured hand ends in time, found off-line, as section 6.2 of the report wants: from
+//! worst cases, the times on the lines, and which finger is on which thread, core and port.
 
 use serde::Deserialize;
 use sun2xp::board::{USABLE_SHARE, exchange_microseconds};
@@ -70,8 +70,8 @@ pub struct Scheduled {
     pub load: f64,
     /// The part of a period that its busiest line is busy.
     pub line: f64,
-    /// When the replies are there and when the cycle is done, us after its scheduled beginning at the latest; none where there is
-    /// no bound within the period.
+    /// When the replies are there and when the cycle is done, us after its scheduled beginning at the latest; none
+    /// where there is no bound within the period.
     pub response: Option<(f64, f64)>,
     /// Which deadline may be missed first.
     pub limit: Option<RateLimit>,
@@ -88,8 +88,8 @@ pub enum RateLimit {
     Cycle,
 }
 
-/// The schedule of a hand at a rate, Hz, with one entry a servo thread. Ports that are `simulated` count as serial lines of the
-/// configured baud.
+/// The schedule of a hand at a rate, Hz, with one entry a servo thread. Ports that are `simulated` count as serial
+/// lines of the configured baud.
 pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor: &Sensor) -> Vec<Scheduled> {
     let numbers = (1..=FINGERS as u8).filter(|&number| (0..FINGERS).any(|index| hand.thread(index) == number));
     let threads: Vec<(u8, Vec<usize>)> =
@@ -148,7 +148,8 @@ fn task(hand: &Configuration, fingers: &[usize], period: f64, costs: &Costs, sen
     }
 }
 
-/// The ports of a thread, as a finger on each and how many there are on it. Every simulated finger has a port of its own.
+/// The ports of a thread, as a finger on each and how many there are on it. Every simulated finger has a port of its
+/// own.
 fn lines<'a>(hand: &'a Configuration, fingers: &'a [usize]) -> impl Iterator<Item = (usize, usize)> + 'a {
     let shares =
         |a: usize, b: usize| a == b || (!hand.fingers[a].simulated() && hand.fingers[a].port == hand.fingers[b].port);
@@ -171,7 +172,8 @@ mod tests {
 
     const COSTS: Costs = Costs { wake_up: 100.0, write: 10.0, read: 5.0, compute: 15.0 };
 
-    /// Each finger on its own core: 100 + 10 until the commands are out, 550 on the line (17 bytes, 100 us, 28 bytes), 20 after.
+    /// Each finger on its own core: 100 + 10 until the commands are out, 550 on the line (17 bytes, 100 us, 28 bytes),
+    /// 20 after.
     #[test]
     fn three_fingers_on_three_cores() {
         let mut hand = Configuration::default();
