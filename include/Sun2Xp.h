@@ -897,8 +897,8 @@ struct FingerTiming {
      */
     unsigned long Overruns;
     /*
-     Whole periods that were skipped because the cycle before was not over. One such cycle
-     may skip many.
+     Whole periods in which no cycle began, because the cycle before was not over or the
+     servo thread did not run, up to the last cycle.
      */
     unsigned long SkippedPeriods;
     /*

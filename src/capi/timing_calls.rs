@@ -71,8 +71,8 @@ pub struct FingerTiming {
     pub Cycles: c_ulong,
     /// Cycles that were not over when the next one should have begun.
     pub Overruns: c_ulong,
-    /// Whole periods that were skipped because the cycle before was not over. One such cycle
-    /// may skip many.
+    /// Whole periods in which no cycle began, because the cycle before was not over or the
+    /// servo thread did not run, up to the last cycle.
     pub SkippedPeriods: c_ulong,
     /// Cycles without a valid reply in time.
     pub LostReplies: c_ulong,
