@@ -8,6 +8,8 @@ use crate::hand::{Found, Hand, HandError};
 use crate::model::UnusableConfiguration;
 use crate::model::configuration::ConfiguredFinger;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -18,9 +20,11 @@ const LOOKING: Duration = Duration::from_millis(5);
 const ANSWER: Duration = Duration::from_secs(5);
 
 /// A calibration under way. It goes on by itself; [`Calibrating::poll`] follows it.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Calibrating {
     finger: i32,
+    /// Nobody else calibrates the finger until this is dropped.
+    _claim: Claim,
     order: u32,
     /// What was found, once the finger is about to be controlled with it.
     found: Option<(Findings, Found)>,
@@ -35,6 +39,24 @@ pub enum Standing {
     Going(Progress),
     /// Done, and in force.
     Done(Findings),
+}
+
+/// The right to calibrate a finger. A finger is limp for a moment between the verdict of a calibration and the use of
+/// what was found: another calibration must not begin then.
+#[derive(Debug)]
+struct Claim(Arc<AtomicBool>);
+
+impl Claim {
+    /// None where somebody else has it.
+    fn take(claimed: &Arc<AtomicBool>) -> Option<Self> {
+        (!claimed.swap(true, Ordering::AcqRel)).then(|| Self(claimed.clone()))
+    }
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        self.0.store(false, Ordering::Release);
+    }
 }
 
 impl Calibrating {
@@ -52,19 +74,19 @@ impl Calibrating {
         let calibration = Calibration::new(task, &configuration.fingers[index], rate).map_err(refused)?;
         configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index], rate);
         let adjustable = Adjustable::new(&configuration, index).map_err(refused)?;
-        hand.dispatcher.hand_over_calibration(finger, &configuration, adjustable, |adjustable| {
+        let claim = Claim::take(&member.calibrated).ok_or_else(|| match member.mailbox.report().stage {
+            Stage::Faulted(fault) => HandError::Faulted { finger, fault },
+            _ => HandError::Busy(finger),
+        })?;
+        let order = hand.dispatcher.hand_over_calibration(finger, &configuration, adjustable, |adjustable| {
             let run = CalibrationRun { calibration, adjustable };
-            Self::ordered(finger, member.mailbox.order(Order::Calibrate(run)), None)
-        })
+            Self::ordered(finger, member.mailbox.order(Order::Calibrate(run)))
+        })?;
+        Ok(Self { finger, _claim: claim, order, found: None, asked: Instant::now() })
     }
 
-    fn ordered(
-        finger: i32,
-        given: Result<Option<u32>, Fault>,
-        found: Option<(Findings, Found)>,
-    ) -> Result<Self, HandError> {
-        let order = given.map_err(|fault| HandError::Faulted { finger, fault })?.ok_or(HandError::Busy(finger))?;
-        Ok(Self { finger, order, found, asked: Instant::now() })
+    fn ordered(finger: i32, given: Result<Option<u32>, Fault>) -> Result<u32, HandError> {
+        given.map_err(|fault| HandError::Faulted { finger, fault })?.ok_or(HandError::Busy(finger))
     }
 
     /// How it stands now. What was found is put in force first: tendons are brought under tension, and the finger is a
@@ -107,9 +129,10 @@ impl Calibrating {
                 let limp = matches!(found, Findings::Signs(_));
                 let to_store = Found::by_calibration(&found, finger, &changed)?;
                 let member = hand.dispatcher.member(finger)?;
-                *self = hand.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
-                    Self::ordered(finger, member.mailbox.restart(adjustable, limp), Some((found, to_store)))
+                self.order = hand.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
+                    Self::ordered(finger, member.mailbox.restart(adjustable, limp))
                 })?;
+                (self.found, self.asked) = (Some((found, to_store)), Instant::now());
                 *configuration = changed;
                 Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))
             }

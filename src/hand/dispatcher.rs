@@ -19,6 +19,7 @@ use parking_lot::{Mutex, MutexGuard, RwLock};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
 
 /// One finger as the planners see it.
@@ -27,6 +28,8 @@ pub(super) struct Member {
     pub number: i32,
     pub admission: RwLock<Admission>,
     pub mailbox: Mailbox,
+    /// Whether somebody calibrates the finger.
+    pub calibrated: Arc<AtomicBool>,
 }
 
 /// Routes to the fingers, collects from them.
@@ -45,6 +48,7 @@ impl Dispatcher {
                 number: finger.index as i32 + 1, // 1 to 3
                 admission: RwLock::new(finger.admission),
                 mailbox: finger.mailbox,
+                calibrated: Arc::default(),
             });
             collected.push(Mutex::new(Collected {
                 arriving: finger.timings,
