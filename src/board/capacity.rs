@@ -1,4 +1,4 @@
-//! Whether a serial line carries the cyclic traffic: arithmetic, done before a port is opened.
+//! Computes, before a port is opened, whether a serial line can carry the cyclic traffic.
 
 use super::protocol::{Kind, TURNAROUND_MICROSECONDS};
 use thiserror::Error;
@@ -6,8 +6,8 @@ use thiserror::Error;
 /// Start bit, eight data bits, stop bit.
 const BITS_PER_BYTE: f64 = 10.0;
 
-/// The part of a period that the line may take. The rest is for waking up, computing, and a UART's or USB bridge's
-/// buffers.
+/// The part of a period that the traffic may occupy. The rest is for wake-up, computation, and the buffers of a UART or
+/// a USB bridge.
 pub const USABLE_SHARE: f64 = 0.8;
 
 /// A rate that the line cannot carry.
@@ -22,37 +22,37 @@ pub const USABLE_SHARE: f64 = 0.8;
     share = 100.0 * USABLE_SHARE
 )]
 pub struct TooFast {
-    /// Bits a second.
+    /// Baud rate of the port, bit/s.
     pub baud: u32,
-    /// Fingers on the port.
+    /// Number of fingers on the port.
     pub fingers: usize,
-    /// Cycles a second, Hz.
+    /// Servo rate, Hz.
     pub rate: f64,
-    /// The first command, us.
+    /// Duration of the first command, us.
     pub command_us: f64,
-    /// All replies, us.
+    /// Duration of all replies, us.
     pub replies_us: f64,
-    /// The whole exchange, us.
+    /// Duration of the whole exchange, us.
     pub needed_us: f64,
-    /// What a period offers, us.
+    /// Usable part of a period, us.
     pub usable_us: f64,
-    /// The lowest usual rate of a UART that would do; the exact need where none does. Bits a second.
+    /// The lowest common UART rate that suffices, or the exact minimum if no common rate does, bit/s.
     pub least_baud: u32,
-    /// The highest rate at which it would fit, Hz.
+    /// The highest servo rate that this port can carry, Hz.
     pub fastest_rate: f64,
 }
 
-/// How long one exchange with so many fingers takes on the line, us. `more`: bytes that a reply may once have in
-/// addition.
+/// Returns how long one exchange with `fingers` fingers takes on the line, us. `more` is the number of extra bytes that
+/// a reply can once contain.
 ///
-/// The line is full duplex: the first reply may begin while the second command is still going out, and replies are
-/// longer than commands, so that an exchange takes one command, the board's turnaround and all replies.
+/// The line is full duplex, so the first reply may begin while the second command is still being sent. Replies are
+/// longer than commands. An exchange therefore takes one command, the board's turnaround and all replies.
 pub fn exchange_microseconds(baud: u32, fingers: usize, more: usize) -> f64 {
     let bytes = Kind::Command.wire_length() + fingers * (Kind::Reply.wire_length() + more);
     bytes as f64 * BITS_PER_BYTE / f64::from(baud) * 1e6 + f64::from(TURNAROUND_MICROSECONDS)
 }
 
-/// The share of a period that the line is busy, 0 to [`USABLE_SHARE`].
+/// Returns the share of a period in which the line is busy, 0 to [`USABLE_SHARE`].
 pub fn capacity(baud: u32, fingers: usize, rate: f64) -> Result<f64, TooFast> {
     const USUAL_BAUDS: [u32; 9] =
         [115_200, 230_400, 460_800, 500_000, 921_600, 1_000_000, 2_000_000, 3_000_000, 4_000_000];
@@ -67,7 +67,7 @@ pub fn capacity(baud: u32, fingers: usize, rate: f64) -> Result<f64, TooFast> {
     if needed_us <= usable_us {
         return Ok(needed_us / period_us);
     }
-    // As it saturates, a period shorter than the turnaround asks for the highest number there is.
+    // A period shorter than the turnaround gives a division by zero, which saturates at the largest number.
     let line_us = (usable_us - turnaround_us).max(0.0);
     let exact_baud = ((command_bits + reply_bits) / line_us * 1e6).ceil() as u32;
     Err(TooFast {
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn one_finger_at_1_khz_fits_on_1_megabaud() {
-        // 170 us out, 100 us turnaround, 280 us back.
+        // 170 us command, 100 us turnaround, 280 us reply.
         assert!((capacity(1_000_000, 1, 1000.0).unwrap() - 0.55).abs() < 1e-12);
     }
 
@@ -97,7 +97,7 @@ mod tests {
     fn three_fingers_at_1_khz_need_2_megabaud() {
         let refusal = capacity(1_000_000, 3, 1000.0).unwrap_err();
         assert_eq!(refusal.least_baud, 2_000_000);
-        // 170 + 100 + 840 us.
+        // 170 us command, 100 us turnaround, 840 us replies.
         assert!((refusal.needed_us - 1110.0).abs() < 1e-9);
         let text = refusal.to_string();
         for part in ["1110 us in all", "80 % of a period are 800 us", "baud = 2000000", "hand.rate = 720"] {

@@ -1,4 +1,4 @@
-//! The host's end of the cable: handshake, one exchange of frames a period, and what went wrong.
+//! The host's end of the cable: handshake, one exchange of frames per period, and error counts.
 
 mod allowance;
 mod handshake;
@@ -11,50 +11,50 @@ use super::protocol::{Command, Decoder, Frame, HIGHEST_ADDRESS, Kind, Message, R
 use super::transport::Transport;
 use std::path::Path;
 
-/// A Command on its way to one finger.
+/// A Command for one finger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutgoingCommand {
-    /// The finger, 1 to 15.
+    /// The finger's address, 1 to 15.
     pub address: u8,
-    /// Comes back in the Reply.
+    /// The sequence number. The Reply contains the same number.
     pub sequence: u8,
-    /// What its motors shall do.
+    /// The command for the motors.
     pub command: Command,
 }
 
-/// A Reply that came in.
+/// A Reply that was received.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Received {
-    /// The finger.
+    /// The address of the finger that sent it.
     pub address: u8,
-    /// Of the Command that it answers.
+    /// The sequence number of the Command that it answers.
     pub sequence: u8,
-    /// What it says.
+    /// The content of the Reply.
     pub reply: Reply,
 }
 
-/// What passed through a link, in all.
+/// Counts of everything that a link has sent and received.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinkCounters {
-    /// Bytes that came in.
+    /// Bytes received.
     pub bytes: u64,
-    /// Frames that came in whole.
+    /// Undamaged frames received.
     pub frames: u64,
-    /// Pieces that came in and were no frame.
+    /// Pieces received that were not a valid frame.
     pub damaged: u64,
-    /// Whole frames that nobody waited for, or that this library does not know.
+    /// Undamaged frames that were not expected, or have a type that this library does not know.
     pub foreign: u64,
-    /// Writes that the port did not take, wholly or in part; the board saw a damaged frame or none.
+    /// Writes that the port accepted only in part or not at all. The board received a damaged frame or none.
     pub unsent: u64,
 }
 
 impl LinkCounters {
-    /// Together with what passed through another link.
+    /// Returns the sum of these counts and those of another link.
     pub fn plus(&self, other: &Self) -> Self {
         self.with(other, u64::saturating_add)
     }
 
-    /// Without what passed through another link.
+    /// Returns the difference between these counts and those of another link.
     pub fn less(&self, other: &Self) -> Self {
         self.with(other, u64::saturating_sub)
     }
@@ -70,22 +70,22 @@ impl LinkCounters {
     }
 }
 
-/// Most fingers on one port.
+/// The largest number of fingers on one port.
 const MOST_FINGERS: usize = HIGHEST_ADDRESS as usize;
 
 const DELIMITER: u8 = 0;
 
-/// A board's cable. Allocates nothing after it was opened, and never waits past a deadline.
+/// The connection to a board. After opening it allocates nothing, and it never waits past a deadline.
 #[derive(Debug)]
 pub struct Link<T = Port> {
     transport: T,
     decoder: Decoder,
     input: [u8; 512],
-    /// Where in `input` the bytes lie that the decoder has not seen.
+    /// The part of `input` that the decoder has not yet seen.
     unread: std::ops::Range<usize>,
-    /// Reading stopped at the deadline or at the limit of bytes although the port had more.
+    /// Reading stopped at the deadline or at the byte limit although the port may have had more.
     cut_short: bool,
-    /// Next outgoing frame follows an incomplete one, or the noise of plugging in.
+    /// The next frame needs a delimiter in front, because it follows an incomplete frame or the noise of plugging in.
     delimit_first: bool,
     handshake_sequence: u8,
     read_at: u64,
@@ -94,14 +94,14 @@ pub struct Link<T = Port> {
 }
 
 impl Link {
-    /// Opens the port at `path` for `baud` bits a second.
+    /// Opens the port at `path` at `baud` bit/s.
     pub fn open(path: &Path, baud: u32) -> Result<Self, LinkError> {
         Ok(Self::new(Port::open(path, baud)?))
     }
 }
 
 impl<T: Transport> Link<T> {
-    /// A link over something that is open already.
+    /// Creates a link over a transport that is already open.
     pub fn new(transport: T) -> Self {
         Self {
             transport,
@@ -117,17 +117,17 @@ impl<T: Transport> Link<T> {
         }
     }
 
-    /// What carries the bytes.
+    /// Returns the transport, which carries the bytes.
     pub fn transport(&mut self) -> &mut T {
         &mut self.transport
     }
 
-    /// When the bytes of the last Reply could be read, and when they were read, ns on the transport's clock.
+    /// Returns when the bytes of the last Reply became readable and when they were read, ns on the transport's clock.
     pub fn arrival(&self) -> (u64, u64) {
         (self.transport.ready_at(), self.read_at)
     }
 
-    /// What passed so far.
+    /// Returns the counts since the link was created.
     pub fn counters(&self) -> LinkCounters {
         let decoder = self.decoder.counters();
         LinkCounters {
@@ -139,16 +139,16 @@ impl<T: Transport> Link<T> {
         }
     }
 
-    /// Sends the Commands of all fingers on the port, 15 at most, in one write. What the port does not take at once is
-    /// lost and counted: the missing Reply will tell the same.
+    /// Sends the Commands of all fingers on the port, at most 15, in one write. Bytes that the port does not accept at
+    /// once are lost and counted. The caller notices the loss by the missing Reply.
     pub fn send(&mut self, commands: &[OutgoingCommand]) -> Result<(), LinkError> {
-        // Half a Reply of the last period is of no use any more, and must not take the next one with it. Where reading
-        // was cut short, its other half comes next.
+        // The first half of a Reply of the last period has become useless, and must not damage the next Reply. If
+        // reading was cut short, the other half is still to come.
         if self.unread.is_empty() && !self.cut_short {
             self.decoder.abandon();
         }
         let mut bytes = [0; 1 + MOST_FINGERS * Kind::Command.wire_length()];
-        // The first byte is left for a delimiter.
+        // The first byte is reserved for a delimiter.
         let mut length = 1;
         for outgoing in commands.iter().take(MOST_FINGERS) {
             let frame = Frame::Command(outgoing.command);
@@ -162,20 +162,21 @@ impl<T: Transport> Link<T> {
         self.write(&mut bytes[..length])
     }
 
-    /// The next Reply, or none at `deadline` (ns on the transport's clock). With a deadline in the past: a Reply that
-    /// is there already. A refused Command is an error: the board lost its configuration, or is no longer the board it
-    /// was.
+    /// Returns the next Reply, or `None` at `deadline` (ns on the transport's clock). If the deadline is in the past,
+    /// returns only a Reply that has already arrived.
+    ///
+    /// A refused Command is an error: the board has lost its configuration, or another board is connected.
     pub fn receive(&mut self, deadline: u64) -> Result<Option<Received>, LinkError> {
         self.receive_within(&mut Allowance::for_replies(deadline))
     }
 
-    /// The same for one of several Replies that are awaited together: all calls share one allowance. None when it is
-    /// used up.
+    /// Like [`receive`](Self::receive), for one of several Replies that are awaited together. All calls share one
+    /// allowance. Returns `None` when it is used up.
     pub fn receive_within(&mut self, allowance: &mut Allowance) -> Result<Option<Received>, LinkError> {
         while let Some(Message { address, sequence, frame }) = self.next_message(allowance)? {
             match frame {
                 Frame::Reply(reply) => return Ok(Some(Received { address, sequence, reply })),
-                // A refused handshake frame has missed its time.
+                // The refusal of a handshake frame came too late, and is ignored.
                 Frame::Refused(refused) if refused.request == Kind::Command as u8 => {
                     return Err(LinkError::Refused { address, refused });
                 }
@@ -185,7 +186,7 @@ impl<T: Transport> Link<T> {
         Ok(None)
     }
 
-    /// Writes `bytes[1..]`, or `bytes` with a delimiter in front where one is needed.
+    /// Writes `bytes[1..]`, or all of `bytes` with a delimiter as the first byte if one is needed.
     fn write(&mut self, bytes: &mut [u8]) -> Result<(), LinkError> {
         let bytes = match bytes {
             [first, ..] if self.delimit_first => {
@@ -201,7 +202,8 @@ impl<T: Transport> Link<T> {
         Ok(())
     }
 
-    /// The next message; none when the allowance is used up. What was read within it is handed out in any case.
+    /// Returns the next message, or `None` when the allowance is used up. Messages already read are returned in any
+    /// case.
     fn next_message(&mut self, allowance: &mut Allowance) -> Result<Option<Message>, LinkError> {
         loop {
             if let Some(message) = self.message_at_hand() {
@@ -219,7 +221,7 @@ impl<T: Transport> Link<T> {
         }
     }
 
-    /// The next message among the bytes that were read.
+    /// Returns the next message among the bytes already read.
     fn message_at_hand(&mut self) -> Option<Message> {
         while !self.unread.is_empty() {
             let mut bytes = &self.input[self.unread.clone()];

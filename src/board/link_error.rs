@@ -1,88 +1,88 @@
-//! What can be wrong with a board, in words for the person at the bench.
+//! The errors of a board, as text for the person at the bench.
 
 use super::port_error::PortError;
 use super::protocol::{HIGHEST_ADDRESS, Kind, Reason, Refused, VERSION};
 use super::terms::TermsError;
 use thiserror::Error;
 
-/// Why a board cannot be worked with. The texts name the cause and the remedy.
+/// Why the host cannot work with a board. The texts name the cause and the remedy.
 #[derive(Debug, Error)]
 pub enum LinkError {
-    /// The port itself.
+    /// The port failed.
     #[error(transparent)]
     Port(#[from] PortError),
-    /// Not one byte came.
+    /// No byte was received.
     #[error(
         "the board does not answer: not one byte came in {milliseconds} ms. Check that it is switched on, that its \
          cable is plugged in, that finger.port is its port and that transmit and receive are not crossed"
     )]
     Silent {
-        /// How long it was tried, ms.
+        /// How long the host tried, ms.
         milliseconds: u64,
     },
-    /// Bytes came, but no frame.
+    /// Bytes were received, but no valid frame.
     #[error(
         "{bytes} bytes came, but no valid frame ({damaged} damaged): finger.baud differs from the baud rate of the \
          board, or the device at this port does not speak this protocol. Check finger.baud and finger.port"
     )]
     Unintelligible {
-        /// Bytes that came.
+        /// Bytes received.
         bytes: u64,
-        /// Pieces that were no frame.
+        /// Pieces that were not a valid frame.
         damaged: u64,
     },
-    /// Valid frames came, but not the one that was asked for.
+    /// Valid frames were received, but not the answer to the request.
     #[error(
         "finger address {address} does not answer a {request:?} frame, although the board sends valid frames: its \
          firmware is faulty, or several boards share the port. Update the firmware, and connect one board to a port"
     )]
     Unanswered {
-        /// The finger.
+        /// The finger's address.
         address: u8,
         /// The request.
         request: Kind,
     },
-    /// The board has other fingers.
+    /// The board has fingers, but none with this address.
     #[error("the board at this port has no finger address {address}, but {}: set finger.address to one that it has, or \
              check finger.port", listed(*addresses))]
     WrongAddress {
-        /// The address asked for.
+        /// The requested address.
         address: u8,
-        /// Those it has, bit n for address n.
+        /// The addresses of the board, bit n for address n.
         addresses: u16,
     },
-    /// No common protocol version.
+    /// Board and library have no common protocol version.
     #[error(
         "the board speaks protocol versions {lowest} to {highest}, this library speaks {VERSION}: update the older of \
          the two"
     )]
     WrongVersion {
-        /// The board's lowest.
+        /// The board's lowest version.
         lowest: u8,
-        /// The board's highest.
+        /// The board's highest version.
         highest: u8,
     },
-    /// The board cannot keep what is configured.
+    /// The board cannot meet the configuration.
     #[error("the board cannot do what is configured: {0}")]
     Terms(#[from] TermsError),
-    /// The board said no.
+    /// The board refused a request.
     #[error("the board refuses (finger address {address}): {refused}")]
     Refused {
-        /// The finger.
+        /// The finger's address.
         address: u8,
-        /// What it said.
+        /// The refusal.
         refused: Refused,
     },
-    /// The board confirmed other terms than it was sent.
+    /// The board confirmed terms that differ from those it was sent.
     #[error("finger address {address} confirms other terms than it was sent: its firmware is faulty. Update it")]
     OtherTerms {
-        /// The finger.
+        /// The finger's address.
         address: u8,
     },
 }
 
 impl LinkError {
-    /// The nearest errno.
+    /// Returns the closest errno.
     pub fn errno(&self) -> i32 {
         match self {
             LinkError::Port(error) => error.errno(),

@@ -1,5 +1,4 @@
-//! The host's end of the cable: the protocol of `docs/board-protocol.md`, the serial link that speaks it, and the
-//! ports.
+//! The host's end of the cable: the protocol of `docs/board-protocol.md`, the link that uses it, and the serial ports.
 
 mod capacity;
 pub(crate) mod descriptor;

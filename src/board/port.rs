@@ -1,9 +1,8 @@
 //! A serial port for a servo.
 //!
-//! It is read and written on its raw descriptor: no wait changes the signal mask, so that no signal handler of a
-//! planner runs on the servo thread; nothing allocates; nothing waits past its deadline. Before it is used the
-//! descriptor is looked at: should another part of the program have closed it, its number may mean a file of the
-//! planner's by now.
+//! The port is read and written through its raw descriptor. No wait changes the signal mask, so no signal handler of a
+//! planner runs on the servo thread. Nothing allocates, and nothing waits past its deadline. Every use first checks the
+//! descriptor: if another part of the program has closed it, its number may now belong to a file of the planner.
 #![allow(unsafe_code, reason = "the raw descriptor of the port")]
 
 mod opening;
@@ -17,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// The wait for a driver that has announced bytes and has none.
+/// The pause after a driver announced bytes and had none.
 const NOTHING_TO_READ: Duration = Duration::from_micros(100);
 
 /// An open serial port: exclusive, raw, eight data bits, no parity, one stop bit, no flow control.
@@ -25,19 +24,20 @@ const NOTHING_TO_READ: Duration = Duration::from_micros(100);
 pub struct Port {
     descriptor: Descriptor,
     path: PathBuf,
-    /// When there was last something to read, ns.
+    /// When the port last became readable, ns.
     ready_at: u64,
-    /// The process that has opened it. A forked child inherits this value and the open file.
+    /// The process that opened the port. A forked child inherits this value and the open file.
     process: u32,
 }
 
 impl Port {
-    /// Where it was opened.
+    /// Returns the path that was opened.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The latency timer of an FTDI bridge, ms; None where the port has none. Above 1 every reply waits for it.
+    /// Returns the latency timer of an FTDI bridge, ms, or `None` if the port has none. With a value above 1, every
+    /// reply is delayed by it.
     pub fn latency_timer_ms(&self) -> Option<u32> {
         // Ports are often opened through a link in /dev/serial/by-id.
         let device = std::fs::canonicalize(&self.path).ok()?;
@@ -46,12 +46,12 @@ impl Port {
         text.trim().parse().ok()
     }
 
-    /// Before every use of the descriptor: it costs a quarter of a microsecond.
+    /// Checks that the descriptor is still the port's. Called before every use; costs 0.25 us.
     fn check_own(&self) -> Result<(), PortError> {
         if self.descriptor.is_own() { Ok(()) } else { Err(PortError::Closed) }
     }
 
-    /// Waits with the signal mask as it is. False at the deadline.
+    /// Waits for input with an unchanged signal mask. Returns false at the deadline.
     fn wait_for_input(&mut self, deadline: u64) -> Result<bool, PortError> {
         loop {
             let left = deadline.saturating_sub(realtime::now());
@@ -64,7 +64,7 @@ impl Port {
             let ready = unsafe { libc::ppoll(&mut poll, 1, &timeout, std::ptr::null()) };
             match ready {
                 0 => return Ok(false),
-                // Hang-up is reported beside the last bytes; the read after them meets it again.
+                // The kernel reports a hang-up together with the last bytes. The next read detects it again.
                 1 if poll.revents & libc::POLLIN != 0 => {
                     self.ready_at = realtime::now();
                     return self.check_own().map(|()| true);
@@ -105,8 +105,8 @@ impl Transport for Port {
                 1.. => return Ok(taken as usize),
                 _ => match self.descriptor.error() {
                     error if error.kind() == io::ErrorKind::Interrupted => {}
-                    // A driver that announces bytes and has none must neither hold anybody past the deadline nor keep
-                    // a processor busy.
+                    // A driver that announces bytes and has none must neither delay the caller past the deadline nor
+                    // occupy a processor.
                     error if error.kind() == io::ErrorKind::WouldBlock => sleep(NOTHING_TO_READ),
                     error => return Err(error.into()),
                 },
@@ -139,9 +139,9 @@ impl Transport for Port {
 impl Drop for Port {
     fn drop(&mut self) {
         if self.process == std::process::id() && self.descriptor.is_own() {
-            // Closing a UART waits up to 30 s for bytes that cannot leave. What mattered was answered long ago. The
-            // mark of exclusive use would outlive the port where somebody else has it open too, and the lock where a
-            // forked child lives on.
+            // Closing a UART waits up to 30 s for bytes that cannot leave. All important bytes were answered long
+            // before, so the rest is discarded. The mark of exclusive use would remain if another process has the port
+            // open too, and the lock would remain if a forked child still runs.
             // SAFETY: no call takes a pointer.
             unsafe {
                 libc::tcflush(self.descriptor.number(), libc::TCOFLUSH);

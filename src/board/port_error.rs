@@ -1,4 +1,4 @@
-//! What can be wrong with a serial port.
+//! The errors of a serial port.
 
 use crate::model::ShownPath;
 use crate::realtime::with_remedy;
@@ -32,20 +32,20 @@ pub enum PortError {
     Baud {
         /// The port.
         path: PathBuf,
-        /// As configured, bits a second.
+        /// The configured rate, bit/s.
         wanted: u32,
-        /// What the driver chose, bits a second.
+        /// The rate that the driver selected, bit/s.
         offered: u32,
     },
-    /// Another reason why it cannot be opened.
+    /// Another reason why the port cannot be opened.
     #[error("cannot open {}: {}", ShownPath(path), opening(source))]
     Opening {
         /// The port.
         path: PathBuf,
-        /// What the system reports.
+        /// The error that the system reported.
         source: io::Error,
     },
-    /// It is open, but cannot be set up.
+    /// The port is open, but cannot be configured.
     #[error(
         "cannot set up {}: {}. Check finger.port and finger.baud, and the adapter's driver (dmesg)",
         ShownPath(path),
@@ -54,7 +54,7 @@ pub enum PortError {
     SetUp {
         /// The port.
         path: PathBuf,
-        /// What the system reports.
+        /// The error that the system reported.
         source: io::Error,
     },
     /// EIO: hang-up.
@@ -63,7 +63,7 @@ pub enum PortError {
          board has ended. Plug it in"
     )]
     Vanished,
-    /// EBADF: its descriptor is closed, or means another file by now.
+    /// EBADF: the descriptor is closed, or its number now belongs to another file.
     #[error("another part of this program has closed the descriptor of the port. Call CloseHand and OpenHand")]
     Closed,
     /// A read or write failed.
@@ -72,7 +72,7 @@ pub enum PortError {
 }
 
 impl PortError {
-    /// The errno of the system; where it reported none, the nearest.
+    /// Returns the errno that the system reported, or the closest one if it reported none.
     pub fn errno(&self) -> i32 {
         match self {
             PortError::MissingPermission(_) => libc::ENOENT,
@@ -88,13 +88,13 @@ impl PortError {
         }
     }
 
-    /// Why the file at `path` could not be opened.
+    /// Returns why the file at `path` could not be opened.
     pub(super) fn at_opening(path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.raw_os_error() {
             Some(libc::ENOENT) => Self::MissingPermission(path),
             Some(libc::EACCES) => Self::Forbidden(path),
-            // Whoever has it has marked it for exclusive use.
+            // The program that has the port open has marked it for exclusive use.
             Some(libc::EBUSY) => Self::Busy(path),
             Some(libc::ENOTTY | libc::EISDIR) => Self::NotASerialPort(path),
             _ => Self::Opening { path, source },
@@ -106,7 +106,7 @@ impl PortError {
 impl From<io::Error> for PortError {
     fn from(source: io::Error) -> Self {
         match source.raw_os_error() {
-            // What a vanished adapter answers, according to its driver.
+            // What the driver of a removed adapter reports; it depends on the driver.
             Some(libc::EIO | libc::ENXIO | libc::ENODEV) => Self::Vanished,
             Some(libc::EBADF) => Self::Closed,
             _ => Self::Failed(source),

@@ -1,28 +1,30 @@
-//! The terms that a finger's configuration asks of its board.
+//! The terms that a finger's configuration requires of its board.
 
 use super::protocol::{Capabilities, Configure, Identity};
 use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState};
 use nalgebra::Vector4;
 use thiserror::Error;
 
-/// The protocol lets a board need a watchdog of up to so many ms. It gets what it needs, even where a shorter one is
-/// configured.
+/// The longest minimum watchdog time that the protocol permits a board, ms. A board up to this limit gets its minimum
+/// even if a shorter watchdog is configured.
 const LONGEST_NEEDED_MS: u16 = 20;
 
-/// A board's torque unit is this part of a motor's torque limit at most: rounding takes as much off the limit.
+/// The largest torque unit of a board, as a part of a motor's torque limit. Rounding lowers the limit by up to one
+/// unit.
 const COARSEST_UNIT: f64 = 0.01;
 
 /// uN m in one N cm.
 const MICRO_PER_CENTI: f64 = 1e4;
 
-/// The terms in physical units; a board's [`Identity`] turns them into a [`Configure`].
+/// The terms in physical units. [`Terms::configure`] converts them to a [`Configure`] with the board's [`Identity`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terms {
-    /// Silence after which the board goes to its end state, ms. A board that needs more gets more, 20 ms at most.
+    /// Silence after which the board enters its end state, ms. A board with a longer minimum, up to 20 ms, gets its
+    /// minimum.
     pub watchdog_ms: u16,
     /// What the board does when commands stop.
     pub end_state: EndState,
-    /// How long *hold* holds, ms.
+    /// Duration of *hold*, ms.
     pub hold_time_ms: u16,
     /// The largest torque that *hold* keeps, N cm.
     pub hold_torque_limit: f64,
@@ -32,35 +34,35 @@ pub struct Terms {
     pub torque_constants: Vector4<f64>,
 }
 
-/// Terms that a board cannot keep.
+/// Terms that a board cannot meet.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum TermsError {
-    /// The watchdog is shorter than the board's, and that is longer than the protocol lets it be.
+    /// The configured watchdog is shorter than the board's minimum, which is longer than the protocol permits.
     #[error(
         "its shortest watchdog is {shortest} ms, though the protocol allows {LONGEST_NEEDED_MS} ms, and {wanted} ms \
          are configured: update its firmware, or raise hand.watchdog_ms to {shortest}, after which its motors go on \
          for as long when commands stop"
     )]
     Watchdog {
-        /// The board's, ms.
+        /// The board's minimum, ms.
         shortest: u16,
-        /// The configured one, ms.
+        /// The configured time, ms.
         wanted: u16,
     },
-    /// *hold* is not there.
+    /// The board lacks *hold*.
     #[error("it cannot hold its last torques: set hand.end_state = \"release\"")]
     Hold,
-    /// A limit beyond the board's.
+    /// A configured torque limit exceeds the board's.
     #[error(
         "it drives no motor beyond {strongest:.3} N cm, but motor {motor} is configured for {wanted:.3} N cm: lower \
          finger.motor.torque_limit"
     )]
     TorqueLimit {
-        /// The board's, N cm.
+        /// The board's limit, N cm.
         strongest: f64,
-        /// Which motor, 1 to 4.
+        /// The motor's number, 1 to 4.
         motor: usize,
-        /// The configured one, N cm.
+        /// The configured limit, N cm.
         wanted: f64,
     },
     /// The board's torque unit is zero.
@@ -74,15 +76,15 @@ pub enum TermsError {
     CoarseUnit {
         /// The board's unit, N cm.
         unit: f64,
-        /// Which motor, 1 to 4.
+        /// The motor's number, 1 to 4.
         motor: usize,
-        /// Its configured limit, N cm.
+        /// The configured limit, N cm.
         limit: f64,
     },
 }
 
 impl Terms {
-    /// What the configuration says.
+    /// Takes the terms from the configuration.
     pub fn new(hand: &ConfiguredHand, finger: &ConfiguredFinger) -> Self {
         Self {
             watchdog_ms: hand.watchdog_ms,
@@ -94,7 +96,7 @@ impl Terms {
         }
     }
 
-    /// In the board's units.
+    /// Converts the terms to the board's units.
     pub fn configure(&self, board: &Identity) -> Result<Configure, TermsError> {
         if board.torque_unit == 0 {
             return Err(TermsError::TorqueUnit);
@@ -109,7 +111,7 @@ impl Terms {
         let strongest = board.torque(board.torque_limit.min(i16::MAX as u16) as i16);
         for (index, &wanted) in self.torque_limits.iter().enumerate() {
             let motor = index + 1;
-            // Compared in N cm, because counts saturate. What is left of a unit is rounded away.
+            // Torques are compared in N cm, because counts saturate. A remainder below one unit is rounded away.
             if wanted >= strongest + unit || count(board, wanted) > board.torque_limit {
                 return Err(TermsError::TorqueLimit { strongest, motor, wanted });
             }
@@ -129,13 +131,13 @@ impl Terms {
     }
 }
 
-/// A torque limit in the board's unit, rounded down. Never negative: a limit below zero reads as zero.
+/// Returns a torque limit in the board's unit, rounded down. A negative limit gives zero.
 fn count(board: &Identity, limit: f64) -> u16 {
     board.torque_count(limit).max(0) as u16
 }
 
-/// A torque constant, N cm/A, in uN m/A, rounded up: the board divides a torque by it, and a larger one makes the
-/// current smaller.
+/// Converts a torque constant from N cm/A to uN m/A, rounded up. The board divides a torque by it, so a larger constant
+/// gives a smaller current.
 fn micro(constant: f64) -> u32 {
     let nearest = (constant * MICRO_PER_CENTI).round();
     let up = if nearest / MICRO_PER_CENTI < constant { nearest + 1.0 } else { nearest };

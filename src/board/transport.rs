@@ -1,22 +1,22 @@
 use super::port_error::PortError;
 
-/// What carries bytes to a board and back, on a clock. A serial port is one; tests have others, on simulated time.
+/// Carries bytes to and from a board, and has a clock. A serial port is one; tests have others, with simulated time.
 pub trait Transport {
-    /// Sends bytes without waiting; what does not fit now is lost. How many were sent.
+    /// Sends bytes without waiting, and returns how many were sent. Bytes that do not fit now are lost.
     fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError>;
 
-    /// Waits for bytes, at most until `deadline` (ns on this transport's clock), and takes what is there: at least one
-    /// byte, or none at the deadline. Bytes that are there already are taken even after the deadline.
+    /// Waits for bytes, at most until `deadline` (ns on this transport's clock). Reads what has arrived: at least one
+    /// byte, or none at the deadline. Bytes that have already arrived are read even after the deadline.
     fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError>;
 
-    /// When the bytes that were last taken could be read, ns: the reading itself comes after.
+    /// Returns when the bytes of the last read became readable, ns. The read itself happens later.
     fn ready_at(&self) -> u64 {
         self.now()
     }
 
-    /// Throws away bytes that came in and were not read.
+    /// Discards bytes that have arrived but were not read.
     fn discard_input(&mut self) -> Result<(), PortError>;
 
-    /// The time, ns.
+    /// Returns the current time, ns.
     fn now(&self) -> u64;
 }

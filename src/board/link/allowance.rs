@@ -1,57 +1,57 @@
-//! How long, and how much, is read while something is awaited: a board that sends without end must not hold its reader.
+//! Limits how long and how much one receive reads, so that a board that sends without end cannot block its reader.
 
-/// The most that one receive takes, bytes: ten times what the 15 fingers of a port answer in a period, and more than a
-/// line at 12 Mbaud carries in the longest one.
+/// The most bytes that one receive reads. This is ten times what the 15 fingers of a port answer in a period, and more
+/// than a line at 12 Mbaud carries in the longest period.
 const MOST_BYTES: usize = 4096;
 
-/// What may still be read.
+/// What a receive may still read.
 #[derive(Clone, Debug)]
 pub struct Allowance {
     deadline: u64,
-    /// None: as much as comes until the deadline.
+    /// `None`: no limit until the deadline.
     bytes: Option<usize>,
     used_up: bool,
-    /// The last read found something.
+    /// The last read returned at least one byte.
     found: bool,
 }
 
 impl Allowance {
-    /// For the Replies of one period: until `deadline` (ns on the transport's clock), and no more than a line can
-    /// carry.
+    /// Creates the allowance for the Replies of one period: until `deadline` (ns on the transport's clock), and at most
+    /// 4096 bytes.
     pub fn for_replies(deadline: u64) -> Self {
         Self { bytes: Some(MOST_BYTES), ..Self::until(deadline) }
     }
 
-    /// For an answer that may come after much else.
+    /// Creates the allowance for an answer that may follow many other bytes: no byte limit.
     pub(super) fn until(deadline: u64) -> Self {
         Self { deadline, bytes: None, used_up: false, found: false }
     }
 
-    /// ns on the transport's clock.
+    /// Returns the deadline, ns on the transport's clock.
     pub(super) fn deadline(&self) -> u64 {
         self.deadline
     }
 
-    /// Whether there may be one more read at `now`. One at or after the deadline is allowed: it takes what is there
-    /// already.
+    /// Returns whether one more read is permitted at `now`. One read at or after the deadline is permitted; it takes
+    /// bytes that have already arrived.
     pub(super) fn permits(&mut self, now: u64) -> bool {
         let permitted = !self.used_up;
         self.used_up |= now >= self.deadline;
         permitted
     }
 
-    /// So many bytes were read.
+    /// Deducts the bytes that a read returned.
     pub(super) fn take(&mut self, bytes: usize) {
         if let Some(left) = &mut self.bytes {
             *left = left.saturating_sub(bytes);
             self.used_up |= *left == 0;
         }
         self.found = bytes > 0;
-        // Nothing came until the deadline.
+        // A read returns no bytes only at the deadline.
         self.used_up |= !self.found;
     }
 
-    /// Whether there may be more than was read.
+    /// Returns whether the port may have more bytes than were read.
     pub(super) fn left_some(&self) -> bool {
         self.found
     }

@@ -1,4 +1,4 @@
-//! What is asked until it is answered: who the board is, its terms, and that it stops.
+//! Requests that are repeated until the board answers: its identity, its terms, and a stop.
 
 use super::{Allowance, Link};
 use crate::board::link_error::LinkError;
@@ -10,15 +10,15 @@ use crate::board::terms::Terms;
 use crate::board::transport::Transport;
 
 /// How long an answer to a handshake frame may take before the frame is sent again, ns. A USB bridge in its slowest
-/// setting answers after some 35 ms.
+/// setting answers after about 35 ms.
 const PATIENCE: u64 = 50_000_000;
 
 impl<T: Transport> Link<T> {
-    /// Finds the finger `address`, 1 to 15, and agrees on `terms` with it. Tries until `deadline` (ns on the
-    /// transport's clock), because a board may still be starting; gives up at once where waiting cannot help. The
-    /// motors stay off.
+    /// Finds the finger `address`, 1 to 15, and agrees on `terms` with it. The motors stay off. Retries until
+    /// `deadline` (ns on the transport's clock), because a board may still be starting. Returns at once if waiting
+    /// cannot help.
     ///
-    /// Not for the servo's cycle: it throws away Replies of other fingers on the port.
+    /// Not for the servo's cycle, because it discards Replies of other fingers on the port.
     pub fn shake_hands(
         &mut self,
         address: u8,
@@ -39,8 +39,8 @@ impl<T: Transport> Link<T> {
         let hello = Frame::Hello(Hello { lowest_version: VERSION, highest_version: VERSION });
         let mut attempts = 0u32;
         while self.transport.now() < deadline {
-            // After two attempts in vain every other one asks whoever is there, to tell a wrong address from a dead
-            // board.
+            // After two failed attempts, every second attempt is addressed to any finger. This distinguishes a wrong
+            // address from a board that does not answer.
             let asked = if attempts >= 2 && attempts.is_multiple_of(2) { ANY_ADDRESS } else { address };
             attempts = attempts.saturating_add(1);
             let Some(answer) = self.ask(asked, hello, deadline)? else { continue };
@@ -77,7 +77,7 @@ impl<T: Transport> Link<T> {
             match answer.frame {
                 Frame::Configured(configured) if configured.terms == configure => return Ok(configured),
                 Frame::Configured(_) => return Err(LinkError::OtherTerms { address }),
-                // A program that died a moment ago leaves the motors following until the watchdog ends that.
+                // After a program has died, the motors follow its last Command until the watchdog trips.
                 Frame::Refused(refused) if refused.reason == Reason::Running => {
                     running = Some(refused);
                     self.let_pass((self.transport.now() + PATIENCE).min(deadline))?;
@@ -92,15 +92,15 @@ impl<T: Transport> Link<T> {
         })
     }
 
-    /// Tells the finger to go to its end state now, as well as that can be done: whether it confirmed by `deadline` (ns
-    /// on the transport's clock). Without an answer its watchdog does the same a little later. Replies that come
-    /// meanwhile are thrown away.
+    /// Sends one Stop, which makes the finger enter its end state, and returns whether it confirmed by `deadline` (ns
+    /// on the transport's clock). Without an answer the finger's watchdog does the same a little later. Replies that
+    /// arrive meanwhile are discarded.
     pub fn stop(&mut self, address: u8, deadline: u64) -> Result<bool, LinkError> {
         let answer = self.ask(address, Frame::Stop(Stop), deadline)?;
         Ok(matches!(answer, Some(Message { frame: Frame::Stopped(_), .. })))
     }
 
-    /// Sends a request and waits for its answer or refusal, for a while.
+    /// Sends a request and waits for its answer or refusal until `deadline`, at most for [`PATIENCE`].
     fn ask(&mut self, address: u8, request: Frame, deadline: u64) -> Result<Option<Message>, LinkError> {
         self.handshake_sequence = self.handshake_sequence.wrapping_add(1);
         let sequence = self.handshake_sequence;
@@ -108,7 +108,7 @@ impl<T: Transport> Link<T> {
         let mut bytes = [0; 1 + MAX_WIRE];
         let length = 1 + wire.as_bytes().len();
         bytes[1..length].copy_from_slice(wire.as_bytes());
-        // A delimiter before every handshake frame: whatever the board has half received is not its beginning.
+        // A delimiter before every handshake frame ends any frame that the board has partly received.
         self.delimit_first = true;
         self.write(&mut bytes[..length])?;
 
@@ -116,7 +116,7 @@ impl<T: Transport> Link<T> {
         while let Some(message) = self.next_message(&mut allowance)? {
             let answers = match message.frame {
                 Frame::Refused(refused) => refused.request == request.kind() as u8,
-                // An answer's type is its request's with the top bit set.
+                // The type of an answer is the type of its request with the top bit set.
                 frame => frame.kind() as u8 == request.kind() as u8 | 0x8,
             };
             let meant = message.sequence == sequence && (message.address == address || address == ANY_ADDRESS);
@@ -128,7 +128,7 @@ impl<T: Transport> Link<T> {
         Ok(None)
     }
 
-    /// Lets time pass without missing a hang-up.
+    /// Waits without missing a hang-up, and discards what arrives.
     fn let_pass(&mut self, until: u64) -> Result<(), LinkError> {
         let mut allowance = Allowance::until(until);
         while self.next_message(&mut allowance)?.is_some() {

@@ -9,16 +9,17 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
 impl Port {
-    /// Opens, locks and configures the port at `path` for `baud` bits a second, and throws away what had come in.
+    /// Opens, locks and configures the port at `path` for `baud` bit/s, and discards bytes that have already arrived.
     ///
     /// # Errors
-    /// A path without a serial port that this user may open and nobody else has, a port that cannot run at this rate.
+    /// The path is not a serial port, this user may not open it, another program has it open, or it cannot run at this
+    /// rate.
     pub fn open(path: &Path, baud: u32) -> Result<Self, PortError> {
         let port = Self { descriptor: open(path)?, path: path.to_owned(), ready_at: 0, process: std::process::id() };
         port.lock()?;
         let set_up = |source| PortError::SetUp { path: path.to_owned(), source };
         let offered = port.configure(baud).map_err(set_up)?;
-        // A UART tolerates 3 %; a driver that cannot do the rate at all offers something quite different.
+        // A UART tolerates 3 %. A driver that does not support the rate offers a very different one.
         if offered.abs_diff(baud) > baud / 33 {
             return Err(PortError::Baud { path: path.to_owned(), wanted: baud, offered });
         }
@@ -28,7 +29,8 @@ impl Port {
         Ok(port)
     }
 
-    /// Keeps other programs out, by the mark of exclusive use and by a lock: root passes the first, but not the second.
+    /// Keeps other programs out by the mark of exclusive use and by a lock. The mark does not stop root, but the lock
+    /// does.
     fn lock(&self) -> Result<(), PortError> {
         let failed = |source| PortError::at_opening(&self.path, source);
         // SAFETY: the descriptor is open; neither call takes a pointer.
@@ -41,8 +43,8 @@ impl Port {
         }
     }
 
-    /// Raw, eight data bits, no parity, one stop bit, no flow control: the rate that the driver offers for `baud`,
-    /// bits a second.
+    /// Sets raw mode, eight data bits, no parity, one stop bit, no flow control. Returns the rate that the driver
+    /// selected for `baud`, bit/s.
     fn configure(&self, baud: u32) -> io::Result<u32> {
         let mut settings = self.settings()?;
         settings.c_iflag &= !(libc::IGNBRK | libc::BRKINT | libc::PARMRK | libc::ISTRIP | libc::INPCK);
@@ -50,7 +52,7 @@ impl Port {
         settings.c_iflag |= libc::IGNPAR;
         settings.c_oflag &= !libc::OPOST;
         settings.c_lflag &= !(libc::ECHO | libc::ECHONL | libc::ICANON | libc::ISIG | libc::IEXTEN);
-        // Without HUPCL: with it, closing the port drops DTR, which resets many boards before they reach their end
+        // HUPCL is cleared: with it, closing the port drops DTR, which resets many boards before they reach their end
         // state.
         settings.c_cflag &= !(libc::CSIZE | libc::PARENB | libc::PARODD | libc::CSTOPB | libc::CRTSCTS | libc::HUPCL);
         settings.c_cflag &= !(libc::CBAUD | libc::CIBAUD);
@@ -72,7 +74,7 @@ impl Port {
         Ok(found.c_ospeed)
     }
 
-    /// By TCGETS2 and TCSETS2, because tcgetattr and tcsetattr know no unusual baud rate.
+    /// Uses TCGETS2 and TCSETS2, because tcgetattr and tcsetattr do not support arbitrary baud rates.
     fn settings(&self) -> io::Result<libc::termios2> {
         // SAFETY: all zeros is a valid termios2.
         let mut settings: libc::termios2 = unsafe { std::mem::zeroed() };
@@ -81,8 +83,8 @@ impl Port {
         Ok(settings)
     }
 
-    /// FTDI bridges keep bytes back for 16 ms unless asked not to. Drivers that do not know the request refuse it,
-    /// and need not know it; so failure is no error here, and [`Port::latency_timer_ms`] tells what became of it.
+    /// Requests low latency. FTDI bridges otherwise hold bytes back for 16 ms. A driver that does not know the request
+    /// refuses it and does not need it, so a failure is not an error. [`Port::latency_timer_ms`] returns the result.
     fn ask_for_low_latency(&self) {
         let mut serial = SerialStruct([0; SERIAL_STRUCT_WORDS]);
         // SAFETY: the descriptor is open, and `serial` is at least as large and as aligned as the kernel's
@@ -96,8 +98,8 @@ impl Port {
     }
 }
 
-/// The kernel's `struct serial_struct`, of which only `flags` matters here: the fifth int (after type, line, port and
-/// irq). 72 bytes on 64-bit machines; the rest is room.
+/// The kernel's `struct serial_struct`, of which only `flags` is used: the fifth int (after type, line, port and irq).
+/// The structure has 72 bytes on 64-bit machines; the rest is a margin.
 #[repr(C, align(8))]
 struct SerialStruct([libc::c_int; SERIAL_STRUCT_WORDS]);
 

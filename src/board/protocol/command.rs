@@ -1,6 +1,6 @@
 use super::fields::{FieldReader, FieldWriter};
 
-/// Host to board, every period: what the motors shall do.
+/// Host to board, every period: the commands for the motors.
 ///
 /// | byte | field |
 /// |---|---|
@@ -8,9 +8,9 @@ use super::fields::{FieldReader, FieldWriter};
 /// | 3..11 | torques of motors 1 to 4, i16 each |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Command {
-    /// The hand-shaking bit of the report: the servo flips it each cycle and the board puts it on a pin.
+    /// The handshake bit of the report. The servo toggles it every cycle, and the board outputs it on a pin.
     pub toggle: bool,
-    /// Clear: motors off.
+    /// False: motors off.
     pub enable: bool,
     /// In units of [`Identity::torque_unit`](super::Identity::torque_unit).
     pub torques: [i16; 4],

@@ -15,13 +15,13 @@ use crate::model::configuration::EndState;
 /// | 18..34 | torque constants of motors 1 to 4, u32 each, uN m/A |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Configure {
-    /// As in the Identity.
+    /// Protocol version, as in the Identity.
     pub version: u8,
-    /// Silence after which the board goes to its end state, ms.
+    /// Silence after which the board enters its end state, ms.
     pub watchdog_ms: u16,
-    /// Which end state.
+    /// What the board does when commands stop.
     pub end_state: EndState,
-    /// How long *hold* holds, ms.
+    /// Duration of *hold*, ms.
     pub hold_time_ms: u16,
     /// The largest torque that *hold* keeps, torque units.
     pub hold_torque_limit: u16,
@@ -31,7 +31,7 @@ pub struct Configure {
     pub torque_constants: [u32; 4],
 }
 
-/// Board to host: the terms stand, and this is where the encoders are.
+/// Board to host: confirms the terms, and gives the full encoder counts.
 ///
 /// | byte | field |
 /// |---|---|
@@ -41,17 +41,17 @@ pub struct Configure {
 /// | 58..60 | status |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Configured {
-    /// As they were received.
+    /// The terms as received.
     pub terms: Configure,
-    /// Whole encoder counts; a Reply carries their low 16 bits.
+    /// Full 32-bit encoder counts. A Reply carries their low 16 bits.
     pub encoders: [i32; 4],
     /// Gauge counts.
     pub gauges: [u16; 4],
-    /// How the board is.
+    /// Status of the finger.
     pub status: Status,
 }
 
-/// Where the end state lies in a Configure and a Configured, counted from the header.
+/// Offset of the end state in a Configure and a Configured, counted from the header.
 const END_STATE_OFFSET: u8 = 5;
 
 impl Configure {

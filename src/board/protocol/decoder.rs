@@ -1,20 +1,21 @@
-//! Bytes from the wire into frames.
+//! Decodes the bytes from the wire into frames.
 
 use super::packet::MAX_FRAME;
 use super::{MAX_WIRE, Packet};
 
-/// What came in, in all.
+/// Counts of everything that was received.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DecoderCounters {
     /// Bytes.
     pub bytes: u64,
-    /// Frames whose check held.
+    /// Frames with a correct check.
     pub frames: u64,
-    /// Pieces between two delimiters that were no frame: damaged, cut short or too long.
+    /// Pieces between two delimiters that were not a valid frame: damaged, incomplete or too long.
     pub damaged: u64,
 }
 
-/// Finds frames in a stream of bytes. A damaged frame costs itself; when its delimiter was the damage, also the next.
+/// Finds frames in a stream of bytes. A damaged frame is lost. If its delimiter was damaged, the next frame is lost
+/// too.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     stuffed: [u8; MAX_WIRE],
@@ -30,7 +31,7 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Takes bytes from the front of `bytes` until a frame is complete; None when they are used up.
+    /// Consumes `bytes` from the front until a frame is complete. Returns `None` when all bytes are consumed.
     pub fn next(&mut self, bytes: &mut &[u8]) -> Option<Packet<'_>> {
         let mut frame_length = None;
         while let Some((&byte, rest)) = bytes.split_first() {
@@ -43,31 +44,31 @@ impl Decoder {
         frame_length.and_then(|length| Packet::unchecked(&self.frame[..length]))
     }
 
-    /// Gives up a frame that has only begun: what comes now is the beginning of another.
+    /// Discards an incomplete frame. The next byte begins a new one.
     pub fn abandon(&mut self) {
         let begun = std::mem::take(&mut self.stuffed_length) > 0;
         self.counters.damaged += u64::from(begun);
     }
 
-    /// What came in so far.
+    /// Returns the counts since the decoder was created.
     pub fn counters(&self) -> DecoderCounters {
         self.counters
     }
 
-    /// Length of the frame that this byte completed.
+    /// Consumes one byte. Returns the length of the frame if this byte completed one.
     fn take(&mut self, byte: u8) -> Option<usize> {
         self.counters.bytes += 1;
         if byte != 0 {
             if let Some(room) = self.stuffed.get_mut(self.stuffed_length) {
                 *room = byte;
             }
-            // One beyond the buffer means too long; it stays there until the delimiter.
+            // One byte beyond the buffer means that the frame is too long. The length stays there until the delimiter.
             self.stuffed_length = (self.stuffed_length + 1).min(MAX_WIRE + 1);
             return None;
         }
         let length = std::mem::take(&mut self.stuffed_length);
         if length == 0 {
-            // Two delimiters in a row: somebody is resynchronising.
+            // Two consecutive delimiters: the sender is resynchronising.
             return None;
         }
         let frame_length = self.unstuff(length);

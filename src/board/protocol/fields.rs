@@ -1,7 +1,7 @@
-//! Little-endian numbers in a row: the order of the calls is the layout of the frame.
+//! Reads and writes little-endian numbers in sequence. The order of the calls is the layout of the frame.
 
-/// Takes numbers from the front of a frame's body. The body's length has been checked before; what lies beyond its end
-/// reads as zero.
+/// Reads numbers from the front of a frame's body. The caller has checked the length of the body. Numbers beyond its
+/// end read as zero.
 pub(super) struct FieldReader<'a>(&'a [u8]);
 
 impl<'a> FieldReader<'a> {
@@ -40,14 +40,14 @@ impl<'a> FieldReader<'a> {
         i32::from_le_bytes(self.bytes())
     }
 
-    /// Four of the same, in the order of the motors.
+    /// Reads four numbers of the same type, in the order of the motors.
     pub fn four<T>(&mut self, mut one: impl FnMut(&mut Self) -> T) -> [T; 4] {
         std::array::from_fn(|_| one(self))
     }
 }
 
-/// Appends numbers to a frame. The buffer is as large as the largest frame, which a test checks for each kind; what
-/// does not fit is left out.
+/// Appends numbers to a frame. The buffer has the size of the largest frame, and a test checks that every type fits.
+/// Numbers that do not fit are omitted.
 pub(super) struct FieldWriter<'a> {
     buffer: &'a mut [u8],
     length: usize,

@@ -1,29 +1,29 @@
 use super::fields::{FieldReader, FieldWriter};
 
-/// Host to board: who are you? Changes nothing on the board.
+/// Host to board: asks for the board's identity. A Hello changes nothing on the board.
 ///
 /// | byte | field |
 /// |---|---|
-/// | 2 | lowest protocol version the host speaks |
-/// | 3 | highest protocol version the host speaks |
+/// | 2 | lowest protocol version that the host supports |
+/// | 3 | highest protocol version that the host supports |
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hello {
-    /// Lowest protocol version the host speaks.
+    /// Lowest protocol version that the host supports.
     pub lowest_version: u8,
-    /// Highest protocol version the host speaks.
+    /// Highest protocol version that the host supports.
     pub highest_version: u8,
 }
 
-/// Board to host: who answers, and in which units.
+/// Board to host: the identity, the units and the limits of the board.
 ///
 /// | byte | field |
 /// |---|---|
-/// | 2 | protocol version: the highest that both speak |
-/// | 3..5 | addresses on this port, bit n for address n |
+/// | 2 | protocol version: the highest that both support |
+/// | 3..5 | addresses on this board, bit n for address n |
 /// | 5..7 | kind of board |
 /// | 7..19 | unique number |
 /// | 19..22 | firmware version |
-/// | 22..26 | encoder counts a revolution |
+/// | 22..26 | encoder counts per motor revolution |
 /// | 26 | gauge bits |
 /// | 27..31 | torque unit, nN m |
 /// | 31..33 | torque limit, torque units |
@@ -31,27 +31,27 @@ pub struct Hello {
 /// | 35..39 | capabilities |
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// The version to be spoken from now on.
+    /// The protocol version that Configure must state.
     pub version: u8,
-    /// Which addresses the board answers to: bit n for address n.
+    /// The addresses of the board's fingers, bit n for address n.
     pub addresses: u16,
-    /// 0 unspecified, 1 the simulated board, 2 the reference firmware, from 0x8000 up free for anyone.
+    /// Kind of board: 0 unspecified, 1 simulated, 2 reference firmware, 0x8000 and up free for anyone.
     pub board_kind: u16,
-    /// Different for every board ever built.
+    /// Different for every finger of every board ever built.
     pub unique_number: [u8; 12],
     /// Version of the board's firmware.
     pub firmware: FirmwareVersion,
-    /// Counts a revolution of the motors, after quadrature; 0: the board does not know.
+    /// Counts per motor revolution, after quadrature; 0 if unknown to the board.
     pub counts_per_revolution: u32,
-    /// A gauge count is below 2 to the power of this; 1 to 16.
+    /// Every gauge count is below 2 to the power of this number, which is 1 to 16.
     pub gauge_bits: u8,
-    /// Torque of one unit, nN m; not 0.
+    /// Torque of one unit, nN m. Not 0.
     pub torque_unit: u32,
-    /// The largest torque that the board ever commands, torque units; at most 32767.
+    /// The largest torque that the board ever commands, torque units. At most 32767.
     pub torque_limit: u16,
-    /// The shortest watchdog that it can keep, ms.
+    /// The shortest watchdog time that the board supports, ms.
     pub shortest_watchdog_ms: u16,
-    /// What it can do beyond the minimum.
+    /// Functions of the board beyond the minimum.
     pub capabilities: Capabilities,
 }
 
@@ -59,23 +59,23 @@ pub struct Identity {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FirmwareVersion(pub [u8; 3]);
 
-/// What a board can do beyond the minimum. Bits that this version does not name are sent as 0 and ignored.
+/// Functions of a board beyond the minimum. Bits without a name in this version are sent as 0 and ignored on reception.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Capabilities(pub u32);
 
 impl Capabilities {
     /// The end state *hold*.
     pub const HOLD: Capabilities = Capabilities(1 << 0);
-    /// Encoder counts survive the loss of power, or come from absolute encoders.
+    /// Encoder counts survive the loss of power, or the encoders are absolute.
     pub const KEEPS_ZERO: Capabilities = Capabilities(1 << 1);
-    /// It has an emergency stop input.
+    /// The board has an emergency stop input.
     pub const EMERGENCY_STOP: Capabilities = Capabilities(1 << 2);
-    /// It puts the toggle bit on a pin.
+    /// The board outputs the toggle bit on a pin.
     pub const TOGGLE_PIN: Capabilities = Capabilities(1 << 3);
-    /// It answers tactile requests.
+    /// The board answers tactile requests.
     pub const TACTILE: Capabilities = Capabilities(1 << 4);
 
-    /// Whether all of these are there.
+    /// Returns whether the board has all capabilities of `other`.
     pub fn has(self, other: Capabilities) -> bool {
         self.0 & other.0 == other.0
     }
@@ -127,11 +127,11 @@ impl Identity {
         fields.u32(self.capabilities.0);
     }
 
-    /// A torque in N cm as the board counts it, rounded toward zero: what is within a limit stays within it. The
-    /// nearest count that exists for one out of range. NaN becomes 0.
+    /// Converts a torque in N cm to a torque count, rounded toward zero, so that a torque within a limit stays within
+    /// it. A torque out of range becomes the closest existing count, and NaN becomes 0.
     pub fn torque_count(&self, newton_centimetres: f64) -> i16 {
         let exact = newton_centimetres * NANO_PER_CENTI / f64::from(self.torque_unit);
-        // `as` turns NaN into 0. -32 768 is no torque that a board has, and has no positive counterpart.
+        // `as` converts NaN to 0. The count -32768 is not a valid torque, and has no positive counterpart.
         let nearest = exact.round().clamp(-f64::from(i16::MAX), f64::from(i16::MAX)) as i16;
         match self.torque(nearest).abs() > newton_centimetres.abs() {
             true => nearest - nearest.signum(),
@@ -139,9 +139,9 @@ impl Identity {
         }
     }
 
-    /// A torque count in N cm.
+    /// Converts a torque count to N cm.
     pub fn torque(&self, count: i16) -> f64 {
-        // The product is exact; so the quotient is the number that a configuration with as many decimals means.
+        // The product is exact, so the quotient equals the number that a configuration with the same decimals contains.
         f64::from(count) * f64::from(self.torque_unit) / NANO_PER_CENTI
     }
 }

@@ -1,8 +1,8 @@
-//! Frame types, and what can be wrong with a frame of a type.
+//! Frame types, and the errors of a frame's content.
 
 use thiserror::Error;
 
-/// Frame types; the high half of the header. A request has the top bit clear, an answer has it set.
+/// Frame types, the high half of the header. The top bit is clear in a request and set in an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 #[allow(missing_docs, reason = "each is the type of the same name")]
@@ -21,7 +21,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Every type in use. 0x0, 0x7, 0x8 and 0xF are free; 0x5 as well, but its answer could only be a Refused.
+    /// Every type in use. 0x0, 0x7, 0x8 and 0xF are free. 0x5 is free too, but its answer type would be that of
+    /// Refused.
     pub const ALL: [Kind; 11] = [
         Kind::Hello,
         Kind::Configure,
@@ -36,34 +37,34 @@ impl Kind {
         Kind::TactileEvent,
     ];
 
-    /// None where the number is free or kept.
+    /// Returns the type with this number, or `None` if the number is not in use.
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|&kind| kind as u8 == number)
     }
 }
 
-/// Why a frame whose check holds cannot be read.
+/// Why a frame with a correct check cannot be read.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum Malformed {
-    /// Nothing in this version has this number.
+    /// This version has no type with this number.
     #[error("unknown frame type {0:#x}")]
     UnknownKind(u8),
-    /// Another version of the protocol, or not this protocol.
+    /// The body has the wrong length for its type: another version of the protocol, or another protocol.
     #[error("a {kind:?} body has {expected} bytes, not {found}")]
     Length {
         /// The frame's type.
         kind: Kind,
-        /// Bytes that its body has.
+        /// Length that bodies of this type have, bytes.
         expected: usize,
-        /// Bytes found in its body.
+        /// Length of this body, bytes.
         found: usize,
     },
-    /// A field holds a number that means nothing.
+    /// A field has a value without a meaning.
     #[error("the field at byte {offset} of a {kind:?} has no such value")]
     Value {
         /// The frame's type.
         kind: Kind,
-        /// Where the field begins, counted from the header.
+        /// Offset of the field, counted from the header.
         offset: u8,
     },
 }

@@ -8,7 +8,7 @@ use super::{
 };
 
 impl Kind {
-    /// Length of the body, bytes. Each kind has one length only.
+    /// Returns the length of the body, bytes. Every type has one length.
     pub const fn body_length(self) -> usize {
         match self {
             Kind::Hello => Hello::LENGTH,
@@ -25,7 +25,7 @@ impl Kind {
         }
     }
 
-    /// Length on the wire, with check, byte stuffing and delimiter.
+    /// Returns the length on the wire, bytes, with check, byte stuffing and delimiter.
     pub const fn wire_length(self) -> usize {
         PREFIX + self.body_length() + CHECK + WIRE_OVERHEAD
     }
@@ -51,16 +51,16 @@ pub enum Frame {
 /// A frame with its header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Message {
-    /// The finger that is meant or that answers, 1 to 15; 0 only in a Hello.
+    /// The finger that is addressed or that answers, 1 to 15. 0 only in a Hello.
     pub address: u8,
-    /// Chosen by the host, echoed by the board.
+    /// The sequence number, which the host chooses and the board copies.
     pub sequence: u8,
-    /// What is said.
+    /// The fields.
     pub frame: Frame,
 }
 
 impl Frame {
-    /// Its type.
+    /// Returns the frame's type.
     pub fn kind(&self) -> Kind {
         match self {
             Frame::Hello(_) => Kind::Hello,
@@ -95,7 +95,7 @@ impl Frame {
 }
 
 impl Message {
-    /// Reads a frame whose check holds.
+    /// Reads a frame with a correct check.
     pub fn read(packet: &Packet) -> Result<Self, Malformed> {
         let kind = Kind::from_number(packet.kind()).ok_or(Malformed::UnknownKind(packet.kind()))?;
         if packet.body().len() != kind.body_length() {

@@ -1,4 +1,4 @@
-//! The board protocol as bytes. No input, no output, no clock, no heap. The page that counts is
+//! The frames of the board protocol. This module has no input or output, no clock and no heap. The specification is
 //! `docs/board-protocol.md`.
 
 mod command;
@@ -30,14 +30,14 @@ pub use stop::{Stop, Stopped};
 pub use tactile::{TactileChange, TactileEvent, TactileRequest};
 pub use wire::WireFrame;
 
-/// The protocol version that this library speaks.
+/// The protocol version that this library supports.
 pub const VERSION: u8 = 1;
 
-/// In a Hello: whichever finger of the board has the lowest address answers.
+/// The address in a Hello that the finger with the lowest address on the board answers.
 pub const ANY_ADDRESS: u8 = 0;
 
-/// The highest address of a finger.
+/// The highest finger address.
 pub const HIGHEST_ADDRESS: u8 = 15;
 
-/// A board begins its reply at most this long after the last byte of the command, us.
+/// The longest time between the last byte of a command and the first byte of its reply, us.
 pub const TURNAROUND_MICROSECONDS: u32 = 100;

@@ -2,30 +2,31 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 
-/// The longest frame before byte stuffing: header, sequence number, body, check.
+/// The length of the longest frame before byte stuffing: header, sequence number, body, check.
 pub const MAX_FRAME: usize = 128;
 
-/// What byte stuffing and the delimiter add. One byte each, because no frame is longer than 254 bytes.
+/// The bytes that byte stuffing and the delimiter add. Byte stuffing adds one, because no frame is longer than 254
+/// bytes.
 pub const WIRE_OVERHEAD: usize = 2;
 
-/// The longest frame on the wire, with its delimiter.
+/// The length of the longest frame on the wire, with its delimiter.
 pub const MAX_WIRE: usize = MAX_FRAME + WIRE_OVERHEAD;
 
-/// Header and sequence number.
+/// Length of header and sequence number.
 pub(super) const PREFIX: usize = 2;
 
-/// The check.
+/// Length of the check.
 pub(super) const CHECK: usize = 4;
 
-/// The check of zlib and Ethernet: every language has it, and so have many microcontrollers.
+/// The CRC-32 of zlib and Ethernet, which every language and many microcontrollers provide.
 static CHECKSUM: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// The check over header, sequence number and body.
+/// Returns the check of a frame's header, sequence number and body.
 pub fn check(bytes: &[u8]) -> u32 {
     CHECKSUM.checksum(bytes)
 }
 
-/// A frame whose check holds, before anyone looked at what it says: a view over its bytes without stuffing.
+/// A frame with a correct check, whose content has not yet been read: a view of its bytes without stuffing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Packet<'a> {
     prefix: [u8; PREFIX],
@@ -33,35 +34,35 @@ pub struct Packet<'a> {
 }
 
 impl<'a> Packet<'a> {
-    /// None when the bytes are too few, or their check is wrong.
+    /// Returns `None` if there are too few bytes or the check is wrong.
     pub fn checked(bytes: &'a [u8]) -> Option<Self> {
         let (content, sent) = bytes.split_last_chunk::<CHECK>()?;
         (check(content) == u32::from_le_bytes(*sent)).then(|| Self::unchecked(bytes)).flatten()
     }
 
-    /// For bytes whose check has been seen to hold.
+    /// Creates a view of bytes whose check is known to be correct.
     pub(super) fn unchecked(bytes: &'a [u8]) -> Option<Self> {
         let (content, _) = bytes.split_last_chunk::<CHECK>()?;
         let (prefix, body) = content.split_first_chunk::<PREFIX>()?;
         Some(Self { prefix: *prefix, body })
     }
 
-    /// The frame type, 0 to 15: the high half of the header.
+    /// Returns the frame type, 0 to 15: the high half of the header.
     pub fn kind(&self) -> u8 {
         self.prefix[0] >> 4
     }
 
-    /// The finger's address: the low half of the header.
+    /// Returns the finger's address: the low half of the header.
     pub fn address(&self) -> u8 {
         self.prefix[0] & 0x0F
     }
 
-    /// The sequence number.
+    /// Returns the sequence number.
     pub fn sequence(&self) -> u8 {
         self.prefix[1]
     }
 
-    /// What lies between sequence number and check.
+    /// Returns the bytes between sequence number and check.
     pub fn body(&self) -> &'a [u8] {
         self.body
     }

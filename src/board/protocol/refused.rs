@@ -1,7 +1,7 @@
 use super::fields::{FieldReader, FieldWriter};
 use std::fmt;
 
-/// Board to host: a frame arrived whole, but nothing was done.
+/// Board to host: the board received a valid frame and did not act on it.
 ///
 /// | byte | field |
 /// |---|---|
@@ -12,28 +12,29 @@ use std::fmt;
 pub struct Refused {
     /// Type of the refused frame, 0 to 15.
     pub request: u8,
-    /// Why.
+    /// Why the board refused.
     pub reason: Reason,
-    /// More about it; its meaning depends on the reason.
+    /// The detail, whose meaning depends on the reason.
     pub detail: u16,
 }
 
-/// Why a board refuses.
+/// Why a board refuses a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// 1: no common protocol version. Detail: the board's lowest version, and its highest times 256.
+    /// 1: there is no common protocol version. Detail: the board's lowest version in the low byte, its highest in the
+    /// high byte.
     Version,
-    /// 2: a field that the board cannot carry out. Detail: where the field begins, counted from the header.
+    /// 2: the board cannot carry out a field. Detail: offset of the field, counted from the header.
     Value,
-    /// 3: a Command before any Configure. The board was just switched on, or lost its power.
+    /// 3: a Command arrived before any Configure. The board was just switched on, or lost its power.
     NotConfigured,
-    /// 4: a Configure while the motors follow Commands. Stop first, or wait for the watchdog.
+    /// 4: a Configure arrived while the motors follow Commands. Send a Stop first, or wait for the watchdog.
     Running,
-    /// 5: a Configure while a fault is present. Detail: the status bits.
+    /// 5: a Configure arrived while a fault is present. Detail: the status bits of the faults.
     Fault,
-    /// 6: a frame type, or a length, that the board does not know. Detail: the body's length.
+    /// 6: the board does not know the frame type or the length. Detail: the length of the body.
     UnknownFrame,
-    /// A number of a later version.
+    /// A reason of a later version.
     Other(u8),
 }
 
@@ -64,7 +65,7 @@ impl Reason {
         }
     }
 
-    /// The number on the wire.
+    /// Returns the number on the wire.
     pub fn number(self) -> u8 {
         match self {
             Reason::Version => 1,

@@ -1,19 +1,19 @@
 use super::Status;
 use super::fields::{FieldReader, FieldWriter};
 
-/// Board to host, one for each Command: what was measured when the Command's last byte arrived.
+/// Board to host, one for each Command: what the sensors measured when the last byte of the Command arrived.
 ///
 /// | byte | field |
 /// |---|---|
 /// | 2..4 | status |
 /// | 4..12 | low 16 bits of the counts of encoders 1 to 4 |
 /// | 12..20 | counts of gauges 1 to 4, u16 each |
-/// | 20..22 | when it was measured, us modulo 65536 |
+/// | 20..22 | time of sampling, us modulo 65536 |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reply {
-    /// How the board is.
+    /// Status of the finger after the Command.
     pub status: Status,
-    /// Encoder counts modulo 65536; [`Configured`](super::Configured) gave the whole ones.
+    /// Encoder counts modulo 65536. [`Configured`](super::Configured) gives the full counts.
     pub encoders: [u16; 4],
     /// Gauge counts.
     pub gauges: [u16; 4],
@@ -40,8 +40,8 @@ impl Reply {
         fields.u16(self.sampled_at);
     }
 
-    /// The whole encoder counts, from those of the reply before. Right as long as no encoder moved by 32768 counts or
-    /// more between the two.
+    /// Computes the full encoder counts from those of the previous reply. The result is correct if no encoder moved by
+    /// 32768 counts or more in between.
     pub fn counts_after(&self, before: [i32; 4]) -> [i32; 4] {
         std::array::from_fn(|motor| {
             let moved = self.encoders[motor].wrapping_sub(before[motor] as u16) as i16;

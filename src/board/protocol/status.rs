@@ -1,21 +1,21 @@
 use std::ops::{BitOr, BitOrAssign};
 
-/// How a finger of the board is. Bits 12 to 15 are kept and sent as 0.
+/// Status of one finger of the board. Bits 12 to 15 are reserved and sent as 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status(pub u16);
 
 impl Status {
-    /// A Configure was accepted since power-up.
+    /// A Configure has been accepted since power-up.
     pub const CONFIGURED: Status = Status(1 << 0);
     /// The motors follow the Commands.
     pub const ENABLED: Status = Status(1 << 1);
-    /// Commands stayed away for longer than the watchdog allows. Until the next Configure.
+    /// The watchdog has tripped since the last Configure.
     pub const WATCHDOG_TRIPPED: Status = Status(1 << 2);
-    /// The end state was entered, for whatever reason. Until the next Configure.
+    /// The end state has been entered, for any reason, since the last Configure.
     pub const ENDED: Status = Status(1 << 3);
-    /// The end state *hold* is keeping torque on the motors right now.
+    /// The end state *hold* is in progress.
     pub const HOLDING: Status = Status(1 << 4);
-    /// Encoder counts have been kept since they were last zeroed: the host's zero is good.
+    /// The encoder counts have not been lost since they were last referenced to a zero, so the host's zero is valid.
     pub const ZERO_VALID: Status = Status(1 << 5);
     /// The emergency stop input for this finger is active, or was since the last Configure.
     pub const EMERGENCY_STOP: Status = Status(1 << 6);
@@ -25,16 +25,16 @@ impl Status {
     pub const DRIVER_FAULT: Status = Status(1 << 8);
     /// An encoder or gauge cannot be read, or could not since the last Configure.
     pub const SENSOR_FAULT: Status = Status(1 << 9);
-    /// At least one torque of this Command was beyond a limit and was clipped to it.
+    /// At least one torque of this Command exceeded a limit and was clipped to it.
     pub const TORQUE_CLIPPED: Status = Status(1 << 10);
-    /// At least one damaged frame came in since the last Reply of this finger.
+    /// At least one damaged frame has arrived since the last Reply of this finger.
     pub const DAMAGED_INPUT: Status = Status(1 << 11);
 
-    /// What takes the torque off the motors at once, whatever the end state.
+    /// The bits that take the torque off the motors at once, whatever the end state.
     pub const FAULTS: Status =
         Status(Self::EMERGENCY_STOP.0 | Self::SUPPLY_FAULT.0 | Self::DRIVER_FAULT.0 | Self::SENSOR_FAULT.0);
 
-    /// Whether any of these bits is set.
+    /// Returns whether any of these bits is set.
     pub fn has(self, bits: Status) -> bool {
         self.0 & bits.0 != 0
     }

@@ -1,18 +1,18 @@
 use super::Status;
 use super::fields::{FieldReader, FieldWriter};
 
-/// Host to board: go to the end state now. No body.
+/// Host to board: enter the end state now. A Stop has no body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stop;
 
-/// Board to host: done.
+/// Board to host: the answer to a Stop.
 ///
 /// | byte | field |
 /// |---|---|
 /// | 2..4 | status |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stopped {
-    /// How the board is after the Stop.
+    /// Status after the Stop.
     pub status: Status,
 }
 

@@ -1,61 +1,61 @@
 use super::fields::{FieldReader, FieldWriter};
 
-/// Host to board: what have the tactile sensors noticed? Only to a board with
-/// [`Capabilities::TACTILE`](super::Capabilities::TACTILE); any other refuses it as an unknown frame.
+/// Host to board: asks for the next tactile event. Sent only to a board with
+/// [`Capabilities::TACTILE`](super::Capabilities::TACTILE). Any other board refuses it as an unknown frame.
 ///
 /// | byte | field |
 /// |---|---|
-/// | 2 | number of the last event that the host has; 0: none |
+/// | 2 | number of the last event that the host received; 0 if none |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TactileRequest {
-    /// The board forgets this event and those before it.
+    /// The last event that the host received. The board deletes this event and those before it.
     pub received: u8,
 }
 
-/// Board to host: the oldest event that the host has not got. Sent in answer to a [`TactileRequest`] only.
+/// Board to host: the oldest event that the host has not received. Sent only in answer to a [`TactileRequest`].
 ///
 /// | byte | field |
 /// |---|---|
-/// | 2 | events that wait, this one included; 0: none, and all fields but the last are 0 |
-/// | 3 | number of this event, 1 to 255, and then 1 again |
+/// | 2 | number of queued events, including this one; if 0, all fields but the last are 0 |
+/// | 3 | number of this event, 1 to 255, then 1 again |
 /// | 4 | what changed |
 /// | 5..7 | sensor element |
-/// | 7..9 | its count |
-/// | 9..13 | when, us |
-/// | 13 | events lost, 255 at most |
+/// | 7..9 | count of the element |
+/// | 9..13 | time of the event, us |
+/// | 13 | lost events, at most 255 |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TactileEvent {
-    /// Events that wait, this one included.
+    /// Number of queued events, including this one.
     pub waiting: u8,
-    /// Number of this event; 0 where none waits.
+    /// Number of this event, or 0 if no event is queued.
     pub number: u8,
-    /// What happened.
+    /// What changed.
     pub change: TactileChange,
-    /// Which element of the finger's sensors; their order is the board's.
+    /// The element of the finger's sensors. The board defines their order.
     pub element: u16,
-    /// What the element measures now, raw.
+    /// The element's current raw count.
     pub count: u16,
-    /// The board's clock at the event, us; it wraps.
+    /// The board's clock at the event, us. It wraps.
     pub noticed_at: u32,
-    /// Events that found no room since power-up; 255: or more.
+    /// Events that did not fit into the queue since power-up. 255 means 255 or more.
     pub lost: u8,
 }
 
-/// What a tactile event says.
+/// The kind of change that a tactile event reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TactileChange {
-    /// 0: no event waits.
+    /// 0: no event is queued.
     #[default]
     Nothing,
     /// 1: contact was made.
     Made,
     /// 2: contact was lost.
     Lost,
-    /// 3: something slips.
+    /// 3: an object slips.
     Slip,
     /// 4: the count changed by more than the board's threshold.
     Pressure,
-    /// A number that means something to this board only, or in a later version.
+    /// A number that only this board or a later version defines.
     Other(u8),
 }
 
@@ -109,7 +109,7 @@ impl TactileChange {
         }
     }
 
-    /// The number on the wire.
+    /// Returns the number on the wire.
     pub fn number(self) -> u8 {
         match self {
             TactileChange::Nothing => 0,

@@ -1,10 +1,10 @@
-//! A frame on the wire: header, sequence number, body and check, byte-stuffed, and a zero at the end.
+//! A frame on the wire: header, sequence number, body and check with byte stuffing, then a zero.
 
 use super::fields::FieldWriter;
 use super::message::Message;
 use super::packet::{MAX_FRAME, MAX_WIRE, check};
 
-/// A frame ready to be sent, delimiter included.
+/// A frame ready to be sent, with its delimiter.
 #[derive(Clone, Copy, Debug)]
 pub struct WireFrame {
     bytes: [u8; MAX_WIRE],
@@ -12,7 +12,7 @@ pub struct WireFrame {
 }
 
 impl WireFrame {
-    /// Adds check, byte stuffing and delimiter.
+    /// Encodes a message: adds check, byte stuffing and delimiter.
     pub fn new(message: &Message) -> Self {
         let mut content = [0; MAX_FRAME];
         let mut fields = FieldWriter::new(&mut content);
@@ -25,11 +25,11 @@ impl WireFrame {
         let mut bytes = [0; MAX_WIRE];
         // `cobs::encode` panics when the destination is too small; MAX_WIRE holds MAX_FRAME bytes stuffed.
         let stuffed = cobs::encode(fields.written(), &mut bytes);
-        // The delimiter is already there: the buffer began as zeros.
+        // The buffer was filled with zeros, so the delimiter is already there.
         Self { bytes, length: stuffed + 1 }
     }
 
-    /// What goes down the cable.
+    /// Returns the bytes to send.
     pub fn as_bytes(&self) -> &[u8] {
         &self.bytes[..self.length]
     }
