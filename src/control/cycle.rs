@@ -1,4 +1,4 @@
-//! One servo cycle: the boxes of Figure 9 connected, or state feedback in the place of most of them.
+//! One servo cycle. It connects the boxes of Figure 9, or it uses state feedback, which replaces most of these boxes.
 
 mod construction;
 mod pretension;
@@ -29,7 +29,7 @@ use crate::control::tendons::tension_integral::TendonState;
 use nalgebra::{Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
-/// Everything about a finger's servo that does not change from cycle to cycle.
+/// The constant part of a finger's servo: everything that does not change from cycle to cycle.
 #[derive(Clone, Debug)]
 pub struct Controller {
     period: f64,
@@ -54,45 +54,46 @@ pub struct Controller {
     monitors: Monitors,
     /// Motor radii, m.
     radius: Vector4<f64>,
-    /// N.
+    /// Least tension at which a tendon counts as tight, N.
     tight: f64,
 }
 
-/// What a cycle leaves behind for the next one.
+/// The part of a finger's servo that changes from cycle to cycle.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct State {
     doing: Doing,
     motor_angles: Vector4<f64>,
     /// Cycles since `motor_angles` were measured.
     age: u32,
-    /// Low-passed, rad/s.
+    /// Low-pass filtered, rad/s.
     motor_speeds: Vector4<f64>,
-    /// Low-passed, N, for the tendon stretch.
+    /// Low-pass filtered tensions, N, for the stretch of the tendons.
     tensions: Vector4<f64>,
     tendons: TendonState,
     transition: BumplessTransfer,
-    /// The spring that is followed.
+    /// The spring that the finger follows.
     spring: Option<SpringStages>,
-    /// What the controller before this one would pull next, N at the tendon.
+    /// Pulls at the tendons that the previous controller would command in this cycle, N. Set only in the cycle in which
+    /// one controller takes over from another.
     goes_on_from: Option<Vector4<f64>>,
     stillness: Stillness,
-    /// N at the tendon.
+    /// Commanded pulls at the tendons, N.
     pulls: Vector4<f64>,
-    /// The pulls that act until the next sample: one cycle older.
+    /// The pulls that act until the next sample, N. They are those that the previous cycle commanded.
     acting: Vector4<f64>,
-    /// The part of `pulls` that is fed forward against friction.
+    /// The part of `pulls` that is friction feed-forward, N.
     against_friction: Vector4<f64>,
     state_feedback: Option<StateFeedbackState>,
     heat: Heat,
     report: Report,
 }
 
-/// The activity of the last cycle, with what belongs to it.
+/// The activity of the last cycle, with the state that belongs to it.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 enum Doing {
     Nothing,
     TakingUpSlack(Slack),
-    /// With the spring's anchor on its way to the set point, rad.
+    /// The field is the anchor of the spring, rad. It moves toward the set point at a limited speed.
     Following(Vector3<f64>),
     Releasing(Release),
     Tensing,
@@ -100,7 +101,7 @@ enum Doing {
 }
 
 impl Controller {
-    /// The state before the first cycle of a finger at rest. Its first command will pull as much as the tendons do.
+    /// Returns the state before the first cycle of a finger at rest. The first command pulls as hard as the tendons do.
     pub fn start(&self, feedback: &Feedback) -> State {
         let measured = self.sensors.measured(feedback);
         let Measured { motor_angles, tensions } = measured;
@@ -133,11 +134,12 @@ impl Controller {
         }
     }
 
-    /// One cycle that goes on from the state of another controller of the same finger, with the same encoders and at
-    /// the same rate, without a jump in torque.
+    /// Runs one cycle that continues from the state of another controller of the same finger without a jump in torque.
+    /// Both controllers have the same encoders and the same rate.
     ///
-    /// It goes on from what `previous` would command in this very cycle, and not from its last command: so a planner
-    /// that adjusts in every cycle neither stops the feedback nor delays it.
+    /// The cycle starts from the command that `previous` would compute in this cycle, and not from the last command of
+    /// `previous`. A planner that adjusts the controller in every cycle therefore neither stops the feedback nor delays
+    /// it.
     pub fn take_over(
         &self,
         previous: &Self,
@@ -156,15 +158,16 @@ impl Controller {
         self.cycle(state, feedback, activity)
     }
 
-    /// One cycle. Without feedback (the reply was lost) the last command is repeated and everything that integrates
-    /// rests, but a release goes on, and so does state feedback for some cycles, from what it predicts.
+    /// Runs one cycle. Without feedback (the reply was lost), the last command is repeated and all integrators keep
+    /// their values. Two activities continue without feedback: a release, and state feedback, which uses its
+    /// predictions for some cycles.
     pub fn cycle(&self, state: &mut State, feedback: Option<&Feedback>, activity: &Activity) -> (MotorCommand, Report) {
         let measured = feedback.map(|feedback| self.sensors.measured(feedback));
         self.cycle_measured(state, measured.as_ref(), activity)
     }
 
-    /// [`Controller::cycle`] from the sensors' values instead of their counts, so without quantisation: the smooth map
-    /// that a linear analysis needs.
+    /// Runs [`Controller::cycle`] with sensor values in units instead of counts. Without quantisation the cycle is a
+    /// smooth map, which a linear analysis needs.
     pub fn cycle_measured(
         &self,
         state: &mut State,
@@ -185,7 +188,7 @@ impl Controller {
             }
         }
         match activity {
-            &Activity::Release { ramp } => self.let_go(state, ramp),
+            &Activity::Release { ramp } => self.release(state, ramp),
             Activity::Follow(set_point) if observed => self.follow_by_state(state, set_point),
             Activity::TakeUpSlack if measured.is_some() => {
                 let gravity = self.gravity.torques(&state.report.joints);
@@ -212,23 +215,24 @@ impl Controller {
         (MotorCommand { motor_torques }, state.report)
     }
 
-    /// What is wrong with a finger that follows, after a cycle with `feedback`, `age` periods after the one before.
-    /// `full_scale`: the gauges' largest count.
+    /// Runs the monitors after a cycle with `feedback`, for a finger that follows a set point. `age` is the number of
+    /// periods since the previous sample, and `full_scale` the largest count of the gauges.
     pub fn watch(&self, watch: &mut Watch, state: &State, feedback: &Feedback, age: f64, full_scale: u16) -> Alarms {
         let heat = self.heating.part(&state.heat);
-        // The cycle has turned the counts into units.
+        // The cycle has already converted the counts to units.
         let measured = Measured { motor_angles: state.motor_angles, tensions: state.report.tensions };
         self.monitors.watch(watch, feedback, &measured, &state.report, &state.pulls, &heat, age, full_scale)
     }
 
-    /// Keeps the observers of state feedback going in every activity; whether it can decide.
+    /// Updates the observers of state feedback, in every activity. Returns whether state feedback can compute a
+    /// command.
     fn observe(&self, state: &mut State, measured: Option<&Measured>) -> bool {
         let Some(law) = &self.state_feedback else {
             state.state_feedback = None;
             return false;
         };
         let Some(elastic) = &mut state.state_feedback else {
-            // Another scheme was in charge until now.
+            // A controller with another scheme was active until now.
             state.state_feedback = measured.map(|measured| law.start(measured));
             return state.state_feedback.is_some();
         };
@@ -238,7 +242,7 @@ impl Controller {
         !law.blind(elastic)
     }
 
-    /// Motor angles and tensions to joint angles and rates.
+    /// Converts motor angles and tensions to joint angles and rates.
     fn measure(&self, state: &mut State, measured: &Measured) {
         let Measured { motor_angles, tensions } = *measured;
         let elapsed = self.period * f64::from(state.age);

@@ -3,8 +3,9 @@
 use nalgebra::Matrix3;
 use std::f64::consts::TAU;
 
-/// The three real eigenvalues, the largest first, by the cosine formula. For symmetric matrices, and for products of
-/// two positive semi-definite ones. Inlined, so that who needs only the largest pays for one cosine.
+/// Returns the three real eigenvalues, the largest first, by the cosine formula. The matrix must be symmetric, or the
+/// product of two positive semi-definite matrices. The function is inlined, so that a caller that uses only the largest
+/// eigenvalue computes only one cosine.
 #[inline]
 pub(super) fn eigenvalues(matrix: &Matrix3<f64>) -> [f64; 3] {
     let square = matrix * matrix;

@@ -1,8 +1,8 @@
-//! The checks of single numbers that several boxes need.
+//! Checks of single numbers that several boxes need.
 
 use crate::model::configuration::Unusable;
 
-/// Refuses what is not finite and above zero.
+/// Returns an error unless every value is finite and above zero.
 pub(super) fn positive(key: &'static str, values: &[f64]) -> Result<(), Unusable> {
     match values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
         Some(value) => Err(Unusable { key, reason: format!("is {value}; it must be a number above 0") }),
@@ -10,7 +10,7 @@ pub(super) fn positive(key: &'static str, values: &[f64]) -> Result<(), Unusable
     }
 }
 
-/// Refuses what is not finite or below zero.
+/// Returns an error unless the value is finite and at least zero.
 pub(super) fn not_negative(key: &'static str, value: f64) -> Result<(), Unusable> {
     if value.is_finite() && value >= 0.0 {
         return Ok(());
@@ -18,7 +18,7 @@ pub(super) fn not_negative(key: &'static str, value: f64) -> Result<(), Unusable
     Err(Unusable { key, reason: format!("is {value}; it must be 0 or a number above") })
 }
 
-/// Refuses what is neither +1 nor -1.
+/// Returns an error unless every value is +1 or -1.
 pub(super) fn signs(key: &'static str, values: &[i8]) -> Result<(), Unusable> {
     match values.iter().find(|value| value.abs() != 1) {
         Some(value) => Err(Unusable { key, reason: format!("is {value}; a sign is 1 or -1") }),

@@ -1,19 +1,19 @@
-//! Numbers that were tuned at a few rates, for any rate.
+//! Numbers that were tuned at a few rates, interpolated for any rate.
 
-/// Numbers of one row of a table.
+/// The numbers of one row of a table.
 pub(super) trait Tuned: Copy {
     /// Computes every number from the same number of two rows.
     fn combine(lower: &Self, upper: &Self, number: impl Fn(f64, f64) -> f64) -> Self;
 }
 
-/// Rate, Hz, and numbers at that rate, none negative. The rates of a table rise.
+/// A rate, Hz, and the numbers at that rate. No number is negative. The rates of a table increase from row to row.
 pub(super) type Row<Numbers> = (f64, Numbers);
 
-/// The numbers of a table for `rate`, Hz: between two rates each number is a power of the rate, beyond the last ones it
-/// stays.
+/// Returns the numbers of a table for `rate`, Hz. Between two rows each number is a power of the rate. Below the first
+/// row and above the last row the numbers are constant.
 ///
-/// The nearest row will not do: gains of a higher rate act on a delay for which they are too large, and were unstable
-/// in every pose tried.
+/// The nearest row cannot be used instead: the gains of a higher rate are too large for the longer delay, and were
+/// unstable in every pose tried.
 pub(super) fn at<Numbers: Tuned>(table: &[Row<Numbers>], rate: f64) -> Numbers {
     let above = table.iter().position(|row| row.0 >= rate).unwrap_or(table.len() - 1);
     let ((low, lower), (high, upper)) = (table[above.saturating_sub(1)], table[above]);

@@ -1,97 +1,100 @@
-//! What goes in and comes out of one servo cycle.
+//! Inputs and outputs of one servo cycle.
 
 pub use crate::model::configuration::Law;
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
-/// What the board measured at one instant, as it measured it.
+/// What the board measured at one instant, in counts.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Feedback {
-    /// m_c of eq. 28: motor encoder counts, without wrap.
+    /// m_c of eq. 28: motor encoder counts, without wrap-around.
     pub motor_counts: [i32; 4],
     /// Strain gauge counts.
     pub gauge_counts: [u16; 4],
 }
 
-/// What the sensors say, in units: a [`Feedback`] with its scales, signs and zeros applied.
+/// Sensor values in units: a [`Feedback`] with its scales, signs and zeros applied.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// m_theta of eq. 28, rad; rising as the tendon is pulled in.
+    /// m_theta of eq. 28, rad. It increases as the motor pulls its tendon in.
     pub motor_angles: Vector4<f64>,
-    /// N.
+    /// Tensions, N.
     pub tensions: Vector4<f64>,
 }
 
-/// Where a fingertip's spring is anchored and how stiff it is. Taken over whole.
+/// The anchor of a fingertip's spring and its stiffness. The servo always takes over a complete set point.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct SetPoint {
-    /// theta_d: desired joint angles, rad. With the exact law it stands for the tip's pose there.
+    /// theta_d: desired joint angles, rad. The exact law uses the pose of the tip at these angles.
     pub joints: Vector3<f64>,
-    /// How deflections become torques.
+    /// The law that converts deflections to torques.
     pub law: Law,
-    /// K of [`Contact::stiffness`](crate::model::Contact::stiffness) in the finger's frame; symmetric: rows and columns
-    /// 0 to 2 translation, N/cm, 3 to 5 rotation, N cm/rad.
+    /// K of [`Contact::stiffness`](crate::model::Contact::stiffness) in the finger's frame, symmetric. Rows and columns
+    /// 0 to 2 are translation, N/cm, and 3 to 5 are rotation, N cm/rad.
     pub stiffness: Matrix6<f64>,
-    /// Damping relative to what the controller chooses from the stiffness: 1 is that.
+    /// Damping relative to the damping that the controller computes from the stiffness.
     /// [`AdmissibleDamping`](crate::control::AdmissibleDamping) has the range.
     pub damping: f64,
 }
 
 impl SetPoint {
-    /// A hard finger, so a spring of three dimensions: `stiffness` is Kx, N/cm. The report's law, the chosen damping.
+    /// Returns the set point of a hard finger, which has a spring with three dimensions. `stiffness` is Kx, N/cm. The
+    /// law is that of the report, and the relative damping is 1.
     pub fn hard_finger(joints: Vector3<f64>, stiffness: Matrix3<f64>) -> Self {
         let stiffness = spatial(&stiffness);
         Self { joints, law: Law::Report, stiffness, damping: 1.0 }
     }
 }
 
-/// Kx, N/cm, as the stiffness of a set point: without rotation.
+/// Returns Kx, N/cm, as the 6 x 6 stiffness of a set point. Its rotational part is zero.
 pub fn spatial(kx: &Matrix3<f64>) -> Matrix6<f64> {
     let mut stiffness = Matrix6::zeros();
     stiffness.fixed_view_mut::<3, 3>(0, 0).copy_from(kx);
     stiffness
 }
 
-/// What a finger is doing; decided by its servo thread.
+/// What a finger does in one cycle. Its servo thread decides this.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[expect(clippy::large_enum_variant, reason = "a set point in a box would be allocated and freed in the servo")]
 pub enum Activity {
-    /// Every tendon is brought to the pretension of eq. 20 at zero joint torque, from whatever slack there is; the
-    /// joints are held where they are.
+    /// Brings every tendon to the pretension of eq. 20 at zero joint torque, from any amount of slack. The joints are
+    /// held where they are.
     TakeUpSlack,
-    /// The same by gauges that are known to show so much too much, N, and whatever the joints are. For calibration.
+    /// The same as `TakeUpSlack`, with gauges that show too much by the given tensions, N, and without gravity
+    /// compensation. For calibration.
     Tighten(Vector4<f64>),
-    /// The fingertip is a spring.
+    /// Makes the fingertip a spring.
     Follow(SetPoint),
-    /// Motor torques ramp to zero over so many seconds from the first such cycle.
+    /// Ramps the pulls of the motors to zero. The ramp starts in the first cycle of the release.
     Release {
         /// Length of the ramp, s.
         ramp: f64,
     },
-    /// Every tendon is brought to a tension of its own, N, from whatever slack there is. For calibration.
+    /// Brings every tendon to its own tension, N, from any amount of slack. For calibration.
     Tense(Vector4<f64>),
-    /// Every motor pulls so much at its tendon, N, against its damper only; negative lets out. For calibration.
+    /// Pulls with every motor at its tendon, N, with no feedback except the motor's damper. A negative pull lets the
+    /// tendon out. For calibration.
     Pull(Vector4<f64>),
-    /// Every motor gets this torque, N cm, as the board takes it: no sign, no feedback. For calibration.
+    /// Applies these motor torques, N cm, in the board's sign and without any feedback. For calibration.
     Turn(Vector4<f64>),
 }
 
-/// What the motors shall do.
+/// The command to the motors.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct MotorCommand {
-    /// m_tau of eq. 22, N cm, as the board takes it: a positive one pulls where `motor.sign` is +1.
+    /// m_tau of eq. 22, N cm, in the board's sign: a positive torque pulls if `motor.sign` is +1.
     pub motor_torques: Vector4<f64>,
 }
 
 impl MotorCommand {
-    /// Whether every torque is a finite number.
+    /// Returns whether every torque is finite.
     pub fn is_finite(&self) -> bool {
         self.motor_torques.iter().all(|torque| torque.is_finite())
     }
 }
 
-/// What one cycle found and decided.
+/// What one cycle measured and computed.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Report {
     /// Measured joint angles, corrected for tendon stretch, rad.
@@ -100,20 +103,20 @@ pub struct Report {
     pub joint_rates: Vector3<f64>,
     /// Measured tensions, N.
     pub tensions: Vector4<f64>,
-    /// Commanded tensions, N, with the dither of state feedback: never below t_min but while slack is taken up and
-    /// during a release.
+    /// Commanded tensions, N, including the dither of state feedback. They are below t_min only while slack is taken up
+    /// and during a release.
     pub desired_tensions: Vector4<f64>,
-    /// Joint torques that the stiffness law asked for, N cm.
+    /// Joint torques of the stiffness law, N cm.
     pub joint_torques: Vector3<f64>,
-    /// The part of `joint_torques` that the tension limits let through, 0 to 1; its direction is kept.
+    /// The fraction of `joint_torques` that the tension bounds permit, 0 to 1. The direction of the torque is kept.
     pub torque_scale: f64,
-    /// The part of the set point's stiffness that the pose can carry, 0 to 1.
+    /// The fraction of the set point's stiffness that the pose supports, 0 to 1.
     pub stiffness_scale: f64,
-    /// Every tendon has at least 0.8 t_min, and the motors are at rest: slack is taken up. Not before the tensions have
-    /// risen to where they shall be.
+    /// Every tendon has at least 0.8 t_min and the motors are at rest. While slack is taken up, this is true only after
+    /// the desired tensions have reached the pretension.
     pub under_tension: bool,
-    /// While slack is taken up, the tendon that is farthest from being under tension, 0 to 3.
+    /// The tendon that is farthest from being under tension while slack is taken up, 0 to 3.
     pub slackest: usize,
-    /// The command, N cm.
+    /// Commanded motor torques, N cm.
     pub motor_torques: Vector4<f64>,
 }

@@ -1,4 +1,4 @@
-//! What a finger's controller is made from: the numbers of its configuration.
+//! Construction of a finger's controller from its configuration.
 
 use super::Controller;
 use crate::control::monitors::Monitors;
@@ -22,23 +22,24 @@ use crate::control::tendons::tension_distribution::TensionDistribution;
 use crate::model::configuration::{ConfiguredFinger, Scheme, Unusable};
 use nalgebra::{Vector3, Vector4};
 
-/// A tendon counts as tight from this part of t_min on.
+/// Fraction of t_min from which a tendon counts as tight.
 const TIGHT: f64 = 0.8;
 
 impl Controller {
-    /// The controller of `finger` at `rate` cycles a second. Gains that are not configured follow from the rate.
-    /// Refused with the key that cannot be used, where the numbers make no controller.
+    /// Constructs the controller of `finger` at `rate`, Hz, without gravity. Gains that are not configured follow from
+    /// the rate. If no controller can use a value, the error names its key.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         Self::in_gravity(finger, &Vector3::zeros(), rate)
     }
 
-    /// The same with gravity, m/s^2 in the finger's frame, to be compensated.
+    /// Constructs the controller of `finger`, which compensates `gravity`, m/s^2 in the finger's frame.
     pub fn in_gravity(finger: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Result<Self, Unusable> {
         positive("rate", &[rate])?;
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
         let gains = Gains::new(&finger.controller, rate)?;
         let motor_torque = MotorTorque::new(finger, &tendons)?;
-        // A tendon is pulled no harder than its motor can: clamping there would turn the joint torque.
+        // The tension limit includes the motor's limit. Clamping the motor torques instead would change the direction
+        // of the joint torque.
         let strongest = motor_torque.limit.map(|limit| limit.min(finger.tendon.maximum));
         let scheme = finger.controller.scheme(rate);
         let state_feedback = match scheme {
@@ -47,7 +48,7 @@ impl Controller {
             }
             Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };
-        // What shakes the tensions shall stay within their bounds.
+        // The bounds are narrower by what dither, noise and friction add to the tensions.
         let lower_reserve = state_feedback.as_ref().map_or(0.0, |law| law.lower_reserve);
         let upper_reserve = state_feedback.as_ref().map_or(Vector4::zeros(), |law| law.upper_reserve);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;

@@ -1,4 +1,4 @@
-//! The fingertip as a spring, by Figure 9 and by state feedback.
+//! The fingertip as a spring, with the report's figures and with state feedback.
 
 use super::{Controller, Doing, State};
 use crate::control::signals::{Report, SetPoint};
@@ -8,11 +8,11 @@ use crate::control::state_feedback::decision::Decision;
 use crate::control::tendons::tension_distribution::DistributedTensions;
 use nalgebra::Matrix3;
 
-/// Damping over stiffness of the soft limits with the figures of the report, s.
+/// Ratio of damping to stiffness of the soft limits with the report's figures, s.
 const LIMIT_DAMPING: f64 = 0.015;
 
 impl Controller {
-    /// The spring, from its anchor to the joints. It begins without deflection.
+    /// Follows the set point with the report's figures. The spring begins without deflection.
     pub(super) fn follow(&self, state: &mut State, set_point: &SetPoint) {
         let spring = self.spring_transition.advance(&mut state.spring, set_point);
         let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
@@ -30,12 +30,12 @@ impl Controller {
         let torques = torques + push.torque - damped + self.gravity.torques(joints);
         let limit = self.heating.limit(&state.heat);
         let DistributedTensions { tensions: desired, scale } = self.reachable(&limit).distribute(&torques);
-        self.bring(state, desired, &limit, begins);
+        self.control_tensions(state, desired, &limit, begins);
         state.report.joint_torques = torques;
         state.report.torque_scale = scale;
     }
 
-    /// The spring by state feedback. It begins without deflection.
+    /// Follows the set point with state feedback. The spring begins without deflection.
     pub(super) fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
         let spring = self.spring_transition.advance(&mut state.spring, set_point);
         let k_theta = self.joint_stiffness.joint_stiffness(spring, &state.report.joints);
@@ -52,13 +52,14 @@ impl Controller {
         let Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale } =
             law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &distribution);
         state.against_friction = against_friction;
-        self.give(state, &pulls, &limit, false);
+        self.command_pulls(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;
         state.report.desired_tensions = desired_tensions;
         state.report.torque_scale = torque_scale;
     }
 
-    /// The part of a spring's K_theta, N cm/rad, that the pose can carry beside the limits of its joints.
+    /// Returns the fraction of a spring's K_theta, N cm/rad, that the pose supports in addition to the springs of the
+    /// soft limits.
     fn carried(&self, report: &mut Report, k_theta: &Matrix3<f64>, push: &Push) -> f64 {
         report.stiffness_scale = self.admissible.scale(k_theta, &push.stiffness);
         report.stiffness_scale

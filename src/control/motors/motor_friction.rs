@@ -1,15 +1,15 @@
-//! The friction of the motors and of the conduits that their tendons run through, as it is configured.
+//! The configured friction of the motors and of the conduits that guide their tendons.
 
 use crate::model::Tendons;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 
-/// Coulomb + conduit t, N at the tendon.
+/// Friction at the tendon with the tension t: coulomb + conduit t, N.
 #[derive(Clone, Debug)]
 pub(crate) struct MotorFriction {
-    /// N.
+    /// Coulomb friction at the tendon, N.
     pub coulomb: Vector4<f64>,
-    /// Share of the tension.
+    /// Friction of the conduit as a fraction of the tension.
     pub conduit: Vector4<f64>,
 }
 
@@ -21,7 +21,7 @@ impl MotorFriction {
         }
     }
 
-    /// Of one motor, N, with so much tension in its tendon, N.
+    /// Returns the friction of one motor, N, at a tension of its tendon, N.
     pub fn at(&self, motor: usize, tension: f64) -> f64 {
         self.coulomb[motor] + self.conduit[motor] * tension
     }

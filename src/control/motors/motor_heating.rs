@@ -1,45 +1,46 @@
-//! I^2 t: a motor may give its largest torque for a while, but not for long.
+//! I^2 t limit: a motor may give its largest torque for a limited time only.
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};
 
-/// From this part of the continuous heat on the limit falls. It has reached the continuous torque when the heat is
-/// whole.
+/// Fraction of the continuous heat at which the limit begins to fall. The limit reaches the continuous torque when the
+/// fraction is 1.
 const WARM: f64 = 0.8;
 
-/// h' = (tau^2 - h) / T: the heat of a winding as the mean square of its torque, which its current is proportional to.
+/// h' = (tau^2 - h) / T. The heat of a winding is the filtered mean square of its torque, because the torque is
+/// proportional to the current.
 #[derive(Clone, Debug)]
 pub(crate) struct MotorHeating {
     /// Largest and continuous pull of each motor, N.
     largest: Vector4<f64>,
     continuous: Vector4<f64>,
-    /// Part of the way that the heat goes in a cycle.
+    /// Fraction of the remaining difference by which the heat changes in a cycle.
     gain: f64,
 }
 
-/// h, N^2 at the tendon.
+/// h, N^2, with the torque expressed as pull at the tendon.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Heat(Vector4<f64>);
 
 impl MotorHeating {
-    /// `largest`: limit of a cold motor, N; `radius`, cm.
+    /// Constructs the model. `largest` is the limit of a cold motor, N at the tendon; `radius` is in cm.
     pub fn new(finger: &ConfiguredFinger, largest: Vector4<f64>, radius: &Vector4<f64>, rate: f64) -> Self {
         let continuous = Vector4::from(finger.motor.continuous_torque).component_div(radius).inf(&largest);
         Self { largest, continuous, gain: -(-1.0 / (rate * finger.motor.thermal_time)).exp_m1() }
     }
 
-    /// One cycle with so much pull, N.
+    /// Advances the heat by one cycle with these pulls, N.
     pub fn advance(&self, heat: &mut Heat, pulls: &Vector4<f64>) {
         heat.0 += (pulls.component_mul(pulls) - heat.0) * self.gain;
     }
 
-    /// Part of the heat that each motor bears for ever, 0 to 1 and beyond.
+    /// Returns the heat of each motor as a fraction of its continuous heat. The fraction can exceed 1.
     pub fn part(&self, heat: &Heat) -> Vector4<f64> {
         heat.0.component_div(&self.continuous.component_mul(&self.continuous))
     }
 
-    /// Largest pull of each motor now, N.
+    /// Returns the largest pull that each motor may give now, N.
     pub fn limit(&self, heat: &Heat) -> Vector4<f64> {
         let part = self.part(heat);
         Vector4::from_fn(|motor, _| {
@@ -64,7 +65,7 @@ mod tests {
             seconds += if limit[0] > 99.9 { 0.01 } else { 0.0 };
             heating.advance(&mut heat, &limit);
         }
-        // Whole until 0.8 c^2 = l^2 (1 - exp(-t / 15 s)), with l = 1.9 c.
+        // The limit is full until 0.8 c^2 = l^2 (1 - exp(-t / 15 s)), with l = 1.9 c.
         assert!((seconds - 3.75f64).abs() < 0.1, "{seconds}");
         assert!((heating.limit(&heat)[0] - 2.5 / 0.0475).abs() < 0.5);
         for _ in 0..1500 {

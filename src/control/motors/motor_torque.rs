@@ -1,4 +1,4 @@
-//! The box M^-1: motor torques from pulls at the tendon, eq. 22, with the sign of each motor.
+//! The box M^-1: motor torques from pulls at the tendons, eq. 22, with the sign of each motor.
 
 use crate::control::motors::motor_friction::MotorFriction;
 use crate::control::number_checks::{positive, signs};
@@ -9,12 +9,12 @@ use nalgebra::Vector4;
 /// m_tau = M^-1 t = r t.
 #[derive(Clone, Debug)]
 pub(crate) struct MotorTorque {
-    /// Radius of each motor, cm, with the sign that its command needs to pull.
+    /// Radius of each motor, cm, with the sign of the command that makes the motor pull.
     signed_radius: Vector4<f64>,
     /// Largest pull of each motor, N.
     pub limit: Vector4<f64>,
     friction: MotorFriction,
-    /// What each conduit leaves of a pull.
+    /// Fraction of a pull that is left behind each conduit.
     past_conduit: Vector4<f64>,
 }
 
@@ -32,18 +32,18 @@ impl MotorTorque {
         })
     }
 
-    /// N cm, as the board takes them.
+    /// Returns the torques that the board is to apply, N cm, in the board's sign.
     pub fn torques(&self, pulls: &Vector4<f64>) -> Vector4<f64> {
         pulls.component_mul(&self.signed_radius)
     }
 
-    /// The tension, N, that a motor with so much pull, N, brings about whichever way it turns: its friction may hold
-    /// against it.
+    /// Returns the tensions, N, that motors with these pulls, N, reach in either direction of motion, with friction
+    /// acting against them.
     pub fn tensions(&self, pulls: &Vector4<f64>) -> Vector4<f64> {
         (pulls - self.friction.coulomb).component_mul(&self.past_conduit)
     }
 
-    /// The other way round: N at the tendon.
+    /// Returns the pulls at the tendons, N, for motor torques in the board's sign, N cm.
     pub fn pulls(&self, torques: &Vector4<f64>) -> Vector4<f64> {
         torques.component_div(&self.signed_radius)
     }

@@ -7,8 +7,8 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 
 /// theta = R^-T (r m - (t - t_home) / k), upper three rows.
 ///
-/// Without the second term this is eq. 27. The encoders sit on the motors, though, and do not see a tendon stretch: at
-/// 3 N/cm the fingertip would be 28 % too soft.
+/// Without the second term this is eq. 27. The encoders are on the motors and do not measure the stretch of the
+/// tendons. Without the correction the fingertip would be 28 % too soft at 3 N/cm.
 #[derive(Clone, Debug)]
 pub(crate) struct JointPositions {
     /// (RM)^-T: motor angle, rad, to joint angle, rad.
@@ -32,13 +32,13 @@ impl JointPositions {
         })
     }
 
-    /// theta, rad. `tensions` must be low-passed: the correction closes a positive feedback around the tendon
-    /// controller, which is stable only where it is slow.
+    /// Returns theta, rad. `tensions` must be low-pass filtered: the correction closes a positive feedback around the
+    /// tendon controller, which is stable only if it is slow.
     pub fn joints(&self, motor_angles: &Vector4<f64>, tensions: &Vector4<f64>) -> Vector3<f64> {
         self.from_motors * motor_angles + self.from_tensions * (tensions - self.home)
     }
 
-    /// theta_dot, rad/s, as far as the motors show it.
+    /// Returns theta_dot, rad/s, as measured at the motors, without the stretch of the tendons.
     pub fn joint_rates(&self, motor_speeds: &Vector4<f64>) -> Vector3<f64> {
         self.from_motors * motor_speeds
     }

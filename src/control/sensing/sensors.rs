@@ -1,4 +1,4 @@
-//! Encoder counts to motor angles, eq. 28, and strain gauge counts to tensions.
+//! Conversion of encoder counts to motor angles, eq. 28, and of strain gauge counts to tensions.
 
 use crate::control::number_checks::{positive, signs};
 use crate::control::signals::{Feedback, Measured};
@@ -22,7 +22,7 @@ impl SensorScales {
         let encoder = &finger.encoder;
         signs("encoder.sign", &encoder.sign)?;
         positive("encoder.counts_per_revolution", &encoder.counts_per_revolution.map(f64::from))?;
-        // A negative scale is a gauge whose count falls as the tendon tightens.
+        // A negative scale belongs to a gauge whose count falls when the tendon tightens.
         positive("gauge.newton_per_count", &finger.gauge.newton_per_count.map(f64::abs))?;
         let radians_per_count = std::array::from_fn(|motor| {
             f64::from(encoder.sign[motor]) * TAU / f64::from(encoder.counts_per_revolution[motor])
@@ -35,21 +35,21 @@ impl SensorScales {
         })
     }
 
-    /// All eight.
+    /// Converts the counts of all eight sensors.
     pub fn measured(&self, feedback: &Feedback) -> Measured {
         Measured { motor_angles: self.motor_angles(feedback), tensions: self.tensions(feedback) }
     }
 
-    /// m_theta of eq. 28, rad; rising as the tendon is pulled in.
+    /// Returns m_theta of eq. 28, rad. It increases as the motor pulls its tendon in.
     pub fn motor_angles(&self, feedback: &Feedback) -> Vector4<f64> {
         Vector4::from_fn(|motor, _| {
-            // The difference is small even where the counter has wrapped.
+            // The wrapping difference is correct even if the counter has wrapped around.
             let counts = feedback.motor_counts[motor].wrapping_sub(self.encoder_zero[motor]);
             f64::from(counts) * self.radians_per_count[motor]
         })
     }
 
-    /// Tensions, N.
+    /// Returns the tensions, N.
     pub fn tensions(&self, feedback: &Feedback) -> Vector4<f64> {
         Vector4::from_fn(|tendon, _| {
             (f64::from(feedback.gauge_counts[tendon]) - self.gauge_zero[tendon]) * self.newton_per_count[tendon]

@@ -1,15 +1,16 @@
-//! Whether the motors have come to rest. A speed cannot tell: at 1000 Hz a single count is already 3 rad/s.
+//! Detects that the motors are at rest. A measured speed cannot show this: at 1000 Hz a single count is already 3
+//! rad/s.
 
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};
 
-/// Seconds that the motors must stay where they are.
+/// Time for which the motors must keep their position, s.
 const REST: f64 = 0.05;
 
-/// How far a resting motor may wander, rad: the last bit of an encoder flickers.
+/// Largest motion of a motor that counts as at rest, rad. The last bit of an encoder flickers.
 const WANDER: f64 = 0.007;
 
-/// Where the motors were, and for how long.
+/// The position of the motors, and the time for which they have kept it.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct Stillness {
     at: Vector4<f64>,
@@ -21,7 +22,7 @@ impl Stillness {
         Self { at: motor_angles, seconds: 0.0 }
     }
 
-    /// Notes the angles, rad, `period` seconds after the last ones.
+    /// Records the motor angles, rad, `period` seconds after the previous ones.
     pub fn note(&mut self, motor_angles: &Vector4<f64>, period: f64) {
         if (motor_angles - self.at).amax() <= WANDER {
             self.seconds += period;

@@ -1,39 +1,41 @@
-//! How much more or less damping than the controller's own a planner may ask for.
+//! The range of relative damping that a planner may request.
 
 use crate::model::configuration::{ConfiguredFinger, Scheme};
 use nalgebra::{Matrix3, Matrix3x4};
 
-/// What the tendons of the default finger carry in the middle of its joints' ranges, N/cm: see [`carried`].
+/// Stiffness that the tendons of the default finger support in the middle of its joint ranges, N/cm. See [`carried`].
 const DEFAULT_CARRIED: f64 = 12.306_708_616;
 
-/// Below this rate, Hz, the delay of a cycle leaves less room.
+/// Below this rate, Hz, the delay of a cycle narrows the range.
 const SLOW: f64 = 1000.0;
 
-/// The relative damping for which a fingertip comes to rest: a range that narrows as the spring gets stiffer.
+/// The range of relative damping with which a fingertip settles. It narrows as the stiffness grows.
 ///
-/// The lines were drawn inside what was found stable on the default finger, with a margin of about a tenth: in the
-/// one-cycle map at poses anywhere within the joint limits, and in the closed loop after steps of 5 mm and pushes, with
-/// and without friction, at 500 to 4000 Hz and 0.3 to 6 N/cm. Too little damping loses the finger. Too much swings with
-/// the delay of a cycle. The figures of the report are damped hardly enough by themselves, so none of them offers less.
-/// A ratio of 1 is always admitted: it is the controller's own damping, whose stability the bound of Kx covers.
+/// The limits are straight lines inside the range that was stable on the default finger, with a margin of about a
+/// tenth. Two tests determined that range: the one-cycle map at poses anywhere within the joint limits, and the closed
+/// loop after steps of 5 mm and after pushes. They covered 500 to 4000 Hz and 0.3 to 6 N/cm, with and without friction.
+/// With too little damping the servo loses control of the finger. With too much damping the finger oscillates because
+/// of the delay of one cycle. The report's figures have little damping of their own, so they admit no ratio below 1. A
+/// ratio of 1 is always admitted: it is the damping that the controller computes, and the bound of Kx covers its
+/// stability.
 ///
-/// A finger with other links or tendons has the range of the default finger whose spring is the same part of what its
-/// tendons carry.
+/// A finger with other links or tendons has the range of the default finger at the stiffness that is the same fraction
+/// of what its tendons support.
 ///
-/// Both limits are straight lines, so a change from one admitted pair of stiffness and damping to another passes
-/// through admitted pairs.
+/// Because both limits are straight lines, every point between two admitted pairs of stiffness and damping is admitted
+/// too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdmissibleDamping {
-    /// Limits of a finger without stiffness, and how much they change by each N/cm of Kx.
+    /// Limit at zero stiffness, and its change for each N/cm of Kx.
     least: (f64, f64),
     most: (f64, f64),
-    /// The stiffness of the default finger that corresponds to 1 N/cm of this one.
+    /// Stiffness of the default finger that corresponds to 1 N/cm of this finger.
     correspondence: f64,
 }
 
 impl AdmissibleDamping {
-    /// For the controller of `finger` at `rate`, Hz. Where R has no rank of 3, which makes no controller either, only 1
-    /// is admitted.
+    /// Constructs the range for the controller of `finger` at `rate`, Hz. If the rank of R is below 3, only a ratio of
+    /// 1 is admitted. No controller accepts such an R.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Self {
         let scheme = finger.controller.scheme(rate);
         let correspondence = carried(finger).map_or(f64::INFINITY, |carried| DEFAULT_CARRIED / carried);
@@ -45,19 +47,19 @@ impl AdmissibleDamping {
         Self { least, most, correspondence }
     }
 
-    /// The least and the greatest ratio for a spring whose largest eigenvalue is `stiffness`, N/cm. Multiples of 0.01,
-    /// so that the range that a planner reads is the range that counts.
+    /// Returns the least and the greatest ratio for a spring whose largest eigenvalue is `stiffness`, N/cm. Both are
+    /// multiples of 0.01, so that a planner reads exactly the range that is checked.
     pub fn range(&self, stiffness: f64) -> (f64, f64) {
         let at = |(limit, slope): (f64, f64)| limit + slope * (stiffness * self.correspondence);
-        // Whole steps of 0.01, except for the rounding of the product.
+        // The tolerance of 1e-9 absorbs the rounding of the product.
         let least = (at(self.least) * 100.0 - 1e-9).ceil() / 100.0;
         let most = (at(self.most) * 100.0 + 1e-9).floor() / 100.0;
         (least.min(1.0), most.max(1.0))
     }
 }
 
-/// The stiffness that locked tendons give the tip at least in one direction, N/cm, in the middle of the joints' ranges:
-/// the smallest eigenvalue of J^-T (R k R^T) J^-1.
+/// Returns the smallest stiffness, over all directions, that locked tendons give the tip in the middle of the joint
+/// ranges, N/cm. This is the smallest eigenvalue of J^-T (R k R^T) J^-1. Returns None if the rank of R is below 3.
 fn carried(finger: &ConfiguredFinger) -> Option<f64> {
     let (low, high) = finger.joint_limits();
     let jacobian = finger.links().jacobian(&((low + high) * 0.5));

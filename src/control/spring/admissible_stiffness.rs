@@ -1,24 +1,25 @@
-//! What a pose can carry: a finger is never stiffer than its tendons.
+//! The stiffness that a pose supports: a finger cannot be stiffer than its tendons.
 
 use crate::control::eigenvalues::eigenvalues;
 use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Scheme};
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 
-/// The part of the stiffness of the locked tendons that K_theta may have: as far as the loop was found stable, so less
-/// below 750 Hz, and less with Figure 11, which has no gain on the tension error, at every rate.
+/// Returns the fraction of the stiffness of the locked tendons that K_theta may use. It is the largest fraction with
+/// which the loop was found stable. It is smaller below 750 Hz, and at every rate with Figure 11, which has no gain on
+/// the tension error.
 fn share(scheme: Scheme, rate: f64) -> f64 {
     match scheme {
         Scheme::Figure11 => 0.7,
         _ if rate >= 750.0 => 0.95,
-        // At 500 Hz: with 0.95 stretched poses grew at 5 N/cm.
+        // With 0.95 at 500 Hz, the motion grew in stretched poses at 5 N/cm.
         Scheme::StateFeedback => 0.75,
         Scheme::Figure9 | Scheme::Figure10 => 0.7,
     }
 }
 
-/// Locked tendons hold the joints with R k R^T = L L^T. The largest eigenvalue of L^-1 K_theta L^-T is the largest part
-/// of that, over all directions, which K_theta asks for.
+/// Limits K_theta to a share of R k R^T = L L^T, the stiffness with which locked tendons hold the joints. The largest
+/// eigenvalue of L^-1 K_theta L^-T is the largest share, over all directions, that K_theta uses.
 #[derive(Clone, Debug)]
 pub(crate) struct AdmissibleStiffness {
     /// L^-1, (N cm/rad)^(-1/2).
@@ -29,7 +30,7 @@ pub(crate) struct AdmissibleStiffness {
 }
 
 impl AdmissibleStiffness {
-    /// For `finger` at `rate`, Hz. None where R has no rank of 3.
+    /// Constructs the limit for `finger` at `rate`, Hz. Returns None if the rank of R is below 3.
     pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64) -> Option<Self> {
         let stiffness = finger.tendon.stiffness;
         let stretched = Matrix3x4::from_fn(|joint, tendon| tendons.r[(joint, tendon)] * stiffness[tendon]);
@@ -38,18 +39,18 @@ impl AdmissibleStiffness {
         Some(Self { inverse, compliance, share: share(finger.controller.scheme(rate), rate) })
     }
 
-    /// The factor, 0 to 1, that K_theta has to be scaled by beside what joints at their limits have of their own; all N
-    /// cm/rad.
+    /// Returns the factor, 0 to 1, by which K_theta must be scaled in addition to `limits`, the stiffness of the soft
+    /// joint limits. Both are in N cm/rad.
     ///
-    /// The largest eigenvalue of a sum is at most the sum of the largest ones, and that of the limits at most their
-    /// trace.
+    /// The largest eigenvalue of a sum is at most the sum of the largest eigenvalues. That of the soft limits is at
+    /// most their trace.
     pub fn scale(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> f64 {
         let [largest, ..] = eigenvalues(&(self.inverse * k_theta * self.inverse.transpose()));
         let left = self.share - limits.dot(&self.compliance);
         if largest > left { left / largest } else { 1.0 }
     }
 
-    /// What each joint can have if the others have nothing, N cm/rad.
+    /// Returns the stiffness that each joint can have while the others have none, N cm/rad.
     pub fn of_joints(&self) -> Vector3<f64> {
         self.compliance.map(|compliance| self.share / compliance)
     }

@@ -1,12 +1,14 @@
-//! A soft spring in joint space with a damper: it holds and leads a finger whose stiffness nobody has asked for.
+//! A soft spring and damper in joint space. It holds or leads a finger for which no stiffness has been commanded.
 
 use crate::model::Links;
 use nalgebra::Vector3;
 
-/// N cm/rad: less than the softest spring that the tendon controllers are tuned for gives a bent finger.
+/// Stiffness of each joint, N cm/rad. It is below the stiffness of a bent finger with the softest spring for which the
+/// tendon controllers are tuned.
 pub(crate) const HOLDING_STIFFNESS: f64 = 30.0;
 
-/// N cm s/rad for every cm of finger beyond the joint, whose inertia must not swing on the spring.
+/// Damping, N cm s/rad for every cm of finger beyond the joint. It keeps the inertia of the finger from oscillating on
+/// the spring.
 const DAMPING: f64 = 0.2;
 
 /// tau = k (theta_d - theta) - d (theta_dot - theta_dot_d).
@@ -22,8 +24,8 @@ impl JointHold {
         Self { damping: Vector3::new(l0 + l1 + l2, l1 + l2, l2) * DAMPING }
     }
 
-    /// N cm; `deflection`: theta_d - theta, rad; `slip`: theta_dot - theta_dot_d, rad/s. The spring's part of every
-    /// joint is at most `limit`.
+    /// Returns the torques, N cm. `deflection` is theta_d - theta, rad; `slip` is theta_dot - theta_dot_d, rad/s. The
+    /// spring torque of every joint is clamped to `limit`, N cm.
     pub fn torques(&self, deflection: &Vector3<f64>, slip: &Vector3<f64>, limit: f64) -> Vector3<f64> {
         let spring = (deflection * HOLDING_STIFFNESS).map(|torque| torque.clamp(-limit, limit));
         spring - slip.component_mul(&self.damping)

@@ -1,32 +1,35 @@
-//! The box K_theta: joint torques of the virtual spring, eqs. 1 to 6, with a damper beside it.
+//! The box K_theta: joint torques of the virtual spring, eqs. 1 to 6, and a damper in parallel.
 
 use crate::control::spring::spring_transition::Spring;
 use crate::model::Links;
 use nalgebra::{Matrix3, Matrix6, Matrix6x3, Vector3, Vector6};
 
-/// Kx at which `rate_time` holds, N/cm.
+/// Stiffness Kx at which beta equals `rate_time`, N/cm.
 const REFERENCE_STIFFNESS: f64 = 3.0;
 
-/// Damping of a finger without stiffness, N cm s/rad: a few times what its joints have, a fifth of what a spring needs.
+/// Damping of a finger without stiffness, N cm s/rad. It is a few times the viscous friction of its joints, and a fifth
+/// of the damping that a spring needs.
 const LIMP_DAMPING: f64 = 0.2;
 
-/// What joint 0's lever counts as at least, cm. On that axis no stiffness of the tip holds the joint, and near it a
-/// force on the tip turns the joint away: one that presses the spring together by d toward the axis takes k d r of its
-/// k r^2. With a least lever of 5 mm, deflections of up to 5 mm leave the joint held.
+/// Least lever of joint 0 that counts, cm. With the tip on the axis of joint 0, no tip stiffness holds the joint. Near
+/// the axis a force on the tip turns the joint away: a force that compresses the spring by d toward the axis reduces
+/// the joint's stiffness k r^2 by k d r. With a least lever of 5 mm, the joint stays held at deflections of up to 5 mm.
 const LEAST_LEVER: f64 = 0.5;
 
-/// tau = spring - z (B K_theta B + d) theta_dot, with K_theta = J^T K J, a diagonal B, a small d and the set point's
-/// relative damping z.
+/// tau = spring - z (B K_theta B + d) theta_dot, with K_theta = J^T K J, a diagonal B, a small d, and the relative
+/// damping z of the set point.
 ///
-/// J is the 6 x 3 Jacobian of the tip's motion, K the 6 x 6 stiffness of the contact: with the D x 6 selection S of
-/// what the contact feels, S^T K S and J_c = S J give the D x D stiffness and the D x 3 Jacobian of eq. 6.
+/// J is the 6 x 3 Jacobian of the tip's motion, and K the 6 x 6 stiffness of the contact. For a contact that transmits
+/// D directions, selected by a D x 6 matrix S, K is S^T K_c S with the D x D stiffness K_c. With the D x 3 Jacobian J_c
+/// = S J, K_theta is J_c^T K_c J_c, which is eq. 6.
 ///
-/// B^2 is beta where K_theta has its reference value, and is scaled with 1/sqrt(K_theta), joint by joint: the damping
-/// ratio stays where Kx or the lever of a joint changes. A tip near the axis of joint 0, which then is soft, needs it.
+/// B^2 is beta where K_theta has its reference value. It is proportional to 1/sqrt(K_theta), joint by joint, so that
+/// the damping ratio stays constant if Kx or the lever of a joint changes. A tip near the axis of joint 0 needs this,
+/// because that joint is then soft.
 ///
-/// Nearer to that axis than a least lever, r < rho, joint 0 has n^T K n (rho^2 - r^2) of its own beside, n being the
-/// way that it moves the tip: a spring to theta_d that begins with nothing at rho, and that a spring without stiffness
-/// there does not have.
+/// If the lever r of joint 0 is less than the least lever rho, joint 0 has an additional stiffness n^T K n (rho^2 -
+/// r^2), where n is the direction in which the joint moves the tip. This is a spring to theta_d. It starts from zero at
+/// r = rho, and is zero if K has no stiffness along n.
 #[derive(Clone, Debug)]
 pub struct JointStiffness {
     links: Links,
@@ -34,7 +37,8 @@ pub struct JointStiffness {
     damping: Vector3<f64>,
 }
 
-/// A spring at a pose: found once a cycle, because its sines and products are what a cycle spends most on.
+/// A spring at a pose. It is computed once in a cycle, because its sines and products are the most expensive part of a
+/// cycle.
 #[derive(Clone, Debug)]
 pub(crate) struct PosedSpring<'a> {
     of: &'a JointStiffness,
@@ -43,40 +47,40 @@ pub(crate) struct PosedSpring<'a> {
     damping: f64,
     /// K J, before any scaling.
     stiffened: Matrix6x3<f64>,
-    /// The part of its stiffness that the spring has.
+    /// The fraction of its stiffness that the spring has.
     scale: f64,
-    /// Of joint 0 where the tip is near its axis, before any scaling, N cm/rad.
+    /// Additional stiffness of joint 0 with the tip near its axis, before any scaling, N cm/rad.
     hold: f64,
     /// K_theta of eq. 6, N cm/rad.
     pub k_theta: Matrix3<f64>,
 }
 
 impl JointStiffness {
-    /// `rate_time`: beta at 3 N/cm, s.
+    /// Constructs the box. `rate_time` is beta at 3 N/cm, s.
     pub fn new(links: Links, rate_time: f64) -> Self {
         let [l0, l1, l2] = links.0;
         let levers = Vector3::new((l0 + l1).powi(2), l1 * l1 + l2 * l2, l2 * l2);
         Self { links, damping: levers * (REFERENCE_STIFFNESS * rate_time * rate_time) }
     }
 
-    /// tau of spring and damper, N cm, at joint angles (rad) and rates (rad/s).
+    /// Returns tau of spring and damper, N cm, at joint angles (rad) and rates (rad/s).
     pub fn torques(&self, spring: &Spring, joints: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64> {
         let posed = self.posed(spring, joints);
         posed.torques(&spring.joints) - posed.damper(rates)
     }
 
-    /// K_theta of eq. 6, N cm/rad.
+    /// Returns K_theta of eq. 6, N cm/rad.
     pub fn joint_stiffness(&self, spring: &Spring, joints: &Vector3<f64>) -> Matrix3<f64> {
         self.posed(spring, joints).k_theta
     }
 
-    /// tau of the spring alone, N cm: K_theta (theta_d - theta) by eqs. 3 and 6, or J^T f by eqs. 1 and 2 with the
-    /// deflection of the tip itself.
+    /// Returns tau of the spring alone, N cm. The report's law is K_theta (theta_d - theta), eqs. 3 and 6. The exact
+    /// law is J^T f, eqs. 1 and 2, with the deflection of the tip itself.
     pub fn spring(&self, spring: &Spring, joints: &Vector3<f64>) -> Vector3<f64> {
         self.posed(spring, joints).torques(&spring.joints)
     }
 
-    /// A spring at joint angles, rad.
+    /// Computes a spring at joint angles, rad.
     pub(crate) fn posed(&self, spring: &Spring, joints: &Vector3<f64>) -> PosedSpring<'_> {
         let jacobian = self.links.spatial_jacobian(joints);
         let stiffened = spring.stiffness * jacobian;
@@ -87,11 +91,11 @@ impl JointStiffness {
         PosedSpring { of: self, joints: *joints, exact, damping, stiffened, scale: 1.0, hold, k_theta }
     }
 
-    /// Translation (cm) and rotation vector (rad) from the tip's pose at `joints` to that at `desired`.
+    /// Returns the translation (cm) and the rotation vector (rad) from the tip's pose at `joints` to the pose at
+    /// `desired`.
     ///
-    /// The rotation is the whole one between the two poses, not J (theta_d - theta): like x_d - x it is a function of
-    /// the two poses alone, so that the exact law has no deflection where the tip is in place, whichever way the joints
-    /// went.
+    /// The rotation is the complete one between the two poses, and not J (theta_d - theta). Like x_d - x it depends on
+    /// the two poses only. So the exact law has no deflection when the tip is in place, for any joint solution.
     fn deflection(&self, desired: &Vector3<f64>, joints: &Vector3<f64>) -> Vector6<f64> {
         let translation = self.links.tip(desired) - self.links.tip(joints);
         let rotation = self.links.tip_rotation(desired) * self.links.tip_rotation(joints).inverse();
@@ -103,26 +107,28 @@ impl JointStiffness {
     }
 }
 
-/// What holds joint 0 beside the spring of the tip, N cm/rad: K and J as above.
+/// Returns the stiffness that holds joint 0 in addition to the spring of the tip, N cm/rad. K and J are those of
+/// [`JointStiffness`].
 fn hold(stiffness: &Matrix6<f64>, jacobian: &Matrix6x3<f64>) -> f64 {
     let turned = jacobian.fixed_view::<3, 1>(0, 0);
     let lacking = LEAST_LEVER * LEAST_LEVER - turned.norm_squared();
     if lacking <= 0.0 {
         return 0.0;
     }
-    // Joint 0 moves the tip along the axis of joints 1 and 2, on its own axis too, where J has no direction left.
+    // n: joint 0 moves the tip along the axis of joints 1 and 2. This also holds on its own axis, where column 0 of J
+    // vanishes.
     let way = jacobian.fixed_view::<3, 1>(3, 1);
     way.dot(&(stiffness.fixed_view::<3, 3>(0, 0) * way)) * lacking
 }
 
 impl PosedSpring<'_> {
-    /// Leaves this part of the stiffness.
+    /// Scales the stiffness by `part`.
     pub fn soften(&mut self, part: f64) {
         self.scale *= part;
         self.k_theta *= part;
     }
 
-    /// tau, N cm, of the spring between `desired`, rad, and the joints.
+    /// Returns tau, N cm, of the spring between `desired`, rad, and the joints.
     pub fn torques(&self, desired: &Vector3<f64>) -> Vector3<f64> {
         let mut torques = Vector3::zeros();
         if self.exact < 1.0 {
@@ -138,10 +144,11 @@ impl PosedSpring<'_> {
         torques
     }
 
-    /// tau of the damper, N cm, at joint rates, rad/s: its matrix is symmetric, positive definite, and in proportion to
-    /// the spring's relative damping.
+    /// Returns tau of the damper, N cm, at joint rates, rad/s. Its matrix is symmetric, positive definite, and
+    /// proportional to the spring's relative damping.
     pub fn damper(&self, rates: &Vector3<f64>) -> Vector3<f64> {
-        // beta^2 K_ref / K_jj to the power 1/4; without stiffness in a joint there is nothing to damp it with.
+        // b = (beta^2 K_ref / K_jj)^(1/4). Without stiffness the lower bound of K_jj avoids a division by zero, and the
+        // product with K_theta is zero.
         let stiffness = self.k_theta.diagonal();
         let b = stiffness.zip_map(&self.of.damping, |k, damping| (damping / k.max(1e-6)).sqrt().sqrt());
         let damped = (self.k_theta * rates.component_mul(&b)).component_mul(&b) + rates * LIMP_DAMPING;

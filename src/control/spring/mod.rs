@@ -1,4 +1,4 @@
-//! The spring at the fingertip: from a set point to joint torques.
+//! The spring at the fingertip: conversion of a set point to joint torques.
 
 pub(crate) mod admissible_damping;
 pub(crate) mod admissible_stiffness;

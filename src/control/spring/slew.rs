@@ -1,24 +1,24 @@
-//! The set point as the finger follows it: a step becomes a straight line in joint space at a bounded speed.
+//! Slew limit of the set point: a step becomes a straight line in joint space at a limited speed.
 //!
-//! The tip of a spring let go far from its anchor does not go straight there. Joint 2 may be thrown straight on the
-//! way, where J is singular and the spring has no torque left to bend it again.
+//! The tip of a spring that is released far from its anchor does not move straight to it. Joint 2 may be stretched on
+//! the way. There J is singular, and the spring has no torque to bend the joint again.
 
 use nalgebra::Vector3;
 
-/// Bound on the speed of every joint of the set point.
+/// Limit of the speed of every joint of the set point.
 #[derive(Clone, Debug)]
 pub(crate) struct Slew {
-    /// rad a cycle.
+    /// Largest step of a joint, rad per cycle.
     step: f64,
 }
 
 impl Slew {
-    /// `speed`: rad/s.
+    /// Constructs the limit from a speed, rad/s, and the rate, Hz.
     pub fn new(speed: f64, rate: f64) -> Self {
         Self { step: speed / rate }
     }
 
-    /// Moves `anchor` one cycle toward `target`, rad.
+    /// Moves `anchor` by one cycle toward `target`, both in rad.
     pub fn advance(&self, anchor: &mut Vector3<f64>, target: &Vector3<f64>) {
         let way = target - *anchor;
         let farthest = way.amax();

@@ -1,21 +1,22 @@
-//! Soft joint limits: beyond them, and before the mechanical stops, a joint is pushed back.
+//! Soft joint limits: a joint beyond its limit is pushed back before it reaches its mechanical stop.
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
-/// N cm/rad, about what a bent finger of 3 N/cm has, where the tendons carry that.
+/// Stiffness of a limit where the tendons support it, N cm/rad. A bent finger at 3 N/cm has about this stiffness.
 const STIFFNESS: f64 = 150.0;
 
-/// The part of what a pose can carry that the limit of a joint takes at most: all three leave something for the tip.
+/// Largest fraction of the stiffness that a pose supports which the limit of one joint may use. All three joints at
+/// their limits still leave some for the tip.
 const PART: f64 = 0.3;
 
-/// A limit has its whole stiffness from this depth on, rad: a finger that rests at its limit must not switch it on and
-/// off.
+/// Depth beyond the limit, rad, at which a limit reaches its full stiffness. With a step in stiffness, a finger that
+/// rests at its limit would switch the spring on and off.
 const DEPTH: f64 = 0.0175;
 
-/// A joint that is d beyond a limit is pushed back with k d^2 / 2 D, and with k (d - D/2) from the depth D on: its
-/// stiffness grows from nothing to k, without a step. Within the limits nothing is added: the spring of the fingertip
-/// stays exact.
+/// A joint at the depth d beyond a limit is pushed back with k d^2 / 2 D up to the depth D, and with k (d - D/2)
+/// beyond. The stiffness grows from zero to k without a step. Within the limits the push is zero, so that the spring of
+/// the fingertip stays exact.
 #[derive(Clone, Debug)]
 pub(crate) struct SoftLimits {
     /// rad.
@@ -25,28 +26,29 @@ pub(crate) struct SoftLimits {
     stiffness: Vector3<f64>,
 }
 
-/// What the limits add.
+/// The torque and stiffness that the limits add.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Push {
     /// N cm.
     pub torque: Vector3<f64>,
-    /// N cm/rad, of each joint; it wants a damper.
+    /// Stiffness of each joint, N cm/rad. The caller adds a damper for it.
     pub stiffness: Vector3<f64>,
 }
 
 impl SoftLimits {
-    /// Of `finger`, whose joints alone can have so much stiffness each, N cm/rad.
+    /// Constructs the limits of `finger`. `carried` is the stiffness that each joint can have while the others have
+    /// none, N cm/rad.
     pub fn new(finger: &ConfiguredFinger, carried: &Vector3<f64>) -> Self {
         let (low, high) = finger.joint_limits();
         Self { low, high, stiffness: carried.map(|carried| STIFFNESS.min(PART * carried)) }
     }
 
-    /// At joint angles, rad.
+    /// Returns the push at joint angles, rad.
     pub fn push(&self, joints: &Vector3<f64>) -> Push {
         let within = joints.zip_zip_map(&self.low, &self.high, |joint, low, high| joint.max(low).min(high));
         let beyond = within - joints;
         let stiffness = beyond.zip_map(&self.stiffness, |way, stiffness| stiffness * (way.abs() / DEPTH).min(1.0));
-        // Up to D half the way counts, beyond it all but half of D.
+        // The deflection that counts is d/2 up to the depth D, and d - D/2 beyond.
         let counted = beyond.map(|way| way - (0.5 * way).clamp(-0.5 * DEPTH, 0.5 * DEPTH));
         Push { torque: stiffness.component_mul(&counted), stiffness }
     }

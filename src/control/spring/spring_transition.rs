@@ -1,4 +1,4 @@
-//! From one spring to another without a jump in torque: law, stiffness and damping of a new set point are gone over to.
+//! Transition from one spring to another without a jump in torque: law, stiffness and damping change gradually.
 
 use crate::control::signals::{Law, SetPoint};
 use nalgebra::{Matrix6, Vector3};
@@ -7,16 +7,16 @@ use serde::{Deserialize, Serialize};
 /// Time constant of each of the two stages, s.
 const STAGE: f64 = 0.01;
 
-/// The spring of one cycle: a [`SetPoint`], or what is between two of them.
+/// The spring of one cycle: that of a [`SetPoint`], or one between two set points.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Spring {
-    /// Its anchor, rad.
+    /// Anchor: the desired joint angles, rad.
     pub joints: Vector3<f64>,
-    /// The share of the exact law in its deflection; the rest is the report's. 0 to 1.
+    /// Share of the exact law in the deflection, 0 to 1. The rest is the report's law.
     pub exact: f64,
-    /// As that of a set point.
+    /// Stiffness, with the units and axes of [`SetPoint::stiffness`].
     pub stiffness: Matrix6<f64>,
-    /// As that of a set point.
+    /// Relative damping, as in [`SetPoint::damping`].
     pub damping: f64,
 }
 
@@ -26,7 +26,7 @@ impl From<SetPoint> for Spring {
     }
 }
 
-/// Of the exact law.
+/// Returns the share of the exact law.
 fn share(law: Law) -> f64 {
     match law {
         Law::Report => 0.0,
@@ -35,7 +35,7 @@ fn share(law: Law) -> f64 {
 }
 
 impl Spring {
-    /// Moves all but the anchor by a part of the way.
+    /// Moves everything except the anchor toward the given values by the fraction `part` of the difference.
     fn approach(&mut self, exact: f64, stiffness: &Matrix6<f64>, damping: f64, part: f64) {
         self.exact += (exact - self.exact) * part;
         self.stiffness += (stiffness - self.stiffness) * part;
@@ -43,12 +43,12 @@ impl Spring {
     }
 }
 
-/// Two equal first-order stages in a row, so that the torque does not even bend sharply, and a planner that sends a new
-/// spring in every cycle is followed all the while. The spring itself goes over, and not its torque: between two
-/// springs within the bound every one is within it.
+/// Two equal first-order stages in series. With two stages the torque has no kink either, and the finger still follows
+/// a planner that sends a new spring in every cycle. The spring changes gradually, and not its torque, because every
+/// spring between two springs within the bound is within the bound too.
 #[derive(Clone, Debug)]
 pub(crate) struct SpringTransition {
-    /// What a stage moves by in a cycle.
+    /// Fraction of the remaining difference by which a stage moves in a cycle.
     part: f64,
 }
 
@@ -60,12 +60,13 @@ pub(crate) struct SpringStages {
 }
 
 impl SpringTransition {
-    /// Cycles a second.
+    /// Constructs the transition for `rate`, Hz.
     pub fn new(rate: f64) -> Self {
         Self { part: -(-1.0 / (STAGE * rate)).exp_m1() }
     }
 
-    /// The spring of this cycle, on the way to that of `set_point`, whose anchor it has. Begins with it as it is.
+    /// Returns the spring of this cycle, on the way to that of `set_point`. Its anchor is already that of `set_point`.
+    /// The first call starts with the spring of `set_point`.
     pub fn advance<'a>(&self, stages: &'a mut Option<SpringStages>, set_point: &SetPoint) -> &'a Spring {
         let begin = || {
             let spring = Spring::from(*set_point);

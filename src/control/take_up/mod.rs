@@ -1,3 +1,3 @@
-//! Bringing slack tendons under tension with the joints left where they are.
+//! Brings slack tendons under tension while the joints stay where they are.
 
 pub(crate) mod slack;

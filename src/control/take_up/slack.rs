@@ -1,56 +1,58 @@
-//! Taking up slack with the joints left where they are.
+//! Takes up slack while the joints stay where they are.
 //!
-//! A free finger gives way to the first tendon that comes taut until another one holds against it: wound in all
-//! together, unequal slack turns the joints by more than a radian. So every motor winds slowly until it feels its
-//! tendon, and waits there until all have. From then on the joints show, and are held while the tensions rise.
+//! The first tendon that comes taut moves a free finger until another tendon opposes it. If all tendons were wound in
+//! together, unequal slack would turn the joints by more than a radian. So every motor winds in slowly until it detects
+//! tension in its tendon, and then waits until all motors have detected tension. From then on the joint angles can be
+//! measured. The joints are held there while the tensions rise.
 
 use crate::control::spring::joint_hold::JointHold;
 use crate::model::{Links, Tendons};
 use nalgebra::{Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
-/// Speed of winding, m/s of tendon, and what it grows by, m/s^2: little slack is taken up gently, much of it in time.
+/// Winding speed at the start, m/s of tendon, and its acceleration, m/s^2. A little slack is taken up gently, and a lot
+/// of slack still in reasonable time.
 const SPEED: f64 = 0.003;
-const HASTE: f64 = 0.002;
+const ACCELERATION: f64 = 0.002;
 
-/// A tendon is felt when its tension has risen by this part of t_min from the lowest one, wherever the gauge has its
-/// zero, or is at this part of t_min.
+/// A tendon counts as taut when its tension is this fraction of t_min (`FELT`) above the lowest tension so far, which
+/// works with any zero of the gauge. It also counts as taut at the absolute fraction `TAUT` of t_min.
 const FELT: f64 = 0.04;
 const TAUT: f64 = 0.2;
 
-/// Holding a motor: N/m, N s/m, largest pull in t_min.
+/// Position control of a motor: stiffness, N/m; damping, N s/m; and largest pull in multiples of t_min.
 const HOLD: f64 = 15_000.0;
 const DAMPING: f64 = 200.0;
 const STRONGEST: f64 = 1.2;
 
-/// Time constant of the smoothed tensions, s.
+/// Time constant of the low-pass filter on the tensions, s.
 const SMOOTHING: f64 = 0.003;
 
-/// How long the tensions take to rise to the pretension, s.
+/// Time in which the tensions rise to the pretension, s.
 const RISING: f64 = 0.2;
 
-/// A spring of the joints that is not limited here: the tension bounds do that.
+/// The spring that holds the joints needs no limit, because the tension bounds limit it.
 const UNLIMITED: f64 = f64::INFINITY;
 
-/// What does not change from cycle to cycle.
+/// The constant part of the take-up.
 #[derive(Clone, Debug)]
 pub(crate) struct SlackTakeUp {
     period: f64,
     hold: JointHold,
-    /// N, in the least pulled tendon.
+    /// t_min, N.
     minimum: f64,
-    /// N.
+    /// Tensions of eq. 20 at zero joint torque, N.
     pretension: Vector4<f64>,
 }
 
-/// How far it is.
+/// The progress of the take-up.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) enum Slack {
-    /// Motors wind in, or wait.
+    /// Motors wind in, or wait for the others.
     Winding(Winding),
-    /// All tendons are felt.
+    /// All tendons are taut, and the tensions rise.
     Rising {
-        /// Where the joints are held, rad.
+        /// The joint angles that are held, rad.
         joints: Vector3<f64>,
         seconds: f64,
     },
@@ -59,39 +61,40 @@ pub(crate) enum Slack {
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct Winding {
     seconds: f64,
-    /// Where every motor is held, m.
+    /// The position at which every motor is held, m of tendon.
     target: Vector4<f64>,
     felt: [bool; 4],
-    /// How much every motor has wound in, m.
+    /// The length that every motor has wound in, m.
     wound: Vector4<f64>,
-    /// Smoothed, N.
+    /// Low-pass filtered tensions, N.
     tensions: Vector4<f64>,
-    /// The lowest of them so far.
+    /// The lowest filtered tensions so far, N.
     lowest: Vector4<f64>,
 }
 
-/// What a cycle has measured.
+/// The measurements of a cycle.
 pub(crate) struct Slackness {
-    /// m and m/s of tendon, positive in.
+    /// m and m/s of tendon, positive inward.
     pub travel: Vector4<f64>,
     pub speeds: Vector4<f64>,
-    /// N.
+    /// Tensions, N.
     pub tensions: Vector4<f64>,
     /// rad and rad/s.
     pub joints: Vector3<f64>,
     pub joint_rates: Vector3<f64>,
 }
 
-/// What to do about it.
+/// The command of a cycle.
 pub(crate) enum TakeUp {
     /// Pulls at the tendon, N.
     Pull(Vector4<f64>),
-    /// Joint torques, N cm, with tensions this much below the usual ones, N.
+    /// Joint torques, N cm, with tensions that are lower than usual by `below`, N. `begins` is true in the first such
+    /// cycle.
     Hold { torques: Vector3<f64>, below: Vector4<f64>, begins: bool },
 }
 
 impl SlackTakeUp {
-    /// `minimum`: t_min, N.
+    /// Constructs the take-up. `minimum` is t_min, N.
     pub fn new(links: Links, tendons: &Tendons, minimum: f64, rate: f64) -> Self {
         Self { period: 1.0 / rate, hold: JointHold::new(links), minimum, pretension: tendons.pretension(minimum) }
     }
@@ -108,7 +111,7 @@ impl SlackTakeUp {
         })
     }
 
-    /// The tendon that is farthest from being under tension, 0 to 3.
+    /// Returns the tendon that is farthest from being under tension, 0 to 3.
     pub fn slackest(&self, slack: &Slack, now: &Slackness) -> usize {
         match slack {
             Slack::Winding(winding) => winding.wound.imax(),
@@ -134,12 +137,12 @@ impl SlackTakeUp {
         }
     }
 
-    /// Moves every motor that does not feel its tendon on; whether all do at once.
+    /// Moves every motor on that has not yet detected tension. Returns whether all tendons are taut at the same time.
     fn wind(&self, winding: &mut Winding, now: &Slackness) -> bool {
         winding.seconds += self.period;
         winding.tensions += (now.tensions - winding.tensions) * (self.period / SMOOTHING).min(1.0);
         winding.lowest = winding.lowest.inf(&winding.tensions);
-        let step = (SPEED + HASTE * winding.seconds) * self.period;
+        let step = (SPEED + ACCELERATION * winding.seconds) * self.period;
         let mut all = true;
         for motor in 0..4 {
             let tension = winding.tensions[motor];
@@ -155,7 +158,8 @@ impl SlackTakeUp {
             }
         }
         if winding.felt == [true; 4] && !all {
-            // What came taut later has moved the finger toward the motors that waited.
+            // A tendon that came taut later has moved the finger toward the motors that waited, and their tendons are
+            // slack again.
             winding.felt = [false; 4];
         }
         all

@@ -1,9 +1,9 @@
-//! Figure 10 (Salisbury): proportional and integral on the tension error, and a damper on the motor.
+//! Figure 10 (Salisbury): PI control of the tension error, and a damper on the motor.
 
 use crate::control::tendons::tension_integral::{TendonInput, TendonState, TensionIntegral};
 use nalgebra::Vector4;
 
-/// t_d + (K_T + K_TI/s) (t_d - t) - K_delta v: the figure with feed-forward.
+/// t_d + (K_T + K_TI/s) (t_d - t) - K_delta v, which is the figure with feed-forward of t_d.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure10 {
     pub integral: TensionIntegral,

@@ -1,36 +1,37 @@
-//! Figure 11: a motor model that adapts, so that a tension becomes the motor torque that really gives it.
+//! Figure 11: an adaptive motor model, which converts a tension to the motor torque that produces it.
 
 use crate::control::tendons::tension_integral::{TendonInput, TendonState};
 use nalgebra::Vector4;
 
-/// What the estimate is clamped to: a motor constant can be off by a half, and friction at t_min adds as much again.
+/// Range to which the estimate is clamped: a motor constant can be wrong by half, and friction at t_min can add as much
+/// again.
 pub(crate) const RATIOS: (f64, f64) = (0.4, 2.0);
 
-/// Below this pull, N, a command says nothing about the motor: its friction holds as much.
+/// Below this pull, N, a command contains no information about the motor, because friction holds as much.
 const LEAST_PULL: f64 = 2.0;
 
-/// From this part of its limit on a motor counts as being there.
+/// Fraction of its limit from which a motor counts as saturated.
 const SATURATED: f64 = 0.98;
 
-/// Below this part of its desired tension a tendon counts as slack.
+/// Fraction of its desired tension below which a tendon counts as slack.
 const SLACK: f64 = 0.2;
 
-/// (t_d - K_delta v) / g, with an estimate g of the tension over the pull that was commanded for it: the M^-1 of eq. 22
-/// is multiplied by 1/g. It follows t / pull, the pull being the one that acted when t was measured, with a time
-/// constant.
+/// (t_d - K_delta v) / g. g is an estimate of the quotient of a tension and the pull commanded for it, so the M^-1 of
+/// eq. 22 is multiplied by 1/g. g follows t / pull through a low-pass filter, where pull is the one that acted when t
+/// was measured.
 ///
-/// What adapts is the way from tension to torque only. In (RM)^-T the same M is geometry: an estimate there would move
-/// the measured joints, by them the tensions, and by these itself.
+/// Only the conversion from tension to torque is adapted. In (RM)^-T the same letter M is geometry. An estimate there
+/// would change the measured joint angles, these would change the tensions, and these would change the estimate.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure11 {
-    /// Part of the way that the estimate goes in a cycle.
+    /// Fraction of the remaining difference by which the estimate changes in a cycle.
     gain: f64,
     /// K_delta, N s/m at the tendon.
     motor_damping: f64,
 }
 
 impl Figure11 {
-    /// `adaptation`: 1/s.
+    /// Constructs the scheme. `adaptation` is the bandwidth of the estimate, 1/s.
     pub fn new(adaptation: f64, motor_damping: f64, rate: f64) -> Self {
         Self { gain: -(-adaptation / rate).exp_m1(), motor_damping }
     }
@@ -39,12 +40,12 @@ impl Figure11 {
         Vector4::from_fn(|tendon, _| {
             let (desired, measured, limit) = (input.desired[tendon], input.measured[tendon], input.limit[tendon]);
             let (acted, ratio) = (input.acted[tendon], &mut state.ratio[tendon]);
-            let tells =
+            let informative =
                 acted >= LEAST_PULL && acted < SATURATED * limit && measured >= SLACK * desired && !input.slack[tendon];
-            if tells {
+            if informative {
                 *ratio = (*ratio + self.gain * (measured / acted - *ratio)).clamp(RATIOS.0, RATIOS.1);
             }
-            // As an integral would hold it, for a scheme that has one and goes on from here.
+            // Equals the integral of the other schemes, so that one of them can continue from here.
             state.integral[tendon] = desired / *ratio - desired;
             ((desired - self.motor_damping * input.speed[tendon]) / *ratio).clamp(-limit, limit)
         })

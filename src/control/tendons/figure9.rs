@@ -1,11 +1,12 @@
-//! Figure 9: an integral on the tension error.
+//! Figure 9: an integral of the tension error.
 
 use crate::control::tendons::tension_integral::{TendonInput, TendonState, TensionIntegral};
 use nalgebra::Vector4;
 
 /// t_d + K_TI/s (t_d - t) - K_delta v.
 ///
-/// Feed-forward and damper are not in the figure, but with the integral alone the loop is unstable at every rate.
+/// The figure has neither the feed-forward of t_d nor the damper. With the integral alone the loop is unstable at every
+/// rate.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure9 {
     pub integral: TensionIntegral,

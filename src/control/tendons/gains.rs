@@ -1,10 +1,10 @@
-//! The numbers of the tendon controllers for a rate.
+//! Gains of the tendon controllers for a rate.
 
 use crate::control::number_checks::{not_negative, positive};
 use crate::control::tendons::tuned_gains::TunedGains;
 use crate::model::configuration::{ConfiguredController, Scheme, Unusable};
 
-/// Gains of one scheme; see [`ConfiguredController`] for their meaning and units.
+/// Gains of one scheme. [`ConfiguredController`] documents their meaning and units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Gains {
     pub tension_gain: f64,
@@ -17,20 +17,20 @@ pub(crate) struct Gains {
     pub adaptation_gain: f64,
 }
 
-/// rad/s. At this speed a finger led to each of 200 random poses at 3 N/cm settled within 0.02 rad, with both figures
-/// at all three rates, and no tension fell under 1.6 N; at half as much again two poses missed, and a tendon went
-/// slack.
+/// Speed of the set point, rad/s. Led at this speed to each of 200 random poses at 3 N/cm, a finger settled within 0.02
+/// rad and no tension fell below 1.6 N, with Figures 9 and 10 at all three rates of the table. At 1.5 times this speed
+/// the finger missed two poses, and a tendon became slack.
 const SET_POINT_SPEED: f64 = 2.0;
 
-/// rad/s. State feedback follows its reference, which therefore may move as fast as the tensions can carry it: from
-/// 1000 Hz up.
+/// Speed of the set point with state feedback from 1000 Hz up, rad/s. The finger follows its reference, which may
+/// therefore move as fast as the tensions permit.
 const STATE_FEEDBACK_SET_POINT_SPEED: f64 = 5.0;
 
-/// 1/s.
+/// Bandwidth of the adaptation of Figure 11, 1/s.
 const ADAPTATION_GAIN: f64 = 20.0;
 
 impl Gains {
-    /// What is configured; the rest from the table of the scheme.
+    /// Returns the configured gains. Gains that are not configured come from the table of the scheme.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
         let scheme = configured.scheme(rate);
         let tuned = TunedGains::of(scheme, rate);

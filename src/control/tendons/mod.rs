@@ -1,4 +1,4 @@
-//! The tendons: from joint torques to tensions, and from tensions to pulls of the motors.
+//! The tendons: conversion of joint torques to tensions, and of tensions to pulls of the motors.
 
 pub(crate) mod bumpless_transfer;
 pub(crate) mod figure10;

@@ -1,14 +1,14 @@
-//! Letting go: the pulls ramp to zero.
+//! Release of the finger: the pulls ramp to zero.
 
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};
 
-/// A ramp under way.
+/// A ramp in progress.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct Release {
-    /// Pulls at its beginning, N.
+    /// Pulls at the start of the ramp, N.
     from: Vector4<f64>,
-    /// Seconds since.
+    /// Time since the start, s.
     elapsed: f64,
 }
 
@@ -17,10 +17,11 @@ impl Release {
         Self { from, elapsed: 0.0 }
     }
 
-    /// Pulls of this cycle, N; one cycle takes `period`, the whole ramp `ramp` seconds.
+    /// Advances the ramp by one cycle and returns its pulls, N. `period` is the length of a cycle and `ramp` that of
+    /// the whole ramp, both in s.
     pub fn advance(&mut self, period: f64, ramp: f64) -> Vector4<f64> {
         self.elapsed += period;
-        // A ramp of no length is over in its first cycle.
+        // A ramp of zero length ends in its first cycle.
         let left = if self.elapsed < ramp { 1.0 - self.elapsed / ramp } else { 0.0 };
         self.from * left
     }

@@ -1,4 +1,4 @@
-//! The tendon controller: which of the report's figures turns desired tensions into pulls of the motors.
+//! The tendon controller: selects the figure of the report that converts desired tensions to pulls of the motors.
 
 use crate::control::tendons::figure9::Figure9;
 use crate::control::tendons::figure10::Figure10;
@@ -8,7 +8,8 @@ use crate::control::tendons::tension_integral::{TendonInput, TendonState, Tensio
 use crate::model::configuration::Scheme;
 use nalgebra::Vector4;
 
-/// One of the schemes. All share input, memory and result: pulls at the tendon, N, within the limit of the motors.
+/// One of the schemes. All have the same input, state and result. The result is the pulls at the tendons, N, within the
+/// limits of the motors.
 #[derive(Clone, Debug)]
 pub(crate) enum TendonController {
     Figure9(Figure9),
@@ -29,7 +30,7 @@ impl TendonController {
         }
     }
 
-    /// Pulls, N.
+    /// Returns the pulls, N.
     pub fn pulls(&self, state: &mut TendonState, input: &TendonInput) -> Vector4<f64> {
         match self {
             Self::Figure9(scheme) => scheme.pulls(state, input),

@@ -1,19 +1,19 @@
-//! The box R^-1: tensions that give the joint torque, eqs. 18-20, within a lower and an upper bound.
+//! The box R^-1: tensions that produce the joint torque, eqs. 18-20, within a lower and an upper bound.
 
 use crate::model::Tendons;
 use crate::model::configuration::Unusable;
 use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
 
-/// Tensions for a joint torque.
+/// Tensions that produce a joint torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DistributedTensions {
-    /// N, each within the bounds: R `tensions` = `scale` tau.
+    /// Tensions, N, each within the bounds, with R `tensions` = `scale` tau.
     pub tensions: Vector4<f64>,
-    /// The part of the torque that the bounds let through, 0 to 1: the largest possible.
+    /// The largest fraction of the torque that the bounds permit, 0 to 1.
     pub scale: f64,
 }
 
-/// t = Q (tau, tau_g) with the least tau_g that keeps t >= t_min, and a tau scaled down where t would exceed t_max.
+/// t = Q (tau, tau_g) with the least tau_g that keeps t >= t_min. If t would exceed t_max, tau is scaled down.
 #[derive(Clone, Debug)]
 pub struct TensionDistribution {
     /// Q_i of eq. 17: joint torque, N cm, to tension, N.
@@ -22,25 +22,25 @@ pub struct TensionDistribution {
     ghost: Vector4<f64>,
     /// 1 / q_i4.
     inverse_ghost: Vector4<f64>,
-    /// q_i4 / q_j4.
+    /// q_i4 / q_j4, dimensionless.
     ratio: Matrix4<f64>,
-    /// t_min q_i4 / q_j4, N: tendon i without torque while tendon j is at t_min.
+    /// t_min q_i4 / q_j4, N: the tension of tendon i while tendon j is at t_min and the joint torque is zero.
     idle: Matrix4<f64>,
-    /// The tensions of a finger without torque, N.
+    /// Tensions at zero joint torque, N.
     at_rest: Vector4<f64>,
     minimum: f64,
     maximum: Vector4<f64>,
 }
 
-/// A distribution within the upper bounds of one cycle.
+/// The distribution with the upper bounds of one cycle.
 pub struct BoundedDistribution<'a> {
     of: &'a TensionDistribution,
     maximum: Vector4<f64>,
 }
 
 impl TensionDistribution {
-    /// Bounds in N: `minimum` of all tendons, `maximum` of each, by its own strength and its motor's. Refused unless
-    /// there are tensions within them that leave the joints without torque.
+    /// Constructs the distribution from bounds in N: `minimum` for all tendons, and `maximum` for each, which includes
+    /// the limit of its motor. Returns an error if no tensions within the bounds give zero joint torque.
     pub fn new(tendons: &Tendons, minimum: f64, maximum: Vector4<f64>) -> Result<Self, Unusable> {
         crate::control::number_checks::positive("tendon.minimum", &[minimum])?;
         crate::control::number_checks::positive("tendon.maximum", maximum.as_slice())?;
@@ -70,24 +70,25 @@ impl TensionDistribution {
         })
     }
 
-    /// Within the bounds and with no more than `limit`, N, in any tendon: what its motor can give now. A limit under
-    /// what the tendon of a finger without torque has counts as that: then no torque is let through that would raise
-    /// it.
+    /// Returns the distribution with no more than `limit`, N, in any tendon: the tension that its motor can give now. A
+    /// limit below the tension at zero joint torque is raised to that tension. The distribution then permits no torque
+    /// that would raise the tension further.
     pub fn below(&self, limit: &Vector4<f64>) -> BoundedDistribution<'_> {
         BoundedDistribution { of: self, maximum: self.maximum.inf(limit).sup(&self.at_rest) }
     }
 
-    /// [`BoundedDistribution::distribute`] with motors that give what the bounds ask for.
+    /// Returns [`BoundedDistribution::distribute`] without a limit by the motors.
     pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         self.below(&self.maximum).distribute(torques)
     }
 }
 
 impl BoundedDistribution<'_> {
-    /// The least tensions for tau, N cm, in eq. 20's sense.
+    /// Returns the least tensions, in the sense of eq. 20, for the joint torque tau, N cm.
     ///
-    /// With the tau_g of eq. 20 some tendon j is at t_min, and tendon i then has s (A_i - A_j q_i/q_j) + t_min q_i/q_j,
-    /// A = Q tau. That tau_g is the largest over j, so t_i <= t_max for all j is what bounds the scale s.
+    /// With the tau_g of eq. 20 some tendon j is at t_min. Tendon i then has s (A_i - A_j q_i/q_j) + t_min q_i/q_j,
+    /// where A = Q tau and s is the scale. That tau_g is the largest over all j, so t_i <= t_max must hold for every
+    /// pair i, j. These 16 conditions bound s.
     pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         let Self { of, maximum } = self;
         let wanted = of.from_torque * torques;
@@ -95,7 +96,7 @@ impl BoundedDistribution<'_> {
         for i in 0..4 {
             for j in 0..4 {
                 let added = wanted[i] - of.ratio[(i, j)] * wanted[j];
-                // Not negative, as no bound is below the tensions at rest.
+                // The headroom is not negative, because no bound is below the tensions at rest.
                 let headroom = maximum[i] - of.idle[(i, j)];
                 if added * scale > headroom {
                     scale = headroom / added;
@@ -104,7 +105,7 @@ impl BoundedDistribution<'_> {
         }
         let wanted = wanted * scale;
         let ghost_torque = (Vector4::repeat(of.minimum) - wanted).component_mul(&of.inverse_ghost).max();
-        // Eq. 20 leaves one tendon at t_min but for rounding, which must not put it below.
+        // By eq. 20 one tendon is at t_min. Rounding must not put it below.
         let tensions = (wanted + of.ghost * ghost_torque).map(|tension| tension.max(of.minimum));
         DistributedTensions { tensions, scale }
     }

@@ -1,32 +1,32 @@
-//! What tendon controllers see and remember, and the integral on the tension error that Figures 9 and 10 share, with
+//! Input and state of the tendon controllers, and the integral of the tension error that Figures 9 and 10 share, with
 //! its anti-windup.
 
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};
 
-/// What a tendon controller sees in one cycle.
+/// The input of a tendon controller in one cycle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TendonInput {
-    /// N.
+    /// Desired tensions, N.
     pub desired: Vector4<f64>,
-    /// N.
+    /// Measured tensions, N.
     pub measured: Vector4<f64>,
-    /// Low-passed speed of the motor side of each tendon, m/s; positive pulls in.
+    /// Low-pass filtered speed of the motor side of each tendon, m/s. Positive pulls in.
     pub speed: Vector4<f64>,
-    /// Where the integral must not grow: a slack tendon's tension says nothing about the motor.
+    /// Tendons whose integral must not grow: the tension of a slack tendon contains no information about the motor.
     pub slack: [bool; 4],
-    /// Largest pull of each motor now, N: of a warm one less than of a cold one.
+    /// Largest pull of each motor now, N. It is lower for a warm motor than for a cold one.
     pub limit: Vector4<f64>,
-    /// The pull that acted until `measured` was measured, N.
+    /// The pull that acted until `measured` was sampled, N.
     pub acted: Vector4<f64>,
 }
 
-/// The memory of a tendon controller.
+/// The state of a tendon controller.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct TendonState {
-    /// N.
+    /// Integral of the tension error, N at the tendon.
     pub integral: Vector4<f64>,
-    /// Estimated tension over the pull that was commanded for it, with Figure 11.
+    /// Estimate of Figure 11: the quotient of a tension and the pull commanded for it.
     pub ratio: Vector4<f64>,
 }
 
@@ -36,10 +36,10 @@ impl Default for TendonState {
     }
 }
 
-/// K_TI / s.
+/// The integral K_TI / s.
 #[derive(Clone, Debug)]
 pub(crate) struct TensionIntegral {
-    /// K_TI over the rate: 1 a cycle.
+    /// K_TI divided by the rate, per cycle.
     gain: f64,
 }
 
@@ -48,8 +48,8 @@ impl TensionIntegral {
         Self { gain: gain / rate }
     }
 
-    /// Adds the integral to `rest`, the pull without it, N. Where the motor is at its limit the integral does not grow
-    /// further into it, and where the limit has come down to a warm motor the integral comes down with it.
+    /// Adds the integral to `rest`, the pull without it, N. While the motor is at its limit, the integral does not grow
+    /// further in that direction. When a warm motor's limit falls, the integral is reduced with it.
     pub fn complete(&self, state: &mut TendonState, input: &TendonInput, rest: &Vector4<f64>) -> Vector4<f64> {
         Vector4::from_fn(|tendon, _| {
             let limit = input.limit[tendon];
@@ -57,7 +57,7 @@ impl TensionIntegral {
             let before = state.integral[tendon];
             let mut integral = before + self.gain * error;
             if input.slack[tendon] {
-                // What it had learnt to give way may be forgotten.
+                // A negative integral may still return to zero.
                 integral = integral.min(before.max(0.0));
             }
             let pull = rest[tendon] + integral;

@@ -1,9 +1,9 @@
-//! Gains that were tuned for the default finger, by scheme and rate.
+//! Gains tuned for the default finger, by scheme and rate.
 
 use crate::control::rate_table::{Row, Tuned, at};
 use crate::model::configuration::Scheme;
 
-/// The gains that a table has for several rates.
+/// The gains that the tables contain for several rates.
 /// [`ConfiguredController`](crate::model::configuration::ConfiguredController) documents their meaning and units.
 #[derive(Clone, Copy)]
 pub(super) struct TunedGains {
@@ -28,7 +28,7 @@ impl Tuned for TunedGains {
     }
 }
 
-/// Found by experiment with the finger of the default configuration.
+/// Found by experiment with the default finger.
 const FIGURE_9: [Row<TunedGains>; 3] = [
     (
         500.0,
@@ -101,8 +101,8 @@ const FIGURE_10: [Row<TunedGains>; 3] = [
     ),
 ];
 
-/// The rows for 500 and 2000 Hz come from a random search of 50 rows. It looked for the smallest largest eigenvalue of
-/// the one-cycle map over 40 poses at 1, 3 and 6 N/cm.
+/// The rows for 500 and 2000 Hz are the best of 50 random rows: those with the smallest worst-case eigenvalue of the
+/// one-cycle map over 40 poses at 1, 3 and 6 N/cm.
 const FIGURE_11: [Row<TunedGains>; 3] = [
     (
         500.0,
@@ -140,11 +140,11 @@ const FIGURE_11: [Row<TunedGains>; 3] = [
 ];
 
 impl TunedGains {
-    /// The gains of a scheme at `rate`, Hz.
+    /// Returns the gains of a scheme at `rate`, Hz.
     pub fn of(scheme: Scheme, rate: f64) -> Self {
         let table = match scheme {
             Scheme::Figure9 => &FIGURE_9,
-            // State feedback takes up slack with Figure 10.
+            // State feedback takes up slack with the gains of Figure 10.
             Scheme::Figure10 | Scheme::StateFeedback => &FIGURE_10,
             Scheme::Figure11 => &FIGURE_11,
         };
