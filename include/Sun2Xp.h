@@ -67,6 +67,7 @@
        EDOM     Kx not symmetric, or with a negative eigenvalue; a normal of length zero
        EIO      the finger is faulted: it has stopped by itself
        ENOTSUP  not for a finger on a real port
+       ESHUTDOWN  the process is exiting, and the hand is closed (chapter 6)
        others   a configuration file, a port, or enforced real time: what the system
                 said, or the nearest
 
@@ -161,8 +162,9 @@
 
    Signals: the servo threads block all signals, so the planner's alarms and handlers
    are served by the planner's own threads. A signal handler may call StopHand, and no
-   other call. One that calls exit, which C does not promise to work, ends the program;
-   where it broke into a call the boards end the motion instead of CloseHand.
+   other call. C does not promise that exit works in a signal handler. If a handler calls
+   it nevertheless, the library closes the hand. If the signal interrupted OpenHand or
+   CloseHand, the process may end before that is done, and then the boards end the motion.
 
    The planner's arrays, structs and texts may lie in pages that its own handler of SIGSEGV
    or SIGBUS makes accessible when a call first touches them.
@@ -179,8 +181,9 @@
    signal handler may jump out of that wait (siglongjmp). The call then goes on to its
    end by itself: until then OpenHand is refused with EBUSY, and CloseHand waits.
 
-   Undefined: to jump out of any other call, to leave any call by pthread_exit, and in
-   C++ to throw an exception out of a signal handler that broke into a call.
+   Undefined: to jump out of any other call (longjmp, siglongjmp); to call pthread_exit in
+   a signal handler that interrupted a call; and in C++ to throw an exception out of such a
+   handler.
 
    Memory: OpenHand takes what the servos, CloseHand and all other calls need. Where
    malloc returns NULL afterwards the hand goes on, these calls work, and CloseHand closes
@@ -217,10 +220,17 @@
    the planner then opens under these numbers are not touched. CloseHand and OpenHand
    start again.
 
-   Exit: a planner that exits without CloseHand has it called. One that is killed, or
-   calls _exit, leaves the motors to the boards, which hear no more commands and go
-   to the configured end state. A process whose last thread ends by pthread_exit with
-   a hand open is ended within some seconds, as by exit (0). dlclose leaves library and hand as they are.
+   Exit: when a planner exits with a hand open, an exit handler of the library brings the
+   fingers to their end state, as CloseHand does. The first OpenHand registers that handler
+   (atexit). Exit handlers of the planner that are registered later run before it and find
+   the hand open. Those that are registered earlier run after it and find the hand closed:
+   calls that only read still work, calls that would open or move a hand are refused with
+   ESHUTDOWN, and CloseHand returns 0.
+
+   A planner that is killed, or calls _exit, leaves the motors to the boards, which receive
+   no more commands and go to the configured end state. When the last thread of a process
+   ends by pthread_exit with a hand open, the library ends the process within some seconds,
+   as by exit (0). dlclose does not unload the library, and the hand stays open.
 
 
    7. SERVO AND REAL TIME

@@ -111,6 +111,15 @@ fn the_process_ends_with_the_last_thread_of_the_planner() {
 }
 
 #[test]
+fn exit_handlers_command_the_hand_only_while_it_is_open() {
+    let bench = Bench::new();
+    let program = bench.build(c_compiler(), &[STRICT, &["-std=c99"]].concat(), &["exiting.c"]);
+    let run = bench.run(Command::new(&program));
+    assert_eq!(run.status.code(), Some(7), "{}", said(&run));
+    assert_eq!(String::from_utf8_lossy(&run.stdout), "before\nafter\n");
+}
+
+#[test]
 fn locked_memory_is_what_the_readme_says_and_is_unlocked_at_close() {
     let readme = fs::read_to_string(c::root().join("README.md")).expect("README.md");
     let readme: String = readme.split_whitespace().collect::<Vec<_>>().join(" ");

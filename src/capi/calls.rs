@@ -94,7 +94,7 @@ pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
     guarded("SendPos", || {
         // SAFETY: the manual's contract: null, or the array of the synopsis.
         let joints = unsafe { load::<f32, 3>(Pos, "Pos") }?;
-        default_hand::with(|hand| hand.send_position(i, joints.map(f64::from)))
+        default_hand::command(|hand| hand.send_position(i, joints.map(f64::from)))
     })
 }
 
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
     guarded("SendPos", || {
         // SAFETY: the manual's contract: null, or the array of the synopsis.
         let joints = unsafe { load::<f64, 3>(Pos, "Pos") }?;
-        default_hand::with(|hand| hand.send_position(i, joints))
+        default_hand::command(|hand| hand.send_position(i, joints))
     })
 }
 
@@ -149,7 +149,7 @@ pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
     guarded("SendKx", || {
         // SAFETY: the manual's contract: null, or the array of the synopsis.
         let entries = unsafe { load::<f32, 9>(Kx, "Kx") }?;
-        default_hand::with(|hand| hand.send_stiffness(i, rows(entries.map(f64::from))))
+        default_hand::command(|hand| hand.send_stiffness(i, rows(entries.map(f64::from))))
     })
 }
 
@@ -162,7 +162,7 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
     guarded("SendKx", || {
         // SAFETY: the manual's contract: null, or the array of the synopsis.
         let entries = unsafe { load::<f64, 9>(Kx, "Kx") }?;
-        default_hand::with(|hand| hand.send_stiffness(i, rows(entries)))
+        default_hand::command(|hand| hand.send_stiffness(i, rows(entries)))
     })
 }
 

@@ -66,7 +66,7 @@ pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
     guarded("SendTip", || {
         // SAFETY: the manual's contract: null, or the array of the synopsis.
         let tip = unsafe { load::<f64, 3>(Tip, "Tip") }?;
-        default_hand::with(|hand| hand.send_tip(i, tip))
+        default_hand::command(|hand| hand.send_tip(i, tip))
     })
 }
 
@@ -154,9 +154,9 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
             1 => Contact::frictionless_point(unsafe { load::<f64, 1>(K, "K") }?[0], normal()?),
             3 => Contact::hard_finger(Matrix3::from_row_slice(&unsafe { load::<f64, 9>(K, "K") }?)),
             4 => Contact::soft_finger(Matrix4::from_row_slice(&unsafe { load::<f64, 16>(K, "K") }?), normal()?),
-            _ => return default_hand::with(|hand| hand.report(i).and(Err(HandError::NoSuchContact(D)))),
+            _ => return default_hand::command(|hand| hand.report(i).and(Err(HandError::NoSuchContact(D)))),
         };
-        default_hand::with(|hand| -> Result<(), HandError> {
+        default_hand::command(|hand| -> Result<(), HandError> {
             // The finger's number is looked at first.
             hand.report(i)?;
             hand.send_contact(i, contact.map_err(|source: ContactError| HandError::Contact { finger: i, source })?)
@@ -196,7 +196,7 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 /// Threads: any. Never waits for a servo; about 100 ns.
 #[unsafe(no_mangle)]
 pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
-    guarded("SendDamping", || default_hand::with(|hand| hand.send_damping(i, Ratio)))
+    guarded("SendDamping", || default_hand::command(|hand| hand.send_damping(i, Ratio)))
 }
 
 /// AdjustFinger - change the configuration of a finger while it runs
@@ -241,7 +241,7 @@ pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
         // SAFETY: not null, and a string by the manual's contract.
         let keys = unsafe { CStr::from_ptr(Keys) }.to_owned();
         Ok(move || {
-            default_hand::with(|hand| -> Result<(), HandError> {
+            default_hand::command(|hand| -> Result<(), HandError> {
                 hand.report(i)?;
                 let reason = "is not UTF-8".to_string();
                 hand.adjust(i, keys.to_str().map_err(|_| HandError::Adjustment { finger: i, line: 1, reason })?)
@@ -273,7 +273,7 @@ pub unsafe extern "C" fn PushFinger(i: c_int, Force: *const f64) -> c_int {
     guarded("PushFinger", || {
         // SAFETY: the manual's contract: null, or the array of the synopsis.
         let force = unsafe { load::<f64, 3>(Force, "Force") }?;
-        default_hand::with(|hand| hand.push_simulated(i, force))
+        default_hand::command(|hand| hand.push_simulated(i, force))
     })
 }
 

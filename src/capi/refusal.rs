@@ -29,6 +29,11 @@ pub(super) enum Refusal {
     NoHand,
     #[error("the hand is open already, and goes on: call CloseHand before OpenHand")]
     AlreadyOpen,
+    #[error(
+        "the process is exiting, and the library has closed the hand: make this call before exit is called or main \
+         returns, or in an exit handler that is registered after OpenHand"
+    )]
+    Exiting,
     #[error("another thread is opening or closing the hand: wait until its call has returned")]
     Busy,
     #[error(
@@ -76,6 +81,7 @@ impl Refusal {
             Self::SmallStruct { .. } => libc::EINVAL,
             Self::NoHand => libc::ENODEV,
             Self::AlreadyOpen | Self::Busy => libc::EBUSY,
+            Self::Exiting => libc::ESHUTDOWN,
             Self::NoMemory => libc::ENOMEM,
             Self::Panicked(_) => libc::EIO,
             Self::Hand(error) => error.errno(),
