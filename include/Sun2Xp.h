@@ -170,7 +170,9 @@
    or SIGBUS makes accessible when a call first touches them.
 
    Standard error: where nobody reads it, and where it is a file that may not grow, lines
-   of the library are lost. The planner gets no SIGPIPE and no SIGXFSZ for them.
+   of the library are lost. The planner gets no SIGPIPE and no SIGXFSZ for them. A call that
+   prints a line waits until it is written. So a full pipe or a stopped terminal (Control-S)
+   holds up OpenHand and the first refusal of each kind, but no servo.
 
    Stack: a call needs up to 16 KiB of the stack of its thread. The thread-local data of
    the planner (__thread) are in the library's threads too. They make its stacks larger,
@@ -246,6 +248,12 @@
 
    sun2xp doctor examines a machine and says what to change. GetTiming says where the
    time of a cycle goes.
+
+   RLIMIT_RTTIME (ulimit -R) limits how long a thread under SCHED_FIFO may compute without
+   waiting. The system ends a process that exceeds it, by SIGXCPU at the soft limit and by
+   SIGKILL at the hard one. A servo waits in every cycle, but the system counts in ticks of
+   up to 10 ms. Set the limit to 100000 (microseconds) or more, or to unlimited, or
+   set hand.real_time to "ignore".
 
 
    8. CONFIGURATION
@@ -842,8 +850,9 @@ struct FingerStatus {
      */
     double Calibration;
     /*
-     1: every servo thread has its memory locked, so that it never waits for a page. 0: one
-     has not.
+     1: OpenHand has locked the memory of every servo thread, so that it never waits for a
+     page. 0: one is not locked. If the planner calls munlockall later, this memory is
+     unlocked too, and this member stays 1. CloseHand and OpenHand lock it again.
      */
     int MemoryLocked;
     /*

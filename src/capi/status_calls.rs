@@ -77,8 +77,9 @@ pub struct FingerStatus {
     pub DamagedFrames: c_ulong,
     /// How much of a calibration is done, 0 to 1. 0 if the finger is not being calibrated.
     pub Calibration: f64,
-    /// 1: every servo thread has its memory locked, so that it never waits for a page. 0: one
-    /// has not.
+    /// 1: OpenHand has locked the memory of every servo thread, so that it never waits for a
+    /// page. 0: one is not locked. If the planner calls munlockall later, this memory is
+    /// unlocked too, and this member stays 1. CloseHand and OpenHand lock it again.
     pub MemoryLocked: c_int,
     /// 1: every servo thread runs on its configured core, or has none. 0: one does not.
     pub OnCore: c_int,

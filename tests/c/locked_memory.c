@@ -25,6 +25,7 @@ static long locked(void)
 }
 
 static long most;
+static int unlocks;
 
 static void *open_and_close(void *unused)
 {
@@ -39,6 +40,11 @@ static void *open_and_close(void *unused)
     CHECK(locked() > 100);
     if (locked() > most)
         most = locked();
+    if (unlocks) {
+        /* MemoryLocked says what OpenHand has done. */
+        CHECK(munlockall() == 0 && locked() == 0);
+        CHECK(GetStatus(1, &Status) == 0 && Status.MemoryLocked == 1);
+    }
     CHECK(CloseHand() == 0);
     free(own);
     return unused;
@@ -64,5 +70,10 @@ int main(int count, char **arguments)
     }
     printf("%ld kB locked while a hand is open\n", most - before);
     CHECK(most - before <= limit);
+
+    unlocks = 1;
+    open_and_close(NULL);
+    unlocks = 0;
+    open_and_close(NULL);
     return 0;
 }

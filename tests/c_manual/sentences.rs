@@ -43,6 +43,13 @@ fn the_calls_that_a_forked_child_may_make_are_named() {
     assert_eq!(sorted(between(&chapter, "is refused with EPERM, except ", "; the parent")), sorted(works));
 }
 
+/// tests/c/locked_memory.c shows that the member stays 1.
+#[test]
+fn the_member_for_locked_memory_says_what_munlockall_does() {
+    let text = Manual::read().member("FingerStatus", "MemoryLocked");
+    assert!(text.contains("munlockall later, this memory is unlocked too, and this member stays 1"), "{text}");
+}
+
 /// Members that count the same say the same. The status counts skipped periods up to now, and the timing up to the
 /// last cycle.
 #[test]
