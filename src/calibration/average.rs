@@ -1,13 +1,13 @@
-//! Means over a stretch of time.
+//! Means over a period of time.
 
 use nalgebra::Vector4;
 
-/// Mean and spread of four values.
+/// Mean and standard deviation of four values.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Average {
     count: f64,
     sum: Vector4<f64>,
-    /// Relative to the first value: the squares of large counts would lose digits.
+    /// Values are relative to the first one, because the squares of large counts would lose digits.
     first: Vector4<f64>,
     squares: Vector4<f64>,
 }

@@ -1,9 +1,9 @@
-//! Gains of the gauges relative to each other: the tensions of a free finger lie along the null vector of R.
+//! Determines the gains of the gauges relative to each other from the tensions of a free finger.
 //!
-//! R G^-1 t = g + friction, with what the gauges show t, their gains G and gravity g. At two levels of common tension,
-//! in the same poses, g is the same and falls out of the difference; friction falls out of the mean of two ways in
-//! opposite directions. So t_high - t_low is along G n, n the null vector. That tells G but for one common factor,
-//! which no free finger shows.
+//! Let t be the tensions that the gauges report, G their gains and g the torque of gravity. Then R G^-1 t = g +
+//! friction. Gravity is the same at two levels of common tension in the same pose, so it cancels in the difference
+//! between them. Friction cancels in the mean of two motions in opposite directions. So t_high - t_low is along G n,
+//! with n the null vector of R. This gives G up to a common factor, which a free finger does not show.
 
 use super::average::Average;
 use super::instruments::Instruments;
@@ -13,40 +13,42 @@ use super::step::Sample;
 use crate::model::Part;
 use nalgebra::{Vector3, Vector4};
 
-/// How far the joints are led to both sides, rad, and how fast, rad/s.
+/// Amplitude of the joint motion to both sides, rad, and its speed, rad/s.
 pub(super) const SWING: f64 = 0.15;
 const SPEED: f64 = 0.3;
-/// Left out after every change of direction, s.
+/// Samples are ignored for this time after every change of direction, s.
 const RUN_UP: f64 = 0.4;
-/// The higher level: part of t_max in the tendon that pulls most. Rising, N/s.
+/// The higher level, as a part of t_max in the tendon with the largest pretension, and the rate of its rise, N/s.
 const HIGH: f64 = 0.4;
 const RISING: f64 = 10.0;
-/// Gauges do not differ by more.
+/// Plausible range of a gauge's relative gain.
 const LEAST: f64 = 0.5;
 const MOST: f64 = 2.0;
-/// A joint that pulls at its limit for so long is blocked, s.
+/// A joint whose torque stays at its limit for this time is blocked, s.
 const BLOCKED: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Balance {
     centre: Vector3<f64>,
-    /// 0: to one side and up in tension; 1 and 2: to and fro; the same again at the higher level.
+    /// 0: to one side while the tension rises. 1 and 2: to the other side and back. 3 to 5: the same at the higher
+    /// level.
     leg: usize,
     seconds: f64,
     strained: f64,
-    /// N, of each leg that is measured.
+    /// Mean tensions of each measured leg, N.
     low: [Average; 2],
     high: [Average; 2],
 }
 
 impl Balance {
-    /// About `centre`, rad, which must have room of [`SWING`] to both sides.
+    /// Creates a comparison about the pose `centre`, rad, which must leave room of [`SWING`] on both sides.
     pub fn new(centre: Vector3<f64>) -> Self {
         let none = [Average::default(); 2];
         Self { centre, leg: 0, seconds: 0.0, strained: 0.0, low: none, high: none }
     }
 
-    /// Leads the joints on; what the gauges' newtons must be multiplied by, with a mean of 1, when done.
+    /// Moves the joints by one cycle. When done, returns the factors for the gauges' tensions. The mean of the factors
+    /// is 1.
     pub fn step(
         &mut self,
         instruments: &Instruments,
@@ -62,7 +64,7 @@ impl Balance {
         };
         let rise = RISING * instruments.period;
         lead.common += (level - lead.common).clamp(-rise, rise);
-        // 0: the run-up to a level.
+        // Leg 0 of a level only brings the finger there.
         let way = self.leg % 3;
         let target = self.centre.add_scalar(if way == 1 { -SWING } else { SWING });
         (0..3).for_each(|joint| lead.advance(joint, target[joint], SPEED * instruments.period));

@@ -1,4 +1,4 @@
-//! m_0 of eq. 28 from one pose that is known.
+//! Computes m_0 of eq. 28 from one known pose.
 
 use super::average::Average;
 use super::instruments::Instruments;
@@ -7,10 +7,10 @@ use super::standstill::Standstill;
 use super::step::Sample;
 use nalgebra::{Vector3, Vector4};
 
-/// s.
+/// Duration of a reading, s.
 const READING: f64 = 0.3;
 
-/// Counts and tensions of a finger at rest.
+/// Averages counts and tensions of a finger at rest.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reading {
     seconds: f64,
@@ -20,7 +20,7 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// Whether it is complete.
+    /// Adds one cycle. Returns whether the reading is complete.
     pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> bool {
         self.seconds += instruments.period;
         let (travel, tensions) = (instruments.travel(sample.feedback), instruments.tensions(sample.feedback));
@@ -30,7 +30,7 @@ impl Reading {
         self.seconds >= READING
     }
 
-    /// Refuses a finger that moved while it was read.
+    /// Refuses a finger that moved during the reading.
     pub fn still(&self) -> Result<(), Obstacle> {
         match self.standstill.moved() {
             None => Ok(()),
@@ -38,17 +38,17 @@ impl Reading {
         }
     }
 
-    /// N, by the offsets known when it was read.
+    /// Returns the mean tensions, N, with the offsets known at the time of the reading.
     pub fn tensions(&self) -> Vector4<f64> {
         self.tensions.mean()
     }
 
-    /// theta by the configured zero, rad; `offset`: what the tensions turned out to be too high by, N.
+    /// Returns theta by the configured zero, rad. `offset` is the error found later in the measured tensions, N.
     pub fn joints(&self, instruments: &Instruments, offset: &Vector4<f64>) -> Vector3<f64> {
         instruments.joints(&self.travel.mean(), &(self.tensions() - offset))
     }
 
-    /// The zeros with which the finger was at `joints`, rad.
+    /// Returns the encoder zeros that put the finger at `joints`, rad.
     pub fn zeros(
         &self,
         instruments: &Instruments,
@@ -58,7 +58,7 @@ impl Reading {
     ) -> [i32; 4] {
         let too_far = self.travel.mean() - instruments.travel_at(joints, &(self.tensions() - offset));
         let cm_per_count = instruments.radius.component_mul(&instruments.radians_per_count);
-        // A counter shows whole counts, rounded down: on the average half a count too few.
+        // A counter rounds down to whole counts, which is half a count too low on average.
         let counts = too_far.component_div(&cm_per_count).add_scalar(0.5);
         std::array::from_fn(|motor| configured[motor].wrapping_add(counts[motor].round() as i32))
     }

@@ -1,31 +1,31 @@
-//! What the routines find, and where it belongs in a finger's configuration.
+//! The results of the routines, and their place in a finger's configuration.
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Vector3, Vector4};
 
-/// `tendon.stiffness_tolerance` of what was identified. On the simulated finger it is right to 0.2 %; a real tendon is
-/// no straight spring.
+/// `tendon.stiffness_tolerance` after identification. On the simulated finger the identified stiffness is accurate to
+/// 0.2 %, but a real tendon is not a linear spring.
 const STIFFNESS_TOLERANCE: f64 = 0.03;
 
 /// Results of one routine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Findings {
-    /// Of [`Task::Signs`](super::Task::Signs).
+    /// Results of [`Task::Signs`](super::Task::Signs).
     Signs(Signs),
-    /// Of [`Task::Zero`](super::Task::Zero).
+    /// Results of [`Task::Zero`](super::Task::Zero).
     Zeros(Zeros),
-    /// Of [`Task::Identify`](super::Task::Identify).
+    /// Results of [`Task::Identify`](super::Task::Identify).
     Identified(Identified),
 }
 
-/// Which way motors, encoders and gauges count.
+/// Signs of motors, encoders and gauges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Signs {
     /// `motor.sign`.
     pub motor: [i8; 4],
     /// `encoder.sign`.
     pub encoder: [i8; 4],
-    /// +1 where the gauge's count rises with the tension: the sign of `gauge.newton_per_count`.
+    /// +1 if the gauge's count rises with the tension: the sign of `gauge.newton_per_count`.
     pub gauge: [i8; 4],
 }
 
@@ -36,9 +36,10 @@ pub struct Zeros {
     pub encoder: [i32; 4],
     /// `gauge.zero`.
     pub gauge: [f64; 4],
-    /// How far the joint angles were off before, rad.
+    /// Error of the joint angles before zeroing, rad.
     pub joint_error: Vector3<f64>,
-    /// Angle between the two stops of each joint less the configured one, rad; none where no stop was sought.
+    /// Measured minus configured angle between the two stops of each joint, rad. `None` if the routine did not move to
+    /// the stops.
     pub range_error: Option<Vector3<f64>>,
 }
 
@@ -47,17 +48,17 @@ pub struct Zeros {
 pub struct Identified {
     /// `tendon.stiffness`, N/cm.
     pub tendon_stiffness: Vector4<f64>,
-    /// How well the four stiffnesses explain the travel of the motors: rms of what is left, cm.
+    /// How well the four stiffnesses explain the travel of the motors: rms residual, cm.
     pub travel_residual: f64,
     /// `friction.motor_coulomb`, N cm of commanded torque.
     pub motor_coulomb: Vector4<f64>,
     /// `friction.conduit`.
     pub conduit: Vector4<f64>,
-    /// What `gauge.newton_per_count` is to be multiplied by. Relative to each other the gains are measured; their mean
-    /// is taken from `gauge.reference`.
+    /// Factors for `gauge.newton_per_count`. The gains relative to each other are measured; their mean comes from
+    /// `gauge.reference`.
     pub gauge_gain: Vector4<f64>,
-    /// True torque of each motor over the commanded one, if the gauges are right by now: without a known weight a
-    /// common error of the gauges cannot be told from one of the motors.
+    /// Ratio of each motor's true torque to its commanded torque, if the gauges are right. Without a known weight, a
+    /// common error of the gauges cannot be distinguished from a common error of the motors.
     pub motor_ratio: Vector4<f64>,
     /// `friction.joint_coulomb`, N cm.
     pub joint_coulomb: Vector3<f64>,
@@ -66,7 +67,7 @@ pub struct Identified {
 }
 
 impl Identified {
-    /// The same with every tension `factor` times larger.
+    /// Returns the results that follow if every tension is larger by `factor`.
     pub(super) fn scaled(self, factor: f64) -> Self {
         Self {
             tendon_stiffness: self.tendon_stiffness * factor,
@@ -81,7 +82,7 @@ impl Identified {
 }
 
 impl Findings {
-    /// Writes the results to where they belong.
+    /// Writes the results into a finger's configuration.
     pub fn apply(&self, finger: &mut ConfiguredFinger) {
         match self {
             Self::Signs(signs) => {

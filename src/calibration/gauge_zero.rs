@@ -1,5 +1,5 @@
-//! Gauge offsets with the motors off. Friction in motor and conduit keeps a tendon under tension though its motor is
-//! off, so every motor first lets its tendon out.
+//! Determines the gauge offsets with the motors off. Friction in motor and conduit keeps a tendon tight although its
+//! motor is off, so every motor first lets its tendon out.
 
 use super::average::Average;
 use super::instruments::Instruments;
@@ -9,20 +9,19 @@ use crate::control::signals::Activity;
 use nalgebra::Vector4;
 use std::ops::ControlFlow::{self, Break, Continue};
 
-/// How far every tendon is let out, cm: several times the stretch of the pretension.
+/// Length by which every tendon is let out, cm: several times its stretch under the pretension.
 const LET_OUT: f64 = 0.15;
-/// Part of t_min that a motor pushes with to let out: more than its friction, which a motor that shall control t_min
-/// has.
+/// Force of a motor that lets its tendon out, as a part of t_min. A motor that can control t_min has less friction.
 const PUSH: f64 = 0.8;
-/// s.
+/// Time limit for letting the tendons out, then settling time and averaging time, s.
 const LETTING_OUT_LIMIT: f64 = 5.0;
 const SETTLING: f64 = 0.2;
 const AVERAGING: f64 = 0.5;
-/// N rms. Gauge noise is a tenth of it.
+/// Largest permitted noise of a gauge, N rms. Normal noise is a tenth of it.
 const LARGEST_SPREAD: f64 = 0.3;
-/// N.
+/// Largest permitted offset, N.
 const LARGEST_OFFSET: f64 = 10.0;
-/// Part of t_min that a gauge must fall by.
+/// Least change of a gauge between a tight and a slack tendon, as a part of t_min.
 const LEAST_FALL: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug)]
@@ -30,19 +29,19 @@ pub(super) struct GaugeZero {
     seconds: f64,
     /// Travel at the beginning, cm.
     start: Option<Vector4<f64>>,
-    /// Tensions at the beginning, N, by the configured zero, where the tendons were under tension.
+    /// Tensions at the beginning by the configured zeros, N. `None` if the tendons were slack.
     tight: Option<Vector4<f64>>,
     slack: Average,
     out_at: Option<f64>,
 }
 
 impl GaugeZero {
-    /// `tight`: tensions while the tendons were under tension, N, by the configured zeros, if they were.
+    /// `tight`: tensions measured by the configured zeros while the tendons were tight, N. `None` if they were not.
     pub fn new(tight: Option<Vector4<f64>>) -> Self {
         Self { seconds: 0.0, start: None, tight, slack: Average::default(), out_at: None }
     }
 
-    /// The activity, or the offsets, N, when done.
+    /// Runs one cycle. Returns the activity, or the gauge offsets, N, when done.
     pub fn step(
         &mut self,
         instruments: &Instruments,

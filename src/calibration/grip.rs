@@ -1,5 +1,5 @@
-//! Whether something holds a limp finger in its pose: each joint is pushed lightly both ways, as in a search for stops,
-//! and a joint that is held does not give way.
+//! Checks whether something holds a limp finger in its pose. Each joint is pushed lightly both ways, as in a search for
+//! stops. A joint that is held does not yield.
 
 use super::instruments::Instruments;
 use super::joint_lead::JointLead;
@@ -10,34 +10,34 @@ use crate::control::signals::Activity;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// How far a joint that is held may give way, rad. A hand is no vice.
+/// The largest angle by which a held joint may yield, rad. A hand that holds a finger is compliant.
 const GIVES_WAY: f64 = 0.02;
-/// How long a joint must bear the whole push, s.
+/// Time for which each joint is pushed with the full torque, s.
 const PUSHING: f64 = 0.1;
-/// How long the finger comes to rest afterwards, s.
+/// Time for the finger to come to rest afterwards, s.
 const RESTING: f64 = 0.3;
 
-/// The pushes, one after the other.
+/// The sequence of pushes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grip {
     lead: JointLead,
-    /// Where the joints were in the beginning, rad.
+    /// Joint angles at the beginning, rad.
     start: Vector3<f64>,
-    /// 0 to 5: the joint and the direction; 6: none any more.
+    /// Joint and direction of the push: 0 to 5. 6 when all pushes are done.
     push: usize,
-    /// Of the whole push, or of rest, s.
+    /// Time at the full torque, or at rest, s.
     seconds: f64,
 }
 
 impl Grip {
-    /// `torque`: the largest that pushes a joint, N cm.
+    /// `torque`: the largest torque of a push, N cm.
     pub fn new(instruments: &Instruments, sample: &Sample, torque: f64) -> Self {
         let lead = JointLead::new(instruments, sample, torque);
         Self { lead, start: lead.joints, push: 0, seconds: 0.0 }
     }
 
-    /// What the finger does, and whether all joints were pushed and the finger is at rest again. `speed` of the pushes,
-    /// rad/s.
+    /// Runs one cycle. Returns the activity, and whether all joints were pushed and the finger is at rest again.
+    /// `speed` is the speed of the pushes, rad/s.
     pub fn step(
         &mut self,
         instruments: &Instruments,

@@ -1,4 +1,4 @@
-//! Gains of gauges, friction of joints and motors, stiffness of tendons.
+//! Identifies the gains of the gauges, the friction of joints and motors, and the stiffness of the tendons.
 
 mod phases;
 
@@ -22,7 +22,7 @@ pub(super) struct Identification {
     speed: f64,
     stops: (Vector3<f64>, Vector3<f64>),
     reference: GaugeReference,
-    /// Where it began, rad.
+    /// Joint angles at the beginning, rad.
     start: Vector3<f64>,
     stop: Vector3<f64>,
     joint_coulomb: Vector3<f64>,
@@ -57,8 +57,8 @@ impl Identification {
         }
     }
 
-    /// Runs one cycle of the current phase. The phases follow each other in the order of the arms. `Seek`, `Swing` and
-    /// `Return` treat one joint after the other.
+    /// Runs one cycle of the current phase. The phases follow each other in the order of the match arms. `Seek`,
+    /// `Swing` and `Return` process one joint after the other.
     pub fn step(&mut self, instruments: &mut Instruments, sample: &Sample) -> Stepped {
         match self.phase {
             Phase::Tighten(take_up) => self.take_up_slack(take_up, instruments, sample),

@@ -1,4 +1,4 @@
-//! What every routine reads its finger with: the configured sensors and tendons.
+//! Converts the measurements of a finger for every routine, by the configured sensors and tendons.
 
 use crate::control::sensing::sensors::SensorScales;
 use crate::control::signals::Feedback;
@@ -8,36 +8,36 @@ use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use nalgebra::{Vector3, Vector4};
 
-/// The finger as it is configured, and the gauge offsets that have been found so far.
+/// The finger as configured, with the gauge offsets and gains found so far.
 #[derive(Clone, Debug)]
 pub(super) struct Instruments {
     sensors: SensorScales,
     pub tendons: Tendons,
     pub distribution: TensionDistribution,
-    /// N.
+    /// Pretension of each tendon, N.
     pub pretension: Vector4<f64>,
     /// 1/k, cm/N.
     compliance: Vector4<f64>,
     pub newton_per_count: Vector4<f64>,
     pub gauge_zero: Vector4<f64>,
-    /// Radians of a count, signed.
+    /// Radians per count, with sign.
     pub radians_per_count: Vector4<f64>,
-    /// cm of tendon for a radian of the motor.
+    /// cm of tendon per radian of the motor.
     pub radius: Vector4<f64>,
     /// The same with the sign of the motor's command, cm.
     pub signed_radius: Vector4<f64>,
     /// Largest pull of the weakest motor, N.
     pub strongest: f64,
-    /// What the configured gauge zero makes the tensions too high by, N.
+    /// Error of the tensions due to the configured gauge zero, N.
     pub offset: Vector4<f64>,
-    /// What the configured tensions must be multiplied by, as far as it is known.
+    /// Factors for the configured tensions, as far as known.
     pub gain: Vector4<f64>,
-    /// t_min, t_max, N.
+    /// t_min and t_max, N.
     pub minimum: f64,
     pub maximum: f64,
-    /// What leads the joints.
+    /// The controller that moves the joints.
     pub hold: JointHold,
-    /// Seconds of a cycle.
+    /// Duration of a cycle, s.
     pub period: f64,
 }
 
@@ -74,29 +74,31 @@ impl Instruments {
         })
     }
 
-    /// Travel of each motor at the tendon, cm, from the configured zero; positive pulls in.
+    /// Returns the travel of each motor at the tendon from the configured zero, cm. Positive values pull the tendon in.
     pub fn travel(&self, feedback: &Feedback) -> Vector4<f64> {
         self.sensors.motor_angles(feedback).component_mul(&self.radius)
     }
 
-    /// Tensions with the gauge offsets and gains known so far, N.
+    /// Returns the tensions with the gauge offsets and gains known so far, N.
     pub fn tensions(&self, feedback: &Feedback) -> Vector4<f64> {
         (self.sensors.tensions(feedback) - self.offset).component_mul(&self.gain)
     }
 
-    /// theta, rad: eq. 27 with the stretch taken out.
+    /// Returns theta, rad, by eq. 27 with the stretch of the tendons subtracted.
     pub fn joints(&self, travel: &Vector4<f64>, tensions: &Vector4<f64>) -> Vector3<f64> {
         let stretch = (tensions - self.pretension).component_mul(&self.compliance);
         self.tendons.joints_from_travel() * (travel - stretch)
     }
 
-    /// Travel, cm, of the motors at joint angles `joints` and `tensions`, from the true zero: the way back.
+    /// Returns the travel of the motors, cm, at joint angles `joints` and `tensions`, from the true zero. This is the
+    /// inverse of [`joints`](Self::joints).
     pub fn travel_at(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>) -> Vector4<f64> {
         self.tendons.r.tr_mul(joints) + (tensions - self.pretension).component_mul(&self.compliance)
     }
 
-    /// What the tendon controller, which knows nothing of the offsets and gains yet, must be asked for.
-    pub fn ask(&self, tensions: Vector4<f64>) -> Vector4<f64> {
+    /// Converts tensions to those that the tendon controller must be given, which does not yet know the offsets and
+    /// gains.
+    pub fn for_controller(&self, tensions: Vector4<f64>) -> Vector4<f64> {
         tensions.component_div(&self.gain) + self.offset
     }
 }

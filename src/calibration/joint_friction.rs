@@ -1,7 +1,7 @@
-//! Friction of the joints: the torque R t that it takes to move one to and fro, slowly and less slowly.
+//! Determines the friction of the joints from the torque R t that moves a joint back and forth at two speeds.
 //!
-//! (R t)_j = g + s (C + b |v|): Coulomb and viscous friction are told apart by the two speeds, and what does not change
-//! with direction (gravity) is left out.
+//! (R t)_j = g + s (C + b |v|), with s the sign of the motion. The two speeds separate Coulomb friction C from viscous
+//! friction b. Gravity g does not change with direction, and is discarded.
 
 use super::instruments::Instruments;
 use super::joint_lead::JointLead;
@@ -11,26 +11,26 @@ use super::step::Sample;
 use crate::model::Part;
 use nalgebra::Vector3;
 
-/// Speeds, rad/s, and how far each goes, rad.
+/// Speed, rad/s, and amplitude, rad, of each motion.
 const SWINGS: [(f64, f64); 2] = [(0.15, 0.4), (0.6, 0.8)];
 /// Distance kept from the stop, rad.
 const CLEAR: f64 = 0.1;
-/// Left out after every change of direction, s: an extended finger swings for so long, and its inertia takes as much
-/// torque as its friction.
+/// Samples are ignored for this time after every change of direction, s. An extended finger oscillates for this time,
+/// and its inertia then needs as much torque as its friction.
 const RUN_UP: f64 = 0.5;
-/// A joint that pulls at its limit for so long is blocked, s.
+/// A joint whose torque stays at its limit for this time is blocked, s.
 const BLOCKED: f64 = 0.3;
-/// rad/s.
+/// Speed of the motion away from the stop and back, rad/s.
 const IN_BETWEEN: f64 = 0.7;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointFriction {
     joint: usize,
-    /// Its lower stop, rad by the configured zero.
+    /// The lower stop of the joint, rad by the configured zero.
     stop: f64,
-    /// Which leg of the way: clear of the stop, to and fro slowly, to and fro faster, back to the stop.
+    /// 0: away from the stop. 1 and 2: back and forth slowly. 3 and 4: back and forth faster. 5: back to the stop.
     leg: usize,
-    /// Where the anchor was at the beginning of the leg.
+    /// Anchor at the beginning of the leg, rad.
     from: Option<f64>,
     strained: f64,
     fit: LeastSquares<3>,
@@ -41,7 +41,7 @@ impl JointFriction {
         Self { joint, stop, leg: 0, from: None, strained: 0.0, fit: LeastSquares::new() }
     }
 
-    /// Leads the joint on; C (N cm) and b (N cm s/rad) when done.
+    /// Moves the joint by one cycle. When done, returns C, N cm, and b, N cm s/rad.
     pub fn step(
         &mut self,
         instruments: &Instruments,

@@ -1,5 +1,5 @@
-//! Leading the joints: a soft spring in joint space whose torque is bounded, and whose anchor does not run away from a
-//! joint that is held.
+//! Moves the joints by a soft spring in joint space. The torque of the spring is limited, and its anchor stays close to
+//! a joint that cannot move.
 
 use super::instruments::Instruments;
 use super::step::Sample;
@@ -7,33 +7,33 @@ use crate::control::signals::Activity;
 use crate::control::spring::joint_hold::HOLDING_STIFFNESS;
 use nalgebra::{Vector3, Vector4};
 
-/// Time constant of the low-pass on the joints, s: for supervision, not for the loop.
+/// Time constant of the low-pass filter on the joints, s. The filter is for supervision, not for control.
 const SMOOTHING: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointLead {
     pub anchor: Vector3<f64>,
-    /// How far the anchor moved in this cycle, rad.
+    /// Motion of the anchor in this cycle, rad.
     moved: Vector3<f64>,
-    /// Smoothed, rad, by the configured zero.
+    /// Filtered joint angles by the configured zero, rad.
     pub joints: Vector3<f64>,
-    /// Smoothed, N.
+    /// Filtered tensions, N.
     tensions: Vector4<f64>,
     /// Largest torque, N cm.
     limit: f64,
-    /// Tension beyond what the torques need, N in the least pulled tendon.
+    /// Common tension in addition to that of the torques, N in the tendon with the smallest pretension.
     pub common: f64,
 }
 
 impl JointLead {
-    /// Holds the pose that the finger is in.
+    /// Holds the current pose of the finger.
     pub fn new(instruments: &Instruments, sample: &Sample, limit: f64) -> Self {
         let tensions = instruments.tensions(sample.feedback);
         let joints = instruments.joints(&instruments.travel(sample.feedback), &tensions);
         Self { anchor: joints, moved: Vector3::zeros(), joints, tensions, limit, common: 0.0 }
     }
 
-    /// Takes a measurement in.
+    /// Adds the measurement of a cycle.
     pub fn measure(&mut self, instruments: &Instruments, sample: &Sample) {
         self.moved = Vector3::zeros();
         let gain = (instruments.period / SMOOTHING).min(1.0);
@@ -51,17 +51,17 @@ impl JointLead {
         self.moved[joint] = self.anchor[joint] - before;
     }
 
-    /// Whether the torque of a joint is at its limit: it lags as far behind as it may.
+    /// Returns whether the torque of a joint is at its limit, because the joint lags the anchor as far as permitted.
     pub fn strained(&self, joint: usize) -> bool {
         (self.anchor[joint] - self.joints[joint]).abs() > 0.95 * self.limit / HOLDING_STIFFNESS
     }
 
-    /// What holds the joints at their anchors.
+    /// Returns the activity that holds the joints at their anchors.
     pub fn activity(&self, instruments: &Instruments, sample: &Sample) -> Activity {
-        // Against the anchor's own speed, so that a moving joint does not lag.
+        // The damping acts on the speed relative to the anchor, so that a moving joint does not lag.
         let slip = sample.report.joint_rates - self.moved / instruments.period;
         let torques = instruments.hold.torques(&(self.anchor - self.joints), &slip, self.limit);
         let common = instruments.pretension * (self.common / instruments.minimum);
-        Activity::Tense(instruments.ask(instruments.distribution.distribute(&torques).tensions + common))
+        Activity::Tense(instruments.for_controller(instruments.distribution.distribute(&torques).tensions + common))
     }
 }

@@ -1,4 +1,4 @@
-//! Linear least squares, sample by sample, in fixed memory.
+//! Linear least squares, updated with each sample, in fixed memory.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -23,14 +23,14 @@ impl<const N: usize> LeastSquares<N> {
         self.count += 1.0;
     }
 
-    /// a, and the rms of what it leaves; none where the samples do not determine it.
+    /// Returns a and the rms residual, or `None` if the samples do not determine a.
     pub fn solve(&self) -> Option<(SVector<f64, N>, f64)> {
-        // Scaled to a unit diagonal, so that one bound serves every unit.
+        // Scaled to a unit diagonal, so that one bound is valid for all units.
         let scale = self.matrix.diagonal().map(|entry| if entry > 0.0 { entry.sqrt().recip() } else { 0.0 });
         let scaled =
             SMatrix::<f64, N, N>::from_fn(|row, column| self.matrix[(row, column)] * scale[row] * scale[column]);
         let cholesky = scaled.cholesky()?;
-        // The smallest squared pivot of a unit matrix: what one column has that the others do not explain.
+        // The smallest squared pivot of the scaled matrix: the part of a column that the other columns do not explain.
         let least = cholesky.l().diagonal().map(|pivot| pivot * pivot).min();
         let a = cholesky.solve(&self.vector.component_mul(&scale)).component_mul(&scale);
         let left = (self.squares - a.dot(&self.vector)).max(0.0);

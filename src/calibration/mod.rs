@@ -1,8 +1,8 @@
-//! Zeroing and identification of a finger: routines that move it and learn from what it does.
+//! Zeroing and identification of a finger. The routines move the finger and evaluate its response.
 //!
-//! Each is a state machine of the pure core: measurement in, activity out, one step a servo cycle. It knows no clock
-//! and allocates nothing. What it found, or why it gave up, is its verdict; storing and applying that is the hand's
-//! business.
+//! Each routine is a state machine without side effects: every servo cycle gives it a measurement, and it returns an
+//! activity. It has no clock and allocates nothing. Its verdict contains its findings or the reason for a refusal. The
+//! hand stores and applies the findings.
 
 mod average;
 mod balance;

@@ -1,6 +1,7 @@
-//! Friction of the motors: what they pull more than their tension while they wind in, and less while they let out.
+//! Determines the friction of the motors: they pull with more than the tension while they wind in, and with less while
+//! they let out.
 //!
-//! u = a t + s (C + mu t), s = +1 winding in and -1 letting out, u the commanded pull.
+//! u = a t + s (C + mu t), with s = +1 winding in and -1 letting out. u is the commanded pull.
 
 use super::instruments::Instruments;
 use super::least_squares::LeastSquares;
@@ -9,18 +10,19 @@ use super::step::Sample;
 use crate::model::Part;
 use nalgebra::{Vector3, Vector4};
 
-/// Time constant of the smoothed travel, s, and the speed from which a motor counts as turning, cm/s at the tendon.
+/// Time constant of the filter on the travel, s, and the speed above which a motor counts as turning, cm/s at the
+/// tendon.
 const SMOOTHING: f64 = 0.03;
 const TURNING: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MotorFriction {
     fits: [LeastSquares<3>; 4],
-    /// Low-passed once and twice, cm: their difference over the time constant is the speed.
+    /// Travel after one and after two low-pass filters, cm. Their difference over the time constant is the speed.
     smooth: Option<(Vector4<f64>, Vector4<f64>)>,
 }
 
-/// Per motor: C, N at the tendon; mu; a.
+/// For each motor: C, N at the tendon; mu; a.
 pub(super) type Friction = [Vector4<f64>; 3];
 
 impl MotorFriction {

@@ -3,61 +3,61 @@
 use crate::model::Part;
 use thiserror::Error;
 
-/// What stood in the way, and what to do about it. Nothing was changed.
+/// The reason for a refusal, and its remedy. A routine that is refused changes nothing.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum Obstacle {
-    /// A tendon does not come under tension.
+    /// A tendon does not become tight.
     #[error(
         "tendon {tendon} does not come under tension ({newton:.2} N): it is broken or off its pulley, its gauge is \
          dead, or the sign of its motor is wrong. Check the tendon and its gauge; sun2xp calibrate finds signs"
     )]
     Slack {
-        /// 1 to 4.
+        /// The tendon's number, 1 to 4.
         tendon: u8,
-        /// What its gauge says, N.
+        /// Tension by its gauge, N.
         newton: f64,
     },
-    /// A motor does not turn when it is told to.
+    /// A motor does not follow its command.
     #[error(
         "motor {motor} does not let its tendon out: it is blocked or without power, or its encoder is dead. Check the \
          motor, its supply and its encoder"
     )]
     MotorStuck {
-        /// 1 to 4.
+        /// The motor's number, 1 to 4.
         motor: u8,
     },
-    /// A gauge is not at rest with the motors off.
+    /// The reading of a gauge changes although the motors are off.
     #[error(
         "gauge {tendon} is not at rest with the motors off ({newton:.3} N rms): something moves the finger, or the \
          gauge is noisy. Let nothing touch the finger, and check the wiring of the gauge"
     )]
     Restless {
-        /// 1 to 4.
+        /// The gauge's number, 1 to 4.
         tendon: u8,
-        /// Spread, N rms.
+        /// Standard deviation, N rms.
         newton: f64,
     },
-    /// A gauge shows the same with and without tension.
+    /// A gauge reports the same with a tight and a slack tendon.
     #[error(
         "gauge {tendon} changes by no more than {newton:.2} N when its tendon is let out: it is dead, or the tendon \
          does not give way. Check the gauge, and whether the tendon is stuck"
     )]
     DeadGauge {
-        /// 1 to 4.
+        /// The gauge's number, 1 to 4.
         tendon: u8,
         /// Change, N.
         newton: f64,
     },
-    /// A gauge is far from its zero with the tendon slack.
+    /// A gauge is far from its configured zero although its tendon is slack.
     #[error(
         "gauge {tendon} is {newton:.1} N from its configured zero with the motors off: its tendon is still under \
          tension, or the gauge is damaged. If the gauge was exchanged, set gauge.zero to about what it shows at rest \
          first"
     )]
     GaugeOffset {
-        /// 1 to 4.
+        /// The gauge's number, 1 to 4.
         tendon: u8,
-        /// Distance, N.
+        /// Difference, N.
         newton: f64,
     },
     /// The board has lost its counts.
@@ -66,123 +66,123 @@ pub enum Obstacle {
          to \"pose\" or \"stops\""
     )]
     NotKept,
-    /// The finger moved while it was to stand in its pose.
+    /// The finger moved although it had to stay in its pose.
     #[error(
         "joint {joint} moved by {degrees:.2} degrees while the pose was read. Keep the finger still in \
          zeroing.pose_degrees (nothing may push it, no set point may be on its way) and zero it again, or set \
          zeroing.method = \"stops\""
     )]
     Moved {
-        /// 0 to 2.
+        /// The joint, 0 to 2.
         joint: u8,
-        /// How far, degrees.
+        /// Distance, degrees.
         degrees: f64,
     },
-    /// A limp finger that stands in no pose, because nothing holds it.
+    /// Nothing holds the limp finger in its pose.
     #[error(
         "nothing holds the finger in its pose: joint {joint} gave way by {degrees:.1} degrees to a light push. Hold \
          the finger in zeroing.pose_degrees until it is zeroed, or set zeroing.method = \"stops\""
     )]
     NotHeld {
-        /// 0 to 2.
+        /// The joint, 0 to 2.
         joint: u8,
-        /// How far, degrees.
+        /// Distance, degrees.
         degrees: f64,
     },
-    /// A joint went further than its stop should be.
+    /// A joint moved beyond the expected position of its stop.
     #[error(
         "joint {joint} moved by {degrees:.0} degrees and met no stop: a tendon is off its pulley, or \
          zeroing.lower_stop_degrees or upper_stop_degrees is wrong. Check them"
     )]
     NoStop {
-        /// 0 to 2.
+        /// The joint, 0 to 2.
         joint: u8,
-        /// How far, degrees.
+        /// Distance, degrees.
         degrees: f64,
     },
-    /// A joint has less way between its stops than it should.
+    /// The range of a joint between its stops is smaller than configured.
     #[error(
         "joint {joint} moves {degrees:.1} degrees between its stops, and {expected:.1} are configured: something is in \
          its way, zeroing.torque is too small for its friction, or zeroing.lower_stop_degrees or upper_stop_degrees is \
          wrong. Check them"
     )]
     EarlyStop {
-        /// 0 to 2.
+        /// The joint, 0 to 2.
         joint: u8,
-        /// How far it moves.
+        /// Measured range, degrees.
         degrees: f64,
-        /// How far it should.
+        /// Configured range, degrees.
         expected: f64,
     },
-    /// A joint does not follow where it has room.
+    /// A joint does not follow although it is away from its stops.
     #[error(
         "joint {joint} does not move freely: something is in its way, or zeroing.torque is too small for its friction. \
          Check both"
     )]
     JointBlocked {
-        /// 0 to 2.
+        /// The joint, 0 to 2.
         joint: u8,
     },
-    /// The experiment does not determine a number, or gives an impossible one.
+    /// The measurements do not determine a value, or the value is impossible.
     #[error(
         "{part}: {what} comes out as {value:.4}, which is impossible: the finger was touched, or two gauges \
          or motors are swapped. Let nothing touch the finger, and check their cables"
     )]
     Implausible {
-        /// Of which part.
+        /// The part of the finger.
         part: Part,
-        /// Of what.
+        /// The quantity.
         what: &'static str,
-        /// The number.
+        /// Its value.
         value: f64,
     },
-    /// Winding a motor both ways changes no tension.
+    /// A motor that turns both ways changes no tension.
     #[error(
         "motor {motor} turns but tightens no tendon either way: its tendon is broken or very slack, or the gauges are \
          dead. Check them"
     )]
     NothingTightens {
-        /// 1 to 4.
+        /// The motor's number, 1 to 4.
         motor: u8,
     },
-    /// What one motor does shows first on the gauge of another tendon.
+    /// The pull of a motor appears first on the gauge of another tendon.
     #[error(
         "the pull of motor {motor} shows first on gauge {gauge}: gauges {motor} and {gauge} are swapped, motors \
          {motor} and {gauge} are swapped with their encoders, or a tendon is led to the wrong motor. Check the cables \
          and the tendons"
     )]
     Swapped {
-        /// 1 to 4.
+        /// The motor's number, 1 to 4.
         motor: u8,
-        /// 1 to 4.
+        /// The gauge's number, 1 to 4.
         gauge: u8,
     },
-    /// The command of one motor turns another one, as the encoders say.
+    /// The command of a motor turns another motor's encoder.
     #[error(
         "the command of motor {motor} turns encoder {encoder}: the cables of motors {motor} and {encoder} are swapped, \
          or those of their encoders. Swap them back"
     )]
     SwappedMotor {
-        /// 1 to 4.
+        /// The motor's number, 1 to 4.
         motor: u8,
-        /// 1 to 4.
+        /// The encoder's number, 1 to 4.
         encoder: u8,
     },
-    /// A gauge that contradicts itself, or never moved.
+    /// The readings of a gauge contradict each other, or never changed.
     #[error(
         "gauge {tendon} does not rise and fall with the tension: it is dead, or its cable is swapped with another one. \
          Check both"
     )]
     SenselessGauge {
-        /// 1 to 4.
+        /// The gauge's number, 1 to 4.
         tendon: u8,
     },
-    /// Took too long.
+    /// The routine exceeded its time limit.
     #[error(
         "it was not finished after {seconds:.0} s: check that the finger can move freely, or raise zeroing.time_limit_s"
     )]
     TimeLimit {
-        /// s.
+        /// The limit, s.
         seconds: f64,
     },
 }

@@ -1,26 +1,27 @@
-//! Tensions that vary independently while the finger presses against its lower stops.
+//! Varies the four tensions independently while the finger presses against its lower stops.
 
 use super::instruments::Instruments;
 use nalgebra::{Vector3, Vector4};
 
-/// Part of t_max that is pressed with at most.
+/// Largest tension, as a part of t_max.
 const HARDEST: f64 = 0.6;
-/// N/s: a tendon that tightens at this speed turns its motor well above the quantisation of its encoder.
+/// Rate of tension, N/s. A tendon that tightens at this rate turns its motor well above the quantisation of its
+/// encoder.
 const SPEED: f64 = 20.0;
-/// Rest at each end, s.
+/// Pause at each end, s.
 const DWELL: f64 = 0.15;
-/// Torque on every joint that keeps it at its stop, N cm.
+/// Torque that keeps every joint at its stop, N cm.
 const HOLDING: f64 = 2.0;
-/// Every pattern so many times.
+/// Number of times that every pattern is applied.
 const ROUNDS: usize = 2;
 
-/// To and fro between a base and four patterns: all tendons together, and each joint by itself.
+/// Moves back and forth between a base and four patterns of tension: all tendons together, and each joint by itself.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pressing {
     base: Vector4<f64>,
     patterns: [Vector4<f64>; 4],
     leg: usize,
-    /// Seconds on this leg.
+    /// Time on this leg, s.
     seconds: f64,
     begun: Option<Vector4<f64>>,
 }
@@ -33,7 +34,7 @@ impl Pressing {
         let base = distribute(&holding);
         let common = base + instruments.pretension * ((hardest - base.max()) / instruments.pretension.max()).max(0.0);
         let press = |joint: usize| {
-            // The largest of whole N cm: the tensions rise with the torque.
+            // Selects the largest torque in steps of 1 N cm. The tensions rise with the torque.
             let tensions = (0..100).map(|more| {
                 let mut torques = holding;
                 torques[joint] -= f64::from(more);
@@ -44,7 +45,8 @@ impl Pressing {
         Self { base, patterns: [common, press(0), press(1), press(2)], leg: 0, seconds: 0.0, begun: None }
     }
 
-    /// The tensions of this cycle, N; none when every pattern has been there. Begins at `now`, N.
+    /// Returns the tensions of this cycle, N, or `None` when every pattern has been applied. The first cycle starts at
+    /// `now`, N.
     pub fn step(&mut self, instruments: &Instruments, now: &Vector4<f64>) -> Option<Vector4<f64>> {
         let begun = *self.begun.get_or_insert(*now);
         let pattern = |leg: usize| if leg.is_multiple_of(2) { self.base } else { self.patterns[leg / 2 % 4] };
@@ -59,12 +61,12 @@ impl Pressing {
         (self.leg <= 8 * ROUNDS).then(|| from + (to - from) * part)
     }
 
-    /// The part of it that is done, 0 to 1.
+    /// Returns the part that is done, 0 to 1.
     pub fn part(&self) -> f64 {
         self.leg as f64 / (8 * ROUNDS) as f64
     }
 
-    /// Whether the first ramp, from wherever the finger was, is over.
+    /// Returns whether the first ramp, which starts at the tensions found, is complete.
     pub fn under_way(&self) -> bool {
         self.leg > 0
     }

@@ -1,4 +1,4 @@
-//! One routine from its beginning to its verdict.
+//! Runs one routine until its verdict.
 
 use super::findings::Findings;
 use super::identification::Identification;
@@ -12,31 +12,32 @@ use crate::model::configuration::{ConfiguredController, ConfiguredFinger, Scheme
 use nalgebra::Vector4;
 use std::ops::ControlFlow::{Break, Continue};
 
-/// What can be asked for.
+/// The routines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Task {
-    /// Which way motors, encoders and gauges count. Every motor turns a little, to and fro; nothing else moves fast.
+    /// Finds the signs of motors, encoders and gauges. Every motor turns back and forth by a small amount; nothing else
+    /// moves fast.
     Signs,
-    /// Zeros of gauges and encoders, the latter by the configured method.
+    /// Zeros the gauges, and the encoders by the configured method.
     Zero,
-    /// Gains of the gauges, friction of motors and joints, stiffness of tendons. The finger moves to its lower stops
-    /// and presses against them.
+    /// Identifies the gains of the gauges, the friction of motors and joints, and the stiffness of the tendons. The
+    /// finger moves to its lower stops and presses against them.
     Identify,
 }
 
-/// What became of a routine.
+/// The state of a routine after a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// It is still at it.
+    /// The routine continues.
     Going(Progress),
-    /// Done. The tendons may be slack now.
+    /// The routine is done. The tendons may be slack.
     Found(Findings),
-    /// It gave up.
+    /// The routine gave up.
     Refused(Obstacle),
 }
 
-/// A routine under way. In the beginning it may leave the finger to what controls it: it has taken over once a cycle
-/// yields an activity.
+/// A routine in progress. At first it may leave the finger to its controller. It takes over in the first cycle that
+/// returns an activity.
 #[derive(Clone, Debug)]
 pub struct Calibration {
     instruments: Instruments,
@@ -46,7 +47,7 @@ pub struct Calibration {
     in_charge: bool,
 }
 
-// All of one size on purpose: no heap in the servo.
+// The servo does not use the heap, so every routine has the size of the largest one.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug)]
 enum Routine {
@@ -56,10 +57,10 @@ enum Routine {
 }
 
 impl Calibration {
-    /// A routine for a finger that is at present configured like this.
+    /// Creates a routine for a finger with its current configuration.
     ///
     /// # Errors
-    /// A configuration that no routine can work with.
+    /// The configuration is unusable for a routine.
     pub fn new(task: Task, finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         let routine = match task {
             Task::Signs => Routine::Signs(SignSearch::new(finger)),
@@ -75,9 +76,9 @@ impl Calibration {
         })
     }
 
-    /// The same finger as its controller must be made while a routine runs at `rate`, Hz: by Figure 10, whatever is
-    /// configured. State feedback is built upon the stiffness, friction and zeros that are looked for, and Figure 11
-    /// adapts to what the gauges show. Gains of Figure 10 that are configured stay.
+    /// Returns the configuration of the finger's controller while a routine runs at `rate`, Hz. The scheme is Figure
+    /// 10, and configured gains of Figure 10 stay in force. State feedback relies on the stiffness, friction and zeros
+    /// that a routine has yet to find, and Figure 11 adapts to uncalibrated gauges.
     pub fn controlled(finger: &ConfiguredFinger, rate: f64) -> ConfiguredFinger {
         let configured = &finger.controller;
         let controller = match configured.scheme(rate) {
@@ -92,9 +93,8 @@ impl Calibration {
         }
     }
 
-    /// One cycle that has a measurement: what the finger shall do, and how it goes. Without an activity the finger goes
-    /// on with what it did before the routine, under the controller that it had. Not to be called again after a
-    /// verdict.
+    /// Runs one cycle with a measurement. Returns what the finger must do, and the state of the routine. Without an
+    /// activity the finger continues under its own controller. Must not be called again after `Found` or `Refused`.
     pub fn cycle(&mut self, sample: &Sample) -> (Option<Activity>, Verdict) {
         let (activity, verdict) = self.step(sample);
         self.in_charge |= activity.is_some();
@@ -102,7 +102,8 @@ impl Calibration {
     }
 
     fn step(&mut self, sample: &Sample) -> (Option<Activity>, Verdict) {
-        // What stood in the way is not pulled at any longer. A finger that the routine left to itself is not touched.
+        // After a refusal the motors are off, so that nothing pulls at the obstacle. A finger that the routine has not
+        // yet taken over keeps its controller.
         let motors_off = Activity::Turn(Vector4::zeros());
         let refused = |obstacle, in_charge: bool| (in_charge.then_some(motors_off), Verdict::Refused(obstacle));
         self.seconds += self.instruments.period;

@@ -1,9 +1,10 @@
-//! Which way motors, encoders and gauges count, when nothing is known about it.
+//! Finds the signs of motors, encoders and gauges without prior knowledge.
 //!
-//! First every motor is given a short push: command and count agree or disagree, and from then on every motor can be
-//! held where it is, whichever way that pulls. Then one motor after the other turns to and fro with the rest held. On
-//! one side the tensions grow, on the other they are gone: that is in and out. A free finger shares every pull among
-//! all its tendons (its tensions stay along the null vector of R), so all gauges answer to every motor.
+//! First every motor receives a short push, which shows whether command and count have the same sign. From then on each
+//! motor can be held in place, whichever direction pulls its tendon. Then one motor after the other turns back and
+//! forth while the others hold. The tensions rise in the direction that tightens the tendon, and vanish in the other. A
+//! free finger shares every pull among all its tendons (its tensions stay along the null vector of R), so every gauge
+//! responds to every motor.
 
 mod pushes;
 mod sweep;
@@ -20,7 +21,7 @@ use nalgebra::Vector4;
 use std::ops::ControlFlow::{Break, Continue};
 use sweep::Sweep;
 
-/// Holding a motor: N/cm, N s/cm, largest pull in t_min, corner of the speed in 1/s.
+/// Gains that hold a motor: stiffness, N/cm; damping, N s/cm; largest pull, in t_min; corner of the speed filter, 1/s.
 const HOLD: f64 = 150.0;
 const DAMPING: f64 = 2.0;
 const STRONGEST_HOLD: f64 = 1.2;
@@ -28,20 +29,20 @@ const SPEED_CORNER: f64 = 1000.0;
 
 #[derive(Clone, Debug)]
 pub(super) struct SignSearch {
-    /// cm at the tendon of one count, without signs.
+    /// cm at the tendon per count, without sign.
     cm_per_count: Vector4<f64>,
     newton_per_count: Vector4<f64>,
-    /// Counts in the beginning, which every way is measured from.
+    /// Counts at the beginning, from which every distance is measured.
     start: Option<[i32; 4]>,
     last: Vector4<f64>,
     speed: Vector4<f64>,
-    /// Where every motor is held, cm of count.
+    /// Position at which every motor is held, cm in the direction of rising count.
     target: Vector4<f64>,
-    /// +1 where a positive command raises the count.
+    /// +1 if a positive command raises the count.
     agrees: [f64; 4],
-    /// +1 where a rising count tightens.
+    /// +1 if a rising count tightens the tendon.
     tightens: [f64; 4],
-    /// Of each gauge, once it has answered.
+    /// Sign of each gauge, or 0 until it has responded.
     gauges: [f64; 4],
     motor: usize,
     phase: Phase,
@@ -88,7 +89,7 @@ impl SignSearch {
         }
     }
 
-    /// Runs one cycle of the current phase. Every motor is pushed after a rest, then every motor sweeps, then the
+    /// Runs one cycle of the current phase. After a rest every motor is pushed, then every motor sweeps, then the
     /// wiring is checked.
     pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> Stepped {
         let way = self.measure(instruments, sample.feedback);
@@ -106,7 +107,7 @@ impl SignSearch {
         Ok(Continue((Activity::Turn(torques), progress)))
     }
 
-    /// The part of the routine that is done, roughly.
+    /// Returns the approximate part of the routine that is done, 0 to 1.
     fn part(&self) -> f64 {
         let motor = self.motor as f64;
         match self.phase {
@@ -115,7 +116,7 @@ impl SignSearch {
         }
     }
 
-    /// Way of every motor since the beginning, cm of rising count.
+    /// Returns the distance of every motor from the beginning, cm in the direction of rising count.
     fn measure(&mut self, instruments: &Instruments, feedback: &Feedback) -> Vector4<f64> {
         let start = *self.start.get_or_insert(feedback.motor_counts);
         let counts = |motor: usize| f64::from(feedback.motor_counts[motor].wrapping_sub(start[motor]));
@@ -126,7 +127,7 @@ impl SignSearch {
         way
     }
 
-    /// Torques, N cm, that hold every motor at its target.
+    /// Returns the torques that hold every motor at its target, N cm.
     fn hold(&self, instruments: &Instruments, way: &Vector4<f64>) -> Vector4<f64> {
         let strongest = STRONGEST_HOLD * instruments.minimum;
         let pulls = (self.target - way) * HOLD - self.speed * DAMPING;
@@ -134,7 +135,8 @@ impl SignSearch {
         pulls.component_mul(&Vector4::from(self.agrees)).component_mul(&instruments.radius)
     }
 
-    /// The torques that jerk one motor after the other inward, N cm; none when the wiring is found to be right.
+    /// Returns the torques that pull with one motor after the other, N cm, or `None` when the wiring has been found
+    /// correct.
     fn check_wiring(
         &mut self,
         mut wiring: Wiring,

@@ -1,31 +1,31 @@
-//! Whether the joints stay where they are while the encoders are read.
+//! Checks that the joints do not move while the encoders are read.
 
 use nalgebra::Vector3;
 
-/// A joint may be so far from where it is taken to be, rad. The zeros are wrong by at most as much.
+/// Largest permitted deviation of a joint, rad. It bounds the error of the zeros.
 pub(super) const TOLERANCE: f64 = 0.004;
 
-/// Time constant of the low-pass on the joints, s. It removes the noise of the gauges and the shaking of state
-/// feedback.
+/// Time constant of the low-pass filter on the joints, s. It removes the noise of the gauges and the oscillation caused
+/// by state feedback.
 const SMOOTHING: f64 = 0.02;
 
-/// Mean and extremes of the joints over a stretch of time.
+/// Mean and extremes of the joint angles over a period of time.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Standstill {
     samples: f64,
     sum: Vector3<f64>,
     smoothed: Vector3<f64>,
-    /// None until the low-pass has settled.
+    /// `None` until the filter has settled.
     extremes: Option<(Vector3<f64>, Vector3<f64>)>,
 }
 
 impl Standstill {
-    /// Notes the joint angles of a cycle, rad, `period` seconds after the last ones.
+    /// Adds the joint angles of a cycle, rad. `period`: s since the cycle before.
     pub fn note(&mut self, joints: &Vector3<f64>, period: f64) {
         self.samples += 1.0;
         self.sum += joints;
         let settled = SMOOTHING / period;
-        // The mean of the first samples, which is as quiet as the low-pass after them.
+        // At first this is the mean of all samples, which has as little noise as the settled filter.
         self.smoothed += (joints - self.smoothed) / self.samples.min(settled);
         if self.samples >= settled {
             let (lowest, highest) = self.extremes.unwrap_or((self.smoothed, self.smoothed));
@@ -33,7 +33,8 @@ impl Standstill {
         }
     }
 
-    /// The joint that moved farthest from its mean, 0 to 2, and how far, rad; none if all stood still.
+    /// Returns the joint with the largest deviation from its mean, 0 to 2, and the deviation, rad. Returns `None` if no
+    /// joint moved.
     pub fn moved(&self) -> Option<(usize, f64)> {
         let (lowest, highest) = self.extremes?;
         let mean = self.sum / self.samples;
@@ -46,7 +47,7 @@ impl Standstill {
 mod tests {
     use super::*;
 
-    /// What is found of a joint 1 that moves like this over 0.3 s at 1000 Hz; argument: s.
+    /// Returns the verdict on a joint 1 that moves along `path`, rad as a function of s, for 0.3 s at 1000 Hz.
     fn moved(path: impl Fn(f64) -> f64) -> Option<(usize, f64)> {
         let mut standstill = Standstill::default();
         for cycle in 0..300 {

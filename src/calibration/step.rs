@@ -1,54 +1,54 @@
-//! One step of a routine: what it sees, what it does, how far it is.
+//! One step of a routine: its input, its output and its progress.
 
 use super::findings::Findings;
 use super::obstacle::Obstacle;
 use crate::control::signals::{Activity, Feedback, Report};
 use std::ops::ControlFlow;
 
-/// What a routine sees of one cycle.
+/// What a routine receives in one cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
-    /// What the board measured.
+    /// The measurements of the board.
     pub feedback: &'a Feedback,
-    /// What the last cycle found and decided.
+    /// The results of the previous cycle.
     pub report: &'a Report,
-    /// Whether the board says that its encoder counts are still good.
+    /// Whether the board reports that its encoder counts are still valid.
     pub zero_valid: bool,
 }
 
-/// What a routine is just doing.
+/// The current activity of a routine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Tendons are brought under tension.
+    /// The tendons are being tightened.
     TakingUpSlack,
-    /// Gauges are read with the tendons let out.
+    /// Gauges are read while the tendons are let out.
     ZeroingGauges,
-    /// Joints are pushed lightly to find out whether something holds them in their pose.
+    /// Joints are pushed lightly, to check that something holds them in their pose.
     TryingPose,
-    /// Counts are read.
+    /// Encoders are read.
     ReadingEncoders,
-    /// A joint is on its way to a stop.
+    /// A joint moves to a stop.
     SeekingStops,
     /// Motors turn one by one.
     TryingMotors,
-    /// Joints are moved to and fro at two levels of tension.
+    /// Joints move back and forth at two levels of tension.
     ComparingGauges,
-    /// Joints are moved to and fro.
+    /// Joints move back and forth.
     MovingJoints,
     /// The finger presses against its stops.
     Pressing,
-    /// Back to where it began.
+    /// The finger returns to its starting pose.
     Returning,
 }
 
-/// How far a routine is.
+/// The progress of a routine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// What it is doing.
+    /// The current activity.
     pub step: Step,
-    /// The part of the routine that is done, roughly, 0 to 1.
+    /// The approximate part of the routine that is done, 0 to 1.
     pub part: f64,
 }
 
-/// What a routine's step yields: something to do, or what was found.
+/// The result of one step: an activity, or the findings.
 pub(super) type Stepped = Result<ControlFlow<Findings, (Activity, Progress)>, Obstacle>;

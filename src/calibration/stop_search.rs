@@ -1,32 +1,33 @@
-//! One joint led against a stop until it no longer moves.
+//! Moves one joint against a stop until it no longer moves.
 
 use super::instruments::Instruments;
 use super::joint_lead::JointLead;
 use super::obstacle::Obstacle;
 use std::f64::consts::PI;
 
-/// A joint is at its stop when it has moved less than this, rad, at full torque for so long, s.
+/// A joint is at its stop when it has moved by less than this, rad, at full torque for this time, s.
 const STILL: f64 = 0.004;
 const DWELL: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StopSearch {
     joint: usize,
-    /// Farthest way, rad, signed.
+    /// Largest permitted distance, rad, with the sign of its direction.
     way: f64,
     start: Option<f64>,
-    /// Where the joint began to be still, and for how long.
+    /// Angle at which the joint stopped, rad, and the time since, s.
     still_at: f64,
     still: f64,
 }
 
 impl StopSearch {
-    /// `way`: how far the joint may go before it must have met its stop, rad, with its direction.
+    /// `way`: the distance within which the joint must reach its stop, rad, with the sign of its direction.
     pub fn new(joint: usize, way: f64) -> Self {
         Self { joint, way, start: None, still_at: f64::NAN, still: 0.0 }
     }
 
-    /// Leads on; the angle of the stop, rad by the configured zero, when it is met.
+    /// Moves the joint by one cycle. Returns the angle of the stop, rad by the configured zero, when the joint has
+    /// reached it.
     pub fn step(
         &mut self,
         instruments: &Instruments,

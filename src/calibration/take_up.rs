@@ -1,4 +1,4 @@
-//! Pretension without joint torque, with the gauge offsets that are known by now.
+//! Takes up the slack: applies the pretension without joint torque, with the gauge offsets known so far.
 
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
@@ -7,9 +7,9 @@ use crate::control::sensing::stillness::Stillness;
 use crate::control::signals::Activity;
 use nalgebra::Vector4;
 
-/// A tendon counts as tight from this part of t_min on.
+/// A tendon counts as tight above this part of t_min.
 const TIGHT: f64 = 0.8;
-/// s.
+/// Time for which the tendons must be tight and at rest, and time limit, s.
 const SETTLED: f64 = 0.3;
 const LIMIT: f64 = 5.0;
 
@@ -25,7 +25,7 @@ impl TakeUp {
         Self { seconds: 0.0, settled: 0.0, stillness: Stillness::new(Vector4::zeros()) }
     }
 
-    /// The activity; none when every tendon has been under tension at rest for a while.
+    /// Returns the activity, or `None` when every tendon has been tight and at rest for [`SETTLED`].
     pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> Result<Option<Activity>, Obstacle> {
         self.seconds += instruments.period;
         let tensions = instruments.tensions(sample.feedback);

@@ -1,8 +1,9 @@
-//! The stiffness of every tendon from motor travel against tension.
+//! Determines the stiffness of every tendon from motor travel against tension.
 //!
-//! x_i = R_i^T theta + t_i / k_i + const for every tendon. The null vector n of R takes the joints out, whatever they
-//! do: n . x = sum n_i t_i / k_i + const, four unknown compliances in one equation a sample. They are told apart where
-//! the four tensions vary independently, which takes joint torques, and so something that holds the finger.
+//! x_i = R_i^T theta + t_i / k_i + const for every tendon. Multiplication by the null vector n of R eliminates any
+//! motion of the joints: n . x = sum n_i t_i / k_i + const. This is one equation per sample with four unknown
+//! compliances. They can be separated if the four tensions vary independently. This needs joint torques, and so
+//! something that holds the finger.
 
 use super::instruments::Instruments;
 use super::least_squares::LeastSquares;
@@ -11,7 +12,7 @@ use super::step::Sample;
 use crate::model::Part;
 use nalgebra::{SVector, Vector4};
 
-/// N/cm, outside which no tendon is.
+/// Plausible range of the stiffness of a tendon, N/cm.
 const SOFTEST: f64 = 10.0;
 const STIFFEST: f64 = 1e5;
 
@@ -19,13 +20,13 @@ const STIFFEST: f64 = 1e5;
 pub(super) struct TendonStiffness {
     fit: LeastSquares<5>,
     null: Vector4<f64>,
-    /// Travel of the first sample, cm: only differences count, and large counts would lose digits.
+    /// Travel of the first sample, cm. Only differences are used, because large counts would lose digits.
     first: Option<Vector4<f64>>,
 }
 
 impl TendonStiffness {
     pub fn new(instruments: &Instruments) -> Self {
-        // The ghost column of Q spans what R sends to zero.
+        // The ghost column of Q spans the null space of R.
         let null = instruments.tendons.q.column(3).into_owned().normalize();
         Self { fit: LeastSquares::new(), null, first: None }
     }
@@ -38,7 +39,7 @@ impl TendonStiffness {
         self.fit.add(&SVector::from([a, b, c, d, 1.0]), self.null.dot(&(travel - first)));
     }
 
-    /// N/cm, and the rms residual in travel, cm.
+    /// Returns the stiffnesses, N/cm, and the rms residual of the travel, cm.
     pub fn solve(&self) -> Result<(Vector4<f64>, f64), Obstacle> {
         let what = "the stiffness, N/cm,";
         let (found, residual) = self.fit.solve().ok_or(Obstacle::Implausible {

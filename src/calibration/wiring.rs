@@ -1,25 +1,26 @@
-//! Whether every motor pulls at the tendon whose gauge has its number.
+//! Checks that every motor pulls the tendon whose gauge has the same number.
 //!
-//! At rest a free finger shares every pull among all its tendons, so that says nothing. But a pull reaches the other
-//! tendons only by moving the links, and they are inert: for some milliseconds after a sudden one its own gauge is far
-//! ahead.
+//! At rest a free finger shares every pull among all its tendons, so a steady pull does not show this. But a pull
+//! reaches the other tendons only by moving the links, whose inertia delays it. For some milliseconds after a sudden
+//! pull, the motor's own gauge therefore leads by far.
 
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
 use nalgebra::Vector4;
 
-/// A jerk: N in t_min, and s.
+/// A pulse: its pull, in t_min, and its duration, s.
 const JERK: f64 = 2.0;
 const LENGTH: f64 = 0.006;
-/// How long the gauges are watched from its beginning, s.
+/// Time for which the gauges are observed from the start of a pulse, s.
 const WATCHED: f64 = 0.010;
-/// Rest before each, s: what the last one left has died away.
+/// Rest before each pulse, s. The response to the previous one has decayed after this time.
 const REST: f64 = 0.15;
-/// Of which the gauges are averaged in the end.
+/// Last part of the rest, in which the gauges are averaged, s.
 const BASE: f64 = 0.05;
-/// Jerks of each motor.
+/// Number of pulses of each motor.
 const JERKS: u32 = 4;
-/// Another gauge counts as ahead when it rises by more than so many times what the motor's own does, and by so much, N.
+/// Another gauge leads if it rises by more than this factor times the rise of the motor's own gauge, and by more than
+/// this value, N.
 const AHEAD: f64 = 1.1;
 const LEAST: f64 = 0.2;
 
@@ -30,7 +31,7 @@ pub(super) struct Wiring {
     seconds: f64,
     base: Vector4<f64>,
     bases: f64,
-    /// Sum of what the gauges rose by.
+    /// Sum of the rises of the gauges, N.
     risen: Vector4<f64>,
     samples: f64,
 }
@@ -41,8 +42,8 @@ impl Wiring {
         Self { motor: 0, jerks: 0, seconds: 0.0, base: zeros, bases: 0.0, risen: zeros, samples: 0.0 }
     }
 
-    /// The pull that jerks a motor inward in this cycle, N at each tendon; none when every motor has been. `tensions`,
-    /// N, need no zero, but the signs of the gauges.
+    /// Returns the pulls of this cycle, N at each tendon, or `None` when every motor has been checked. `tensions`, N,
+    /// need no correct zero, but correct signs of the gauges.
     pub fn step(
         &mut self,
         instruments: &Instruments,

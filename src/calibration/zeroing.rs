@@ -1,4 +1,4 @@
-//! Zeros of gauges and encoders.
+//! Zeros gauges and encoders.
 
 mod at_pose;
 mod at_stops;
@@ -28,9 +28,9 @@ pub(super) struct Zeroing {
     speed: f64,
     configured: [i32; 4],
     phase: Phase,
-    /// With the tendons tight, at the beginning, if they were.
+    /// Reading with tight tendons at the beginning. `None` if they were slack.
     first: Option<Reading>,
-    /// N.
+    /// Gauge offsets, N.
     offset: Vector4<f64>,
     met: (Vector3<f64>, Vector3<f64>),
 }
@@ -38,12 +38,12 @@ pub(super) struct Zeroing {
 #[derive(Clone, Copy, Debug)]
 enum Phase {
     Start,
-    /// The finger is held as it was before.
+    /// The finger keeps its controller.
     Read,
     Gauges(GaugeZero),
-    /// With the offsets known.
+    /// The offsets are known.
     Tighten(TakeUp),
-    /// Limp until now: whether something holds it in its pose.
+    /// The finger was limp at the beginning. Checks whether something holds it in its pose.
     Try(Grip),
     ReadPose {
         grip: Grip,
@@ -69,10 +69,10 @@ enum Phase {
     },
 }
 
-/// What a step of zeroing yields. No activity: the finger goes on with what it did before.
+/// The result of a step of zeroing. Without an activity the finger continues under its own controller.
 type Stepped = Result<ControlFlow<Findings, (Option<Activity>, Progress)>, Obstacle>;
 
-/// The routine goes on with `activity`.
+/// The result of a step that continues with `activity`.
 fn going(step: Step, part: f64, activity: Activity) -> Stepped {
     Ok(Continue((Some(activity), Progress { step, part })))
 }
@@ -94,8 +94,8 @@ impl Zeroing {
         }
     }
 
-    /// Runs one cycle of the current phase. Every method begins with the gauges. Then the encoders are zeroed in the
-    /// configured pose or between the stops, unless their zeros are kept.
+    /// Runs one cycle of the current phase. Every method zeros the gauges first. Then it zeros the encoders in the
+    /// configured pose or between the stops, or keeps their zeros.
     pub fn step(&mut self, instruments: &mut Instruments, sample: &Sample) -> Stepped {
         match self.phase {
             Phase::Start => self.begin(instruments, sample),

@@ -43,7 +43,7 @@ impl<T: Transport> Link<T> {
             // address from a board that does not answer.
             let asked = if attempts >= 2 && attempts.is_multiple_of(2) { ANY_ADDRESS } else { address };
             attempts = attempts.saturating_add(1);
-            let Some(answer) = self.ask(asked, hello, deadline)? else { continue };
+            let Some(answer) = self.exchange(asked, hello, deadline)? else { continue };
             match answer.frame {
                 Frame::Identity(Identity { version, .. }) if version != VERSION => {
                     return Err(LinkError::WrongVersion { lowest: version, highest: version });
@@ -73,14 +73,14 @@ impl<T: Transport> Link<T> {
     fn configure(&mut self, address: u8, configure: Configure, deadline: u64) -> Result<Configured, LinkError> {
         let mut running = None;
         while self.transport.now() < deadline {
-            let Some(answer) = self.ask(address, Frame::Configure(configure), deadline)? else { continue };
+            let Some(answer) = self.exchange(address, Frame::Configure(configure), deadline)? else { continue };
             match answer.frame {
                 Frame::Configured(configured) if configured.terms == configure => return Ok(configured),
                 Frame::Configured(_) => return Err(LinkError::OtherTerms { address }),
                 // After a program has died, the motors follow its last Command until the watchdog trips.
                 Frame::Refused(refused) if refused.reason == Reason::Running => {
                     running = Some(refused);
-                    self.let_pass((self.transport.now() + PATIENCE).min(deadline))?;
+                    self.wait_until((self.transport.now() + PATIENCE).min(deadline))?;
                 }
                 Frame::Refused(refused) => return Err(LinkError::Refused { address, refused }),
                 _ => {}
@@ -96,12 +96,12 @@ impl<T: Transport> Link<T> {
     /// on the transport's clock). Without an answer the finger's watchdog does the same a little later. Replies that
     /// arrive meanwhile are discarded.
     pub fn stop(&mut self, address: u8, deadline: u64) -> Result<bool, LinkError> {
-        let answer = self.ask(address, Frame::Stop(Stop), deadline)?;
+        let answer = self.exchange(address, Frame::Stop(Stop), deadline)?;
         Ok(matches!(answer, Some(Message { frame: Frame::Stopped(_), .. })))
     }
 
     /// Sends a request and waits for its answer or refusal until `deadline`, at most for [`PATIENCE`].
-    fn ask(&mut self, address: u8, request: Frame, deadline: u64) -> Result<Option<Message>, LinkError> {
+    fn exchange(&mut self, address: u8, request: Frame, deadline: u64) -> Result<Option<Message>, LinkError> {
         self.handshake_sequence = self.handshake_sequence.wrapping_add(1);
         let sequence = self.handshake_sequence;
         let wire = WireFrame::new(&Message { address, sequence, frame: request });
@@ -129,7 +129,7 @@ impl<T: Transport> Link<T> {
     }
 
     /// Waits without missing a hang-up, and discards what arrives.
-    fn let_pass(&mut self, until: u64) -> Result<(), LinkError> {
+    fn wait_until(&mut self, until: u64) -> Result<(), LinkError> {
         let mut allowance = Allowance::until(until);
         while self.next_message(&mut allowance)?.is_some() {
             self.foreign += 1;

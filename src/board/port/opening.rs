@@ -23,7 +23,7 @@ impl Port {
         if offered.abs_diff(baud) > baud / 33 {
             return Err(PortError::Baud { path: path.to_owned(), wanted: baud, offered });
         }
-        port.ask_for_low_latency();
+        port.request_low_latency();
         // SAFETY: the descriptor was opened above.
         check(unsafe { libc::tcflush(port.descriptor.number(), libc::TCIFLUSH) }).map_err(set_up)?;
         Ok(port)
@@ -85,7 +85,7 @@ impl Port {
 
     /// Requests low latency. FTDI bridges otherwise hold bytes back for 16 ms. A driver that does not know the request
     /// refuses it and does not need it, so a failure is not an error. [`Port::latency_timer_ms`] returns the result.
-    fn ask_for_low_latency(&self) {
+    fn request_low_latency(&self) {
         let mut serial = SerialStruct([0; SERIAL_STRUCT_WORDS]);
         // SAFETY: the descriptor is open, and `serial` is at least as large and as aligned as the kernel's
         // serial_struct.

@@ -1,4 +1,4 @@
-//! What identification does in each of its phases.
+//! The phases of identification.
 
 use super::{Identification, Phase};
 use crate::calibration::balance::{Balance, SWING};
@@ -17,18 +17,18 @@ use crate::control::signals::Activity;
 use crate::model::configuration::GaugeReference;
 use std::ops::ControlFlow::{Break, Continue};
 
-/// How much further than its range a joint is led in search of its lower stop, rad.
+/// A joint in search of its lower stop moves at most this far beyond its range, rad.
 const BEYOND: f64 = 0.17;
-/// How near to where it began a joint is brought back, rad.
+/// A joint has returned when it is this close to its start, rad.
 const NEAR: f64 = 0.05;
-/// Torque on every joint with which gauges are compared, N cm: wrong ones turn the joints.
+/// Torque limit of every joint while gauges are compared, N cm. Wrong gauge gains turn the joints.
 const BALANCING: f64 = 10.0;
-/// Room that a joint keeps to its stops then, beyond its swing, rad.
+/// Distance that a joint then keeps from its stops in addition to its swing, rad.
 const ROOM: f64 = 0.1;
-/// A joint that pulls at its limit for so long on its way back is blocked, s.
+/// A joint whose torque stays at its limit for this time on its way back is blocked, s.
 const BLOCKED: f64 = 0.5;
 
-/// The routine goes on with `activity`.
+/// The result of a step that continues with `activity`.
 fn going(step: Step, part: f64, activity: Activity) -> Stepped {
     Ok(Continue((activity, Progress { step, part })))
 }
@@ -127,11 +127,11 @@ impl Identification {
         let part = 0.5 + 0.4 * pressing.part();
         if let Some(tensions) = pressing.step(instruments, &instruments.tensions(sample.feedback)) {
             self.phase = Phase::Press { pressing, stiffness, friction };
-            return going(Step::Pressing, part, Activity::Tense(instruments.ask(tensions)));
+            return going(Step::Pressing, part, Activity::Tense(instruments.for_controller(tensions)));
         }
         let found = self.identified(&stiffness, &friction, instruments)?;
         let mut lead = JointLead::new(instruments, sample, self.torque);
-        // The finger is still against its stops, so it is led away from where it is.
+        // The finger still presses against its stops, so the return begins at its present pose.
         lead.anchor = lead.joints;
         self.phase = Phase::Return { lead, joint: 0, strained: 0.0, found };
         going(Step::Returning, 0.9, lead.activity(instruments, sample))
@@ -162,7 +162,8 @@ impl Identification {
         going(Step::Returning, 0.95, lead.activity(instruments, sample))
     }
 
-    /// A comparison of the gauges about the present pose, or about the nearest one that leaves room for the swing.
+    /// Creates a comparison of the gauges about the present pose, or about the nearest one that leaves room for the
+    /// swing.
     fn balance_near(&self, lead: &JointLead) -> Balance {
         let room = SWING + ROOM;
         let (low, high) = (self.stops.0.add_scalar(room), self.stops.1.add_scalar(-room));
@@ -178,7 +179,7 @@ impl Identification {
         Phase::Swing { lead, friction: JointFriction::new(joint, self.stop[joint]), joint }
     }
 
-    /// All results together, with the mean of the gauge gains taken from the configured reference.
+    /// Combines all results, with the mean of the gauge gains from the configured reference.
     fn identified(
         &self,
         stiffness: &TendonStiffness,

@@ -1,4 +1,4 @@
-//! Short pushes that show which way each motor's count goes for its command.
+//! Short pushes that show whether each motor's count rises with its command.
 
 use super::sweep::Sweep;
 use super::{Phase, SignSearch};
@@ -6,26 +6,26 @@ use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
 use nalgebra::Vector4;
 
-/// A push counts when its motor has turned so far, cm at the tendon.
+/// A push counts when its motor has turned by this distance, cm at the tendon.
 const TURNED: f64 = 0.005;
-/// Pushes begin at this part of t_min and grow by a factor until the motor turns; N at the tendon.
+/// First push, as a part of t_min at the tendon. Pushes grow by a factor, up to the hardest one, until the motor turns.
 const FIRST_PUSH: f64 = 0.4;
 const GROWTH: f64 = 1.3;
 const HARDEST_PUSH: f64 = 2.0;
-/// Seconds of a push and of the pause after it.
+/// Duration of a push, and of the pause after it, s.
 const PUSH: f64 = 0.1;
-/// Seconds at rest before anything is measured.
+/// Rest before the first measurement, s.
 const REST: f64 = 0.2;
 
 impl SignSearch {
-    /// The finger comes to rest before the first push. Like the other phases, it returns the motor torques, N cm.
+    /// Lets the finger come to rest before the first push. Like the other phases, returns the motor torques, N cm.
     pub(super) fn rest(&mut self, seconds: f64, instruments: &Instruments, way: &Vector4<f64>) -> Vector4<f64> {
         let seconds = seconds + instruments.period;
         self.phase = if seconds > REST { first_push(instruments, way) } else { Phase::Rest { seconds } };
         Vector4::zeros()
     }
 
-    /// Pushes the motor until its count changes, with a harder push each time.
+    /// Pushes the motor, harder each time, until its count changes.
     pub(super) fn push_motor(
         &mut self,
         seconds: f64,
@@ -57,7 +57,7 @@ impl SignSearch {
         Ok(torques)
     }
 
-    /// The motor that was pushed comes to rest before the next one is pushed, or before the first one sweeps.
+    /// Lets the pushed motor come to rest before the next push, or before the first sweep.
     pub(super) fn pause(&mut self, seconds: f64, instruments: &Instruments, way: &Vector4<f64>) -> Vector4<f64> {
         let seconds = seconds + instruments.period;
         self.phase = if seconds <= PUSH {

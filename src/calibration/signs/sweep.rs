@@ -1,29 +1,30 @@
-//! The readings of one motor that turns to and fro.
+//! The readings of one motor that turns back and forth.
 
 use crate::calibration::average::Average;
 use nalgebra::Vector4;
 
-/// The way of a motor to each side, cm: first and longest. It is doubled until one side is tight and the other slack.
+/// Smallest and largest amplitude, cm. The amplitude is doubled until one side is tight and the other slack.
 const FIRST_WAY: f64 = 0.05;
 const LONGEST_WAY: f64 = 1.0;
-/// Stops on the way, parts of it.
+/// Positions at which the motor stops, in amplitudes.
 const PLACES: [f64; 5] = [0.5, 1.0, -0.5, -1.0, 0.0];
-/// Seconds at each: settling, then reading.
+/// Settling time and reading time at each position, s.
 const SETTLING: f64 = 0.15;
 const READING: f64 = 0.1;
-/// A motor that lags so far behind has stalled, cm and part of the way.
+/// A motor that lags by more than this has stalled: cm, plus a part of the amplitude.
 const STALLED: (f64, f64) = (0.03, 0.25);
-/// Change over the outer half of a way, N: from here on it is tight; up to here it is slack.
+/// Change of a tension over the outer half of one side, N: above the first value the side is tight, below the second it
+/// is slack.
 pub(super) const TIGHT: f64 = 0.5;
 const SLACK: f64 = 0.25;
 
-/// One motor to and fro.
+/// One motor that turns back and forth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sweep {
     pub centre: f64,
     pub way: f64,
     place: usize,
-    /// At the place, s.
+    /// Time at the position, s.
     seconds: f64,
     gauges: Average,
     read: [Vector4<f64>; 4],
@@ -31,12 +32,12 @@ pub(super) struct Sweep {
 }
 
 impl Sweep {
-    /// The shortest sweep about `centre`, cm.
+    /// The smallest sweep about `centre`, cm.
     pub fn first(centre: f64) -> Self {
         Self::new(centre, FIRST_WAY)
     }
 
-    /// A sweep of twice the way; none where that would be too long.
+    /// Returns a sweep of twice the amplitude, or `None` if that is too large.
     pub fn wider(&self) -> Option<Self> {
         let way = self.way * 2.0;
         (way <= LONGEST_WAY).then(|| Self::new(self.centre, way))
@@ -47,13 +48,13 @@ impl Sweep {
         Self { centre, way, place: 0, seconds: 0.0, gauges: Average::default(), read, stalled: [false; 4] }
     }
 
-    /// Where the motor is to be now, cm.
+    /// Returns the current target of the motor, cm.
     pub fn aim(&self) -> f64 {
         self.centre + PLACES[self.place] * self.way
     }
 
-    /// Takes in a cycle at the place: raw counts of the gauges, with newtons of a count, and how far the motor lags
-    /// behind, cm. Returns whether the motor has been at every place.
+    /// Adds a cycle at the current position: the raw counts of the gauges, newtons per count, and the lag of the motor,
+    /// cm. Returns whether the motor has been at every position.
     pub fn dwell(&mut self, period: f64, counts: [u16; 4], newton_per_count: &Vector4<f64>, lag: f64) -> bool {
         self.seconds += period;
         if self.seconds > SETTLING {
@@ -70,13 +71,13 @@ impl Sweep {
         self.place == PLACES.len()
     }
 
-    /// How the gauges differ between the far ends of the way, N.
+    /// Returns the difference of the gauges between the two ends of the sweep, N.
     pub fn change_between_ends(&self) -> Vector4<f64> {
         self.read[1] - self.read[3]
     }
 
-    /// The side, in counts, on which the tensions grow while they are gone on the other: +1 or -1. There is none where
-    /// the difference is not clear.
+    /// Returns the side, +1 or -1 in counts, on which the tensions rise while they vanish on the other. Returns `None`
+    /// if the difference is not clear.
     pub fn tight_side(&self) -> Option<f64> {
         let change = |inner: usize, outer: usize| (self.read[outer] - self.read[inner]).amax();
         let tight = |inner, outer: usize| change(inner, outer) > TIGHT || self.stalled[outer];

@@ -1,4 +1,4 @@
-//! Sweeps of one motor after the other, which show which way tightens and which way the gauges count.
+//! Sweeps one motor after the other. This shows which direction tightens its tendon, and the signs of the gauges.
 
 use super::sweep::{Sweep, TIGHT};
 use super::{Phase, SignSearch};
@@ -8,11 +8,11 @@ use crate::calibration::step::Sample;
 use crate::calibration::wiring::Wiring;
 use nalgebra::Vector4;
 
-/// cm/s.
+/// Speed of a sweep, cm/s.
 const SPEED: f64 = 0.5;
 
 impl SignSearch {
-    /// Sweeps the motor with the others held, each time twice as far, until one side is tight and the other slack.
+    /// Sweeps the motor while the others hold, and doubles the amplitude until one side is tight and the other slack.
     /// Returns the motor torques, N cm.
     pub(super) fn sweep_motor(
         &mut self,
@@ -32,11 +32,11 @@ impl SignSearch {
         Ok(self.hold(instruments, way))
     }
 
-    /// Notes the signs that a sweep has shown, and goes on to the next motor, or to the wiring after the last.
+    /// Stores the signs that a sweep has shown. Continues with the next motor, or with the wiring after the last one.
     fn conclude(&mut self, sweep: &Sweep, side: f64) -> Result<Phase, Obstacle> {
         self.tightens[self.motor] = side;
         self.note_gauges(sweep, side)?;
-        // The motor stays on the tight side, which takes some slack out for the motors that follow.
+        // The motor stays on the tight side, which takes up some slack for the motors that follow.
         self.target[self.motor] = sweep.centre + 0.5 * side * sweep.way;
         if self.motor == 3 {
             return Ok(Phase::Wiring(Wiring::new()));
@@ -45,7 +45,7 @@ impl SignSearch {
         Ok(Phase::Sweep(Sweep::first(self.target[self.motor])))
     }
 
-    /// Moves the motor on. Returns whether it has been at every place.
+    /// Moves the motor by one cycle. Returns whether it has been at every position.
     fn advance(&mut self, sweep: &mut Sweep, instruments: &Instruments, sample: &Sample, way: &Vector4<f64>) -> bool {
         let motor = self.motor;
         let aim = sweep.aim();
@@ -58,7 +58,7 @@ impl SignSearch {
         sweep.dwell(instruments.period, sample.feedback.gauge_counts, &self.newton_per_count, lag)
     }
 
-    /// Which way the gauges went between the slack end and the tight one.
+    /// Stores the signs of the gauges, from the change between the slack end and the tight end.
     fn note_gauges(&mut self, sweep: &Sweep, side: f64) -> Result<(), Obstacle> {
         let change = sweep.change_between_ends() * side;
         for gauge in 0..4 {

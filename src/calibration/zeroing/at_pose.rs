@@ -1,4 +1,4 @@
-//! Zeros of the encoders from the configured pose, in which something holds the finger.
+//! Zeros the encoders in the configured pose, in which something holds the finger.
 
 use super::{Phase, Stepped, Zeroing, going};
 use crate::calibration::encoder_zero::Reading;
@@ -28,14 +28,14 @@ impl Zeroing {
             self.phase = Phase::ReadPose { grip, reading };
             return going(Step::ReadingEncoders, 0.9, activity);
         }
-        // The instruments have subtracted the offsets already.
+        // The instruments have already subtracted the offsets.
         let none = Vector4::zeros();
         reading.still()?;
         grip.returned(&reading.joints(instruments, &none))?;
         Ok(Break(self.at_pose(instruments, &reading, &none)))
     }
 
-    /// The finger was in the configured pose when it was read.
+    /// Returns the findings for a finger that was in the configured pose during `reading`.
     pub(super) fn at_pose(&self, instruments: &Instruments, reading: &Reading, offset: &Vector4<f64>) -> Findings {
         let zeros = reading.zeros(instruments, offset, &self.pose, self.configured);
         self.findings(instruments, zeros, reading.joints(instruments, offset) - self.pose, None)

@@ -1,4 +1,4 @@
-//! Zeros of the encoders from the two stops of every joint.
+//! Zeros the encoders by the two stops of every joint.
 
 use super::{Phase, Stepped, Zeroing, going};
 use crate::calibration::encoder_zero::Reading;
@@ -10,13 +10,14 @@ use crate::calibration::stop_search::StopSearch;
 use nalgebra::Vector4;
 use std::ops::ControlFlow::Break;
 
-/// A stop may be so far from where it is expected, rad, before it counts as something else in the way.
+/// Largest permitted difference between the measured and the configured range of a joint, rad. A larger one means an
+/// obstacle or a missing stop.
 const TOLERANCE: f64 = 0.035;
-/// How much further than its range a joint is led in search of a stop, rad.
+/// A joint in search of a stop moves at most this far beyond its range, rad.
 const BEYOND: f64 = 0.17;
-/// How near to the middle of its range a joint is brought back, rad.
+/// A joint has returned when it is this close to the middle of its range, rad.
 const NEAR: f64 = 0.05;
-/// How long the finger comes to rest before its counts are read, s.
+/// Time for the finger to come to rest before its counts are read, s.
 const RESTING: f64 = 0.3;
 
 impl Zeroing {
@@ -94,9 +95,9 @@ impl Zeroing {
             self.phase = Phase::ReadAgain { lead, reading };
             return going(Step::ReadingEncoders, 0.95, lead.activity(instruments, sample));
         }
-        // The instruments have subtracted the offsets already.
+        // The instruments have already subtracted the offsets.
         let none = Vector4::zeros();
-        // A wrong stiffness shifts the two stops of a joint in opposite directions, so their mean is right.
+        // A wrong stiffness shifts the two stops of a joint in opposite directions, so their mean is correct.
         let too_far = (self.met.0 + self.met.1 - self.stops.0 - self.stops.1) * 0.5;
         let joints = reading.joints(instruments, &none) - too_far;
         let zeros = reading.zeros(instruments, &none, &joints, self.configured);
@@ -112,7 +113,7 @@ impl Zeroing {
         Phase::Seek { lead, joint, upper: true, search: StopSearch::new(joint, self.longest(joint)) }
     }
 
-    /// How far a joint is led at most, rad.
+    /// Returns the largest distance that a joint may move in search of a stop, rad.
     fn longest(&self, joint: usize) -> f64 {
         self.stops.1[joint] - self.stops.0[joint] + BEYOND
     }

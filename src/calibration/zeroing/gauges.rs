@@ -1,4 +1,4 @@
-//! The first phases of zeroing, up to tendons that are tight with gauges that are zeroed.
+//! The first phases of zeroing, until the gauges are zeroed and the tendons are tight.
 
 use super::{Phase, Stepped, Zeroing, going};
 use crate::calibration::gauge_zero::GaugeZero;
@@ -13,10 +13,10 @@ use crate::model::configuration::ZeroingMethod;
 use nalgebra::{Vector3, Vector4};
 use std::ops::ControlFlow::{Break, Continue};
 
-/// Part of t_min that every tendon is to be pulled with where the finger is under control already.
+/// A finger is under control if every desired tension exceeds this part of t_min.
 const PULLED: f64 = 0.3;
 
-/// The finger goes on with what it did before the routine.
+/// The finger continues under its own controller.
 fn as_before(part: f64) -> Stepped {
     Ok(Continue((None, Progress { step: Step::ReadingEncoders, part })))
 }
@@ -29,7 +29,7 @@ impl Zeroing {
         self.phase = if sample.report.desired_tensions.min() > PULLED * instruments.minimum {
             Phase::Read
         } else {
-            // The tendons must stay slack before the gauges are zeroed: wrong gauges would pull the finger away.
+            // The tendons must stay slack until the gauges are zeroed, because wrong gauges would pull the finger away.
             Phase::Gauges(GaugeZero::new(None))
         };
         as_before(0.0)
