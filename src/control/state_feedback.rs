@@ -1,8 +1,8 @@
 //! Feedback of the whole state of a finger on elastic tendons: joint angles and rates, tensions and their rates.
 //!
-//! The report's loops see the joints through the motors. Between the two lies a spring, and what it swings with must be
-//! damped by what the loops do not measure: here it is observed, and every motor is made a force source of little
-//! inertia.
+//! The report's loops measure the joints through the motors. The tendons between the two are springs. Their oscillation
+//! must be damped with quantities that those loops do not measure. This controller observes these quantities, and makes
+//! every motor a force source with little inertia.
 
 mod construction;
 mod damping_design;
@@ -26,15 +26,15 @@ use crate::model::LinkDynamics;
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
-/// After so many lost replies or skipped periods in a row what is predicted says nothing any more: the command stays as
-/// it is, and the next reply begins anew. With 20 one of five fingers whose servo now and then did not run for 12 ms
-/// lost all its tensions.
+/// Largest number of consecutive lost replies or skipped periods for which the predictions are used. After more, the
+/// command stays constant, and the next reply restarts the observers. With 20, one of five fingers whose servo
+/// occasionally did not run for 12 ms lost all its tensions.
 const BLIND: u32 = 4;
 
-/// The law. SI units inside; the tension distribution and the spring speak N cm.
+/// The control law, in SI units. The tension distribution and the spring use N cm.
 #[derive(Clone, Debug)]
 pub(super) struct StateFeedback {
-    /// s.
+    /// Period, s.
     period: f64,
     observers: [TendonObserver; 4],
     joint_stiffness: JointStiffness,
@@ -46,16 +46,16 @@ pub(super) struct StateFeedback {
     friction: FrictionFeedForward,
     /// R, m.
     r: Matrix3x4<f64>,
-    /// R^T (R R^T)^-1, 1/m: its transpose turns the travel of tendons into joint angles, and a common stretch into
-    /// nothing.
+    /// R^T (R R^T)^-1, 1/m. Its transpose converts the travel of the tendons to joint angles, and a common stretch to
+    /// zero.
     pseudo_inverse: Matrix4x3<f64>,
-    /// The tensions that no joint feels, of length 1.
+    /// Unit vector of the tensions that cause no joint torque.
     common: Vector4<f64>,
-    /// R m R^T / alpha, kg m^2: what the joints feel of the motors.
+    /// R m R^T / alpha, kg m^2: the inertia of the motors that acts on the joints.
     felt_motors: Matrix3<f64>,
-    /// The same as the damping reckons with it.
+    /// The inertia of the motors for which the damping is designed, kg m^2.
     damped_motors: Matrix3<f64>,
-    /// kg, N s/m and N/m at the tendon.
+    /// Mass, kg, viscous friction, N s/m, and stiffness, N/m, all at the tendon.
     mass: Vector4<f64>,
     viscous: Vector4<f64>,
     stiffness: Vector4<f64>,
@@ -63,42 +63,42 @@ pub(super) struct StateFeedback {
     inertia_gain: f64,
     /// c, N s/m.
     relative_damping: f64,
-    /// alpha and c of what the tendons have in common, over those of what turns the joints.
+    /// alpha and c for the common component of the tendons, divided by those for the components that turn the joints.
     common_gain: f64,
     common_damping: f64,
-    /// N m s/rad and N m.
+    /// Viscous friction, N m s/rad, and Coulomb friction, N m, of the joints.
     joint_viscous: Vector3<f64>,
     joint_coulomb: Vector3<f64>,
-    /// Of the low-pass on the drift, a cycle.
+    /// Gain per cycle of the low-pass filter on the drift.
     drift_gain: f64,
-    /// Rate of fed forward joint friction over the spring's damping.
-    rubbing: f64,
-    /// s beyond the next sample.
-    ahead: f64,
-    /// Radius of each motor, m, and half a count of its encoder, rad: a count is rounded down.
+    /// Slope of the joint friction feed-forward, as a fraction of the spring's damping.
+    friction_slope: f64,
+    /// Time relative to the next sample for which the motion is computed, s. Negative is before the sample.
+    sample_offset: f64,
+    /// Radius of each motor, m, and half an encoder count, rad, because counts are rounded down.
     radius: Vector4<f64>,
     half_count: Vector4<f64>,
-    /// What the tensions of a finger at rest swing by, N: the dither, and what a gauge leaves open; and near t_max what
-    /// friction does.
+    /// Margins to the tension bounds for the variation of the tensions of a finger at rest, N. It comes from dither and
+    /// gauge noise, and near t_max also from friction.
     pub lower_reserve: f64,
     pub upper_reserve: Vector4<f64>,
 }
 
-/// What it remembers.
+/// The state of the control law.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct StateFeedbackState {
     estimates: [TendonEstimate; 4],
-    /// The pull that acts until the next sample, but for what was fed forward against friction, N.
+    /// The pull that acts until the next sample, without the friction feed-forward, N.
     acting: Vector4<f64>,
     /// Jerk of the reference, rad/s^3.
     jerk: Vector3<f64>,
     lost: u32,
     anchor: Vector3<f64>,
-    /// What the tensions still differ by from what the spring asks for. Of tensions, not of pulls: these are noisy, and
-    /// the noise of one cycle must not be kept.
+    /// Remaining difference of the tensions at the start of the spring, which decays to zero. It is in tensions and not
+    /// in pulls, because pulls are noisy and the noise of one cycle must not persist.
     transition: BumplessTransfer,
     reference: ReferenceState,
-    /// How fast the joints move beside the reference, low-passed, rad/s.
+    /// Motion of the joints in addition to the reference, low-pass filtered, rad/s.
     drift: Vector3<f64>,
     dither: DitherState,
     /// Measured joint angles, rad, and joint rates, rad/s.
@@ -107,7 +107,7 @@ pub(super) struct StateFeedbackState {
 }
 
 impl StateFeedback {
-    /// A finger at rest, under the pull of its tendons.
+    /// Returns the state of a finger at rest, with the pull of its tendons.
     pub fn start(&self, measured: &Measured) -> StateFeedbackState {
         let (travel, tensions) = (self.travel(measured), measured.tensions);
         let estimates = std::array::from_fn(|tendon| self.observers[tendon].start(travel[tendon], tensions[tendon]));
@@ -127,7 +127,7 @@ impl StateFeedback {
         }
     }
 
-    /// Goes on from the state of another controller of the same finger.
+    /// Continues from the state of another controller of the same finger.
     pub fn take_over(&self, previous: &Self, state: &mut StateFeedbackState) {
         let ratio = self.radius.component_div(&previous.radius);
         for tendon in 0..4 {
@@ -136,12 +136,12 @@ impl StateFeedback {
         }
     }
 
-    /// Whether so many replies are lost in a row that nothing can be decided.
+    /// Returns whether too many consecutive replies are lost to compute a command.
     pub fn blind(&self, state: &StateFeedbackState) -> bool {
         state.lost > BLIND
     }
 
-    /// Takes in a reply, or that it was lost, and goes on to the next sample.
+    /// Updates the observers with a reply, or with the loss of one, and predicts the next sample.
     pub fn observe(&self, state: &mut StateFeedbackState, measured: Option<&Measured>) {
         let was_blind = self.blind(state);
         state.lost = if measured.is_some() { 0 } else { state.lost.saturating_add(1) };
@@ -166,27 +166,27 @@ impl StateFeedback {
         state.joint_rates = self.pseudo_inverse.tr_mul(&speeds);
     }
 
-    /// What was commanded in the end, N, and what of it was against friction.
+    /// Stores the commanded pulls, N, without their friction feed-forward.
     pub fn commanded(&self, state: &mut StateFeedbackState, pulls: &Vector4<f64>, against_friction: &Vector4<f64>) {
         state.acting = pulls - against_friction;
     }
 
-    /// No reference moves the finger.
+    /// Ends the motion of the reference.
     pub fn idle(&self, state: &mut StateFeedbackState) {
         state.jerk = Vector3::zeros();
     }
 
     fn motion(&self, state: &StateFeedbackState, tendon: usize) -> TendonMotion {
-        self.observers[tendon].motion(&state.estimates[tendon], state.acting[tendon], self.ahead)
+        self.observers[tendon].motion(&state.estimates[tendon], state.acting[tendon], self.sample_offset)
     }
 
-    /// theta, rad.
+    /// Returns theta, rad.
     fn pose(&self, estimates: &[TendonEstimate; 4]) -> Vector3<f64> {
         let travel = Vector4::from_fn(|tendon, _| self.observers[tendon].travel(&estimates[tendon]));
         self.pseudo_inverse.tr_mul(&travel)
     }
 
-    /// Travel of the motors, m.
+    /// Returns the travel of the motors, m.
     fn travel(&self, measured: &Measured) -> Vector4<f64> {
         (measured.motor_angles + self.half_count).component_mul(&self.radius)
     }

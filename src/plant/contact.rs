@@ -1,24 +1,24 @@
-//! The fingertip against something that does not move: elastic, frictionless.
+//! Contact of the fingertip with a fixed surface, elastic and without friction.
 
 use crate::model::configuration::Surface;
 use crate::model::direction;
 use nalgebra::Vector3;
 
-/// Force on the tip, N, finger frame. `tip` in cm.
+/// Returns the force on the tip, N, in the finger's frame. `tip` is in cm.
 ///
-/// A wall without a normal, and the very centre of a ball, push in no direction: no force.
+/// The force is zero for a wall without a normal, and at the centre of a ball, because there it has no direction.
 pub(super) fn force(surface: &Surface, tip: &Vector3<f64>) -> Vector3<f64> {
     let (depth, outward, stiffness) = touch(surface, tip);
     outward * (depth * stiffness)
 }
 
-/// Elastic energy, J.
+/// Returns the elastic energy, J.
 pub(super) fn energy(surface: &Surface, tip: &Vector3<f64>) -> f64 {
     let (depth, _, stiffness) = touch(surface, tip);
     0.5 * stiffness * depth * depth * 0.01
 }
 
-/// Depth of the tip under the surface, cm, 0 outside; outward unit normal; stiffness, N/cm.
+/// Returns the depth of the tip below the surface, cm (0 outside), the outward unit normal, and the stiffness, N/cm.
 fn touch(surface: &Surface, tip: &Vector3<f64>) -> (f64, Vector3<f64>, f64) {
     let (height, outward, stiffness) = match *surface {
         Surface::Wall { point, normal, stiffness } => {

@@ -1,4 +1,4 @@
-//! One finger as a physical system: joints, tendons, motors, and what the tip meets.
+//! One finger as a physical system: joints, tendons, motors, and a surface that the tip can touch.
 
 use super::contact;
 use super::holding_hand::HoldingHand;
@@ -11,13 +11,13 @@ use crate::model::configuration::Surface;
 use crate::model::{LinkDynamics, Links, TendonsError};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
-/// Simulated time of one [`Plant::step`], s, unless another is chosen.
+/// Default length of one [`Plant::step`] in simulated time, s.
 pub const PLANT_STEP_SECONDS: f64 = 1e-4;
 
-/// One finger. Its state is theta, theta_dot, m, m_dot; it is integrated by semi-implicit Euler.
+/// One finger. Its state is theta, theta_dot, m and m_dot. It is integrated by the semi-implicit Euler method.
 ///
-/// Until [`Plant::release_brake`] the rotors are locked: a hand stands braked at its homing pretension until its board
-/// is told to drive it.
+/// The rotors are locked until [`Plant::release_brake`]: a hand is braked at its homing pretension until its board
+/// receives commands.
 #[derive(Clone, Debug)]
 pub struct Plant {
     links: Links,
@@ -26,7 +26,7 @@ pub struct Plant {
     tendons: ElasticTendons,
     motors: Motors,
     joint_viscous: Vector3<f64>,
-    /// N m.
+    /// Coulomb friction of the joints, N m.
     joint_coulomb: Vector3<f64>,
     /// Length of a step, s.
     step: f64,
@@ -43,7 +43,8 @@ pub struct Plant {
 }
 
 impl Plant {
-    /// A finger at its start pose, at rest, at homing pretension, braked. Gravity in the finger's frame, m/s^2.
+    /// Constructs a finger at its start pose: at rest, at homing pretension, and braked. The gravity is in m/s^2 in the
+    /// finger's frame.
     pub fn new(finger: &ConfiguredFinger, gravity_in_finger_frame: Vector3<f64>) -> Result<Self, TendonsError> {
         let tendons = ElasticTendons::new(finger)?;
         let simulation = &finger.simulation;
@@ -74,14 +75,14 @@ impl Plant {
         })
     }
 
-    /// With steps of so many seconds, more than 0, instead of [`PLANT_STEP_SECONDS`]: for periods that are no multiple
-    /// of that. Longer steps may swing by themselves.
+    /// Uses steps of `seconds`, more than 0, instead of [`PLANT_STEP_SECONDS`], for periods that are no multiple of
+    /// that. With longer steps the integration may be unstable.
     pub fn with_step(self, seconds: f64) -> Self {
         Self { step: seconds, ..self }
     }
 
-    /// Advances by a step, [`PLANT_STEP_SECONDS`] by default. `motor_torques`: what the board commands, N m: a positive
-    /// one pulls where `motor.sign` is +1. The motors give at most their torque limit.
+    /// Advances by one step. `motor_torques` are the torques that the board commands, N m. A positive torque pulls if
+    /// `motor.sign` is +1. They are clamped to the torque limit of the motors.
     pub fn step(&mut self, motor_torques: [f64; 4]) {
         let h = self.step;
         self.tendons.slip(&self.theta, &self.motor);
@@ -111,32 +112,33 @@ impl Plant {
         }
     }
 
-    /// Lets the rotors turn from now on.
+    /// Unlocks the rotors.
     pub fn release_brake(&mut self) {
         self.braked = false;
     }
 
-    /// theta, rad.
+    /// Returns theta, rad.
     pub fn joints(&self) -> Vector3<f64> {
         self.theta
     }
 
-    /// theta_dot, rad/s.
+    /// Returns theta_dot, rad/s.
     pub fn joint_rates(&self) -> Vector3<f64> {
         self.theta_dot
     }
 
-    /// Motor angles, rad; rising as the tendon is pulled in; zero at theta = 0 with the homing pretension.
+    /// Returns the motor angles, rad. They increase as the tendons are pulled in, and are zero at theta = 0 with the
+    /// homing pretension.
     pub fn motor_angles(&self) -> Vector4<f64> {
         self.motor
     }
 
-    /// Motor speeds, rad/s.
+    /// Returns the motor speeds, rad/s.
     pub fn motor_speeds(&self) -> Vector4<f64> {
         self.motor_dot
     }
 
-    /// Turns a motor by hand, rad: negative unwinds its tendon.
+    /// Turns a motor by hand, rad. A negative angle unwinds its tendon.
     pub fn turn_motor(&mut self, motor: usize, angle: f64) {
         self.motor[motor] += angle;
     }
@@ -146,7 +148,7 @@ impl Plant {
         self.tendons.cut(tendon);
     }
 
-    /// From now on a tendon slips where it is clamped, and bears no more than so much, N.
+    /// Loosens the clamp of a tendon, 0 to 3. From now on the tendon slips at tensions above `grip`, N.
     pub fn loosen_tendon(&mut self, tendon: usize, grip: f64) {
         self.tendons.loosen(tendon, grip);
     }
@@ -156,48 +158,48 @@ impl Plant {
         self.jammed[motor] = true;
     }
 
-    /// Tendons and motors whole again.
+    /// Repairs all tendons and motors.
     pub fn mend(&mut self) {
-        self.tendons.mend();
+        self.tendons.restore();
         self.jammed = [false; 4];
     }
 
-    /// Tendon tensions, N.
+    /// Returns the tendon tensions, N.
     pub fn tensions(&self) -> Vector4<f64> {
         self.tendons.tensions(&self.theta, &self.motor)
     }
 
-    /// Position of the fingertip, finger frame, cm.
+    /// Returns the position of the fingertip in the finger's frame, cm.
     pub fn tip(&self) -> Vector3<f64> {
         self.links.tip(&self.theta)
     }
 
-    /// Pushes the fingertip from now on: N, finger frame.
+    /// Applies a constant force to the fingertip, N, in the finger's frame.
     pub fn set_external_force(&mut self, force: Vector3<f64>) {
         self.external_force = force;
     }
 
-    /// Holds the joints at these angles, rad, from now on, as a person's hand does.
+    /// Holds the joints at these angles, rad, as a person's hand does.
     pub fn hold(&mut self, pose: Vector3<f64>) {
         self.held = Some(HoldingHand::new(pose));
     }
 
-    /// Takes that hand away.
+    /// Removes the holding hand.
     pub fn let_go(&mut self) {
         self.held = None;
     }
 
-    /// Puts something in reach of the fingertip, or takes it away.
+    /// Places a surface in reach of the fingertip, or removes it.
     pub fn set_surface(&mut self, surface: Option<Surface>) {
         self.surface = surface;
     }
 
-    /// Force of the surface on the fingertip, N, finger frame.
+    /// Returns the force of the surface on the fingertip, N, in the finger's frame.
     pub fn contact_force(&self) -> Vector3<f64> {
         self.surface.map_or_else(Vector3::zeros, |surface| contact::force(&surface, &self.tip()))
     }
 
-    /// Energy in the moving parts, tendons, stops, holding hand, surface and gravity, J.
+    /// Returns the energy of the moving parts, tendons, stops, holding hand, surface and gravity, J.
     pub fn energy(&self) -> f64 {
         self.dynamics.energy(&self.theta, &self.theta_dot)
             + self.motors.energy(&self.motor_dot)
@@ -207,13 +209,14 @@ impl Plant {
             + self.surface.map_or(0.0, |surface| contact::energy(&surface, &self.tip()))
     }
 
-    /// The part of [`Plant::energy`] that is motion, J.
+    /// Returns the kinetic part of [`Plant::energy`], J.
     pub fn kinetic_energy(&self) -> f64 {
         self.dynamics.kinetic_energy(&self.theta, &self.theta_dot) + self.motors.energy(&self.motor_dot)
     }
 }
 
-/// The inverse of an inertia matrix, 1 + 2x2 as joint 0 decouples. Positive masses make it exist.
+/// Returns the inverse of an inertia matrix. Joint 0 is decoupled, so the inverse has a 1 x 1 and a 2 x 2 block. It
+/// exists because the masses are positive.
 fn inverse(h: &Matrix3<f64>) -> Matrix3<f64> {
     let determinant = h[(1, 1)] * h[(2, 2)] - h[(1, 2)] * h[(1, 2)];
     let off = -h[(1, 2)] / determinant;

@@ -1,16 +1,16 @@
-//! A person's hand that holds the finger in a pose: firm, but no vice.
+//! A person's hand that holds the finger in a pose, firmly but elastically.
 
 use nalgebra::Vector3;
 
-/// N m/rad: a push of 0.25 N at the tip moves a joint by a third of a degree.
+/// Stiffness, N m/rad. A push of 0.25 N at the tip moves a joint by a third of a degree.
 const STIFFNESS: f64 = 3.0;
-/// N m s/rad.
+/// Damping, N m s/rad.
 const DAMPING: f64 = 0.02;
 
 /// A spring and a damper at every joint.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HoldingHand {
-    /// rad.
+    /// Held joint angles, rad.
     pose: Vector3<f64>,
 }
 
@@ -20,12 +20,12 @@ impl HoldingHand {
         Self { pose }
     }
 
-    /// Torques on the joints, N m.
+    /// Returns the torques on the joints, N m.
     pub fn torque(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
         (self.pose - theta) * STIFFNESS - rate * DAMPING
     }
 
-    /// Elastic energy, J.
+    /// Returns the elastic energy, J.
     pub fn energy(&self, theta: &Vector3<f64>) -> f64 {
         0.5 * STIFFNESS * (self.pose - theta).norm_squared()
     }

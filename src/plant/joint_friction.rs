@@ -1,13 +1,15 @@
-//! Coulomb friction of the joints as impulses: each as large as it takes to stop its joint, bounded by what the
-//! friction torque delivers in one step. All three together, because stopping one joint moves its neighbour.
+//! Coulomb friction of the joints as impulses. Each impulse is as large as needed to stop its joint, but at most what
+//! the friction torque delivers in one step. The three impulses are solved together, because stopping one joint moves
+//! its neighbour.
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Sweeps of projected Gauss-Seidel. The coupling of joints 1 and 2 shrinks the error at least to three quarters a
-/// sweep, with the default masses; sweeping ends early when nothing changes.
+/// Largest number of sweeps of projected Gauss-Seidel. With the default masses the coupling of joints 1 and 2 reduces
+/// the error to three quarters or less in each sweep. The iteration ends early when nothing changes.
 const SWEEPS: usize = 60;
 
-/// The joint rates after friction. `rates`: without it; `bound`: largest impulses, N m s.
+/// Returns the joint rates after friction. `rates` are those without friction, and `bound` are the largest impulses, N
+/// m s.
 pub(super) fn stop_by_friction(
     rates: Vector3<f64>,
     inverse_inertia: &Matrix3<f64>,

@@ -1,15 +1,15 @@
-//! The mechanical stops of the joints: stiff, damped, one-sided.
+//! The mechanical stops of the joints: stiff, damped and one-sided.
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
-/// N m/rad. A motor at its torque limit bends a stop by about a degree; the lightest link still resolves it in one
-/// step.
+/// Stiffness, N m/rad. A motor at its torque limit deflects a stop by about a degree. With the lightest link, one step
+/// still resolves the motion.
 const STIFFNESS: f64 = 100.0;
-/// N m s/rad.
+/// Damping, N m s/rad.
 const DAMPING: f64 = 0.02;
 
-/// Where the stops of each joint are, rad.
+/// The angles of the stops of each joint, rad.
 #[derive(Clone, Debug)]
 pub(super) struct JointStops {
     lower: Vector3<f64>,
@@ -23,7 +23,7 @@ impl JointStops {
         Self { lower: lower.add_scalar(-margin), upper: upper.add_scalar(margin) }
     }
 
-    /// Torques on the joints, N m. A stop pushes, and never pulls back a joint that leaves it.
+    /// Returns the torques on the joints, N m. A stop pushes a joint, and never pulls back a joint that leaves it.
     pub fn torque(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
         Vector3::from_fn(|joint, _| {
             let depth = self.depth(theta, joint);
@@ -38,12 +38,12 @@ impl JointStops {
         })
     }
 
-    /// Elastic energy, J.
+    /// Returns the elastic energy, J.
     pub fn energy(&self, theta: &Vector3<f64>) -> f64 {
         (0..3).map(|joint| 0.5 * STIFFNESS * self.depth(theta, joint).powi(2)).sum()
     }
 
-    /// How far the joint is beyond its upper (positive) or lower (negative) stop, rad.
+    /// Returns how far the joint is beyond its upper (positive) or lower (negative) stop, rad.
     fn depth(&self, theta: &Vector3<f64>, joint: usize) -> f64 {
         (theta[joint] - self.upper[joint]).max(0.0) + (theta[joint] - self.lower[joint]).min(0.0)
     }

@@ -1,18 +1,19 @@
-//! The four motors: rotors with viscous and Coulomb friction, the latter growing with the tension in the conduit.
+//! The four motors: rotors with viscous and Coulomb friction. The Coulomb friction grows with the tension in the
+//! conduit.
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 
-/// Parameters of the four rotors, SI.
+/// Parameters of the four rotors, SI units.
 #[derive(Clone, Debug)]
 pub(super) struct Motors {
     inertia: Vector4<f64>,
     viscous: Vector4<f64>,
     coulomb: Vector4<f64>,
-    /// Coulomb torque for a tension torque.
+    /// Conduit friction as a fraction of the tension torque.
     conduit: f64,
     torque_limit: Vector4<f64>,
-    /// True torque, positive pulling, over the commanded one.
+    /// True torque, positive if it pulls, divided by the commanded torque.
     gain: Vector4<f64>,
 }
 
@@ -30,7 +31,8 @@ impl Motors {
         }
     }
 
-    /// The speeds, rad/s, one step of `h` seconds later. `tension_torque`: what the tendons pull back with, N m.
+    /// Returns the speeds, rad/s, after one step of `h` seconds. `tension_torque` is the torque with which the tendons
+    /// pull back, N m.
     pub fn next_speeds(
         &self,
         speeds: &Vector4<f64>,
@@ -44,13 +46,14 @@ impl Motors {
             let driving = torque - tension_torque[motor] - self.viscous[motor] * speeds[motor];
             let speed = speeds[motor] + h / self.inertia[motor] * driving;
             let friction = self.coulomb[motor] + self.conduit * tension_torque[motor];
-            // Toward zero, never past it: a resting rotor stays at rest until the torque exceeds the friction.
+            // Friction reduces the speed to zero at most. A rotor at rest stays at rest until the torque exceeds the
+            // friction.
             let loss = h / self.inertia[motor] * friction;
             speed - speed.clamp(-loss, loss)
         })
     }
 
-    /// Kinetic energy of the rotors, J.
+    /// Returns the kinetic energy of the rotors, J.
     pub fn energy(&self, speeds: &Vector4<f64>) -> f64 {
         0.5 * self.inertia.dot(&speeds.component_mul(speeds))
     }

@@ -1,4 +1,4 @@
-//! What the board measures: motor encoders and strain gauges.
+//! The sensors that the board reads: motor encoders and strain gauges.
 
 use super::Plant;
 use crate::model::configuration::ConfiguredFinger;
@@ -10,29 +10,29 @@ use std::f64::consts::TAU;
 /// Largest count of the 12-bit converter behind each gauge.
 const GAUGE_FULL_SCALE: f64 = 4095.0;
 
-/// Encoders and gauges of one finger, with the noise of the gauges: the same sequence for the same `simulation.seed`.
+/// Encoders and gauges of one finger. The noise of the gauges is the same sequence for the same `simulation.seed`.
 #[derive(Clone, Debug)]
 pub struct Sensors {
-    /// Counts a radian, with sign.
+    /// Counts per radian, with the sign of the encoder.
     counts_per_radian: [f64; 4],
     encoder_zero: [i32; 4],
     newton_per_count: [f64; 4],
     gauge_zero: [f64; 4],
     gauge_noise: f64,
     random: Pcg64,
-    /// Counts that a dead gauge shows for ever.
+    /// Constant count of each dead gauge.
     dead: [Option<u16>; 4],
-    /// Drift of each gauge so far, N, and its speed, N/s.
+    /// Present drift of each gauge, N, and its speed, N/s.
     drift: [f64; 4],
     drift_speed: [f64; 4],
-    /// Counts by which an encoder is off.
+    /// Counts by which each encoder is wrong.
     jumped: [i32; 4],
-    /// What the gauges showed last.
+    /// The gauge counts of the last reading.
     shown: [u16; 4],
 }
 
 impl Sensors {
-    /// The sensors that `finger` describes.
+    /// Constructs the sensors of `finger`.
     pub fn new(finger: &ConfiguredFinger) -> Self {
         let encoder = &finger.encoder;
         Self {
@@ -52,39 +52,40 @@ impl Sensors {
         }
     }
 
-    /// From now on a gauge shows this count, or the one that it shows now.
+    /// Kills a gauge: from now on it shows `count`, or without `count` the count of its last reading.
     pub fn kill_gauge(&mut self, gauge: usize, count: Option<u16>) {
         self.dead[gauge] = Some(count.unwrap_or(self.shown[gauge]));
     }
 
-    /// From now on a gauge drifts, N/s.
+    /// Starts the drift of a gauge, N/s.
     pub fn let_gauge_drift(&mut self, gauge: usize, speed: f64) {
         self.drift_speed[gauge] = speed;
     }
 
-    /// An encoder gains or loses counts.
+    /// Adds counts to an encoder, or removes them.
     pub fn jump(&mut self, encoder: usize, counts: i32) {
         self.jumped[encoder] = self.jumped[encoder].wrapping_add(counts);
     }
 
-    /// Sensors that are whole and right again.
+    /// Repairs all sensors.
     pub fn mend(&mut self) {
         (self.dead, self.drift, self.drift_speed, self.jumped) = ([None; 4], [0.0; 4], [0.0; 4], [0; 4]);
     }
 
-    /// Lets time pass, s: gauges drift.
+    /// Advances the drift of the gauges by a time, s.
     pub fn pass(&mut self, seconds: f64) {
         for gauge in 0..4 {
             self.drift[gauge] += self.drift_speed[gauge] * seconds;
         }
     }
 
-    /// Reads all eight: encoder counts (eq. 28 backwards, rounded down) and gauge counts (0 to 4095, with noise).
+    /// Reads all eight sensors: encoder counts (the inverse of eq. 28, rounded down) and gauge counts (0 to 4095, with
+    /// noise).
     pub fn read(&mut self, plant: &Plant) -> ([i32; 4], [u16; 4]) {
         let (angles, tensions) = (plant.motor_angles(), plant.tensions());
         let motor_counts = std::array::from_fn(|motor| {
             let counts = (angles[motor] * self.counts_per_radian[motor]).floor();
-            // A counter wraps.
+            // The counter wraps around.
             self.encoder_zero[motor].wrapping_add(counts as i64 as i32).wrapping_add(self.jumped[motor])
         });
         let gauge_counts = std::array::from_fn(|tendon| {

@@ -1,26 +1,26 @@
-//! The four tendons: one-sided springs between the motors' pulleys and the joints.
+//! The four tendons: one-sided springs between the pulleys of the motors and the joints.
 
 use crate::model::TendonsError;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
-/// Springs t = k max(0, r m - R^T theta + t_home / k), so that motor angle zero is theta = 0 with the homing
+/// Springs t = k max(0, r m - R^T theta + t_home / k). The motor angles are zero at theta = 0 with the homing
 /// pretension.
 #[derive(Clone, Debug)]
 pub(super) struct ElasticTendons {
     /// R, m.
     r: Matrix3x4<f64>,
-    /// Motor pulley radii, m.
+    /// Radii of the motor pulleys, m.
     pub radius: Vector4<f64>,
-    /// N/m.
+    /// Stiffness, N/m.
     stiffness: Vector4<f64>,
     /// Stretch at motor angle zero and theta = 0, m.
     home_stretch: Vector4<f64>,
-    /// Torn ones bear nothing.
+    /// Torn tendons, which have no tension.
     cut: [bool; 4],
-    /// What a slipping one bears at most, N; infinite where none slips.
+    /// Largest tension of a slipping tendon, N. It is infinite for a tendon that does not slip.
     grip: Vector4<f64>,
-    /// How much longer slipping has made them, m.
+    /// Length that slipping has added to each tendon, m.
     slipped: Vector4<f64>,
 }
 
@@ -39,29 +39,29 @@ impl ElasticTendons {
         })
     }
 
-    /// Tensions, N, at joint angles and motor angles, rad. A slack tendon has none.
+    /// Returns the tensions, N, at joint angles and motor angles, rad. The tension of a slack tendon is zero.
     pub fn tensions(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> Vector4<f64> {
         self.stretch(theta, motor).component_mul(&self.stiffness)
     }
 
-    /// Tears a tendon.
+    /// Tears a tendon, 0 to 3.
     pub fn cut(&mut self, tendon: usize) {
         self.cut[tendon] = true;
     }
 
-    /// From now on a tendon slips where it is clamped, and bears no more than so much, N.
+    /// Loosens the clamp of a tendon, 0 to 3. From now on the tendon slips at tensions above `grip`, N.
     pub fn loosen(&mut self, tendon: usize, grip: f64) {
         self.grip[tendon] = grip;
     }
 
-    /// All tendons as they were in the beginning.
-    pub fn mend(&mut self) {
+    /// Restores all tendons to their initial state.
+    pub fn restore(&mut self) {
         self.cut = [false; 4];
         self.grip = Vector4::repeat(f64::INFINITY);
         self.slipped = Vector4::zeros();
     }
 
-    /// Lets those slip that bear more than their grip.
+    /// Lets tendons slip whose tension exceeds their grip.
     pub fn slip(&mut self, theta: &Vector3<f64>, motor: &Vector4<f64>) {
         if self.grip.min() == f64::INFINITY {
             return;
@@ -70,17 +70,17 @@ impl ElasticTendons {
         self.slipped += beyond.component_div(&self.stiffness);
     }
 
-    /// tau = R t, eq. 13, N m.
+    /// Returns tau = R t, eq. 13, N m.
     pub fn joint_torque(&self, tensions: &Vector4<f64>) -> Vector3<f64> {
         self.r * tensions
     }
 
-    /// The motor angles, rad, that hold `theta` with the homing pretension.
+    /// Returns the motor angles, rad, at which the finger has the joint angles `theta` with the homing pretension.
     pub fn motor_angles_at(&self, theta: &Vector3<f64>) -> Vector4<f64> {
         self.r.tr_mul(theta).component_div(&self.radius)
     }
 
-    /// Elastic energy, J.
+    /// Returns the elastic energy, J.
     pub fn energy(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> f64 {
         let stretch = self.stretch(theta, motor);
         0.5 * self.stiffness.dot(&stretch.component_mul(&stretch))

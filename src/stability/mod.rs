@@ -1,5 +1,5 @@
-//! Whether a finger under its controller comes to rest: the one-cycle map of the core and the plant together, and the
-//! largest stiffness for which it does. For tools and measurements; no servo thread runs any of it.
+//! Stability of a finger with its controller: the one-cycle map of core and plant, and the largest stiffness for which
+//! it is stable. Tools and measurements use this module. No servo thread runs any of it.
 
 mod one_cycle_map;
 mod recurrence;

@@ -1,4 +1,5 @@
-//! The motion of a finger near a rest: plant, controller and the one cycle of delay between sample and torque.
+//! The motion of a finger near a rest, as a linear map of one cycle: plant, controller, and the one cycle of delay
+//! between sample and torque.
 
 use super::growth;
 use crate::control::{Activity, Controller, Feedback, Law, Measured, Report, SetPoint, State, TensionDistribution};
@@ -7,63 +8,65 @@ use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 use nalgebra::{DVector, Matrix3, Vector3, Vector4};
 
-/// How long the filters and integrals of the controller have to come to rest, s.
+/// Time in which the filters and integrals of the controller settle, s.
 const SETTLING: f64 = 0.3;
 
-/// How long the motion is watched, s; and how long where that does not decide.
-const WATCHED: f64 = 1.0;
-const WATCHED_LONG: f64 = 4.0;
+/// Time for which the motion is observed, s, and the longer time if the first does not decide.
+const OBSERVED: f64 = 1.0;
+const OBSERVED_LONG: f64 = 4.0;
 
-/// A largest modulus less than this from 1 does not decide.
+/// If the largest modulus is less than this distance below 1, or above, the first observation does not decide.
 const SLOW: f64 = 2e-5;
 
-/// Between two looks, s: apart enough that the eigenvalues left are, too.
+/// Interval between two observations, s. It is long enough to separate the remaining eigenvalues.
 const STRIDE: f64 = 0.005;
 
-/// A nudge that has grown by so much will not come back.
-const GONE: f64 = 1e3;
+/// Growth at which a displacement counts as diverged.
+const DIVERGED: f64 = 1e3;
 
-/// A nudge of which so little is left says nothing: the finger itself is not at rest to the last bit.
-const LOST: f64 = 1e-4;
+/// Fraction of a displacement below which it contains no information, because the finger itself is not at rest to the
+/// last bit.
+const DECAYED: f64 = 1e-4;
 
-/// A finger that has moved by so much is not at its rest any more, rad.
+/// Motion by which a finger counts as having left its rest, rad.
 const FAR: f64 = 0.1;
 
-/// A finger as it is left to itself: at `joints`, rad, which a force on the tip holds `deflection`, rad, away from
-/// where its spring Kx, N/cm, is anchored.
+/// A finger at rest at `joints`. A force on the tip holds it at `deflection` from the anchor of its spring.
 #[derive(Clone, Copy, Debug)]
 pub struct Rest {
-    /// rad.
+    /// Joint angles, rad.
     pub joints: Vector3<f64>,
-    /// Of the joints, rad. Without any the tendons 1 and 4 share t_min, where eq. 20 has a kink.
+    /// Anchor of the spring minus joint angles, rad. At zero deflection the tendons 1 and 4 share t_min, where eq. 20
+    /// has a kink.
     pub deflection: Vector3<f64>,
-    /// N/cm.
+    /// Kx, N/cm.
     pub stiffness: Matrix3<f64>,
-    /// Damping relative to what the controller chooses from the stiffness: 1 is that.
+    /// Damping relative to the damping that the controller computes from the stiffness.
     pub damping: f64,
 }
 
-/// A finger without Coulomb friction, exactly measured, that is what its controller believes it to be.
+/// A finger without Coulomb friction and with exact sensors, whose parameters are those that its controller is
+/// configured with.
 ///
-/// Friction and quantisation only add a small motion that stays, or end one.
+/// Friction and quantisation are left out because they only add a small persistent motion, or end a motion.
 pub struct OneCycleMap {
     finger: ConfiguredFinger,
     tendons: Tendons,
     controller: Controller,
     distribution: TensionDistribution,
-    /// Plant steps in a cycle, and the length of each, s.
+    /// Number of plant steps in a cycle, and the length of each, s.
     steps: usize,
     step: f64,
 }
 
 impl OneCycleMap {
-    /// The finger with its configured scheme, law and gains at `rate`, Hz. A period is a whole number of plant steps,
-    /// of at most the usual length.
+    /// Constructs the map of a finger with its configured scheme, law and gains at `rate`, Hz. A period is a whole
+    /// number of plant steps, none longer than [`PLANT_STEP_SECONDS`].
     ///
     /// # Errors
-    /// The key that makes no controller.
+    /// A value with which no controller can be constructed.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
-        let finger = as_believed(finger);
+        let finger = matching_simulation(finger);
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
         let steps = (1.0 / (rate * PLANT_STEP_SECONDS) - 1e-6).ceil().max(1.0);
         let maximum = Vector4::repeat(finger.tendon.maximum);
@@ -77,18 +80,17 @@ impl OneCycleMap {
         })
     }
 
-    /// The part of its stiffness that the servo gives the finger at `rest`, 0 to 1.
+    /// Returns the fraction of its stiffness that the servo gives the finger at `rest`, 0 to 1.
     pub fn scale(&self, rest: &Rest) -> f64 {
         let mut finger = self.start(rest, &self.tendons.pretension(self.finger.tendon.minimum));
         self.cycle(&mut finger);
         finger.report.stiffness_scale
     }
 
-    /// The largest modulus of an eigenvalue of the one-cycle map at `rest`; none where the finger does not stay there,
-    /// or loses a tendon.
+    /// Returns the largest modulus of an eigenvalue of the one-cycle map at `rest`. Returns None if the finger leaves
+    /// the rest or a tendon becomes slack.
     ///
-    /// Two fingers, one of them nudged by next to nothing: how their difference goes on is the linear map and nothing
-    /// else.
+    /// Two fingers run, one of them with a tiny displacement. Their difference evolves by the linear map alone.
     pub fn largest_eigenvalue(&self, rest: &Rest) -> Option<f64> {
         let links = self.finger.links();
         let jacobian = links.jacobian(&rest.joints);
@@ -103,39 +105,39 @@ impl OneCycleMap {
         finger.plant.set_external_force(-pull);
         self.run(&mut finger, SETTLING);
 
-        let modulus = self.watch(rest, &mut finger, WATCHED)?;
-        // A mode so slow is told from one that grows by a longer look only.
-        if modulus < 1.0 - SLOW { Some(modulus) } else { self.watch(rest, &mut finger, WATCHED_LONG) }
+        let modulus = self.watch(rest, &mut finger, OBSERVED)?;
+        // Only a longer observation distinguishes such a slow mode from one that grows.
+        if modulus < 1.0 - SLOW { Some(modulus) } else { self.watch(rest, &mut finger, OBSERVED_LONG) }
     }
 
     fn watch(&self, rest: &Rest, finger: &mut Moving, seconds: f64) -> Option<f64> {
-        let mut nudged = finger.clone();
+        let mut displaced = finger.clone();
         for (motor, angle) in [3e-5, -2e-5, 1e-5, 4e-5].into_iter().enumerate() {
-            nudged.plant.turn_motor(motor, angle);
+            displaced.plant.turn_motor(motor, angle);
         }
         let mut differences: Vec<DVector<f64>> = Vec::new();
         for _ in 0..(seconds / STRIDE) as usize {
             self.run(finger, STRIDE);
-            self.run(&mut nudged, STRIDE);
-            let (a, b) = (&finger.plant, &nudged.plant);
+            self.run(&mut displaced, STRIDE);
+            let (a, b) = (&finger.plant, &displaced.plant);
             if a.tensions().min() <= 0.0 || (a.joints() - rest.joints).amax() > FAR {
                 return None;
             }
-            // In proportion to one another, as far as a finger with a ratio of 1 to 20 and modes at 30 rad/s has one.
+            // The factors make the channels comparable for a transmission ratio of 1 to 20 and modes at 30 rad/s.
             let joints = (a.joints() - b.joints()) * 20.0;
             let rates = (a.joint_rates() - b.joint_rates()) * 0.7;
             let motors = a.motor_angles() - b.motor_angles();
             let difference = DVector::from_iterator(10, joints.iter().chain(&rates).chain(&motors).copied());
             let grown = differences.first().map_or(1.0, |first| difference.norm() / first.norm());
             differences.push(difference);
-            if !(LOST..GONE).contains(&grown) {
+            if !(DECAYED..DIVERGED).contains(&grown) {
                 break;
             }
         }
         Some(growth(&differences).powf(1.0 / self.cycles(STRIDE) as f64))
     }
 
-    /// A finger that rests with these tensions, N, before its first cycle.
+    /// Returns a finger at rest with these tensions, N, before its first cycle.
     fn start(&self, rest: &Rest, tensions: &Vector4<f64>) -> Moving {
         let mut finger = self.finger.clone();
         finger.simulation.start_degrees = rest.joints.map(f64::to_degrees).into();
@@ -169,7 +171,7 @@ impl OneCycleMap {
     fn cycle(&self, finger: &mut Moving) {
         let plant = &mut finger.plant;
         let measured = Measured { motor_angles: plant.motor_angles(), tensions: plant.tensions() };
-        // What the last cycle commanded acts during this one.
+        // The command of the previous cycle acts during this one.
         (0..self.steps).for_each(|_| plant.step((finger.torques * 0.01).into()));
         let (command, report) = self.controller.cycle_measured(&mut finger.state, Some(&measured), &finger.activity);
         finger.torques = command.motor_torques;
@@ -187,9 +189,9 @@ struct Moving {
     report: Report,
 }
 
-/// A simulation of what the controller believes of the finger, without Coulomb friction and noise; the controller
-/// knows. Set points are not slowed down.
-fn as_believed(finger: &ConfiguredFinger) -> ConfiguredFinger {
+/// Returns a configuration whose simulated finger equals the controller's model, without Coulomb friction and noise.
+/// The controller's friction is zero too. The speed of set points is practically not limited.
+fn matching_simulation(finger: &ConfiguredFinger) -> ConfiguredFinger {
     let mut finger = finger.clone();
     finger.motor.sign = [1; 4];
     finger.controller.set_point_speed = Some(1e3);

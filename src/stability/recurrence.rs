@@ -1,31 +1,32 @@
-//! The slowest mode of a motion that decays or grows by itself.
+//! The slowest mode of a freely decaying or growing motion.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Below this part of the largest sample one is rounding.
+/// Fraction of the largest sample below which a sample is rounding error.
 const ROUNDING: f64 = 1e-6;
-/// Samples that a recurrence is fitted to.
+/// Number of samples to which a recurrence is fitted.
 const WINDOW: usize = 80;
-/// A recurrence that misses by less than this part explains the samples.
+/// Relative error below which a recurrence explains the samples.
 const EXPLAINED: f64 = 1e-3;
 const LARGEST_ORDER: usize = 8;
-/// Of the last sample: a root with less of it is none.
+/// Least fraction of the last sample that a root must contribute to count.
 const PART: f64 = 0.01;
 
-/// By which factor the slowest mode of a freely decaying (or growing) linear system changes from one sample to the
-/// next: its largest eigenvalue's modulus. `samples`: one vector of channels an instant, equally spaced, the channels
-/// in proportion to one another.
+/// Returns the factor by which the slowest mode of a freely decaying or growing linear system changes from one sample
+/// to the next. This is the largest modulus of its eigenvalues. `samples` has one vector of channels for each instant,
+/// at equal intervals. The channels must be comparable in size.
 ///
-/// After the fast modes have gone the last samples obey a short recurrence y[k] = a1 y[k-1] + ... + ap y[k-p], the same
-/// in every channel, and its roots are the eigenvalues left (Prony). The shortest one that explains them has hardly any
-/// others, and of these the motion has no part. Where none explains them, as at a joint limit that one motion touches
-/// and the other does not, roots say nothing, and the mean change of the samples does.
+/// After the fast modes have decayed, the last samples follow a short recurrence y[k] = a1 y[k-1] + ... + ap y[k-p]
+/// with the same coefficients in every channel. The roots of this recurrence are the remaining eigenvalues (Prony). The
+/// shortest recurrence that explains the samples has hardly any other roots, and these do not contribute to the motion.
+/// If no recurrence explains the samples, the roots mean nothing, and the mean change of the samples is returned. This
+/// happens for example at a joint limit that one motion reaches and the other does not.
 pub fn growth(samples: &[DVector<f64>]) -> f64 {
     if samples.iter().any(|sample| !sample.norm().is_finite()) {
         return f64::NAN;
     }
     let largest = samples.iter().map(|sample| sample.norm()).fold(0.0, f64::max);
-    // What comes after the first sample that is lost in rounding is lost too.
+    // Samples after the first one that is rounding error are unusable too.
     let end = samples.iter().position(|sample| sample.norm() <= ROUNDING * largest).unwrap_or(samples.len());
     let window = &samples[end.saturating_sub(WINDOW)..end];
     for order in 1..=LARGEST_ORDER.min(window.len().saturating_sub(2)) {
@@ -38,14 +39,14 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
     mean_change(window)
 }
 
-/// Whether what `follows` shows that a root is none: of a mode that grows so fast, with the least part that counts,
-/// something would be left above `rounding`.
+/// Returns whether the samples in `follows` contradict a root. With the least contribution that counts, a mode with
+/// this root would have grown above `rounding`, but all samples are below it.
 fn has_died(follows: &[DVector<f64>], root: f64, rounding: f64) -> bool {
     root.powi(follows.len() as i32) * PART > 1.0 && follows.iter().all(|sample| sample.norm() <= rounding)
 }
 
-/// From the largest sample of the first half to that of the second, as a factor from one to the next. NaN of less than
-/// two.
+/// Returns the mean change per sample, from the largest sample of the first half to that of the second. Returns NaN for
+/// less than two samples.
 fn mean_change(window: &[DVector<f64>]) -> f64 {
     let half = window.len() / 2;
     if half == 0 {
@@ -55,13 +56,13 @@ fn mean_change(window: &[DVector<f64>]) -> f64 {
     (largest(&window[half..]) / largest(&window[..half])).powf(1.0 / half as f64)
 }
 
-/// a1 .. ap, and the root mean square of what they miss, relative to the samples around.
+/// Returns a1 .. ap, and the root mean square of the residual relative to the surrounding samples.
 fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f64)> {
     let channels = window[0].len();
     let rows = (window.len() - order) * channels;
     let (mut before, mut now) = (DMatrix::zeros(rows, order), DVector::zeros(rows));
     for k in order..window.len() {
-        // Every instant counts alike, however far the decay has gone.
+        // Every instant has the same weight, even after a long decay.
         let weight = window[k - order..=k].iter().map(|sample| sample.norm()).fold(0.0, f64::max).recip();
         let row = (k - order) * channels;
         now.rows_mut(row, channels).copy_from(&(&window[k] * weight));
@@ -74,10 +75,10 @@ fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f6
     Some((coefficients, missed))
 }
 
-/// The largest modulus among those roots of z^p - a1 z^(p-1) - ... - ap that the last sample has a part of.
+/// Returns the largest modulus among the roots of z^p - a1 z^(p-1) - ... - ap that contribute to the last sample.
 ///
-/// The slowest mode has most of it. A root beyond it fits a last digit somewhere, and would foretell a motion that is
-/// not there.
+/// The slowest mode contributes most to it. A larger root without a contribution fits rounding errors, and does not
+/// belong to the motion.
 fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
     let order = coefficients.len();
     let companion = DMatrix::from_fn(order, order, |row, column| match (row, column) {
@@ -85,7 +86,8 @@ fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
         (row, column) => f64::from(row == column + 1),
     });
     let roots = companion.complex_eigenvalues();
-    // sample[k] = sum of c_i z_i^k, every instant counting alike; every power's largest is 1.
+    // sample[k] = sum of c_i z_i^k. Every instant has the same weight, and the powers of each root are scaled to a
+    // maximum of 1.
     let weights: Vec<f64> = window.iter().map(|sample| sample.norm().recip()).collect();
     let mut powers = DMatrix::from_fn(window.len(), order, |k, root| roots[root].powi(k as i32) * weights[k]);
     for mut power in powers.column_iter_mut() {
@@ -104,7 +106,8 @@ fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
 mod tests {
     use super::*;
 
-    /// A decay with a tiny part of something that grows, for so many samples, and then `after`.
+    /// Returns the growth of a decay with a tiny growing component over `length` samples, followed by the samples
+    /// `after`.
     fn growing(length: i32, after: &[f64]) -> f64 {
         let decay = (0..length).map(|k| 0.8f64.powi(k) + 1e-14 * 1.3f64.powi(k));
         let samples: Vec<_> = decay.chain(after.iter().copied()).map(|sample| DVector::repeat(2, sample)).collect();

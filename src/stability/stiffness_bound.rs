@@ -1,4 +1,4 @@
-//! The largest Kx for which a finger is stable wherever it may be.
+//! The largest Kx with which a finger is stable in every pose.
 
 use super::Rest;
 use super::trial::Trial;
@@ -9,61 +9,62 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::f64::consts::PI;
 
-/// A bound is a multiple of this, N/cm.
+/// The bound is a multiple of this, N/cm.
 const GRID: f64 = 0.1;
 
-/// A stiffness of which some pose would get less than this part is not on offer.
+/// Least fraction of the bound that every pose must support.
 const LEAST_SCALE: f64 = 0.5;
 
-/// Nearer to the axis of joint 0 than this the tip is next to the singular pose in which nothing holds that joint: such
-/// poses are counted apart, cm.
+/// Distance of the tip from the axis of joint 0 below which a pose is counted separately, cm. Such a pose is near the
+/// singular pose in which no tip stiffness holds joint 0.
 const CLEAR_OF_AXIS: f64 = 3.0;
 
-/// How the bound is looked for.
+/// Parameters of the search.
 #[derive(Clone, Copy, Debug)]
 pub struct Search {
-    /// How many poses, each with a Kx and a load of its own.
+    /// Number of poses. Each has its own Kx and load.
     pub samples: usize,
-    /// Of all that is random.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
-/// The largest eigenvalue that Kx may have.
+/// The largest eigenvalue that Kx may have, and what limits it.
 #[derive(Clone, Copy, Debug)]
 pub struct StiffnessBound {
-    /// N/cm.
+    /// The bound, N/cm.
     pub stiffness: f64,
-    /// What keeps it from being larger, and where, rad.
+    /// What prevents a larger bound.
     pub limit: Limit,
-    /// The part of the poses that carry less than the bound in some direction, so that the servo scales Kx down.
+    /// Fraction of the poses that support less than the bound in some direction, so that the servo scales Kx down.
     pub scaled: f64,
     /// The smallest such scale.
     pub least_scale: f64,
-    /// How many samples were tried at the bound, all stable.
+    /// Number of samples tried at the bound. All are stable.
     pub samples: usize,
-    /// Of the samples with the tip within 3 cm of the axis of joint 0, where the finger is next to singular and which
-    /// the bound does not cover: how many there are, how many are unstable at the bound, and how far from the axis such
-    /// a tip is at most, cm.
+    /// The samples with the tip within 3 cm of the axis of joint 0, where the finger is nearly singular. The bound does
+    /// not cover them. The values are their number, the number that is unstable at the bound, and the largest distance
+    /// of an unstable tip from the axis, cm.
     pub near_axis: (usize, usize, f64),
 }
 
-/// What a bound comes from.
+/// The reason for a bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
-    /// At more this pose is unstable.
+    /// With a larger bound the finger is unstable in this pose (joint angles, rad).
     Unstable(Vector3<f64>),
-    /// At more this pose would get less than half of it.
+    /// With a larger bound this pose (joint angles, rad) supports less than half of it.
     Scaled(Vector3<f64>),
 }
 
 impl Search {
-    /// The bound of `finger` with its scheme and gains at `rate`, Hz: every sample of poses within the joint limits, of
-    /// Kx with random axes and eigenvalues from 1 N/cm to the bound, of loads that deflect the tip by up to 1 mm, and
-    /// of the least, the controller's own and the most damping that such a Kx admits, is stable at it. The servo scales
-    /// Kx down where the tendons of a pose carry less, and so it does here.
+    /// Returns the bound of `finger` with its scheme and gains at `rate`, Hz. Every sample is stable at the bound. The
+    /// samples are poses within the joint limits, Kx with random axes and eigenvalues from 1 N/cm to the bound, and
+    /// loads that deflect the tip by up to 1 mm. Their relative damping is the least admissible one, 1, or the largest
+    /// admissible one. As in the servo, Kx is scaled down where the tendons of a pose support less.
     ///
     /// # Errors
-    /// The key that makes no controller, or `controller` where a pose is unstable with next to no stiffness.
+    /// A value with which no controller can be constructed, or `controller` if a pose is unstable with almost no
+    /// stiffness.
     pub fn bound(&self, finger: &ConfiguredFinger, rate: f64) -> Result<StiffnessBound, Unusable> {
         let trial = Trial::new(finger, rate)?;
         let links = finger.links();
@@ -93,9 +94,10 @@ impl Search {
         })
     }
 
-    /// Rests anywhere within the joint limits. Where Kx is between softest and stiffest: its eigenvalues are 0 to 1,
-    /// the largest is 1 in three of four, one of them isotropic, and anything in the fourth. The relative damping is
-    /// none, 1 or without limit in turn, to be clamped to what the stiffness admits.
+    /// Returns rests anywhere within the joint limits. Their `stiffness` is relative, with eigenvalues from 0 (softest)
+    /// to 1 (stiffest). Of four samples, one is isotropic with eigenvalue 1, two have a largest eigenvalue of 1, and
+    /// one has any. The relative damping is 1, 0 and infinite in turn. [`Trial::stable`] clamps it to the admissible
+    /// range.
     fn rests(&self, finger: &ConfiguredFinger) -> Vec<Rest> {
         let mut random = Pcg64::seed_from_u64(self.seed);
         let (low, high) = finger.joint_limits();
@@ -122,11 +124,11 @@ impl Search {
     }
 }
 
-/// The largest bound up to `most` at which every rest is stable, in steps of the grid, and the pose that keeps it from
-/// being larger. None where every rest is stable at `most`.
+/// Returns the largest bound up to `most` at which every rest is stable, in steps of the grid, and the pose that
+/// prevents a larger one. Returns None if every rest is stable at `most`.
 ///
 /// # Errors
-/// `controller` where a rest is unstable with next to no stiffness.
+/// `controller` if a rest is unstable with almost no stiffness.
 fn lower_until_stable(trial: &Trial, rests: &[Rest], most: f64) -> Result<Option<(f64, Vector3<f64>)>, Unusable> {
     let mut bound = most;
     let mut limit = None;
@@ -136,7 +138,7 @@ fn lower_until_stable(trial: &Trial, rests: &[Rest], most: f64) -> Result<Option
             return Ok(limit.map(|joints| (bound, joints)));
         }
         for rest in unstable {
-            // The bound may be lower by now than the one at which this rest was unstable.
+            // The bound may already be lower than the one at which this rest was unstable.
             if trial.stable(rest, bound * GRID) {
                 continue;
             }
@@ -149,7 +151,7 @@ fn lower_until_stable(trial: &Trial, rests: &[Rest], most: f64) -> Result<Option
     }
 }
 
-/// The largest bound below `unstable` at which a rest is stable, by bisection, in steps of the grid.
+/// Returns the largest bound below `unstable` at which a rest is stable, in steps of the grid. It uses bisection.
 fn largest_stable(trial: &Trial, rest: &Rest, unstable: f64) -> f64 {
     let (mut low, mut high) = (0.0, unstable);
     while high - low > 1.0 {
@@ -168,7 +170,7 @@ fn unstable_at_any_stiffness(joints: &Vector3<f64>) -> Unusable {
     Unusable { key: "controller", reason }
 }
 
-/// Any direction, of unit length.
+/// Returns a random unit vector.
 fn direction(random: &mut Pcg64) -> Vector3<f64> {
     Vector3::from(<UnitSphere as Distribution<[f64; 3]>>::sample(&UnitSphere, random))
 }

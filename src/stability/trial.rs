@@ -1,4 +1,4 @@
-//! Whether a finger is stable at rest, tried with samples of poses and springs.
+//! Stability tests of a finger at rest with samples of poses and springs.
 
 use super::{OneCycleMap, Rest};
 use crate::control::AdmissibleDamping;
@@ -7,17 +7,16 @@ use nalgebra::Matrix3;
 use std::num::NonZero;
 use std::thread;
 
-/// Springs have at least this eigenvalue, N/cm, where the bound is not less: what is softer is nearly limp, whatever
-/// the bound.
+/// Least eigenvalue of the springs, N/cm, unless the bound is smaller. A softer finger is nearly limp with any bound.
 const SOFTEST: f64 = 1.0;
 
-/// Nothing damps a joint that nothing holds: it has an eigenvalue of 1.
+/// Tolerance for a modulus above 1. A joint without stiffness has an eigenvalue of 1.
 const ROUNDING: f64 = 1e-5;
 
-/// More than any pose carries, N/cm: what is beyond that is scaled away.
+/// A stiffness above what any pose supports, N/cm. The servo scales it down to the supported one.
 const BEYOND: f64 = 1e3;
 
-/// A finger with its controller, to be tried with one spring after the other.
+/// A finger with its controller, for tests with many springs.
 pub(super) struct Trial {
     map: OneCycleMap,
     admissible: AdmissibleDamping,
@@ -25,36 +24,36 @@ pub(super) struct Trial {
 
 impl Trial {
     /// # Errors
-    /// The key that makes no controller.
+    /// A value with which no controller can be constructed.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         Ok(Self { map: OneCycleMap::new(finger, rate)?, admissible: AdmissibleDamping::new(finger, rate) })
     }
 
-    /// The isotropic stiffness that each pose carries, N/cm.
+    /// Returns the isotropic stiffness that each pose supports, N/cm.
     pub fn carried(&self, rests: &[Rest]) -> Vec<f64> {
         let isotropic = |rest: &Rest| Rest { stiffness: Matrix3::identity() * BEYOND, damping: 1.0, ..*rest };
         in_parallel(rests, |rest| BEYOND * self.map.scale(&isotropic(rest)))
     }
 
-    /// Whether a rest is stable with a Kx between the softest and `stiffest`, N/cm. The stiffness of the rest says
-    /// where in between its eigenvalues are, from 0 to 1.
+    /// Returns whether a rest is stable with a Kx between the softest and `stiffest`, N/cm. The relative stiffness of
+    /// the rest, 0 to 1, determines the eigenvalues within this range.
     pub fn stable(&self, rest: &Rest, stiffest: f64) -> bool {
         let softest = SOFTEST.min(stiffest);
         let stiffness = Matrix3::identity() * softest + rest.stiffness * (stiffest - softest);
-        // The samples take turns with a damping ratio below, at and above 1, which is clamped to what is admissible.
+        // The samples have relative dampings of 0, 1 and infinity, which are clamped to the admissible range.
         let (least, most) = self.admissible.range(stiffness.symmetric_eigenvalues().max());
         let rest = Rest { stiffness, damping: rest.damping.clamp(least, most), ..*rest };
         self.map.largest_eigenvalue(&rest).is_some_and(|modulus| modulus < 1.0 + ROUNDING)
     }
 
-    /// The rests that are not stable; see [`Trial::stable`].
+    /// Returns the rests that are not stable, see [`Trial::stable`].
     pub fn unstable<'a>(&self, rests: &'a [Rest], stiffest: f64) -> Vec<&'a Rest> {
         let stable = in_parallel(rests, |rest| self.stable(rest, stiffest));
         rests.iter().zip(stable).filter(|(_, stable)| !stable).map(|(rest, _)| rest).collect()
     }
 }
 
-/// `measure` of every item, in order, on as many threads as there are cores.
+/// Returns `measure` of every item, in order. It uses as many threads as there are cores.
 fn in_parallel<Item: Sync, Found: Send>(items: &[Item], measure: impl Fn(&Item) -> Found + Sync) -> Vec<Found> {
     let threads = thread::available_parallelism().map_or(1, NonZero::get);
     let measure = &measure;

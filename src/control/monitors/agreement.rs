@@ -1,10 +1,11 @@
-//! Gauges against encoders. Joints have three freedoms and tendons are four, so that four motor angles and four
-//! tensions are one more than it takes: for n with R n = 0,
+//! Compares gauges with encoders. Three joint angles determine the travel of four tendons, so four motor angles and
+//! four tensions are redundant by one. For n with R n = 0,
 //!
 //! n^T (r m - (t - t_home) / k) = 0
 //!
-//! whatever the joints do, or with three tendons the tension of the fourth, t = k (r m - R^T theta) + t_home. What it
-//! is when watching begins is taken for zero: encoders that were never zeroed are no reason to stop a finger.
+//! for any joint angles. Equivalently, three tendons determine the tension of the fourth: t = k (r m - R^T theta) +
+//! t_home. The difference at the start of monitoring counts as zero, because encoders that were never zeroed are no
+//! reason to stop a finger.
 
 use super::alarm::{Alarm, Symptom};
 use super::sample::Sample;
@@ -12,27 +13,29 @@ use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
 
-/// Disagreement that is let pass, N; besides it what an error of k explains, a part of the change of the tensions.
-const LET_PASS: f64 = 0.5;
+/// Disagreement that is always tolerated, N. A fraction of the change of the tensions is tolerated as well, for the
+/// error of k.
+const TOLERANCE: f64 = 0.5;
 
-/// Below this part of t_min a tendon may hang, and then it stretches less than nothing: the difference is below zero.
+/// Fraction of t_min below which a tendon may hang slack. The stretch that the encoders show is then negative, and so
+/// is the difference.
 const SLACK: f64 = 0.35;
 
-/// Samples whose mean is the zero.
+/// Number of samples whose mean is the zero.
 const ZEROING: u32 = 32;
 
-/// So long, s, the disagreement must last.
-const LASTS: f64 = 0.01;
+/// Time for which the disagreement must last, s.
+const DURATION: f64 = 0.01;
 
-/// Part of the way that the mean out-of-balance goes in a sample.
+/// Gain per sample of the mean imbalance between pull and tension.
 const AVERAGING: f64 = 0.05;
 
 #[derive(Clone, Debug)]
 pub(super) struct Agreement {
-    /// n, all positive, of such a length that all tensions off by 1 N disagree by 1 N.
+    /// n, all positive, scaled so that an error of 1 N in all tensions gives a difference of 1 N.
     of_travel: Vector4<f64>,
     of_tension: Vector4<f64>,
-    /// N.
+    /// Tensions at which the encoders are zeroed, N.
     home: Vector4<f64>,
     slack: f64,
     /// `tendon.stiffness_tolerance`.
@@ -42,27 +45,28 @@ pub(super) struct Agreement {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
     zero: f64,
-    /// Mean tensions above rest while the zero was found, N.
+    /// Mean tensions above the homing pretension during zeroing, N.
     above: Vector4<f64>,
     samples: u32,
-    /// Less the zero, N.
+    /// Difference after subtraction of the zero, N.
     difference: f64,
-    /// Disagreement over what is let pass.
+    /// Disagreement divided by the tolerated one.
     part: f64,
-    lasts: f64,
-    /// What each tendon would have beyond what its gauge shows if the other three are right, N.
+    duration: f64,
+    /// Tension of each tendon minus the tension that its gauge shows, if the other three gauges are right, N.
     missing: Vector4<f64>,
     /// Mean of pull minus tension of each tendon, N.
     unbalanced: Vector4<f64>,
 }
 
 impl Memory {
-    /// What each tendon would have beyond what its gauge shows if the other three are right, N.
+    /// Returns the tension of each tendon minus the tension that its gauge shows, if the other three gauges are right,
+    /// N.
     pub fn missing(&self) -> Vector4<f64> {
         self.missing
     }
 
-    /// Whether gauges and encoders are on the way to disagreement.
+    /// Returns whether the disagreement exceeds half of the tolerated one.
     pub fn doubtful(&self) -> bool {
         self.part > 0.5
     }
@@ -83,7 +87,7 @@ impl Agreement {
         }
     }
 
-    /// One sample's difference.
+    /// Computes the difference of one sample.
     pub fn compare(&self, memory: &mut Memory, sample: &Sample) {
         memory.unbalanced += (sample.pulls - sample.tensions - memory.unbalanced) * AVERAGING;
         let above = sample.tensions - self.home;
@@ -100,17 +104,17 @@ impl Agreement {
         memory.difference = difference - memory.zero;
         memory.missing = self.of_tension.map(|share| memory.difference / share);
         let explained = memory.difference < 0.0 && hangs;
-        let let_pass = LET_PASS + self.tolerance * self.of_tension.dot(&(above - memory.above).abs());
-        memory.part = if explained { 0.0 } else { memory.difference.abs() / let_pass };
+        let tolerated = TOLERANCE + self.tolerance * self.of_tension.dot(&(above - memory.above).abs());
+        memory.part = if explained { 0.0 } else { memory.difference.abs() / tolerated };
     }
 
-    /// Whether it is too much. `explained`: something else makes them disagree.
+    /// Returns an alarm if the disagreement has lasted too long. `explained` means that another fault causes it.
     pub fn watch(&self, memory: &mut Memory, sample: &Sample, explained: bool) -> Option<Alarm> {
         let counts = memory.part > 1.0 && !explained;
-        memory.lasts = if counts { memory.lasts + sample.elapsed } else { 0.0 };
-        // The gauge that its motor contradicts most.
+        memory.duration = if counts { memory.duration + sample.elapsed } else { 0.0 };
+        // The suspect is the gauge that differs most from the pull of its motor.
         let suspect = Part::gauge(memory.unbalanced.iamax());
         let alarm = Alarm { symptom: Symptom::GaugeDisagrees, part: suspect, value: memory.difference };
-        (memory.lasts >= LASTS).then_some(alarm)
+        (memory.duration >= DURATION).then_some(alarm)
     }
 }

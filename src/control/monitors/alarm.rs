@@ -1,59 +1,59 @@
-//! What the monitors find.
+//! Results of the monitors.
 
 use crate::model::Part;
 
-/// What a monitor finds.
+/// What a monitor detects. The value of each alarm is given in parentheses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symptom {
-    /// Tension of a tendon, N, stays far under t_min.
+    /// The tension of a tendon stays far below t_min (mean tension, N).
     SlackTendon,
-    /// Tension of a tendon, N, is gone.
+    /// A tendon has lost its tension (mean tension, N).
     BrokenTendon,
-    /// Tension of a tendon, N.
+    /// The tension of a tendon stays far above t_max (tension, N).
     OverTension,
-    /// Count of a gauge.
+    /// A gauge shows a constant count (count).
     GaugeStuck,
-    /// Count of a gauge.
+    /// A gauge is at the end of its range, or shows a tension far below zero (count).
     GaugeOutOfRange,
-    /// Tension, N, that gauges and encoders differ by.
+    /// Gauges and encoders disagree (difference, N).
     GaugeDisagrees,
-    /// Counts that an encoder moved.
+    /// An encoder moves farther than its motor can (unexpected motion, counts).
     EncoderJump,
-    /// Pull without balance, N.
+    /// A motor does not turn although pull and tension are not balanced (pull minus tension, N).
     StalledMotor,
-    /// Heat, per cent of what a motor can bear for ever.
+    /// A motor has been at its continuous heat for too long (heat, per cent of the continuous heat).
     OverheatedMotor,
-    /// Angle of a joint, degrees.
+    /// A joint is at its mechanical stop (angle, degrees).
     JointAtStop,
-    /// Tension of a tendon, N, gone for a moment.
+    /// A tendon has no tension for a moment (tension, N).
     SlackInMotion,
-    /// Heat, per cent.
+    /// A motor is warm, and its torque is limited (heat, per cent of the continuous heat).
     WarmMotor,
-    /// Per cent of the wanted torque that the tension limits let through.
+    /// The tension bounds reduce the joint torque (remaining torque, per cent).
     TorqueNotAdmitted,
 }
 
-/// A symptom, where, and how much.
+/// A symptom with its location and value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alarm {
-    /// What.
+    /// The symptom.
     pub symptom: Symptom,
-    /// Where.
+    /// The part that has it.
     pub part: Part,
-    /// In the unit of the symptom.
+    /// The value, in the unit of the symptom.
     pub value: f64,
 }
 
-/// What a cycle gives rise to.
+/// The alarms of a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Alarms {
-    /// The finger has to stop.
+    /// An alarm that stops the finger.
     pub fault: Option<Alarm>,
-    /// The finger goes on.
+    /// An alarm with which the finger continues.
     pub warning: Option<Alarm>,
 }
 
-/// The first of four for which this holds, as an alarm.
+/// Returns an alarm for the first of four parts for which `found` returns a value.
 pub(super) fn first_of(
     symptom: Symptom,
     part: impl Fn(usize) -> Part,

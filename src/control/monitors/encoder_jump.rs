@@ -1,4 +1,4 @@
-//! Encoders that move farther than their motors can.
+//! Detects encoders that move farther than their motors can.
 
 use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
@@ -7,19 +7,20 @@ use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 use std::f64::consts::TAU;
 
-/// Motor torque and the pull of the strongest tendon, over the rotor's inertia, are known to this factor.
+/// Factor for the uncertainty of the largest acceleration, which follows from motor torque, pull of the strongest
+/// tendon, and rotor inertia.
 const MARGIN: f64 = 1.25;
 
-/// Counts beside that: the last bit flickers at both ends of two differences.
+/// Additional tolerance, counts. The last bit flickers at both ends of two differences.
 const FLICKER: f64 = 4.0;
 
-/// Part of a period that a speed is measured over at least: a late cycle is followed by one at once, in which nothing
-/// turns, and over next to no time the last bit would make a speed of its own.
+/// Least interval over which a speed is measured, as a fraction of a period. A late cycle is followed immediately by
+/// another one, in which nothing turns. Over such a short interval the last bit alone would be a high speed.
 const SHORTEST: f64 = 0.75;
 
 #[derive(Clone, Debug)]
 pub(super) struct EncoderJump {
-    /// s.
+    /// Least interval of a speed, s.
     shortest: f64,
     /// Largest change of speed, rad/s^2.
     strongest: Vector4<f64>,
@@ -28,10 +29,10 @@ pub(super) struct EncoderJump {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
-    /// How far the motors turned since a speed was measured, rad, and in which time, s.
+    /// Angle that the motors have turned since the last measured speed, rad, and the time, s.
     turned: Vector4<f64>,
     elapsed: f64,
-    /// That speed, rad/s.
+    /// The last measured speed, rad/s.
     speed: Option<Vector4<f64>>,
 }
 
@@ -58,7 +59,7 @@ impl EncoderJump {
         let before = memory.speed.replace(turned / elapsed)?;
         first_of(Symptom::EncoderJump, Part::encoder, |encoder| {
             let unexpected = (turned[encoder] - before[encoder] * elapsed) * self.counts_per_radian[encoder];
-            // Both speeds are means: the change had up to two intervals of this length.
+            // Both speeds are means, so the change of speed took up to two intervals of this length.
             let possible = 2.0 * self.strongest[encoder] * elapsed.powi(2) * self.counts_per_radian[encoder];
             (unexpected.abs() > possible + FLICKER).then_some(unexpected)
         })

@@ -1,35 +1,36 @@
-//! Gauges at the end of their range, and tendons pulled beyond theirs.
+//! Detects gauges at the end of their range, and tendons with too much tension.
 
 use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
 use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 
-/// A tendon may exceed t_max by this factor: commands keep t_max, but blows and steps overshoot it.
+/// Factor by which a tendon may exceed t_max. Commands stay below t_max, but impacts and steps overshoot it.
 const BEYOND: f64 = 1.3;
 
-/// So far below no tension, over t_min, a gauge reads only if it is wrong.
+/// A gauge that shows less than minus this fraction of t_min is defective.
 const BELOW_NOTHING: f64 = 0.5;
 
-/// A gauge that goes to its end from beyond this part of t_max has been pulled there; one that fails jumps.
+/// A gauge whose last tension was above this fraction of t_max reaches the end of its range because of the tension. A
+/// defective gauge jumps there.
 const PULLED: f64 = 0.5;
 
-/// So long, s, either must last.
-const LASTS: f64 = 0.004;
+/// Time for which either condition must last, s.
+const DURATION: f64 = 0.004;
 
 #[derive(Clone, Debug)]
 pub(super) struct GaugeRange {
-    /// N.
+    /// Tensions, N.
     pulled: f64,
     highest: f64,
     lowest: f64,
 }
 
-/// For how long each tendon has been beyond, and each gauge out of its range, s.
+/// Time for which each tendon has had too much tension, and each gauge has been out of its range, s.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
     over: [f64; 4],
-    /// Whether each gauge was well loaded, but not at its end, when it last was not.
+    /// Whether each gauge showed more than `pulled` when it was last below the end of its range.
     loaded: [bool; 4],
     out: [f64; 4],
 }
@@ -56,9 +57,9 @@ impl GaugeRange {
         }
         let counts = |gauge: usize| f64::from(sample.feedback.gauge_counts[gauge]);
         let out = first_of(Symptom::GaugeOutOfRange, Part::gauge, |gauge| {
-            (memory.out[gauge] >= LASTS).then(|| counts(gauge))
+            (memory.out[gauge] >= DURATION).then(|| counts(gauge))
         });
-        let over = |tendon: usize| (memory.over[tendon] >= LASTS).then_some(sample.tensions[tendon]);
+        let over = |tendon: usize| (memory.over[tendon] >= DURATION).then_some(sample.tensions[tendon]);
         out.or_else(|| first_of(Symptom::OverTension, Part::tendon, over))
     }
 }

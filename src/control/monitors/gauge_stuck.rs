@@ -1,73 +1,77 @@
-//! A gauge that shows the same count for ever. A live one flickers in its last bits: how much, each gauge has shown
-//! before. Gauges without noise are all still at rest: one is judged only while others flicker.
+//! Detects a gauge that shows the same count permanently. A working gauge flickers in its last bits. The monitor learns
+//! for each gauge how much. Gauges without noise all show constant counts at rest, so a gauge is judged only while
+//! others flicker.
 
 use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
 use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 
-/// Part of the way that the mean of the flicker goes in a sample.
+/// Gain per sample of the mean of the flicker.
 const LEARNING: f64 = 1.0 / 256.0;
 
-/// Samples after which the flicker is known.
+/// Number of samples after which the flicker is known.
 const KNOWN: u32 = 256;
 
-/// A gauge that shows one count in so many samples while all others are known to flicker was dead in the beginning.
+/// A gauge that shows one count in this number of samples, while all others are known to flicker, was dead from the
+/// start.
 const NEVER: u32 = 512;
 
-/// A dead gauge is also off from the tension that is commanded by more than this part of t_min, before long: a
-/// controller goes on, and the dither that is commanded does at rest. One without noise whose tendon is where it shall
-/// be may show one count for ever, and did while others flickered.
+/// A dead gauge soon differs from the commanded tension by more than this fraction of t_min, because the commands keep
+/// changing; at rest the dither changes them. A gauge without noise whose tendon has the commanded tension may show one
+/// count permanently. This was observed while other gauges flickered.
 const OFF: f64 = 0.015;
 
-/// The chance at which a live gauge that flickers as before would show one count for so long, as a natural logarithm:
-/// once in 10^11 samples, a year of four gauges at 1000 Hz.
+/// Natural logarithm of the probability below which a constant count means a dead gauge: the probability that a working
+/// gauge with the learned flicker shows one count for this long. It is once in 10^11 samples, a year of four gauges at
+/// 1000 Hz.
 const UNLIKELY: f64 = -25.3;
 
-/// No gauge is taken to repeat itself less often than this: one in motion hardly does, and its flicker at rest is to be
-/// known still.
+/// Least assumed probability that a sample of a gauge repeats the previous one. A gauge in motion hardly repeats a
+/// count, but its flicker at rest must still be recognised.
 const LEAST_REPEATS: f64 = 0.2;
 
-/// A gauge that repeats itself more often than this is not known to flicker: without noise, or converted slowly.
+/// A gauge that repeats its count more often than this is not known to flicker. It has no noise, or its converter is
+/// slow.
 const MOST_REPEATS: f64 = 0.7;
 
-/// So many of the samples of a gauge with noise turn back from where the one before them went: about half do. Motion
-/// does not turn back, so that a gauge without noise that comes to rest is not taken for a dead one.
+/// Least fraction of samples in which a gauge with noise reverses its direction. About half of its samples do. Motion
+/// does not reverse. So a gauge without noise that comes to rest is not taken for a dead one.
 const LEAST_REVERSALS: f64 = 0.15;
 
-/// Part of the way that the mean of the reversals goes in a sample: slowly, because noise does not show in a fast
-/// motion.
+/// Gain per sample of the mean of the reversals. It is small, because noise is not visible during fast motion.
 const LEARNING_REVERSALS: f64 = 1.0 / 512.0;
 
-/// Part of t_min below which a tendon may hang.
+/// Fraction of t_min below which a tendon may hang slack.
 const SLACK: f64 = 0.3;
 
-/// So many samples with the same count are a row that a gauge may be judged by.
+/// Number of samples with the same count after which a gauge may be judged.
 const ROW: u32 = 4;
 
-/// A gauge that flickered and then showed one count in so many samples is dead if something else says so too.
+/// A gauge that flickered and then showed one count in this number of samples is dead if another monitor indicates it
+/// too.
 const SILENT: u32 = 10;
 
-/// Without flicker a gauge is dead only for its tendon's sake; see `tension_lost`.
+/// A gauge without known flicker is reported as dead only because of its tendon; see `tension_lost`.
 #[derive(Clone, Debug)]
 pub(super) struct GaugeStuck {
-    /// Below so much, N, a tendon may hang, and where its gauge ends noise shows on one side only: no witness for
-    /// another.
+    /// Tension below which a tendon may hang slack, N. If the range of its gauge ends there, noise is visible on one
+    /// side only. Such a gauge is not used to judge others.
     slack: f64,
-    /// N.
+    /// Difference from the commanded tension, N.
     off: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Memory {
     last: [u16; 4],
-    /// Samples with the same count, in a row.
+    /// Number of consecutive samples with the same count.
     same: [u32; 4],
-    /// How often a sample repeats the one before, 0 to 1.
+    /// Fraction of samples that repeat the previous one, 0 to 1.
     repeats: [f64; 4],
-    /// How often a sample turns back, 0 to 1.
+    /// Fraction of samples that reverse the direction, 0 to 1.
     reversals: [f64; 4],
-    /// Whether each gauge last rose.
+    /// Whether the last change of each gauge was upward.
     rose: [bool; 4],
     samples: u32,
 }
@@ -78,17 +82,17 @@ impl Default for Memory {
     }
 }
 
-/// What is known of the flicker of four gauges.
+/// What is known about the flicker of four gauges.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flicker {
     /// Whether the gauge is known to flicker.
     pub known: [bool; 4],
-    /// Samples with the same count, in a row.
+    /// Number of consecutive samples with the same count.
     pub same: [u32; 4],
 }
 
 impl Flicker {
-    /// Whether a gauge that flickered shows one count.
+    /// Returns whether a gauge that flickered shows one count.
     pub fn silent(&self, gauge: usize) -> bool {
         self.known[gauge] && self.same[gauge] >= SILENT
     }
@@ -119,14 +123,14 @@ impl GaugeStuck {
         let rises = |gauge: usize| counts[gauge] > last[gauge];
         memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge] + 1 } else { 0 });
         let same_for = memory.same;
-        // Whether at least two other gauges have just moved.
+        // Whether at least two other gauges have changed recently.
         let others_flicker = |gauge: usize| {
             let flickers =
                 |&other: &usize| other != gauge && same_for[other] < ROW && sample.tensions[other] > self.slack;
             (0..4).filter(flickers).count() >= 2
         };
         for gauge in 0..4 {
-            // What is judged must not shift the judgement.
+            // Samples of a gauge that is being judged must not change the learned flicker.
             if memory.same[gauge] < ROW || !others_flicker(gauge) {
                 let learn = |mean: &mut f64, is: bool, gain: f64| *mean += (f64::from(u8::from(is)) - *mean) * gain;
                 let same = memory.same[gauge] > 0;
@@ -140,7 +144,7 @@ impl GaugeStuck {
         let known = memory.flickers().known;
         let alone = |gauge: usize| (0..4).all(|other| other == gauge || known[other]);
         first_of(Symptom::GaugeStuck, Part::gauge, |gauge| {
-            // Where a tendon hangs its gauge may be at its end, and show half of the noise only.
+            // The gauge of a hanging tendon may be at the end of its range, and then shows only half of its noise.
             let least = if sample.tensions[gauge] < self.slack { MOST_REPEATS } else { LEAST_REPEATS };
             let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(least).ln() < UNLIKELY;
             let off = (sample.tensions[gauge] - sample.report.desired_tensions[gauge]).abs() > self.off;
@@ -151,7 +155,7 @@ impl GaugeStuck {
     }
 }
 
-/// That this gauge, 0 to 3, is dead.
+/// Returns the alarm that this gauge, 0 to 3, is dead.
 pub(super) fn alarm(sample: &Sample, gauge: usize) -> Alarm {
     let value = f64::from(sample.feedback.gauge_counts[gauge]);
     Alarm { symptom: Symptom::GaugeStuck, part: Part::gauge(gauge), value }

@@ -1,4 +1,4 @@
-//! Joints at their mechanical stops.
+//! Detects joints at their mechanical stops.
 
 use super::alarm::{Alarm, Symptom};
 use super::sample::Sample;
@@ -6,12 +6,13 @@ use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
-/// At this part of the way from its limit to its stop a joint counts as at its stop: tendons and stops give way.
+/// Fraction of the way from its limit to its stop at which a joint counts as at its stop. Tendons and stops are
+/// elastic.
 const NEARLY: f64 = 0.8;
 
 #[derive(Clone, Debug)]
 pub(super) struct JointStop {
-    /// rad.
+    /// Angles from which a joint counts as at its stop, rad.
     low: Vector3<f64>,
     high: Vector3<f64>,
 }

@@ -1,6 +1,6 @@
-//! How many of the last periods went wrong: replies lost or damaged, periods skipped.
+//! Fraction of the recent periods that failed: replies lost or damaged, and periods skipped.
 
-/// A share that forgets: what went wrong counts 1/e after as many periods as the window has.
+/// A fading mean: the weight of a failure is 1/e after as many periods as the window has.
 #[derive(Clone, Copy, Debug)]
 pub struct LineQuality {
     gain: f64,
@@ -8,12 +8,12 @@ pub struct LineQuality {
 }
 
 impl LineQuality {
-    /// A window of so many periods, at least one.
+    /// Constructs a mean with a window of this many periods, at least one.
     pub fn new(window: f64) -> Self {
         Self { gain: 1.0 / window.max(1.0), share: 0.0 }
     }
 
-    /// One period, and how much of it went wrong, 0 to 1. The share of the window that did.
+    /// Records one period and the fraction of it that failed, 0 to 1. Returns the failed fraction of the window.
     pub fn note(&mut self, wrong: f64) -> f64 {
         self.share += (wrong - self.share) * self.gain;
         self.share

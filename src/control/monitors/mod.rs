@@ -1,7 +1,8 @@
-//! Monitors: what is wrong with tendons, gauges, encoders, motors and joints, found from what a cycle has measured and
-//! commanded. One file a monitor; each says once what it means by wrong.
+//! Monitors: they detect faults of tendons, gauges, encoders, motors and joints from the measurements and commands of a
+//! cycle. Each file is one monitor and defines its fault.
 //!
-//! They watch a finger that is a spring: while slack is taken up, calibrated or let go, all of it is as it should be.
+//! The monitors run while a finger follows a set point. Taking up slack, calibration and release can cause the same
+//! symptoms without a fault.
 
 mod agreement;
 mod alarm;

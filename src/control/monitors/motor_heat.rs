@@ -1,4 +1,4 @@
-//! Motors that are warm, by the square of their torque over time.
+//! Detects warm motors by the filtered mean square of their torque.
 
 use super::alarm::{Alarms, Symptom, first_of};
 use super::sample::Sample;
@@ -6,34 +6,34 @@ use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 
-/// Part of the heat that a motor bears for ever from which on it is warm: its torque is being limited.
+/// Fraction of the continuous heat from which a motor counts as warm, because its torque is limited.
 const WARM: f64 = 0.8;
 
-/// From this part on it is at the limit.
+/// Fraction of the continuous heat from which a motor counts as hot.
 const HOT: f64 = 0.95;
 
 #[derive(Clone, Debug)]
 pub(super) struct MotorHeat {
-    /// How long a motor may be at the limit, s: as long as it takes to cool.
-    bearable: f64,
+    /// Time that a motor may stay hot, s. It equals the thermal time constant.
+    time_limit: f64,
 }
 
-/// For how long each motor has been hot, s.
+/// Time for which each motor has been hot, s.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory([f64; 4]);
 
 impl MotorHeat {
     pub fn new(finger: &ConfiguredFinger) -> Self {
-        Self { bearable: finger.motor.thermal_time }
+        Self { time_limit: finger.motor.thermal_time }
     }
 
-    /// `heat`: part of the heat that each motor bears for ever.
+    /// Returns the alarms. `heat` is the heat of each motor as a fraction of its continuous heat.
     pub fn watch(&self, memory: &mut Memory, heat: &Vector4<f64>, sample: &Sample) -> Alarms {
         for motor in 0..4 {
             memory.0[motor] = if heat[motor] > HOT { memory.0[motor] + sample.elapsed } else { 0.0 };
         }
         let percent = |motor: usize| 100.0 * heat[motor];
-        let too_long = |motor: usize| (memory.0[motor] > self.bearable).then(|| percent(motor));
+        let too_long = |motor: usize| (memory.0[motor] > self.time_limit).then(|| percent(motor));
         Alarms {
             fault: first_of(Symptom::OverheatedMotor, Part::motor, too_long),
             warning: first_of(Symptom::WarmMotor, Part::motor, |motor| (heat[motor] > WARM).then(|| percent(motor))),

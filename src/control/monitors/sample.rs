@@ -1,22 +1,22 @@
-//! What the monitors look at.
+//! Input of the monitors.
 
 use crate::control::signals::{Feedback, Report};
 use nalgebra::Vector4;
 
-/// What one sample tells.
+/// The data of one sample.
 pub(super) struct Sample<'a> {
     pub feedback: &'a Feedback,
     pub report: &'a Report,
-    /// N.
+    /// Tensions, N.
     pub tensions: Vector4<f64>,
-    /// Motor travel, r m, cm.
+    /// Motor travel r m, cm.
     pub travel: Vector4<f64>,
-    /// How far the motors turned since the last sample, rad.
+    /// Angle that the motors have turned since the last sample, rad.
     pub turned: Vector4<f64>,
-    /// N at the tendon, of the command that acted.
+    /// Pulls at the tendons that the previous cycle commanded, N.
     pub pulls: Vector4<f64>,
-    /// Since the last sample, s.
+    /// Time since the last sample, s.
     pub elapsed: f64,
-    /// The gauges' largest count.
+    /// The largest count of the gauges.
     pub full_scale: u16,
 }

@@ -1,4 +1,4 @@
-//! Motors that do not turn although something should turn them.
+//! Detects motors that do not turn although pull and tension are not balanced.
 
 use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
@@ -6,18 +6,19 @@ use crate::control::motors::motor_friction::MotorFriction;
 use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
 
-/// Out-of-balance that friction may hold: the configured friction so many times, because it is known badly, and this
-/// part of the pull, for the error of the torque constant.
+/// Imbalance that friction may hold: a multiple of the configured friction, because friction is known poorly, and a
+/// fraction of the pull, for the error of the torque constant.
 const FRICTION: f64 = 3.0;
 const TORQUE_CONSTANT: f64 = 0.3;
 
-/// N, besides.
-const LET_PASS: f64 = 1.0;
+/// Additional tolerance, N.
+const TOLERANCE: f64 = 1.0;
 
-/// So long, s: a free motor under the least of it would have turned by dozens of counts.
-const LASTS: f64 = 0.012;
+/// Time for which the imbalance must last, s. In this time a free motor would turn by dozens of counts under the least
+/// imbalance that counts.
+const DURATION: f64 = 0.012;
 
-/// rad; the last bit of an encoder flickers.
+/// Motion of a motor that counts as at rest, rad. The last bit of an encoder flickers.
 const AT_REST: f64 = 0.007;
 
 #[derive(Clone, Debug)]
@@ -27,8 +28,9 @@ pub(super) struct StalledMotor {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
-    /// For how long, s, with the sign of pull minus tension, and how far each motor has turned since, rad.
-    lasts: [f64; 4],
+    /// Time for which each motor has been stalled, s, with the sign of pull minus tension, and the angle that it has
+    /// turned since then, rad.
+    duration: [f64; 4],
     turned: [f64; 4],
 }
 
@@ -42,16 +44,17 @@ impl StalledMotor {
             let unbalanced = sample.pulls[motor] - sample.tensions[motor];
             let larger = sample.pulls[motor].abs().max(sample.tensions[motor]);
             let friction = FRICTION * self.friction.at(motor, larger);
-            let held = friction + TORQUE_CONSTANT * larger + LET_PASS;
+            let held = friction + TORQUE_CONSTANT * larger + TOLERANCE;
             let turned = memory.turned[motor] + sample.turned[motor];
-            let stands = unbalanced.abs() > held && turned.abs() <= AT_REST;
-            // To and fro, as a dither goes, cancels out.
-            let goes_on = stands && memory.lasts[motor] * unbalanced >= 0.0;
-            memory.lasts[motor] = if goes_on { memory.lasts[motor] + sample.elapsed.copysign(unbalanced) } else { 0.0 };
-            memory.turned[motor] = if goes_on { turned } else { 0.0 };
+            let stalled = unbalanced.abs() > held && turned.abs() <= AT_REST;
+            // An imbalance that changes its sign, such as that of a dither, restarts the time.
+            let continues = stalled && memory.duration[motor] * unbalanced >= 0.0;
+            memory.duration[motor] =
+                if continues { memory.duration[motor] + sample.elapsed.copysign(unbalanced) } else { 0.0 };
+            memory.turned[motor] = if continues { turned } else { 0.0 };
         }
         first_of(Symptom::StalledMotor, Part::motor, |motor| {
-            (memory.lasts[motor].abs() >= LASTS).then(|| sample.pulls[motor] - sample.tensions[motor])
+            (memory.duration[motor].abs() >= DURATION).then(|| sample.pulls[motor] - sample.tensions[motor])
         })
     }
 }

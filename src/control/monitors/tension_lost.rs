@@ -1,9 +1,10 @@
-//! Tendons that lose their tension: torn, slipping, or with a gauge that is dead.
+//! Detects tendons that lose their tension because they are torn, slip, or have a dead gauge.
 //!
-//! A fast motion or a blow makes a whole tendon slack for a moment. Then it hangs; one that is torn, slips, or has a
-//! dead gauge has no tension although the other three and the encoders say that it is stretched. They say so from one
-//! sample to the next: where it grew while the gauge still showed tension, a gauge drifts, and its controller keeps the
-//! tendon at what the gauge shows; that is for `agreement` to say.
+//! A fast motion or an impact makes an intact tendon slack for a moment, and the tendon hangs. A torn or slipping
+//! tendon, or one with a dead gauge, shows no tension although the other three gauges and the encoders show that it is
+//! stretched. In these cases the difference appears from one sample to the next. If it grew while the gauge still
+//! showed tension, the gauge drifts, and the controller keeps the tendon at the tension that the gauge shows.
+//! `agreement` detects that case.
 
 use super::alarm::{Alarm, Alarms, Symptom, first_of};
 use super::gauge_stuck::{self, Flicker};
@@ -12,35 +13,36 @@ use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 
-/// A tendon is low below this part of t_min. No command asks for less than t_min.
+/// Fraction of t_min below which a tendon is low. No command is below t_min.
 const LOW: f64 = 0.3;
 
-/// Its tension is gone below this part.
+/// Fraction of t_min below which the tension of a tendon is gone.
 const GONE: f64 = 0.1;
 
-/// From this part of t_min on a low tendon is missed: its stretch says that it should have so much, and did not before
-/// it went low.
+/// Fraction of t_min from which the tension of a low tendon counts as missing: the tension that the stretch shows
+/// beyond the gauge, minus what it showed before the tendon became low.
 const MISSED: f64 = 0.3;
 
-/// Time constant, s, of what it said before.
+/// Time constant of the mean before the tendon became low, s.
 const BEFORE: f64 = 0.02;
 
-/// So long, s, a tendon that is missed must be low.
-const LASTS: f64 = 0.012;
+/// Time for which a tendon with missing tension must be low, s.
+const DURATION: f64 = 0.012;
 
-/// So long, s, no motion makes a whole tendon slack.
+/// Time for which no motion keeps an intact tendon slack, s.
 const TOO_LONG: f64 = 0.5;
 
-/// So long, s, tension must be gone for a warning.
+/// Time for which tension must be gone for a warning, s.
 const NOTICED: f64 = 0.003;
 
-/// A gauge that flickered, and has shown one count in this many samples since its tendon is low, is dead. Where a gauge
-/// ends at no tension noise shows on one side only, and that of a torn tendon shows one count now and then.
+/// A gauge that flickered, and has shown one count in this number of samples since its tendon became low, is dead. If
+/// the range of a gauge ends at zero tension, noise is visible on one side only, and the gauge of a torn tendon
+/// occasionally repeats a count too.
 const CERTAIN: u32 = 15;
 
 #[derive(Clone, Debug)]
 pub(super) struct TensionLost {
-    /// N.
+    /// Tensions, N.
     low: f64,
     gone: f64,
     missed: f64,
@@ -48,20 +50,21 @@ pub(super) struct TensionLost {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
-    /// For how long each tendon has been low, s, in how many samples, and its tension since, N s.
+    /// Time for which each tendon has been low, s, the number of samples in this time, and the integral of its tension,
+    /// N s.
     low: Vector4<f64>,
     samples: [u32; 4],
     impulse: Vector4<f64>,
-    /// Mean of what its stretch said beyond its gauge before it went low, N.
+    /// Mean of the tension that the stretch showed beyond the gauge before the tendon became low, N.
     before: Vector4<f64>,
-    /// For how long it has been low and missed, s.
+    /// Time for which each tendon has been low with missing tension, s.
     missed: Vector4<f64>,
-    /// For how long its tension has been gone, s.
+    /// Time for which the tension of each tendon has been gone, s.
     gone: Vector4<f64>,
 }
 
 impl Memory {
-    /// Whether a tendon seems to have lost its tension a moment ago.
+    /// Returns whether a tendon seems to have just lost its tension.
     pub fn suspects(&self) -> bool {
         self.missed.max() > 0.0
     }
@@ -73,7 +76,8 @@ impl TensionLost {
         Self { low: LOW * minimum, gone: GONE * minimum, missed: MISSED * minimum }
     }
 
-    /// `missing`: what each tendon would have beyond what its gauge shows if the other three are right, N.
+    /// Returns the alarms. `missing` is the tension of each tendon minus the tension that its gauge shows, if the other
+    /// three gauges are right, N.
     pub fn watch(&self, memory: &mut Memory, sample: &Sample, missing: &Vector4<f64>, flicker: &Flicker) -> Alarms {
         for tendon in 0..4 {
             let tension = sample.tensions[tendon];
@@ -93,9 +97,10 @@ impl TensionLost {
         let warning = first_of(Symptom::SlackInMotion, Part::tendon, |tendon| {
             (memory.gone[tendon] >= NOTICED).then_some(sample.tensions[tendon])
         });
-        // The others follow a torn tendon, as nothing balances them: the one that went first is it.
+        // The other tendons lose their tension after a torn one, because nothing balances them. So the first one to
+        // lose its tension is reported.
         let (missed, lowest) = (memory.missed.imax(), memory.low.imax());
-        let fault = if memory.missed[missed] >= LASTS {
+        let fault = if memory.missed[missed] >= DURATION {
             self.fault(memory, sample, flicker, missed)
         } else {
             (memory.low[lowest] >= TOO_LONG).then(|| self.lost(memory, lowest))
@@ -108,7 +113,7 @@ impl TensionLost {
         let same = flicker.same[tendon];
         let silent = flicker.known[tendon] && same + 1 >= memory.samples[tendon];
         let dead = match flicker.known[tendon] {
-            // A little later it is certain.
+            // More samples are needed to be certain.
             true if silent && same < CERTAIN => return None,
             true => silent,
             false => others_hold,

@@ -1,4 +1,4 @@
-//! All monitors of a finger, over one sample after the other.
+//! Runs all monitors of a finger on each sample.
 
 use super::agreement::{self, Agreement};
 use super::alarm::{Alarm, Alarms, Symptom};
@@ -31,7 +31,7 @@ pub(crate) struct Monitors {
     joint_stop: JointStop,
 }
 
-/// What the monitors remember.
+/// The state of the monitors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watch {
     before: Option<Before>,
@@ -45,17 +45,17 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// The controller has been adjusted: what gauges and encoders differ by is to be found anew.
+    /// Restarts the comparison of gauges and encoders after an adjustment of the controller.
     pub fn adjusted(&mut self) {
         self.agreement = Default::default();
     }
 }
 
-/// The sample before this one.
+/// Data of the previous sample.
 #[derive(Clone, Copy, Debug)]
 struct Before {
     motor_angles: Vector4<f64>,
-    /// Pulls that act while this sample is taken, N.
+    /// Pulls that the cycle of that sample commanded, N.
     pulls: Vector4<f64>,
 }
 
@@ -75,8 +75,8 @@ impl Monitors {
         }
     }
 
-    /// One sample of a finger that is a spring. `age`: periods since the last one; `pulls`: what the cycle has just
-    /// commanded, N.
+    /// Runs the monitors on one sample of a finger that follows a set point. `age` is the number of periods since the
+    /// last sample, and `pulls` are the pulls that the cycle has just commanded, N.
     #[allow(clippy::too_many_arguments)]
     pub fn watch(
         &self,
@@ -102,7 +102,7 @@ impl Monitors {
             elapsed: self.period * age,
             full_scale,
         };
-        // A dead sensor explains what it makes the others say, so sensors come first.
+        // Sensors come first, because a dead sensor also causes the symptoms of the other monitors.
         let stuck = self.gauge_stuck.watch(&mut watch.gauge_stuck, &sample);
         let jumped = self.encoder_jump.watch(&mut watch.encoder_jump, &sample);
         let range = self.gauge_range.watch(&mut watch.gauge_range, &sample);
@@ -115,7 +115,7 @@ impl Monitors {
         let silent = (0..4).find(|&gauge| flickers.silent(gauge)).filter(|_| disagrees.is_some());
         let stuck = stuck.or(silent.map(|gauge| gauge_stuck::alarm(&sample, gauge)));
         let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
-        // Where the gauge drifts, its motor stands still against a tension that is not there.
+        // If the gauge drifts, its motor stands still against a tension that does not exist.
         let doubtful = watch.agreement.doubtful();
         let stalled = stalled.map(|alarm| {
             if doubtful {

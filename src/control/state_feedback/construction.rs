@@ -1,4 +1,4 @@
-//! State feedback from the configuration of a finger.
+//! Construction of state feedback from the configuration of a finger.
 
 use super::StateFeedback;
 use super::numbers::Numbers;
@@ -15,19 +15,20 @@ use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::model::{LinkDynamics, Tendons};
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
 
-/// Noise of a gauge that the observers reckon with, N rms.
+/// Noise of a gauge for which the observers are designed, N rms.
 const GAUGE_NOISE: f64 = 0.03;
 
-/// How many times that noise the tensions keep off their bounds, beside the dither.
+/// Distance of the tensions from their bounds in addition to the dither, in multiples of that noise.
 const NOISE_RESERVE: f64 = 14.0;
 
-/// The part of a motor's friction at t_max that its tendon keeps off t_max beside that: a motor at rest is held by its
-/// friction, and a tendon keeps what it has until what is missing, or too much, is observed. Without it tendons of a
-/// finger at a stop had up to 0.39 N more than t_max at 1000 Hz, with it 0.46 N less, over 24 seeds of 24 poses.
+/// Additional distance from t_max, as a fraction of the motor's friction at t_max. Friction holds a motor at rest, so
+/// its tendon keeps its tension until the observer has found the deficit or excess. Over 24 seeds of 24 poses at 1000
+/// Hz, tendons of a finger at a stop exceeded t_max by up to 0.39 N without this distance, and stayed 0.46 N below
+/// t_max with it.
 const FRICTION_RESERVE: f64 = 0.2;
 
-/// Of the low-pass on the motion of the joints beside the reference, rad/s: above it dither and noise are, below it
-/// pushes.
+/// Bandwidth of the low-pass filter on the motion of the joints in addition to the reference, rad/s. Dither and noise
+/// are above it, and pushes below it.
 const DRIFT_BANDWIDTH: f64 = 60.0;
 
 /// The motors and their tendons as masses on springs, in SI units at the tendon.
@@ -62,7 +63,7 @@ impl Drives {
         })
     }
 
-    /// The observer of one tendon.
+    /// Constructs the observer of one tendon.
     fn observer(
         &self,
         index: usize,
@@ -93,7 +94,8 @@ impl Drives {
         TendonObserver::new(tendon, &design, 1.0 / rate).ok_or_else(too_far)
     }
 
-    /// c, N s/m: what damps the motors against the links of a finger that is bent like at its homing pose. R in m.
+    /// Returns c, N s/m: the damping of the motors relative to the links of a finger that is bent as in its homing
+    /// pose. R is in m.
     fn relative_damping(&self, numbers: &Numbers, dynamics: &LinkDynamics, r: &Matrix3x4<f64>) -> f64 {
         let bent = Vector3::new(0.0, 0.5, 1.0);
         let link_mass = (dynamics.inertia(&bent).determinant() / (r * r.transpose()).determinant()).cbrt();
@@ -102,20 +104,21 @@ impl Drives {
         2.0 * numbers.relative_damping * mass * frequency
     }
 
-    /// R m R^T / alpha, kg m^2: what the joints feel of the motors.
+    /// Returns R m R^T / alpha, kg m^2: the inertia of the motors that acts on the joints.
     fn felt(&self, numbers: &Numbers, r: &Matrix3x4<f64>) -> Matrix3<f64> {
         r * Matrix4x3::from_fn(|tendon, joint| self.mass[tendon] * r[(joint, tendon)]) / numbers.inertia_gain
     }
 }
 
-/// R^T (R R^T)^-1.
+/// Returns R^T (R R^T)^-1.
 fn right_inverse(r: &Matrix3x4<f64>) -> Result<Matrix4x3<f64>, Unusable> {
     let singular = || Unusable { key: "geometry.r", reason: "has no right inverse: is a sign wrong?".into() };
     Ok(r.transpose() * (r * r.transpose()).try_inverse().ok_or_else(singular)?)
 }
 
 impl StateFeedback {
-    /// All numbers from the configuration. `maximum`: what each tendon may have, N.
+    /// Constructs the controller. `maximum` is the largest tension of each tendon, N, and `set_point_speed` is in
+    /// rad/s.
     pub fn new(
         finger: &ConfiguredFinger,
         tendons: &Tendons,
@@ -169,8 +172,8 @@ impl StateFeedback {
             joint_viscous: Vector3::from(finger.friction.joint_viscous) * 0.01,
             joint_coulomb,
             drift_gain: -(-DRIFT_BANDWIDTH / rate).exp_m1(),
-            rubbing: numbers.rubbing,
-            ahead: numbers.ahead / rate,
+            friction_slope: numbers.friction_slope,
+            sample_offset: numbers.sample_offset / rate,
             radius: drives.radius,
             half_count: Vector4::from_fn(|motor, _| 0.5 * drives.count[motor] * f64::from(finger.encoder.sign[motor])),
         })

@@ -1,27 +1,27 @@
-//! The damping that a spring of several dimensions needs on a given inertia.
+//! Damping of a spring with several dimensions on a given inertia.
 
 use crate::control::eigenvalues::eigenvalues;
 use nalgebra::Matrix3;
 
 /// D = 2 zeta (W # (K + f^2 W)) + lag sym(H W^-1 K).
 ///
-/// W # K = W (W^-1 K)^(1/2) is the geometric mean: for one dimension 2 zeta sqrt(W K), and in general the damper that
-/// damps every mode of the pair (W, K) with the same ratio zeta. The floor f keeps a finger without stiffness, or with
-/// a K that is not of full rank, damped. Tensions follow what is asked of them late by `lag`; what the links feel of
-/// the spring, the share H W^-1, needs that much rate in advance.
+/// W # K = W (W^-1 K)^(1/2) is the geometric mean. In one dimension it gives 2 zeta sqrt(W K). In general it gives
+/// every mode of the pair (W, K) the same damping ratio zeta. The least frequency f keeps a finger damped that has no
+/// stiffness, or a K without full rank. The tensions lag behind the desired ones by `lag`. The share H W^-1 of the
+/// spring's torque acts on the links. The second term compensates the lag of that share.
 #[derive(Clone, Debug)]
 pub(crate) struct DampingDesign {
     /// zeta.
     pub ratio: f64,
     /// f, rad/s.
     pub least_frequency: f64,
-    /// s.
+    /// Lag of the tensions, s.
     pub lag: f64,
 }
 
 impl DampingDesign {
-    /// D, N m s/rad: W, the inertia that the spring feels, and H, that of the links alone, kg m^2; K, N m/rad;
-    /// `relative` scales zeta.
+    /// Returns D, N m s/rad. W is the inertia on which the spring acts and H that of the links alone, both in kg m^2. K
+    /// is in N m/rad. `relative` scales zeta.
     pub fn damping(
         &self,
         felt: &Matrix3<f64>,
@@ -37,15 +37,15 @@ impl DampingDesign {
     }
 }
 
-/// Of a positive definite matrix, which all inertias are.
+/// Returns the inverse of a positive definite matrix, such as an inertia.
 fn inverse(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let [a, b, c] = [0, 1, 2].map(|index| matrix.column(index).into_owned());
     Matrix3::from_rows(&[b.cross(&c).transpose(), c.cross(&a).transpose(), a.cross(&b).transpose()])
         / a.dot(&b.cross(&c))
 }
 
-/// The root of a matrix with positive eigenvalues, by the theorem of Cayley and Hamilton. No iteration,
-/// so it always takes the same time.
+/// Returns the square root of a matrix with positive eigenvalues, by the theorem of Cayley and Hamilton. It has no
+/// iteration, so it always takes the same time.
 fn square_root(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let square = matrix * matrix;
     let [a, b, c] = eigenvalues(matrix).map(|eigenvalue| eigenvalue.max(0.0).sqrt());
@@ -75,7 +75,7 @@ mod tests {
             prop_assert!((root * root - matrix).amax() < 1e-6 * matrix.amax(), "{root}{matrix}");
         }
 
-        /// With H = 0 and no floor D is the geometric mean: D W^-1 D = 4 zeta^2 K, and the same with W and K exchanged.
+        /// With H = 0 and f = 0, D is the geometric mean: D W^-1 D = 4 zeta^2 K.
         #[test]
         fn every_mode_has_the_same_ratio(w in definite(), k in definite(), zeta in 0.1..1.0f64) {
             let design = DampingDesign { ratio: zeta, least_frequency: 0.0, lag: 1.0 };

@@ -1,4 +1,4 @@
-//! What state feedback decides in a cycle: from the estimated state and the spring to the pull of every motor.
+//! Command of state feedback in a cycle: from the estimated state and the spring to the pull of every motor.
 
 use super::{StateFeedback, StateFeedbackState};
 use crate::control::spring::gravity_compensation::GravityCompensation;
@@ -9,25 +9,25 @@ use crate::control::state_feedback::reference::ReferenceMotion;
 use crate::control::tendons::tension_distribution::{BoundedDistribution, DistributedTensions};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
-/// What a cycle decides.
+/// The result of a cycle.
 pub(in crate::control) struct Decision {
-    /// N.
+    /// Pulls, N.
     pub pulls: Vector4<f64>,
-    /// The part of them that is fed forward against friction, N.
+    /// The friction feed-forward in the pulls, N.
     pub against_friction: Vector4<f64>,
-    /// N cm.
+    /// Joint torques, N cm.
     pub joint_torques: Vector3<f64>,
-    /// With the dither, N.
+    /// Desired tensions with the dither, N.
     pub desired_tensions: Vector4<f64>,
-    /// The part of the torque that the bounds let through.
+    /// The fraction of the torque that the bounds permit.
     pub torque_scale: f64,
 }
 
-/// The motion of all tendons and joints at the next sample, SI.
+/// The motion of all tendons and joints at the next sample, SI units.
 struct Motion {
     tensions: Vector4<f64>,
     motor_speeds: Vector4<f64>,
-    /// Of the joints' side of each tendon.
+    /// Speeds of the joint side of each tendon.
     speeds: Vector4<f64>,
     disturbances: Vector4<f64>,
     joints: Vector3<f64>,
@@ -41,7 +41,8 @@ struct Shake {
 }
 
 impl StateFeedback {
-    /// The pulls that make the fingertip the spring `spring`, from the next sample on. It `begins` where the finger is.
+    /// Returns the pulls that make the fingertip the spring `spring` from the next sample on. With `begins` the spring
+    /// starts without deflection.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
@@ -93,7 +94,7 @@ impl StateFeedback {
         }
     }
 
-    /// Moves the reference on toward the set point, rad.
+    /// Advances the reference toward the set point, rad.
     fn follow(&self, state: &mut StateFeedbackState, set_point: &Vector3<f64>) -> ReferenceMotion {
         self.slew.advance(&mut state.anchor, set_point);
         let reference = self.reference.advance(&mut state.reference, &state.anchor);
@@ -101,7 +102,7 @@ impl StateFeedback {
         reference
     }
 
-    /// The torque of the spring, its damper and the reference's motion, N m.
+    /// Returns the torque of the spring, its damper and the motion of the reference, N m.
     fn joint_torques(
         &self,
         state: &mut StateFeedbackState,
@@ -118,17 +119,18 @@ impl StateFeedback {
         let felt = self.felt_motors + inertia;
         let damped = self.damped_motors + inertia;
         let damping = self.damping.damping(&damped, inertia, &k_theta, spring.damping);
-        let rubbing = self.rubbing(state, &now.rates, &reference.rates, &damping);
+        let joint_friction = self.joint_friction(state, &now.rates, &reference.rates, &damping);
         let held = self.joint_stiffness.spring(spring, &now.joints) + push.torque + gravity.torques(&now.joints);
         held * 0.01 - damping * (now.rates - reference.rates)
             + felt * reference.accelerations
             + self.dynamics.coriolis(&now.joints, &reference.rates)
             + self.joint_viscous.component_mul(&reference.rates)
-            + rubbing
+            + joint_friction
     }
 
-    /// The Coulomb friction of the joints that is fed forward, N m, at no higher rate than the damping allows.
-    fn rubbing(
+    /// Returns the feed-forward of the joints' Coulomb friction, N m. Its slope is limited to a fraction of the
+    /// damping.
+    fn joint_friction(
         &self,
         state: &mut StateFeedbackState,
         rates: &Vector3<f64>,
@@ -139,20 +141,17 @@ impl StateFeedback {
         let moving = reference_rates + state.drift;
         Vector3::from_fn(|joint, _| {
             let most = self.joint_coulomb[joint];
-            (self.rubbing * damping[(joint, joint)] * moving[joint]).clamp(-most, most)
+            (self.friction_slope * damping[(joint, joint)] * moving[joint]).clamp(-most, most)
         })
     }
 
     fn shake(&self, state: &mut StateFeedbackState) -> Shake {
-        let (shake, quarter_ahead) = self.dither.advance(&mut state.dither);
-        Shake {
-            tensions: self.pseudo_inverse * shake,
-            rates: self.pseudo_inverse * quarter_ahead * self.dither.frequency,
-        }
+        let (shake, leading) = self.dither.advance(&mut state.dither);
+        Shake { tensions: self.pseudo_inverse * shake, rates: self.pseudo_inverse * leading * self.dither.frequency }
     }
 
-    /// The pulls, N, that make the tendons force sources, without what cancels friction. What the reference and the
-    /// dither ask of the motors is fed forward.
+    /// Returns the pulls, N, that make the tendons force sources, without the friction feed-forward. The motor motion
+    /// that the reference and the dither need is fed forward.
     fn forces(
         &self,
         now: &Motion,
@@ -165,18 +164,19 @@ impl StateFeedback {
         let tension_accelerations = self.pseudo_inverse * (inertia * reference.snap);
         let motor_rates = self.r.tr_mul(&reference.rates);
         let omega_squared = self.dither.frequency * self.dither.frequency;
-        let error = self.softer_in_common(error, self.common_gain);
-        // The share of the joints' speed must be exactly 1: with 0.94 it was a drag of three times D.
+        let error = self.scale_common(error, self.common_gain);
+        // The coefficient of the joints' speed must be exactly 1. A coefficient of 0.94 acted as a drag of three times
+        // D.
         let stretching = now.motor_speeds - now.speeds - (tension_rates + shake.rates).component_div(&self.stiffness);
-        let stretching = self.softer_in_common(&stretching, self.common_damping);
+        let stretching = self.scale_common(&stretching, self.common_damping);
         let yielding = (tension_accelerations - shake.tensions * omega_squared).component_div(&self.stiffness);
         now.tensions + error * self.inertia_gain - stretching * self.relative_damping - now.disturbances
             + self.viscous.component_mul(&motor_rates)
             + self.mass.component_mul(&yielding)
     }
 
-    /// `values` with this part of what the tendons have in common.
-    fn softer_in_common(&self, values: &Vector4<f64>, part: f64) -> Vector4<f64> {
+    /// Scales the common component of `values` by `part`.
+    fn scale_common(&self, values: &Vector4<f64>, part: f64) -> Vector4<f64> {
         values + self.common * (self.common.dot(values) * (part - 1.0))
     }
 }

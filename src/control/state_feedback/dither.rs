@@ -1,10 +1,11 @@
-//! A small shaking of the joints: friction that never rests does not hold a finger where its spring would not.
+//! Dither of the joints. It keeps the joints moving slightly, so that static friction does not hold a finger away from
+//! the rest position of its spring.
 
 use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Joint torques A sin(omega t + i 120 degrees): three phases, so that the finger never stands still as a whole.
+/// Joint torques A sin(omega t + i 120 degrees). With three phases the whole finger is never at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Dither {
     /// A, N m.
@@ -15,12 +16,12 @@ pub(crate) struct Dither {
     step: Vector2<f64>,
 }
 
-/// Cosine and sine of omega t. Rotated, not computed anew: a cycle has no time to spare.
+/// Cosine and sine of omega t. They are rotated in each cycle, because computing them takes longer.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct DitherState(Vector2<f64>);
 
 impl Dither {
-    /// Amplitude, N m; frequency, Hz; cycles a second.
+    /// Constructs a dither from its amplitude, N m, its frequency, Hz, and the rate, Hz.
     pub fn new(amplitude: Vector3<f64>, frequency: f64, rate: f64) -> Self {
         let (sin, cos) = (TAU * frequency / rate).sin_cos();
         Self { amplitude, frequency: TAU * frequency, step: Vector2::new(cos, sin) }
@@ -30,13 +31,13 @@ impl Dither {
         DitherState(Vector2::x())
     }
 
-    /// The torques, N m, and their rates over omega, N m: a quarter of a turn ahead.
+    /// Returns the torques, N m, and their rates divided by omega, N m, which lead by 90 degrees.
     pub fn advance(&self, state: &mut DitherState) -> (Vector3<f64>, Vector3<f64>) {
         let turned = Vector2::new(
             self.step.x * state.0.x - self.step.y * state.0.y,
             self.step.x * state.0.y + self.step.y * state.0.x,
         );
-        // Back to length 1 by one step of Newton: rounding must not grow.
+        // One Newton step normalises the length to 1, so that rounding errors do not accumulate.
         state.0 = turned * (1.5 - 0.5 * turned.norm_squared());
         let (cos, sin) = (state.0.x, state.0.y);
         let (half, high) = (0.5, 0.75f64.sqrt());

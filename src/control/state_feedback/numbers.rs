@@ -1,75 +1,78 @@
-//! From a configuration to the numbers of state feedback: one procedure, nothing tuned for a finger by hand.
+//! The numbers of state feedback. One procedure computes them from the configuration, and nothing is tuned by hand for
+//! a finger.
 //!
-//! What has a unit follows from the configuration: masses from rotor inertias, the observers' gains from the sizes of a
-//! count and a bandwidth. What remains has no unit, or is one in cycles, and was searched on the eigenvalues of the
-//! exact one-cycle map of the default finger, never for a pose.
+//! Numbers with a unit follow from the configuration: masses from rotor inertias, and the observers' gains from the
+//! size of a count and a bandwidth. The other numbers are dimensionless or in radians per cycle. They were found by a
+//! search on the eigenvalues of the exact one-cycle map of the default finger, never for a single pose.
 
 use crate::control::number_checks::{not_negative, positive};
 use crate::control::rate_table::{Row, Tuned, at};
 use crate::model::configuration::{ConfiguredController, Unusable};
 
-/// Frequencies are those of `rate`, and scale with the rate of the finger.
+/// The numbers at the rate of the finger.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Numbers {
-    /// alpha: tension commanded for a tension error; the motors feel 1/alpha of their inertia.
+    /// alpha: commanded tension for a tension error. The motors appear to have 1/alpha of their inertia.
     pub inertia_gain: f64,
-    /// zeta of the spring.
+    /// zeta of the spring, relative to the inertia for which the damping is designed.
     pub damping_ratio: f64,
-    /// zeta of motors against links.
+    /// zeta of the motion of the motors relative to the links.
     pub relative_damping: f64,
-    /// rad/s, of the observed disturbance.
+    /// Bandwidth of the observed disturbance, rad/s.
     pub disturbance_bandwidth: f64,
-    /// rad/s, of the observed links.
+    /// Bandwidth of the observed links, rad/s.
     pub link_bandwidth: f64,
-    /// Cycles beyond the next sample that the law looks ahead.
-    pub ahead: f64,
-    /// Least frequency that is damped, rad/s.
+    /// Time relative to the next sample for which the motion is computed, cycles. Negative is before the sample.
+    pub sample_offset: f64,
+    /// Least frequency for which the damping is designed, rad/s.
     pub least_frequency: f64,
-    /// The lag of the tensions, and the inertia of the motors, that the spring's damping reckons with, over what
-    /// alpha makes of them.
+    /// Lag of the tensions, and inertia of the motors, for which the spring's damping is designed. Both are relative to
+    /// the values that follow from alpha.
     pub lag: f64,
     pub felt: f64,
-    /// alpha and the damping of motors against links for what the tendons have in common, over those for what turns the
-    /// joints: motors that are not alike turn the one into the other.
+    /// alpha and relative damping for the common component of the tendons, divided by those for the components that
+    /// turn the joints. Differences between motors convert the common component to joint torque.
     pub common_gain: f64,
     pub common_damping: f64,
-    /// Rate of fed forward joint friction over the spring's damping, at most: friction that is believed too large must
-    /// not undo the damping.
-    pub rubbing: f64,
-    /// s, of each pole of the reference.
+    /// Largest slope of the joint friction feed-forward, as a fraction of the spring's damping. An overestimated
+    /// friction must not cancel the damping.
+    pub friction_slope: f64,
+    /// Time constant of each pole of the reference, s.
     pub reference_time: f64,
-    /// Amplitude of the dither over the joints' Coulomb friction, and its frequency, Hz: the lower it is, the less a
-    /// motor must give for it, and the more the tip moves.
+    /// Amplitude of the dither divided by the joints' Coulomb friction, and its frequency, Hz. With a lower frequency
+    /// the motors need less torque for the dither, and the tip moves more.
     pub dither: f64,
     pub dither_frequency: f64,
 }
 
-/// rad/s, damped however soft the finger. With 12 a finger without stiffness swings at its joint limits.
+/// Least damped frequency, rad/s. It also applies to a finger without stiffness. With 12 such a finger oscillates at
+/// its joint limits.
 const LEAST_FREQUENCY: f64 = 4.0;
 
-/// Hz.
+/// Frequency of the dither, Hz.
 const DITHER_FREQUENCY: f64 = 40.0;
 
-/// See [`Numbers::rubbing`].
-const RUBBING: f64 = 0.4;
+/// See [`Numbers::friction_slope`].
+const FRICTION_SLOPE: f64 = 0.4;
 
-/// The numbers that the table has for several rates. What has no unit here is the same as in [`Numbers`].
+/// The numbers that the table contains for several rates. Without a comment they have the meaning of those in
+/// [`Numbers`].
 #[derive(Clone, Copy)]
 struct TunedNumbers {
     inertia_gain: f64,
     damping_ratio: f64,
     relative_damping: f64,
-    /// Bandwidth of the observed disturbance, radians a cycle.
+    /// Bandwidth of the observed disturbance, radians per cycle.
     disturbance: f64,
-    /// Bandwidth of the observed links, radians a cycle.
+    /// Bandwidth of the observed links, radians per cycle.
     link: f64,
-    /// Cycles that the law looks back from the next sample.
-    behind: f64,
+    /// Time before the next sample for which the motion is computed, cycles.
+    look_back: f64,
     lag: f64,
     common_gain: f64,
     common_damping: f64,
     felt: f64,
-    /// s.
+    /// Time constant of each pole of the reference, s.
     reference_time: f64,
 }
 
@@ -81,7 +84,7 @@ impl Tuned for TunedNumbers {
             relative_damping: number(lower.relative_damping, upper.relative_damping),
             disturbance: number(lower.disturbance, upper.disturbance),
             link: number(lower.link, upper.link),
-            behind: number(lower.behind, upper.behind),
+            look_back: number(lower.look_back, upper.look_back),
             lag: number(lower.lag, upper.lag),
             common_gain: number(lower.common_gain, upper.common_gain),
             common_damping: number(lower.common_damping, upper.common_damping),
@@ -100,7 +103,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             relative_damping: 0.19,
             disturbance: 48.0,
             link: 2.6,
-            behind: 0.6,
+            look_back: 0.6,
             lag: 0.04,
             common_gain: 0.2,
             common_damping: 0.6,
@@ -116,7 +119,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             relative_damping: 0.31,
             disturbance: 13.0,
             link: 1.634,
-            behind: 0.12,
+            look_back: 0.12,
             lag: 0.015,
             common_gain: 0.043,
             common_damping: 0.266,
@@ -132,7 +135,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             relative_damping: 0.557,
             disturbance: 15.45,
             link: 0.57,
-            behind: 0.359,
+            look_back: 0.359,
             lag: 0.042,
             common_gain: 0.095,
             common_damping: 0.184,
@@ -143,7 +146,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
 ];
 
 impl Numbers {
-    /// What is configured; the rest from the table.
+    /// Returns the numbers at `rate`, Hz. Numbers that are not configured come from the table.
     pub fn new(configured: &ConfiguredController, rate: f64) -> Result<Self, Unusable> {
         let tuned = at(&TABLE, rate);
         let numbers = Self {
@@ -152,12 +155,12 @@ impl Numbers {
             relative_damping: tuned.relative_damping,
             disturbance_bandwidth: tuned.disturbance * rate,
             link_bandwidth: tuned.link * rate,
-            ahead: -tuned.behind,
+            sample_offset: -tuned.look_back,
             lag: tuned.lag,
             felt: tuned.felt,
             common_gain: tuned.common_gain,
             common_damping: tuned.common_damping,
-            rubbing: RUBBING,
+            friction_slope: FRICTION_SLOPE,
             least_frequency: LEAST_FREQUENCY,
             reference_time: configured.set_point_time.unwrap_or(tuned.reference_time / (rate / TABLE[0].0).min(1.0)),
             dither: configured.dither.unwrap_or(2.0),

@@ -1,17 +1,18 @@
-//! What the encoder and the gauge of one tendon do not show: speeds of motor and joint side, and the motor's
-//! disturbance.
+//! Observer of one tendon. It estimates what encoder and gauge do not measure: the speeds of motor side and joint side,
+//! and the disturbance of the motor.
 
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Matrix6x2, Vector2, Vector6};
 use serde::{Deserialize, Serialize};
 
-/// Steps of the Riccati recursion at most, and the relative change of the gain that ends it.
+/// Largest number of steps of the Riccati recursion, and the relative change of the gain at which the recursion ends.
 const MOST_STEPS: usize = 20_000;
 const STEADY: f64 = 1e-10;
 
-/// After a lost reply so many samples have gains of their own.
+/// Number of samples after a lost reply that have gains of their own.
 const RECOVERY: usize = 8;
 
-/// One tendon between its motor and the joints, in SI units at the tendon: J/r^2 is a mass.
+/// One tendon between its motor and the joints, in SI units at the tendon. The inertia J of the rotor is the mass
+/// J/r^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ElasticTendon {
     /// kg.
@@ -24,30 +25,31 @@ pub(crate) struct ElasticTendon {
     pub home: f64,
 }
 
-/// How fast an observer follows, and how well its sensors measure.
+/// Bandwidths of an observer, and accuracy of its sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ObserverDesign {
-    /// rad/s, of the joints' side.
+    /// Bandwidth of the joint side, rad/s.
     pub link: f64,
-    /// rad/s, of the disturbance.
+    /// Bandwidth of the disturbance, rad/s.
     pub disturbance: f64,
     /// Size of an encoder count, m of tendon.
     pub encoder_step: f64,
     /// Size of a gauge count, N.
     pub gauge_step: f64,
-    /// N rms.
+    /// Noise of the gauge, N rms.
     pub gauge_noise: f64,
 }
 
-/// A Kalman filter with a fixed gain for x = (mu, v, lambda, w, d, a):
+/// A Kalman filter with a fixed gain for the state x = (mu, v, lambda, w, d, a):
 ///
-/// mu' = v, v' = (u - t_home + d - k (mu - lambda) - b v) / m, lambda' = w, w' = a, a' = jerk + noise, d' = noise,
+/// mu' = v, v' = (u - t_home + d - k (mu - lambda) - b v) / m, lambda' = w, w' = a, a' = jerk + noise, d' = noise.
 ///
-/// measured: mu and t - t_home = k (mu - lambda). mu is the travel of the motor r m, lambda that of the joints R^T
-/// theta, d what acts on the motor beyond the command.
+/// Measured are mu and t - t_home = k (mu - lambda). mu is the travel of the motor, r m, and lambda that of the joints,
+/// R^T theta. u is the pull, and d the force that acts on the motor in addition to it.
 ///
-/// The links are a triple integrator without a model: any share of their dynamics would read an external force as
-/// motion, and the damper would answer it for ever. Without the state a, lambda lags, and k times the lag acts as mass.
+/// The links are a triple integrator without a model. A model of any part of their dynamics would interpret an external
+/// force as motion, and the damper would permanently oppose that motion. Without the state a, lambda would lag, and k
+/// times the lag would act as mass.
 #[derive(Clone, Debug)]
 pub(crate) struct TendonObserver {
     tendon: ElasticTendon,
@@ -55,36 +57,36 @@ pub(crate) struct TendonObserver {
     from_force: Vector6<f64>,
     from_jerk: Vector6<f64>,
     gain: Matrix6x2<f64>,
-    /// Gains of the samples that follow a lost reply.
+    /// Gains of the samples after a lost reply.
     recovery: [Matrix6x2<f64>; RECOVERY],
 }
 
-/// What an observer believes.
+/// The estimate of an observer.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct TendonEstimate {
     x: Vector6<f64>,
-    /// Samples since the last lost reply, at most [`RECOVERY`].
+    /// Samples since the last lost reply. The count ends at [`RECOVERY`].
     since_loss: usize,
 }
 
-/// Motion of a tendon, SI.
+/// Motion of a tendon, SI units.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TendonMotion {
     /// Tension, N.
     pub tension: f64,
-    /// v: speed of the motor's side, m/s.
+    /// v: speed of the motor side, m/s.
     pub motor_speed: f64,
-    /// lambda, m.
+    /// lambda: travel of the joint side, m.
     pub travel: f64,
-    /// w: speed of the joints' side, m/s.
+    /// w: speed of the joint side, m/s.
     pub speed: f64,
-    /// d, N.
+    /// d: disturbance of the motor, N.
     pub disturbance: f64,
 }
 
 impl TendonObserver {
-    /// Discretises over `period` (s) and iterates the Riccati equation to its fixed point. None where the numbers are
-    /// so far apart that it has none.
+    /// Discretises the model over `period` (s) and iterates the Riccati equation to its fixed point. Returns None if
+    /// the numbers differ so much that there is no finite fixed point.
     pub fn new(tendon: ElasticTendon, design: &ObserverDesign, period: f64) -> Option<Self> {
         let ElasticTendon { mass, viscous, stiffness, .. } = tendon;
         let mut rates = Matrix6::zeros();
@@ -105,7 +107,7 @@ impl TendonObserver {
         let mut density = Matrix6::zeros();
         density[(5, 5)] = design.link.powi(6) * (encoder + gauge / (stiffness * stiffness)) * period;
         density[(4, 4)] = design.disturbance.powi(2) * gauge * period;
-        // Over one period, by Simpson's rule.
+        // Integral over one period by Simpson's rule.
         let middle = half * density * half.transpose() * 4.0;
         let driven = (density + middle + transition * density * transition.transpose()) * (period / 6.0);
 
@@ -128,7 +130,7 @@ impl TendonObserver {
                 break;
             }
         }
-        // One update missed.
+        // One update is missing.
         covariance = predicted(&covariance);
         let recovery = std::array::from_fn(|_| {
             let gain = gain_of(&covariance);
@@ -142,15 +144,16 @@ impl TendonObserver {
         usable.then_some(Self { tendon, transition, from_force, from_jerk, gain, recovery })
     }
 
-    /// A tendon at rest. Travel of the motor, m; tension, N.
+    /// Returns the estimate of a tendon at rest, from the travel of the motor, m, and the tension, N.
     pub fn start(&self, motor_travel: f64, tension: f64) -> TendonEstimate {
         let stretch = (tension - self.tendon.home) / self.tendon.stiffness;
         let x = Vector6::new(motor_travel, 0.0, motor_travel - stretch, 0.0, 0.0, 0.0);
         TendonEstimate { x, since_loss: RECOVERY }
     }
 
-    /// Goes on from the estimate of another observer of the same tendon, whose motor travels `ratio` times less:
-    /// position and tension stay, whatever the two believe of stiffness and homing pretension.
+    /// Continues from the estimate of another observer of the same tendon. The motor travel of this observer is `ratio`
+    /// times that of the other. Position and tension are kept, even if the two observers have different stiffness or
+    /// homing pretension.
     pub fn take_over(&self, previous: &Self, estimate: &mut TendonEstimate, ratio: f64) {
         let tension = previous.tension(&estimate.x);
         estimate.x[0] *= ratio;
@@ -158,7 +161,7 @@ impl TendonObserver {
         estimate.x[2] = estimate.x[0] - (tension - self.tendon.home) / self.tendon.stiffness;
     }
 
-    /// Takes in what was measured: travel of the motor, m; tension, N.
+    /// Corrects the estimate with the measured travel of the motor, m, and tension, N.
     pub fn correct(&self, estimate: &mut TendonEstimate, motor_travel: f64, tension: f64) {
         let error = Vector2::new(motor_travel - estimate.x[0], tension - self.tension(&estimate.x));
         let gain = self.recovery.get(estimate.since_loss).unwrap_or(&self.gain);
@@ -166,34 +169,34 @@ impl TendonObserver {
         estimate.since_loss = estimate.since_loss.saturating_add(1).min(RECOVERY);
     }
 
-    /// Nothing was measured. An acceleration is too uncertain to be carried on.
+    /// Continues without a measurement. The acceleration is too uncertain to be kept.
     pub fn miss(&self, estimate: &mut TendonEstimate) {
         estimate.x[5] = 0.0;
         estimate.since_loss = 0;
     }
 
-    /// Goes on to the next sample under the pull (N) that acts until then and the expected jerk of the travel, m/s^3.
+    /// Predicts the next sample from the pull (N) that acts until then and the expected jerk of the travel, m/s^3.
     pub fn predict(&self, estimate: &mut TendonEstimate, pull: f64, jerk: f64) {
         estimate.x = self.transition * estimate.x + self.from_force * (pull - self.tendon.home) + self.from_jerk * jerk;
     }
 
-    /// The motion `ahead` seconds after the estimate, under the same pull.
-    pub fn motion(&self, estimate: &TendonEstimate, pull: f64, ahead: f64) -> TendonMotion {
+    /// Returns the motion `offset` seconds after the estimate, under the same pull.
+    pub fn motion(&self, estimate: &TendonEstimate, pull: f64, offset: f64) -> TendonMotion {
         let x = &estimate.x;
         let force = pull + x[4] - self.tension(x);
         let motor_acceleration = force / self.tendon.mass;
-        let motor_travel = x[0] + ahead * (x[1] + 0.5 * ahead * motor_acceleration);
-        let travel = x[2] + ahead * (x[3] + 0.5 * ahead * x[5]);
+        let motor_travel = x[0] + offset * (x[1] + 0.5 * offset * motor_acceleration);
+        let travel = x[2] + offset * (x[3] + 0.5 * offset * x[5]);
         TendonMotion {
             tension: self.tendon.home + self.tendon.stiffness * (motor_travel - travel),
-            motor_speed: x[1] + ahead * motor_acceleration,
+            motor_speed: x[1] + offset * motor_acceleration,
             travel,
-            speed: x[3] + ahead * x[5],
+            speed: x[3] + offset * x[5],
             disturbance: x[4],
         }
     }
 
-    /// lambda at the estimate, m.
+    /// Returns lambda at the estimate, m.
     pub fn travel(&self, estimate: &TendonEstimate) -> f64 {
         estimate.x[2]
     }
@@ -203,8 +206,8 @@ impl TendonObserver {
     }
 }
 
-/// e^(A T) and the integral of e^(A s) over s from 0 to T: Taylor's series over a part of T that is short for the
-/// fastest motion in A, doubled until it is T.
+/// Returns e^(A T) and the integral of e^(A s) over s from 0 to T. The Taylor series is computed for a part of T that
+/// is short for the fastest motion in A. That part is then doubled until it is T.
 fn exponential(rates: &Matrix6<f64>, time: f64) -> (Matrix6<f64>, Matrix6<f64>) {
     // The fastest motion is the motor on its tendon: A(1, 0) = - omega^2.
     let turns = time * rates[(1, 0)].abs().sqrt();
@@ -224,7 +227,7 @@ fn exponential(rates: &Matrix6<f64>, time: f64) -> (Matrix6<f64>, Matrix6<f64>) 
     (whole, integral)
 }
 
-/// Of a positive definite matrix: measurement noise keeps the determinant above zero.
+/// Returns the inverse of a positive definite matrix. The measurement noise keeps its determinant above zero.
 fn inverse(matrix: &Matrix2<f64>) -> Matrix2<f64> {
     Matrix2::new(matrix.m22, -matrix.m12, -matrix.m21, matrix.m11) / matrix.determinant()
 }
@@ -239,8 +242,8 @@ mod tests {
         ObserverDesign { link: 2000.0, disturbance, encoder_step: 1.5e-6, gauge_step: 0.024, gauge_noise: 0.03 }
     }
 
-    /// A motor that pulls a resting joint with 20 N, of which friction takes 3: tension and d that the observer finds.
-    /// Integrated by small steps, not by the observer's own matrices.
+    /// Simulates a motor that pulls a joint at rest with 20 N, of which friction takes 3 N. Returns the tension and d
+    /// that the observer finds. The simulation integrates in small steps, independent of the observer's matrices.
     fn found(disturbance: f64) -> (f64, f64) {
         let observer = TendonObserver::new(TENDON, &design(disturbance), 1e-3).expect("an observer");
         let (mut travel, mut speed) = (0.0f64, 0.0f64);
@@ -251,7 +254,7 @@ mod tests {
             observer.predict(&mut estimate, 20.0, 0.0);
             for _ in 0..1000 {
                 let tension = TENDON.home + TENDON.stiffness * travel;
-                // More viscous than the observer knows, so that it comes to rest.
+                // The viscous friction is higher than the observer's, so that the motor comes to rest.
                 speed += 1e-6 * (20.0 - 3.0 - tension - 200.0 * speed) / TENDON.mass;
                 travel += 1e-6 * speed;
             }
@@ -265,7 +268,7 @@ mod tests {
         let (tension, disturbance) = found(200.0);
         assert!((tension - 17.0).abs() < 1e-3, "{tension}");
         assert!((disturbance + 3.0).abs() < 1e-2, "{disturbance}");
-        // Without the state d the friction is taken for tension.
+        // Without the state d, the observer attributes the friction to the tension.
         let (tension, disturbance) = found(0.0);
         assert!((tension - 17.0).abs() > 0.01 && disturbance.abs() < 1e-6, "{tension} {disturbance}");
     }

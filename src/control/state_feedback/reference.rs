@@ -1,24 +1,24 @@
-//! The set point as the finger can follow it: smooth enough that its derivatives can be fed forward.
+//! The reference of the joints: the set point, filtered so that its derivatives can be fed forward.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Poles of the filter.
+/// Number of poles of the filter.
 const ORDER: usize = 5;
 
-/// Five equal first-order stages s in a row: the motor torque of an elastic finger depends on the fourth derivative of
-/// where the joints shall be (snap), and a filter of order n makes the derivative n - 1 continuous.
+/// Five equal first-order stages in series. The motor torque of an elastic finger depends on the fourth derivative of
+/// the reference (snap). A filter of order n makes the derivative n - 1 continuous.
 ///
-/// The filter works on joint angles, not on the tip: joint rates are then there without J^-1, which has no bound.
+/// The filter acts on joint angles and not on the tip. This gives joint rates without J^-1, which has no bound.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
-    /// What a stage moves by in a cycle.
+    /// Fraction of the remaining difference by which a stage moves in a cycle.
     gain: f64,
-    /// Of a stage, s.
+    /// Time constant of a stage, s.
     time: f64,
 }
 
-/// The stages, rad.
+/// Outputs of the stages, rad.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct ReferenceState([Vector3<f64>; ORDER]);
 
@@ -33,24 +33,24 @@ pub(crate) struct ReferenceMotion {
 }
 
 impl Reference {
-    /// Time constant of each stage, s; cycles a second.
+    /// Constructs the filter from the time constant of each stage, s, and the rate, Hz.
     pub fn new(time: f64, rate: f64) -> Self {
         Self { gain: -(-1.0 / (time * rate)).exp_m1(), time }
     }
 
-    /// At rest.
+    /// Returns the state of a reference at rest.
     pub fn start(&self, joints: &Vector3<f64>) -> ReferenceState {
         ReferenceState([*joints; ORDER])
     }
 
-    /// Moves on by one cycle toward `target`, rad.
+    /// Advances the reference by one cycle toward `target`, rad.
     pub fn advance(&self, state: &mut ReferenceState, target: &Vector3<f64>) -> ReferenceMotion {
         let mut input = *target;
         for stage in &mut state.0 {
             *stage += (input - *stage) * self.gain;
             input = *stage;
         }
-        // x_n' = (x_(n-1) - x_n) / time, again and again.
+        // Each derivative follows from x_n' = (x_(n-1) - x_n) / time.
         let [first, second, third, fourth, last] = state.0;
         let per = 1.0 / self.time;
         ReferenceMotion {
