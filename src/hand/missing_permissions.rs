@@ -1,6 +1,6 @@
 //! What a hand's servo threads lack to be real-time.
 
-use crate::realtime::Realtime;
+use crate::realtime::RealtimeRefusals;
 use std::io;
 use thiserror::Error;
 
@@ -31,12 +31,12 @@ impl MissingPermission {
 }
 
 /// What is missing to any of the threads, one of a kind.
-pub fn missing_permissions(had: Vec<Realtime>) -> Vec<MissingPermission> {
+pub fn missing_permissions(refusals: Vec<RealtimeRefusals>) -> Vec<MissingPermission> {
     let (mut scheduling, mut memory, mut core) = (None, None, None);
-    for had in had {
-        scheduling = scheduling.or(had.scheduling);
-        memory = memory.or(had.memory);
-        core = core.or(had.core);
+    for refused in refusals {
+        scheduling = scheduling.or(refused.scheduling);
+        memory = memory.or(refused.memory);
+        core = core.or(refused.core);
     }
     let kinds = [
         scheduling.map(MissingPermission::Scheduling),

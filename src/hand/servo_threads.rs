@@ -7,7 +7,7 @@ use crate::hand::missing_permissions::{MissingPermission, missing_permissions};
 use crate::hand::notice::print_notice;
 use crate::hand::opening::Line;
 use crate::model::configuration::{Configuration, FINGERS, PeriodClock, RealTime};
-use crate::realtime::{LockedStack, MonotonicClock, Priority, Realtime, Schedule, now, spawn, touch_stack};
+use crate::realtime::{LockedStack, MonotonicClock, Priority, RealtimeRefusals, Schedule, now, spawn, touch_stack};
 use crossbeam_channel::{Receiver, Sender, bounded};
 use std::collections::BTreeMap;
 use std::thread::JoinHandle;
@@ -35,7 +35,7 @@ pub(super) struct Given {
 /// fails: then none has begun its first cycle.
 ///
 /// # Errors
-/// The system refuses a thread; or real time is enforced, and cannot be had.
+/// The system refuses a thread; or real time is enforced, and is not permitted.
 pub(super) fn start(
     configuration: &Configuration,
     lines: Vec<Line>,
@@ -44,18 +44,19 @@ pub(super) fn start(
     let real_time = configuration.hand.real_time;
     let shares = by_thread(lines);
     let numbers: Vec<u8> = shares.keys().copied().collect();
-    let (told, hear) = bounded(numbers.len());
+    let (report, hear) = bounded(numbers.len());
     let (begin, begun) = bounded(numbers.len());
     for (place, (thread, ports)) in shares.into_iter().enumerate() {
         let servo = port_servo(configuration, ports, place, numbers.len());
-        let (told, begun) = (told.clone(), begun.clone());
+        let (report, begun) = (report.clone(), begun.clone());
         let name = format!("sun2xp servo {thread}");
-        let handle =
-            spawn(&name, priority(configuration, thread), move |had| run(servo, had, real_time, &told, &begun));
+        let handle = spawn(&name, priority(configuration, thread), move |refusals| {
+            run(servo, refusals, real_time, &report, &begun)
+        });
         servos.push(handle.map_err(|source| HandError::System { doing: "start a servo thread", source })?);
     }
     // Our own sender would keep the channel open where a thread died before it could report.
-    drop(told);
+    drop(report);
     let missing = missing_permissions(hear.iter().take(numbers.len()).collect());
     let given = Given::of(configuration, &numbers, &missing);
     accept(missing, real_time)?;
@@ -86,22 +87,22 @@ fn port_servo(configuration: &Configuration, ports: Vec<ServedPort<Port>>, place
     }
 }
 
-/// The life of a servo thread: it prepares its memory, reports what it `had`, waits for its first cycle and runs.
+/// The life of a servo thread: it prepares its memory, reports what the system refused, waits for its first cycle and runs.
 fn run(
     mut servo: PortServo,
-    mut had: Realtime,
+    mut refusals: RealtimeRefusals,
     real_time: RealTime,
-    told: &Sender<Realtime>,
+    report: &Sender<RealtimeRefusals>,
     begun: &Receiver<u64>,
 ) -> PortServo {
     touch_stack();
     let mut locked = None;
     if real_time != RealTime::Ignore {
         let stack = LockedStack::lock().map(|stack| locked = Some(stack));
-        had.memory = stack.and_then(|()| servo.memory().lock()).err();
+        refusals.memory = stack.and_then(|()| servo.memory().lock()).err();
     }
     // The caller of `start` waits for this report. If it has given up, it does not say when to begin either.
-    let _ = told.send(had);
+    let _ = report.send(refusals);
     if let Ok(first) = begun.recv() {
         servo = servo.later(first);
         servo.run();

@@ -1,5 +1,5 @@
-//! Keeps pthread_cancel away from the code of this library. A cancelled thread unwinds its stack, which no Rust frame
-//! with anything to drop survives, and it would leave locks taken.
+//! Protection of the library's code from pthread_cancel. A cancelled thread unwinds its stack. Unwinding a Rust frame
+//! that has a destructor is undefined behaviour, and the thread would leave its locks taken.
 #![allow(unsafe_code, reason = "functions of C that the libc crate does not have")]
 
 use std::ffi::c_int;
@@ -9,49 +9,49 @@ unsafe extern "C" {
     fn pthread_setcanceltype(kind: c_int, before: *mut c_int) -> c_int;
 }
 
-/// PTHREAD_CANCEL_DEFERRED of every C library of Linux.
+/// PTHREAD_CANCEL_DEFERRED, which has this value in every C library of Linux.
 const DEFERRED: c_int = 0;
 
-/// PTHREAD_CANCEL_DISABLE of every C library of Linux.
+/// PTHREAD_CANCEL_DISABLE, which has this value in every C library of Linux.
 const DISABLE: c_int = 1;
 
-/// A thread that is cancelled only at cancellation points, and not at any instruction. Where it was so before, as in
-/// almost every planner, this only reads: it costs less than to disable cancellation.
+/// While this exists, the calling thread is cancelled only at cancellation points, not at any instruction. In almost
+/// every planner that is the case already; then this only reads the type, which costs less than disabling cancellation.
 ///
-/// Without a destructor, so that the frame that holds it has nothing to drop: an asynchronous cancellation takes effect
-/// in [`DeferredCancellation::end`], and unwinds that frame.
+/// The type has no destructor, so that the frame that holds it has nothing to drop. An asynchronous cancellation takes
+/// effect in [`DeferredCancellation::end`] and unwinds that frame.
 #[must_use]
 pub struct DeferredCancellation(c_int);
 
 impl DeferredCancellation {
-    /// Begins it.
+    /// Makes cancellation deferred, and stores the previous type.
     #[inline(always)]
     pub fn begin() -> Self {
         let mut before = DEFERRED;
-        // SAFETY: a valid type, and room for the one before.
+        // SAFETY: a valid type, and a place for the previous one.
         unsafe { pthread_setcanceltype(DEFERRED, &mut before) };
         Self(before)
     }
 
-    /// Ends it. A thread that may be cancelled at any instruction, and was cancelled meanwhile, ends here.
+    /// Restores the previous type. If that type is asynchronous and a cancellation is pending, the thread ends here.
     #[inline(always)]
     pub fn end(self) {
         if self.0 != DEFERRED {
             let mut before = DEFERRED;
-            // SAFETY: the type that the thread had, and room for the one before.
+            // SAFETY: the thread's previous type, and a place for the current one.
             unsafe { pthread_setcanceltype(self.0, &mut before) };
         }
     }
 }
 
-/// A thread that is not cancelled at all while this exists: around cancellation points.
+/// While this exists, the calling thread is not cancelled at all. It is used around cancellation points.
 pub struct NoCancellation(c_int);
 
 impl NoCancellation {
-    /// Begins it.
+    /// Disables cancellation.
     pub fn begin() -> Self {
         let mut before = DISABLE;
-        // SAFETY: a valid state, and room for the one before.
+        // SAFETY: a valid state, and a place for the previous one.
         unsafe { pthread_setcancelstate(DISABLE, &mut before) };
         Self(before)
     }
@@ -60,8 +60,8 @@ impl NoCancellation {
 impl Drop for NoCancellation {
     fn drop(&mut self) {
         let mut before = DISABLE;
-        // SAFETY: the state that the thread had, and room for the one before. What was cancelled meanwhile takes effect
-        // later: this is used only where cancellation is deferred, or ended by nobody.
+        // SAFETY: the thread's previous state, and a place for the current one. A pending cancellation takes effect
+        // later: every user of this type either has cancellation deferred, or runs in a thread that nobody cancels.
         unsafe { pthread_setcancelstate(self.0, &mut before) };
     }
 }

@@ -1,11 +1,11 @@
-//! The monotonic clock, and the trait by which timing code takes any clock.
+//! The monotonic clock, and a trait for timing code that works with any clock.
 #![allow(unsafe_code)]
 
 /// A clock that can be waited on. Times are ns since an arbitrary start.
 pub trait Clock {
     /// The time, ns.
     fn now(&self) -> u64;
-    /// Returns at `deadline`, ns, or later; at once when it has passed.
+    /// Returns at `deadline`, ns, or later. Returns at once if `deadline` has passed.
     fn sleep_until(&self, deadline: u64);
 }
 
@@ -23,8 +23,8 @@ impl Clock for MonotonicClock {
             tv_sec: (deadline / 1_000_000_000) as libc::time_t,
             tv_nsec: (deadline % 1_000_000_000) as libc::c_long,
         };
-        // SAFETY: `until` is a valid timespec; with TIMER_ABSTIME the remainder is not written, so null is allowed.
-        // Any error but EINTR would be a wrong argument, and then a servo must not sleep for ever.
+        // SAFETY: `until` is a valid timespec. With TIMER_ABSTIME the remainder is not written, so null is allowed. Any
+        // error other than EINTR means a wrong argument, and then a servo must not sleep forever.
         while unsafe { libc::clock_nanosleep(libc::CLOCK_MONOTONIC, libc::TIMER_ABSTIME, &until, std::ptr::null_mut()) }
             == libc::EINTR
         {}

@@ -1,6 +1,6 @@
-//! Work that a thread of this library does for a planner's thread, which waits. The planner's handlers run on its own
-//! thread meanwhile, and one that leaves the wait by siglongjmp leaves nothing locked: it waits for a word in memory,
-//! and holds nothing.
+//! Work that a thread of this library does on behalf of a planner's thread, which waits for it. Signal handlers of the
+//! planner run on the waiting thread. A handler may leave the wait by siglongjmp: the wait is on a futex word and holds
+//! no lock.
 #![allow(unsafe_code, reason = "the futex system call")]
 
 use super::cancellation::NoCancellation;
@@ -13,51 +13,51 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::JoinHandle;
 
-/// How often a thread that waits looks whether it still has a reason to, ns.
-const LOOKING: libc::c_long = 100_000_000;
+/// How often a waiting thread checks whether to give up, ns.
+const CHECK_INTERVAL: libc::c_long = 100_000_000;
 
-/// Work that has begun.
-pub struct Errand<T>(Arc<Desk<T>>);
+/// Work that has started.
+pub struct Errand<T>(Arc<Outcome<T>>);
 
-/// Where the thread that works leaves what comes of it.
-struct Desk<T> {
+/// The place where the working thread leaves the result.
+struct Outcome<T> {
     result: Mutex<Option<T>>,
-    /// 1: the work is done.
+    /// 1 when the work is done.
     done: AtomicU32,
 }
 
 thread_local! {
-    /// The thread that works for this one. What is found here when the next one begins works for a call that was jumped
-    /// out of.
-    static WORKING: RefCell<Option<JoinHandle<()>>> = const { RefCell::new(None) };
+    /// The thread that works for the calling thread. If one is still here when the next work starts, a siglongjmp left the
+    /// wait for it.
+    static WORKER: RefCell<Option<JoinHandle<()>>> = const { RefCell::new(None) };
 }
 
 impl<T: Send + 'static> Errand<T> {
-    /// Begins. `work` must not panic.
+    /// Starts a thread that does `work`, which must not panic.
     ///
     /// # Errors
     /// The system refuses a thread.
     pub fn begin(_blocked: &SignalsBlocked, work: impl FnOnce() -> T + Send + 'static) -> io::Result<Self> {
-        // Nobody waits for a thread that is left there: it ends by itself.
+        // A worker that is still here is not joined: it ends by itself.
         drop(take_worker());
-        let desk = Arc::new(Desk { result: Mutex::new(None), done: AtomicU32::new(0) });
-        let theirs = desk.clone();
+        let outcome = Arc::new(Outcome { result: Mutex::new(None), done: AtomicU32::new(0) });
+        let workers = outcome.clone();
         let worker = spawn_alike("sun2xp call", move || {
-            *theirs.result.lock() = Some(work());
-            theirs.done.store(1, Ordering::Release);
-            wake(&theirs.done);
+            *workers.result.lock() = Some(work());
+            workers.done.store(1, Ordering::Release);
+            wake(&workers.done);
         })?;
-        // Where the calling thread is just ending there is no such place any more: then nobody waits for the worker's
-        // end.
-        let _ = WORKING.try_with(|working| working.replace(Some(worker)));
-        Ok(Self(desk))
+        // `try_with` fails if the calling thread is ending and has no thread-local data any more. Then nobody joins the
+        // worker.
+        let _ = WORKER.try_with(|place| place.replace(Some(worker)));
+        Ok(Self(outcome))
     }
 
-    /// Waits for the work to be done, with the signals of the calling thread let in; none where there is a reason to
-    /// give up.
+    /// Waits for the work, with the thread's own signal mask. Returns nothing if `give_up` returns true first.
     pub fn wait(self, blocked: &SignalsBlocked, give_up: impl Fn() -> bool) -> Option<T> {
         let done = &self.0.done;
-        // Outside of this a signal handler could not be left by siglongjmp: there is memory in use, and the desk.
+        // Signals are let in only inside this block. Elsewhere the thread may be in the allocator or own a lock, which
+        // a siglongjmp out of a handler would leave behind.
         let given_up = blocked.lifted(|| {
             while done.load(Ordering::Acquire) == 0 {
                 wait_for_change(done, 0);
@@ -69,11 +69,11 @@ impl<T: Send + 'static> Errand<T> {
         });
         let worker = take_worker();
         if given_up {
-            // There is no such thread in a forked child.
+            // `give_up` is true in a forked child, which does not have the worker thread.
             std::mem::forget(worker);
             return None;
         }
-        // It has nothing left to do: this waits until it has returned what it had of the system.
+        // The worker has nothing left to do. Joining it waits until its stack and its number are free again.
         let _uncancelled = NoCancellation::begin();
         worker.map(JoinHandle::join);
         self.0.result.lock().take()
@@ -81,20 +81,21 @@ impl<T: Send + 'static> Errand<T> {
 }
 
 fn take_worker() -> Option<JoinHandle<()>> {
-    WORKING.try_with(RefCell::take).ok().flatten()
+    WORKER.try_with(RefCell::take).ok().flatten()
 }
 
-/// Waits while `word` has this value, or for some time. Not a cancellation point.
+/// Waits while `word` has this value, for at most `CHECK_INTERVAL`. This is not a cancellation point.
 fn wait_for_change(word: &AtomicU32, value: u32) {
-    let some_time = libc::timespec { tv_sec: 0, tv_nsec: LOOKING };
+    let limit = libc::timespec { tv_sec: 0, tv_nsec: CHECK_INTERVAL };
     let operation = libc::FUTEX_WAIT | libc::FUTEX_PRIVATE_FLAG;
-    // SAFETY: the word and the time live during the call. Whatever it returns, the word is looked at again.
-    unsafe { libc::syscall(libc::SYS_futex, word.as_ptr(), operation, value, &some_time) };
+    // SAFETY: the word and the time-out are valid during the call. The caller checks the word again, whatever the
+    // result.
+    unsafe { libc::syscall(libc::SYS_futex, word.as_ptr(), operation, value, &limit) };
 }
 
 fn wake(word: &AtomicU32) {
     let operation = libc::FUTEX_WAKE | libc::FUTEX_PRIVATE_FLAG;
-    // SAFETY: the word lives during the call.
+    // SAFETY: the word is valid during the call.
     unsafe { libc::syscall(libc::SYS_futex, word.as_ptr(), operation, 1) };
 }
 
@@ -116,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn who_has_a_reason_gives_up() {
+    fn a_wait_ends_when_there_is_a_reason_to_give_up() {
         let blocked = SignalsBlocked::all();
         let (stay, leave) = std::sync::mpsc::channel::<()>();
         let errand = Errand::begin(&blocked, move || leave.recv().is_err()).expect("a thread");

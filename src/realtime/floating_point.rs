@@ -1,8 +1,8 @@
-//! The floating-point environment: rounding, flushed denormals and trapping exceptions belong to a thread, and a new
-//! thread inherits them from the one that starts it. The library computes in the default environment everywhere: a
-//! planner's must neither stop a servo nor change the last bit of what it computes.
+//! The floating-point environment: rounding, flushing of denormals, and exception traps. It belongs to a thread, and a
+//! new thread inherits it. The library always computes in the default environment: the planner's environment must
+//! neither stop a servo nor change the last bit of a result.
 //!
-//! On x86-64 a call changes only MXCSR: nothing in this library computes with the x87 unit.
+//! On x86-64 a call changes only MXCSR, because nothing in this library uses the x87 unit.
 #![allow(unsafe_code, reason = "no Rust function reads or writes these registers")]
 
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
@@ -10,7 +10,7 @@ use other as registers;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 use processor as registers;
 
-/// The environment that a thread had before it entered the default one. [`Environment::restore`] puts it back.
+/// The environment of a thread before it entered the default one. [`Environment::restore`] restores it.
 #[must_use]
 pub struct Environment(registers::Saved);
 
@@ -25,14 +25,14 @@ impl Environment {
         Self(saved)
     }
 
-    /// Puts the environment back, with its exception flags as they were.
+    /// Restores the environment, including its exception flags.
     #[inline(always)]
     pub fn restore(self) {
         registers::restore(&self.0);
     }
 }
 
-/// Puts the calling thread into the default environment for good.
+/// Sets the default environment of the calling thread permanently.
 pub fn use_default_environment() {
     registers::write_default();
     #[cfg(target_arch = "x86_64")]
@@ -53,7 +53,7 @@ mod processor {
     /// Round to nearest, keep denormals, no exception traps.
     const DEFAULT: u32 = 0x1f80;
 
-    /// The exceptions that have occurred.
+    /// The flags of the exceptions that have occurred.
     const FLAGS: u32 = 0x3f;
 
     #[inline(always)]
@@ -66,7 +66,7 @@ mod processor {
 
     #[inline(always)]
     fn write(register: u32) {
-        // SAFETY: `register` was read from MXCSR, or is its default: no reserved bit is set.
+        // SAFETY: `register` was read from MXCSR or is its default, so no reserved bit is set.
         unsafe { asm!("ldmxcsr [{}]", in(reg) &register, options(nostack, preserves_flags)) };
     }
 
@@ -80,7 +80,7 @@ mod processor {
         write(DEFAULT);
     }
 
-    /// Without a look at what is there now: reading the register takes longer than writing it.
+    /// Writes without reading first: reading the register takes longer than writing it.
     #[inline(always)]
     pub fn restore(saved: &u32) {
         write(*saved);
@@ -97,7 +97,7 @@ mod processor {
     #[inline(always)]
     pub fn read() -> (u64, u64) {
         let (control, status): (u64, u64);
-        // SAFETY: reads two registers. Not `nomem`: what is computed must not move across it.
+        // SAFETY: reads two registers. `nomem` is not set, because computations must not move across this.
         unsafe {
             asm!("mrs {}, fpcr", "mrs {}, fpsr", out(reg) control, out(reg) status, options(nostack, preserves_flags))
         };
@@ -132,15 +132,15 @@ mod processor {
 
 #[cfg_attr(any(target_arch = "x86_64", target_arch = "aarch64"), allow(dead_code, reason = "tested here too"))]
 mod other {
-    //! With the functions of C, which take ten times as long as the registers of the two processors above.
+    //! For other processors: C functions, which take ten times as long as direct access to the registers.
 
     use std::ffi::c_int;
 
-    /// A fenv_t: no known one is larger.
+    /// A fenv_t. No known one is larger.
     #[repr(C, align(16))]
     pub struct Saved([u8; 64]);
 
-    // The mathematical library, which Rust's own links.
+    // These are in the mathematical library, which Rust's standard library links.
     unsafe extern "C" {
         fn fegetenv(environment: *mut Saved) -> c_int;
         fn fesetenv(environment: *const Saved) -> c_int;
@@ -153,18 +153,18 @@ mod other {
         saved
     }
 
-    /// Unknown: the default is written in any case.
+    /// The environment cannot be inspected, so the default is always written.
     pub fn computes_as_default(_: &Saved) -> bool {
         false
     }
 
     pub fn write_default() {
-        // SAFETY: the address -1 is FE_DFL_ENV in the C libraries of Linux but for those of PowerPC and Alpha.
+        // SAFETY: the address -1 is FE_DFL_ENV in the C libraries of Linux, except on PowerPC and Alpha.
         unsafe { fesetenv(std::ptr::without_provenance(usize::MAX)) };
     }
 
     pub fn restore(saved: &Saved) {
-        // SAFETY: read by `fegetenv`.
+        // SAFETY: `saved` was written by `fegetenv`.
         unsafe { fesetenv(saved) };
     }
 }
@@ -188,15 +188,15 @@ mod tests {
     const UPWARD: c_int = 0x40_0000;
     const EVERY_FLAG: c_int = 0x1f;
 
-    /// One third, rounded as the thread rounds.
+    /// One third, with the rounding of the calling thread.
     fn third() -> f64 {
         black_box(1.0) / black_box(3.0)
     }
 
-    /// Computes a third between `enter` and `restore`, in a thread that rounds upward.
+    /// Computes one third between `enter` and `restore` in a thread that rounds upward.
     fn check<E>(enter: impl FnOnce() -> E, restore: impl FnOnce(E)) {
         let nearest = third();
-        // SAFETY: functions of C without pointers. The rounding of this thread is put back below.
+        // SAFETY: C functions without pointers. The rounding of this thread is restored below.
         unsafe { fesetround(UPWARD) };
         let upward = third();
         unsafe { feclearexcept(EVERY_FLAG) };
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn so_it_is_with_the_functions_of_c() {
+    fn the_c_functions_do_the_same() {
         let enter = || {
             let saved = other::read();
             assert!(!other::computes_as_default(&saved));
@@ -230,10 +230,10 @@ mod tests {
     fn a_thread_can_use_the_default_environment_for_good() {
         let nearest = third();
         let inherited = std::thread::spawn(move || {
-            // SAFETY: a function of C without pointers.
+            // SAFETY: a C function without pointers.
             unsafe { fesetround(UPWARD) };
             use_default_environment();
-            // SAFETY: as above.
+            // SAFETY: a C function without pointers.
             (third(), unsafe { fegetround() })
         });
         assert_eq!(inherited.join().expect("no panic"), (nearest, 0));

@@ -1,67 +1,68 @@
-//! Follows another clock: a phase-locked loop.
+//! A phase-locked loop that makes the servo's period follow another clock.
 
-/// What the clock that is followed counts, ns a count. It wraps at 65 536.
+/// Resolution of the other clock, ns per count. Its counter wraps at 65 536.
 const NS_A_COUNT: i64 = 1000;
 
-/// Natural frequency of the loop, rad/s: it settles in some seconds. A command that arrives 1 ms late on a busy machine
-/// moves the next period by a microsecond.
+/// Natural frequency of the loop, rad/s. The loop settles in a few seconds. A command that arrives 1 ms late on a busy
+/// machine changes the next period by one microsecond.
 const NATURAL: f64 = 1.0;
 
 /// Damping ratio of the loop.
 const DAMPING: f64 = 1.0;
 
-/// Most that a period is lengthened or shortened, as a part of it: crystals differ by 100 ppm, ceramic resonators by
-/// 3000 ppm and more. What differs by more than this is no clock.
+/// Largest relative change of a period. Crystals differ by 100 ppm, ceramic resonators by 3000 ppm and more. A larger
+/// difference is not that of a clock.
 const MOST: f64 = 5e-3;
 
-/// Makes periods last as long as they should by somebody else's clock, which counts microseconds modulo 65 536 and is
-/// read once a period at best.
+/// Adjusts the period so that it has its nominal length by another clock. That clock counts microseconds modulo 65 536
+/// and is read at most once per period.
 #[derive(Clone, Copy, Debug)]
 pub struct Follower {
-    /// ns.
+    /// Nominal length of a period, ns.
     period: f64,
-    /// How far the other clock is ahead of where it should be, ns; none before it was first read.
-    ahead: Option<i64>,
+    /// By how much the other clock leads the nominal phase, ns; none before the first reading.
+    phase: Option<i64>,
+    /// The previous reading, counts.
     last: u16,
-    /// From the last reading to the cycle that comes next.
+    /// Periods from the previous reading to the next cycle.
     periods: u64,
-    /// What a period has to be shortened by because of the other clock's rate, ns.
+    /// By how much each period is shortened because of the other clock's rate, ns.
     rate: f64,
-    /// What was not yet applied, ns: corrections are whole.
-    rest: f64,
+    /// The fraction of a nanosecond that was not applied yet, because corrections are whole numbers.
+    remainder: f64,
 }
 
 impl Follower {
-    /// `period` as the other clock shall see it, ns.
+    /// `period` is the length that a period shall have by the other clock, ns.
     pub fn new(period: u64) -> Self {
-        Self { period: period as f64, ahead: None, last: 0, periods: 0, rate: 0.0, rest: 0.0 }
+        Self { period: period as f64, phase: None, last: 0, periods: 0, rate: 0.0, remainder: 0.0 }
     }
 
-    /// By how much the next beginning has to be later than it would be, ns. To be called once a cycle, with what the
-    /// other clock said in it, and with how many `periods` the next cycle comes later: 1, and more where some are
-    /// skipped.
+    /// Returns by how much the beginning of the next cycle has to be delayed, ns. Must be called once per cycle.
+    /// `reading` is the other clock's count in this cycle, if a reply brought one. `periods` is the number of periods
+    /// until the next cycle: 1, or more if some are skipped.
     ///
-    /// Readings more than 32 ms from what is expected are taken to be nearer: the clock wraps.
+    /// A reading is assumed to be within 32 ms of the expected count, because the counter wraps.
     pub fn correction(&mut self, reading: Option<u16>, periods: u64) -> i64 {
         let bound = MOST * self.period;
         let mut wanted = 0.0;
         if let Some(reading) = reading {
             let expected = (self.periods as f64 * self.period / NS_A_COUNT as f64).round() as i64;
             let counts = reading.wrapping_sub(self.last).wrapping_sub(expected as u16) as i16;
-            let ahead =
+            let gained =
                 (expected + i64::from(counts)) * NS_A_COUNT - (self.periods as f64 * self.period).round() as i64;
             let elapsed = self.periods as f64 * self.period * 1e-9;
             (self.last, self.periods) = (reading, 0);
-            let phase = self.ahead.map_or(0, |before| before + ahead);
-            self.ahead = Some(phase);
+            let phase = self.phase.map_or(0, |before| before + gained);
+            self.phase = Some(phase);
             let phase = phase as f64;
             self.rate = (self.rate + NATURAL * NATURAL * elapsed * phase * self.period * 1e-9).clamp(-bound, bound);
             wanted = 2.0 * DAMPING * NATURAL * elapsed * phase;
         }
         self.periods += periods;
-        self.rest -= (wanted + self.rate * periods as f64).clamp(-bound, bound);
-        let whole = self.rest.round();
-        self.rest -= whole;
+        self.remainder -= (wanted + self.rate * periods as f64).clamp(-bound, bound);
+        let whole = self.remainder.round();
+        self.remainder -= whole;
         whole as i64
     }
 }
@@ -73,9 +74,9 @@ mod tests {
 
     const PERIOD: u64 = 1_000_000;
 
-    /// Runs a loop against a clock that is faster by `drift`, and returns the mean period and the spread of the
-    /// beginnings about it, ns of that clock, in the last of `seconds`. `late` says how late each cycle's command
-    /// arrives, ns, none: no reply.
+    /// Runs a loop for `seconds` against a clock that is faster by `drift`. Returns the mean period and the largest
+    /// deviation of the beginnings from the mean grid, in ns of that clock, both over the last second. `late` returns
+    /// how late the command of each cycle arrives, ns, or none if there is no reply.
     fn run(drift: f64, seconds: u64, start: f64, mut late: impl FnMut(u64) -> Option<u64>) -> (f64, f64) {
         let mut follower = Follower::new(PERIOD);
         let other = |host: f64| start + host * (1.0 + drift);
@@ -101,12 +102,13 @@ mod tests {
     #[test]
     fn a_late_command_hardly_moves_a_period() {
         let (mean, off) = run(0.0, 20, 0.0, |cycle| Some(if cycle % 1000 == 500 { 1_000_000 } else { 20_000 }));
-        // Settled, and 1 ms late once a second: that is as it would be, 1 us a second, were the mean followed.
+        // The loop has settled, and one command per second is 1 ms late. Following the mean would give 1 us per second
+        // too.
         assert!((mean - 1e6).abs() < 10.0 && off < 2000.0, "{mean} {off}");
     }
 
     #[test]
-    fn what_was_learnt_holds_while_replies_stay_away() {
+    fn the_learnt_rate_holds_while_replies_are_missing() {
         let (mean, _) = run(200e-6, 31, 0.0, |cycle| (cycle < 30_000).then_some(20_000));
         assert!((mean - 1e6).abs() < 2.0, "{mean}");
     }
@@ -114,7 +116,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(ProptestConfig::default().cases / 8))]
         #[test]
-        fn the_period_is_what_it_should_be_by_the_other_clock(
+        fn the_mean_period_is_the_nominal_one_by_the_other_clock(
             drift in -200e-6..200e-6f64, start in 0.0..1e9f64, seed in 1u64..1000,
         ) {
             // Wake-ups 0 to 50 us late, and one reply in eight lost.
@@ -122,7 +124,7 @@ mod tests {
                 let random = (cycle + seed).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
                 (random % 8 != 0).then_some(random % 50_000)
             });
-            // 1 ppm of a period is 1 ns; uncorrected it would be off by up to 200 ns.
+            // 1 ppm of a period is 1 ns. Without correction the mean period would be wrong by up to 200 ns.
             prop_assert!((mean - 1e6).abs() < 3.0, "{} ppm: mean period {mean} ns", drift * 1e6);
             prop_assert!(off < 1500.0, "{} ppm: beginnings off by {off} ns", drift * 1e6);
         }

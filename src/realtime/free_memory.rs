@@ -1,13 +1,13 @@
-//! Tells work that cannot be done without memory that there is none, before it begins: in the middle of it a failed
-//! allocation would end the process, and with it a hand in motion.
+//! A check for free memory before work that cannot be done without. A failed allocation in the middle of that work
+//! would end the process, and with it a hand in motion.
 
 use std::hint::black_box;
 
-/// Small enough that the C library takes it from its heap. A larger one would change how it serves the planner later.
+/// Small enough that the C library takes it from its heap. Freeing a larger block would change how the C library serves
+/// the planner's later allocations.
 const BLOCK_BYTES: usize = 64 * 1024;
 
-/// Whether the allocator has so much memory to give at this moment, in blocks of 64 KiB. Nothing keeps it from being
-/// taken by others afterwards.
+/// Whether the allocator has this many bytes now, in blocks of 64 KiB. Other threads may take them afterwards.
 pub fn is_memory_free(bytes: usize) -> bool {
     let count = bytes.div_ceil(BLOCK_BYTES);
     let mut blocks: Vec<Vec<u8>> = Vec::new();
@@ -20,7 +20,7 @@ pub fn is_memory_free(bytes: usize) -> bool {
         blocks.push(block);
         free
     });
-    // The compiler would leave out allocations of which nothing is used.
+    // The compiler would otherwise remove the allocations, because nothing uses them.
     black_box(&mut blocks);
     free
 }

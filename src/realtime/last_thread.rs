@@ -1,5 +1,5 @@
-//! A process ends with its last thread. Threads of this library do not count: they serve the planner's, and would keep
-//! a process alive that nobody can end but by SIGKILL, because they block every signal.
+//! The end of a process whose planner has no thread left. A process ends with its last thread. The library's threads
+//! serve the planner's and must not keep the process alive: they block every signal, so that only SIGKILL could end it.
 
 use super::clock::now;
 use super::threads::{own_threads, spawn_alike};
@@ -8,37 +8,38 @@ use std::fs::{self, File};
 use std::io::{Cursor, Read, Write};
 use std::process::{exit, id};
 
-/// How often the threads are looked at, ns.
-const LOOKING: u64 = 1_000_000_000;
+/// How often the threads are checked, ns.
+const CHECK_INTERVAL: u64 = 1_000_000_000;
 
 /// Ends the process when the planner's last thread has ended.
 #[derive(Debug, Default)]
 pub struct PlannerWatch {
-    /// ns.
-    next_look: u64,
-    /// A thread ends the process already.
+    /// Time of the next check, ns.
+    next_check: u64,
+    /// A thread that ends the process is already running.
     ending: bool,
 }
 
 impl PlannerWatch {
-    /// To be called often: looks once a second.
+    /// Checks once a second. It must be called more often than that.
     pub fn look(&mut self) {
-        if self.ending || now() < self.next_look {
+        if self.ending || now() < self.next_check {
             return;
         }
-        self.next_look = now() + LOOKING;
+        self.next_check = now() + CHECK_INTERVAL;
         if planner_has_ended() {
-            // As the last thread would have: with the status 0, after the exit handlers. They run in a thread of their
-            // own, because one of them may call CloseHand, which waits for the other threads of the library. Where no
-            // thread can be had, a later look may find one.
+            // The process ends as it would with its last thread: with status 0, after the exit handlers. They run in a
+            // thread of their own, because one of them may call CloseHand, which waits for the other threads of the
+            // library. If the system refuses that thread now, a later check tries again.
             self.ending = spawn_alike("sun2xp exit", || exit(0)).is_ok();
         }
     }
 }
 
-/// Whether every thread of the process but those of this library has ended. Where the system does not tell, none has.
+/// Whether all threads of the process except this library's have ended. If the system does not say, they have not.
 fn planner_has_ended() -> bool {
-    // The first thread stays as a zombie where others go on. Mostly it is alive, and there is nothing more to look at.
+    // The first thread stays as a zombie if it ends before others. It is usually alive, and then no other thread is
+    // checked.
     has_ended(id()) && others_have_ended().unwrap_or(false)
 }
 
@@ -54,12 +55,12 @@ fn others_have_ended() -> Option<bool> {
     Some(true)
 }
 
-/// Whether a thread is a zombie. Allocates nothing: the process may be out of memory.
+/// Whether a thread is a zombie or dead. Allocates nothing, because the process may be out of memory.
 fn has_ended(thread: impl Display) -> bool {
     state(thread).is_some_and(|state| matches!(state, b'Z' | b'X'))
 }
 
-/// The letter of its state.
+/// The letter of the thread's state in /proc.
 fn state(thread: impl Display) -> Option<u8> {
     let mut path = Cursor::new([0; 64]);
     write!(path, "/proc/self/task/{thread}/stat").ok()?;
@@ -67,7 +68,7 @@ fn state(thread: impl Display) -> Option<u8> {
     let mut stat = [0; 512];
     let mut file = File::open(str::from_utf8(path).ok()?).ok()?;
     let read = file.read(&mut stat).ok()?;
-    // It stands behind the name of the thread, which is in parentheses and may hold any character.
+    // The state follows the thread's name, which is in parentheses and may contain any character.
     let end_of_name = stat[..read].iter().rposition(|&byte| byte == b')')?;
     stat.get(end_of_name + 2).copied()
 }
@@ -77,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_threads_of_a_test_are_those_of_a_planner() {
+    fn the_threads_of_a_test_count_as_a_planners() {
         assert!(!planner_has_ended());
         assert_eq!(others_have_ended(), Some(false));
         assert!(!has_ended(id()) && !has_ended("no number"));

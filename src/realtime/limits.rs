@@ -1,23 +1,24 @@
-//! What to do when the system refuses a thread, a descriptor or a pseudo-terminal because a limit has been reached.
+//! Remedies for a thread, a descriptor or a pseudo-terminal that the system refuses because a limit has been reached.
 #![allow(unsafe_code, reason = "the scheduling policy of the calling thread")]
 
 use std::ffi::c_int;
 use std::io;
 
-/// SCHED_DEADLINE of every Linux.
+/// SCHED_DEADLINE, which has this value in every Linux.
 const DEADLINE: c_int = 6;
 
-/// The remedy for an error of a call that makes a thread, a descriptor or a pseudo-terminal; none where no limit is
-/// behind it.
+/// The remedy for an error of a call that creates a thread, a descriptor or a pseudo-terminal; none if the error has
+/// nothing to do with a limit.
 pub fn remedy(error: &io::Error) -> Option<&'static str> {
-    // SAFETY: no pointers; 0 is the calling thread, which is the one that was refused.
+    // SAFETY: no pointers. 0 is the calling thread, to which the call was refused.
     remedy_under(unsafe { libc::sched_getscheduler(0) }, error)
 }
 
 /// The remedy for a thread with this scheduling policy.
 fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
     match error.raw_os_error()? {
-        // The policy has another bit where the thread has SCHED_FLAG_RESET_ON_FORK.
+        // `policy` has one more bit set if the thread has SCHED_FLAG_RESET_ON_FORK, and then it is not equal to
+        // DEADLINE.
         libc::EAGAIN if policy == DEADLINE => Some(
             "the calling thread runs under SCHED_DEADLINE, and the system lets such a thread start others only with \
              SCHED_FLAG_RESET_ON_FORK: set that flag (sched_setattr), or make this call in an ordinary thread",
@@ -38,7 +39,7 @@ fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
     }
 }
 
-/// An error of the system with its remedy, where [`remedy`] knows one.
+/// The text of a system error, followed by its remedy if [`remedy`] has one.
 pub fn with_remedy(error: &io::Error) -> String {
     match remedy(error) {
         Some(remedy) => format!("{error}: {remedy}"),
@@ -52,7 +53,7 @@ mod tests {
 
     #[test]
     fn limits_have_a_remedy_and_other_errors_have_none() {
-        let told = |errno| with_remedy(&io::Error::from_raw_os_error(errno));
+        let text = |errno| with_remedy(&io::Error::from_raw_os_error(errno));
         for (errno, word) in [
             (libc::EMFILE, "ulimit -n"),
             (libc::ENFILE, "fs.file-max"),
@@ -60,13 +61,13 @@ mod tests {
             (libc::ENOMEM, "ulimit -v"),
             (libc::ENOSPC, "kernel.pty.max"),
         ] {
-            assert!(told(errno).contains(word), "{}", told(errno));
+            assert!(text(errno).contains(word), "{}", text(errno));
         }
         let refused = io::Error::from_raw_os_error(libc::EAGAIN);
         for (policy, word) in [(DEADLINE, "SCHED_FLAG_RESET_ON_FORK"), (libc::SCHED_FIFO, "ulimit -u")] {
             assert!(remedy_under(policy, &refused).expect("a remedy").contains(word));
         }
-        assert_eq!(told(libc::EACCES), "Permission denied (os error 13)");
+        assert_eq!(text(libc::EACCES), "Permission denied (os error 13)");
         assert_eq!(with_remedy(&io::Error::other("no number")), "no number");
     }
 }

@@ -1,6 +1,6 @@
-//! Memory that a thread touches in real time: there before the first period, and kept from being taken away.
+//! Locking of the memory that a real-time thread uses, so that it has no page faults.
 //!
-//! `mlockall` is not for a library: with MCL_FUTURE every later allocation of a planner with a small memlock limit
+//! A library must not call `mlockall`. With MCL_FUTURE, every later allocation of a planner with a small memlock limit
 //! would fail.
 #![allow(unsafe_code, reason = "locks of pages")]
 
@@ -8,50 +8,51 @@ use super::pages::{Pages, SharedPages};
 use std::io;
 use std::ops::Range;
 
-/// Places in memory, to be locked together.
+/// Memory ranges that are locked together.
 ///
-/// Each has pages of its own, and stays locked until the value is dropped. Locks do not nest: what shared a page with
-/// the planner's data could not be unlocked without unlocking those.
+/// Each range consists of whole pages that hold nothing else, and stays locked until the value in it is dropped. Locks
+/// do not nest. In a page shared with the planner's data, unlocking would also unlock the planner's data.
 #[derive(Clone, Debug, Default)]
 pub struct LockedMemory(Vec<Range<usize>>);
 
 impl LockedMemory {
-    /// Adds the pages of a value. What that owns elsewhere is not in them.
+    /// Adds the pages of a value. Memory that the value owns elsewhere is not included.
     pub fn add<T: ?Sized>(&mut self, pages: &Pages<T>) {
         self.0.push(pages.range());
     }
 
-    /// The same for a value with several owners. It is unlocked when the last one is gone.
+    /// Adds the pages of a value with several owners. They are unlocked when the last owner drops it.
     pub fn add_shared<T: ?Sized>(&mut self, pages: &SharedPages<T>) {
         self.0.push(pages.range());
     }
 
-    /// Adds all places of another.
+    /// Adds all ranges of `other`.
     pub fn append(&mut self, other: &LockedMemory) {
         self.0.extend_from_slice(&other.0);
     }
 
-    /// Faults the pages of every place in and locks them.
+    /// Faults in the pages of every range, and locks them.
     ///
     /// # Errors
-    /// What the system says: EPERM without any right to lock, ENOMEM beyond the memlock limit. Some may be locked then.
+    /// The system's error: EPERM without the right to lock, ENOMEM beyond the memlock limit. Some ranges may be locked
+    /// then.
     pub fn lock(&self) -> io::Result<()> {
         self.0.iter().try_for_each(lock)
     }
 }
 
-/// Whether the planner has every page locked that comes (mlockall with MCL_FUTURE).
+/// Whether the planner has locked all future pages (mlockall with MCL_FUTURE).
 pub(super) fn every_page_is_locked() -> bool {
     let new = Pages::new(0u8);
     let place = new.range();
-    // SAFETY: the page of a value that is not used any more. The system refuses to drop the contents of a locked page.
+    // SAFETY: the page of a value that is not used any more. The system refuses MADV_DONTNEED for a locked page.
     let dropped =
         unsafe { libc::madvise(std::ptr::without_provenance_mut(place.start), place.len(), libc::MADV_DONTNEED) };
     dropped != 0
 }
 
 fn lock(place: &Range<usize>) -> io::Result<()> {
-    // SAFETY: locking changes no contents; a place that is not mapped is refused.
+    // SAFETY: locking does not change the contents. The system refuses a range that is not mapped.
     let refused = unsafe { libc::mlock(std::ptr::without_provenance(place.start), place.len()) };
     if refused == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
 }
@@ -68,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_added_is_locked_until_it_is_dropped() {
+    fn added_ranges_are_locked_until_their_values_are_dropped() {
         let room = Pages::new([0u8; 1 << 20]);
         let mut memory = LockedMemory::default();
         memory.add(&room);
@@ -81,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_mapped_is_refused() {
+    fn a_range_that_is_not_mapped_is_refused() {
         assert!(LockedMemory(vec![Range { start: 4096, end: 8192 }]).lock().is_err());
     }
 }

@@ -1,5 +1,5 @@
-//! Clock, periods, priorities, locked memory and timing figures of the servo threads; and what keeps threads of this
-//! library and of planners apart: signals, cancellation, floating-point environments.
+//! Real-time support for the servo threads: clock, periods, priorities, locked memory and timing statistics. Also the
+//! separation between this library's threads and the planner's: signals, cancellation, floating-point environments.
 
 mod cancellation;
 mod clock;
@@ -37,7 +37,7 @@ pub use response_time::{PeriodicThread, Response, response_times};
 pub use ring::{Consumer, Producer, ring};
 pub use signals::SignalsBlocked;
 pub use standard_error::print_line;
-pub use threads::{LockedStack, Priority, Realtime, spawn, touch_stack};
+pub use threads::{LockedStack, Priority, RealtimeRefusals, spawn, touch_stack};
 pub use timing::{CycleStage, CycleTiming, Distribution, Histograms};
 pub use triple_buffer::{Input, Output, triple_buffer};
 pub use wake_up::{WakeUp, measure_wake_up};

@@ -1,6 +1,6 @@
-//! Values in memory pages of their own. A servo's are locked, and a lock counts for whole pages: in a page of the heap
-//! it would lock what the planner has there too, and unlocking it would unlock what the planner has locked. Pages of
-//! their own are given back to the system when the value is dropped, and are unlocked by that.
+//! Values in memory pages of their own, for locking. A lock acts on whole pages. In a page of the heap it would also
+//! lock the planner's data, and unlocking would unlock what the planner has locked. Dropping a value here unmaps its
+//! pages, which unlocks them.
 #![allow(unsafe_code, reason = "mappings")]
 
 use std::alloc::{Layout, handle_alloc_error};
@@ -8,14 +8,14 @@ use std::ops::{Deref, DerefMut, Range};
 use std::ptr::NonNull;
 use std::sync::Arc;
 
-/// A value, or a slice of values, in pages of its own. Every page is there from the beginning: no first touch is left.
+/// A value, or a slice of values, in pages of its own. All pages are present from the beginning, so that no access
+/// faults.
 pub struct Pages<T: ?Sized> {
     place: NonNull<T>,
     mapping: Mapping,
 }
 
-/// The same for several owners. Reaching the value touches its own pages only, and not those where the owners are
-/// counted.
+/// [`Pages`] with several owners. Access to the value does not touch the page with the reference count.
 pub struct SharedPages<T: ?Sized> {
     place: NonNull<T>,
     owner: Arc<Pages<T>>,
@@ -23,11 +23,11 @@ pub struct SharedPages<T: ?Sized> {
 
 // SAFETY: it owns its value as a Box does.
 unsafe impl<T: ?Sized + Send> Send for Pages<T> {}
-// SAFETY: as above.
+// SAFETY: it owns its value as a Box does.
 unsafe impl<T: ?Sized + Sync> Sync for Pages<T> {}
 // SAFETY: it shares its value as an Arc does.
 unsafe impl<T: ?Sized + Send + Sync> Send for SharedPages<T> {}
-// SAFETY: as above.
+// SAFETY: it shares its value as an Arc does.
 unsafe impl<T: ?Sized + Send + Sync> Sync for SharedPages<T> {}
 
 impl<T> Pages<T> {
@@ -35,20 +35,20 @@ impl<T> Pages<T> {
     pub fn new(value: T) -> Self {
         let mapping = Mapping::new(Layout::new::<T>());
         let place = mapping.start.cast();
-        // SAFETY: the mapping has room for the value, and nothing is in it.
+        // SAFETY: the mapping has room for the value and is empty.
         unsafe { place.write(value) };
         Self { place, mapping }
     }
 }
 
 impl<T> Pages<[T]> {
-    /// As many values as `make` is called for, with their numbers from 0.
+    /// Calls `make` with the numbers from 0 to `count` - 1.
     pub fn from_fn(count: usize, mut make: impl FnMut(usize) -> T) -> Self {
         let mapping = Mapping::for_many::<T>(count);
         let first: NonNull<T> = mapping.start.cast();
-        // Where `make` panics the values before it are not dropped, and their pages are given back.
+        // If `make` panics, the earlier values are not dropped, but their pages are unmapped.
         for index in 0..count {
-            // SAFETY: the mapping has room for `count` values; nothing is in this place.
+            // SAFETY: the mapping has room for `count` values, and this place is empty.
             unsafe { first.add(index).write(make(index)) };
         }
         Self { place: NonNull::slice_from_raw_parts(first, count), mapping }
@@ -60,7 +60,7 @@ impl<T> From<Vec<T>> for Pages<[T]> {
         let count = values.len();
         let mapping = Mapping::for_many::<T>(count);
         let first: NonNull<T> = mapping.start.cast();
-        // SAFETY: the mapping has room for `count` values, and nothing is in it. The vector has them no more.
+        // SAFETY: the mapping has room for `count` values and is empty. After `set_len` the vector owns none of them.
         unsafe {
             first.copy_from_nonoverlapping(NonNull::from(&mut values[..]).cast(), count);
             values.set_len(0);
@@ -70,7 +70,7 @@ impl<T> From<Vec<T>> for Pages<[T]> {
 }
 
 impl<T: ?Sized> Pages<T> {
-    /// Where the pages are.
+    /// The addresses of the pages.
     pub(super) fn range(&self) -> Range<usize> {
         let start = self.mapping.start.addr().get();
         start..start + self.mapping.bytes
@@ -81,32 +81,32 @@ impl<T: ?Sized> Deref for Pages<T> {
     type Target = T;
 
     fn deref(&self) -> &T {
-        // SAFETY: the value is there as long as this, and borrowed with it.
+        // SAFETY: the value lives as long as this owner and is borrowed with it.
         unsafe { self.place.as_ref() }
     }
 }
 
 impl<T: ?Sized> DerefMut for Pages<T> {
     fn deref_mut(&mut self) -> &mut T {
-        // SAFETY: as above; nobody else has it.
+        // SAFETY: the value lives as long as this owner and is borrowed mutably with it.
         unsafe { self.place.as_mut() }
     }
 }
 
 impl<T: ?Sized> Drop for Pages<T> {
     fn drop(&mut self) {
-        // SAFETY: the value is there, and is not used again. Its mapping goes after it.
+        // SAFETY: the value exists and is not used again. Its mapping is dropped after it.
         unsafe { self.place.drop_in_place() };
     }
 }
 
 impl<T: ?Sized> SharedPages<T> {
-    /// Whether nobody else has it any more.
+    /// Whether this is the only owner.
     pub(super) fn is_alone(&self) -> bool {
         Arc::strong_count(&self.owner) == 1
     }
 
-    /// Where the pages are.
+    /// The addresses of the pages.
     pub(super) fn range(&self) -> Range<usize> {
         self.owner.range()
     }
@@ -128,12 +128,12 @@ impl<T: ?Sized> Deref for SharedPages<T> {
     type Target = T;
 
     fn deref(&self) -> &T {
-        // SAFETY: the owner keeps the value as long as this, and nobody has it to himself.
+        // SAFETY: the owner keeps the value alive, and nobody has a mutable reference to it.
         unsafe { self.place.as_ref() }
     }
 }
 
-/// Pages from the system.
+/// A mapping of anonymous pages.
 struct Mapping {
     start: NonNull<u8>,
     bytes: usize,
@@ -147,13 +147,13 @@ impl Mapping {
         }
     }
 
-    /// Room for a value, every page of it written to.
+    /// Maps room for a value. MAP_POPULATE faults every page in.
     fn new(layout: Layout) -> Self {
         let bytes = layout.size().max(1).next_multiple_of(page_size());
         assert!(layout.align() <= page_size(), "a page is aligned to its size");
         let protection = libc::PROT_READ | libc::PROT_WRITE;
         let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_POPULATE;
-        // SAFETY: a new mapping, where the system finds room.
+        // SAFETY: a new mapping at an address that the system chooses.
         let start = unsafe { libc::mmap(std::ptr::null_mut(), bytes, protection, kind, -1, 0) };
         match NonNull::new(start.cast()).filter(|_| start != libc::MAP_FAILED) {
             Some(start) => Self { start, bytes },
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_room_enough_for_nothing() {
+    fn an_empty_slice_has_pages_too() {
         let nothing: Pages<[u64]> = Vec::new().into();
         assert!(nothing.is_empty() && nothing.range().len() == page_size());
     }

@@ -1,7 +1,7 @@
-//! Periods by absolute deadlines.
+//! Periods with absolute deadlines.
 
-/// When the cycles of a servo begin: every `period` ns from a first one. Errors do not add up, because each beginning
-/// is counted from the first and not from the cycle before.
+/// The times at which the cycles of a servo begin: every `period` ns, counted from the first. Errors do not accumulate,
+/// because a beginning does not depend on when the previous cycle ran.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule {
     next: u64,
@@ -14,8 +14,8 @@ impl Schedule {
         Self { next: first, period }
     }
 
-    /// The schedule of one of `of` threads, 0 to `of` - 1, that share cores and whatever else is shared: their cycles
-    /// begin as far from each other as they can.
+    /// The schedule of thread `place` (0 to `of` - 1) of `of` threads. Their beginnings are spread evenly over the
+    /// period, because the threads share cores and other resources.
     pub fn staggered(first: u64, period: u64, place: usize, of: usize) -> Self {
         Self::new(first + period * place as u64 / of as u64, period)
     }
@@ -30,8 +30,8 @@ impl Schedule {
         self.period
     }
 
-    /// Moves to the next cycle after one that ended at `now`. Whole periods that have passed meanwhile are skipped,
-    /// never made up in a burst; returns how many.
+    /// Moves to the next cycle after one that ended at `now`. Whole periods that have already passed are skipped and
+    /// not made up for in a burst. Returns the number of skipped periods.
     pub fn advance(&mut self, now: u64) -> u64 {
         self.next += self.period;
         let skipped = now.saturating_sub(self.next) / self.period;
@@ -39,7 +39,7 @@ impl Schedule {
         skipped
     }
 
-    /// Moves all beginnings from the next one on, ns; later where `by` is positive.
+    /// Delays the next beginning, and all that follow, by `by` ns. A negative `by` makes them earlier.
     pub fn shift(&mut self, by: i64) {
         self.next = self.next.saturating_add_signed(by);
     }
@@ -54,9 +54,9 @@ mod tests {
     fn a_cycle_in_time_moves_one_period() {
         let mut schedule = Schedule::new(1000, 100);
         assert_eq!((schedule.advance(1050), schedule.next()), (0, 1100));
-        // Ended after the next one should have begun: that one begins late, but it is not lost.
+        // The cycle ended after the next beginning. The next cycle starts late, but it is not lost.
         assert_eq!((schedule.advance(1250), schedule.next()), (0, 1200));
-        // More than a whole period late: skipped.
+        // The cycle ended more than a whole period late, so periods are skipped.
         assert_eq!((schedule.advance(1617), schedule.next()), (3, 1600));
     }
 

@@ -1,31 +1,31 @@
-//! Response times of periodic threads, found off-line: what section 6.2 of the report asks for.
+//! Off-line response time analysis of periodic threads, which section 6.2 of the report asks for.
 
-/// One servo thread as the analysis sees it: in every period it computes, waits for the line without the core, and
-/// computes again. Times in ns, all of them worst cases.
+/// A servo thread as the analysis models it. In every period it computes, waits for the line without using the core,
+/// and computes again. All times are worst cases in ns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PeriodicThread {
-    /// The core it is bound to; none: any, so that it may meet every other thread on one core.
+    /// The core that the thread is bound to. Without one, the thread may compete with every other thread.
     pub core: Option<usize>,
-    /// SCHED_FIFO priority: the higher number runs.
+    /// SCHED_FIFO priority. The higher number runs first.
     pub priority: u8,
     /// From one beginning to the next.
     pub period: u64,
     /// From the scheduled beginning to the first instruction.
     pub wake_up: u64,
-    /// What it computes before it waits.
+    /// Computing time before the wait.
     pub before: u64,
-    /// How long it waits.
+    /// Length of the wait.
     pub waiting: u64,
-    /// What it computes after that.
+    /// Computing time after the wait.
     pub after: u64,
 }
 
-/// Bounds on when a thread has got how far, ns after the scheduled beginning of its period.
+/// Bounds on the progress of a thread, ns after the scheduled beginning of its period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Response {
-    /// The wait is over.
+    /// The end of the wait.
     pub waited: u64,
-    /// The cycle is done: never more than the period.
+    /// The end of the cycle. It is never later than the period.
     pub done: u64,
 }
 
@@ -38,8 +38,8 @@ impl PeriodicThread {
         self.wake_up + self.before + self.waiting + self.after
     }
 
-    /// Whether `other` may keep this one from its core. Threads of one priority run in the order in which they became
-    /// ready: each may have to wait for the other, but never longer than if the other had the higher priority.
+    /// Whether `other` may delay this thread on its core. Threads of equal priority run in the order in which they
+    /// become ready. Each may have to wait for the other, but never longer than if the other had the higher priority.
     fn waits_for(&self, other: &Self) -> bool {
         let meet = match (self.core, other.core) {
             (Some(own), Some(others)) => own == others,
@@ -49,12 +49,12 @@ impl PeriodicThread {
     }
 }
 
-/// A bound for each thread, whatever their phases; none where a thread may still be busy when its next period begins,
-/// or waits for one that may.
+/// Computes a bound for each thread that holds for all phases. A thread has no bound if it may still be busy when its
+/// next period begins, or if it waits for a thread without a bound.
 ///
-/// Within any window w thread j computes no more than ceil((w + R_j - C_j) / T_j) times its C_j, wherever it waits in
-/// between: a cycle that reaches into the window began R_j before it at the earliest. So the least solution of R_i =
-/// wake-up + computing + waiting + sum over j of ceil((R_i + R_j - C_j) / T_j) C_j, for all i at once, is a bound.
+/// Within any window of length w, thread j computes for at most ceil((w + R_j - C_j) / T_j) C_j, wherever its wait
+/// lies: a cycle that reaches into the window began at most R_j before it. So the least solution of R_i = wake-up +
+/// computing + waiting + sum over j of ceil((R_i + R_j - C_j) / T_j) C_j, for all i at once, is a bound.
 pub fn response_times(threads: &[PeriodicThread]) -> Vec<Option<Response>> {
     let mut done: Vec<Option<u64>> = threads.iter().map(|thread| within(thread, thread.alone())).collect();
     loop {
@@ -84,7 +84,7 @@ fn within(thread: &PeriodicThread, time: u64) -> Option<u64> {
     (time <= thread.period).then_some(time)
 }
 
-/// `alone` and what the others compute within `window`.
+/// `alone` plus the computing time of the other threads within `window`; none beyond the period.
 fn finish(threads: &[PeriodicThread], done: &[Option<u64>], own: usize, alone: u64, window: u64) -> Option<u64> {
     let thread = &threads[own];
     let mut time = alone;
@@ -110,14 +110,14 @@ mod tests {
         response_times(threads).iter().map(|response| response.map(|response| response.done)).collect()
     }
 
-    /// 10 + 20 + 300 + 40, and 40 less until the wait is over.
+    /// 10 + 20 + 300 + 40, and 40 less at the end of the wait.
     #[test]
-    fn alone_it_takes_what_it_takes() {
+    fn a_single_thread_responds_after_the_sum_of_its_parts() {
         let [Some(response)] = response_times(&[thread(0, 80, 1000, [10, 20, 300, 40])])[..] else { panic!("met") };
         assert_eq!(response, Response { waited: 330, done: 370 });
     }
 
-    /// The textbook's three tasks without waiting: C 3, 3, 5, T 7, 12, 20, R 3, 6, 20.
+    /// The textbook example of three tasks without waiting: C 3, 3, 5, T 7, 12, 20, R 3, 6, 20.
     #[test]
     fn without_waiting_it_is_the_classical_analysis() {
         let tasks =
@@ -127,14 +127,15 @@ mod tests {
         assert_eq!(done(&tasks), [Some(3), Some(6), Some(20)]);
     }
 
-    /// By hand: R_2 = 100 + 30 ceil((R_2 + 530 - 30)/1000): one cycle of the other in 130 + 500 < 1000.
+    /// By hand: R_2 = 100 + 30 ceil((R_2 + 530 - 30)/1000). There is one cycle of the other thread, because 130 + 500 <
+    /// 1000.
     #[test]
     fn a_thread_that_waits_may_come_twice() {
         let other = thread(0, 90, 1000, [0, 10, 500, 20]);
         assert_eq!(done(&[other, thread(0, 80, 1000, [0, 100, 0, 0])]), [Some(530), Some(130)]);
-        // 600 + 30 * 2, as 660 + 500 > 1000.
+        // 600 + 30 * 2, because 660 + 500 > 1000.
         assert_eq!(done(&[other, thread(0, 80, 1000, [0, 600, 0, 0])]), [Some(530), Some(660)]);
-        // Another core, and a lower priority, do not matter.
+        // A thread on another core or of a lower priority does not matter.
         assert_eq!(done(&[other, thread(1, 80, 1000, [0, 600, 0, 0])]), [Some(530), Some(600)]);
         assert_eq!(done(&[thread(0, 70, 1000, [0, 9, 0, 0]), thread(0, 80, 1000, [0, 600, 0, 0])])[1], Some(600));
         let anywhere = PeriodicThread { core: None, ..other };
@@ -142,13 +143,13 @@ mod tests {
     }
 
     #[test]
-    fn what_may_be_late_has_no_bound_and_neither_has_who_waits_for_it() {
+    fn a_thread_that_may_be_late_has_no_bound_nor_has_one_that_waits_for_it() {
         let late = thread(0, 90, 1000, [0, 600, 500, 0]);
         assert_eq!(
             done(&[late, thread(0, 80, 1000, [0, 10, 0, 0]), thread(1, 80, 1000, [0, 10, 0, 0])]),
             [None, None, Some(10)]
         );
-        // Two of one priority that fill the core.
+        // Two threads of equal priority that together need more than the core.
         let half = thread(0, 80, 1000, [0, 501, 0, 0]);
         assert_eq!(done(&[half, half]), [None, None]);
     }

@@ -1,5 +1,5 @@
-//! Values in their order from one thread to another, wait-free on both sides: a ring in pages of its own.
-#![allow(unsafe_code, reason = "places that two threads take turns at")]
+//! A wait-free queue from one thread to another: a ring in memory pages of its own.
+#![allow(unsafe_code, reason = "places that two threads access in turns")]
 
 use super::LockedMemory;
 use super::pages::{Pages, SharedPages};
@@ -7,28 +7,28 @@ use std::cell::UnsafeCell;
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The writer's end.
+/// The writer's end of a ring.
 pub struct Producer<T>(SharedPages<Ring<T>>);
 
-/// The reader's end.
+/// The reader's end of a ring.
 pub struct Consumer<T>(SharedPages<Ring<T>>);
 
-/// Both numbers count to twice the number of places and begin again: so a full ring differs from an empty one. From
-/// `taken` to `left` the places have values.
+/// Both counters run from 0 to twice the number of places and then start again at 0, so that a full ring differs from
+/// an empty one. The places from `taken` to `left` hold values.
 struct Ring<T> {
     left: Line<AtomicUsize>,
     taken: Line<AtomicUsize>,
     places: Pages<[UnsafeCell<MaybeUninit<T>>]>,
 }
 
-/// In cache lines of its own.
+/// A value in cache lines of its own.
 #[repr(align(128))]
 struct Line<T>(T);
 
-// SAFETY: a place is reached by the writer until it is counted as left, and by the reader until it is counted as taken.
+// SAFETY: only the writer accesses a place until `left` has passed it, and only the reader until `taken` has passed it.
 unsafe impl<T: Send> Sync for Ring<T> {}
 
-/// Both ends of a ring with room for `capacity` values, one at least.
+/// Returns both ends of a ring with room for `capacity` values, at least one.
 pub fn ring<T>(capacity: usize) -> (Producer<T>, Consumer<T>) {
     let ring = Ring {
         left: Line(AtomicUsize::new(0)),
@@ -49,31 +49,32 @@ impl<T> Ring<T> {
         if number + 1 == 2 * self.places.len() { 0 } else { number + 1 }
     }
 
-    /// How many values there are from one number to another.
+    /// The number of values between two counters.
     fn count(&self, taken: usize, left: usize) -> usize {
         if left >= taken { left - taken } else { left + 2 * self.places.len() - taken }
     }
 }
 
 impl<T> Producer<T> {
-    /// Leaves a value.
+    /// Appends a value.
     ///
     /// # Errors
-    /// The value, where there is no room for it.
+    /// The value itself, if the ring is full.
     pub fn push(&mut self, value: T) -> Result<(), T> {
         let ring = &*self.0;
-        // Only this end writes it.
+        // Only this end writes `left`.
         let left = ring.left.0.load(Ordering::Relaxed);
         if ring.count(ring.taken.0.load(Ordering::Acquire), left) == ring.places.len() {
             return Err(value);
         }
-        // SAFETY: the reader has taken what was there, and comes here when it is counted.
+        // SAFETY: the reader has taken the previous value of this place, and does not access it before `left` has
+        // passed it.
         unsafe { (*ring.place(left)).write(value) };
         ring.left.0.store(ring.after(left), Ordering::Release);
         Ok(())
     }
 
-    /// Adds its pages.
+    /// Adds the ring's pages to `memory`.
     pub fn add_to(&self, memory: &mut LockedMemory) {
         memory.add_shared(&self.0);
         memory.add(&self.0.places);
@@ -81,26 +82,26 @@ impl<T> Producer<T> {
 }
 
 impl<T> Consumer<T> {
-    /// Takes the oldest value; none where there is none.
+    /// Takes the oldest value; none if the ring is empty.
     pub fn pop(&mut self) -> Option<T> {
         let ring = &*self.0;
-        // Only this end writes it.
+        // Only this end writes `taken`.
         let taken = ring.taken.0.load(Ordering::Relaxed);
         if taken == ring.left.0.load(Ordering::Acquire) {
             return None;
         }
-        // SAFETY: the writer has left a value there, and comes back when it is counted as taken.
+        // SAFETY: the writer has left a value here, and does not access the place again before `taken` has passed it.
         let value = unsafe { (*ring.place(taken)).assume_init_read() };
         ring.taken.0.store(ring.after(taken), Ordering::Release);
         Some(value)
     }
 
-    /// Whether there is nothing to take.
+    /// Whether the ring is empty.
     pub fn is_empty(&self) -> bool {
         self.0.taken.0.load(Ordering::Relaxed) == self.0.left.0.load(Ordering::Acquire)
     }
 
-    /// Whether the other end is gone.
+    /// Whether the writer's end has been dropped.
     pub fn is_abandoned(&self) -> bool {
         self.0.is_alone()
     }
@@ -110,7 +111,7 @@ impl<T> Drop for Ring<T> {
     fn drop(&mut self) {
         let (mut taken, left) = (*self.taken.0.get_mut(), *self.left.0.get_mut());
         while taken != left {
-            // SAFETY: both ends are gone; the value was left and not taken.
+            // SAFETY: both ends are gone. The writer left this value, and the reader did not take it.
             unsafe { (*self.place(taken)).assume_init_drop() };
             taken = self.after(taken);
         }
@@ -134,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_took_is_dropped_with_the_ring() {
+    fn values_that_were_not_taken_are_dropped_with_the_ring() {
         let witness = Arc::new(());
         let (mut producer, mut consumer) = ring(4);
         for _ in 0..4 {

@@ -1,4 +1,4 @@
-//! Lines on standard error, for people who do not look at results.
+//! Messages on standard error, for people who do not check results.
 #![allow(unsafe_code, reason = "the raw descriptor of standard error")]
 
 use super::cancellation::NoCancellation;
@@ -6,26 +6,27 @@ use super::signals::{SignalsBlocked, is_pending, take_back};
 use std::ffi::c_int;
 use std::io;
 
-/// The errors with which a write raises a signal: nobody reads the pipe, or the file is as large as the process may
-/// make it.
+/// Errors of a write that come with a signal: nobody reads the pipe, or the file has reached the size limit of the
+/// process.
 const RAISING: [(c_int, c_int); 2] = [(libc::EPIPE, libc::SIGPIPE), (libc::EFBIG, libc::SIGXFSZ)];
 
-/// Writes one line on standard error, at once, so that the lines of several threads do not mix. Allocates nothing.
+/// Writes one line on standard error with a single system call, so that the lines of several threads do not mix.
+/// Allocates nothing. The thread is not cancelled during the write.
 ///
-/// Where standard error takes no more the line is lost, and the process gets neither SIGPIPE nor SIGXFSZ. `eprintln!`
-/// would panic there, and its lock would be taken for ever in a forked child. The thread is not cancelled meanwhile.
+/// If standard error accepts no more, the line is lost, and the process receives neither SIGPIPE nor SIGXFSZ.
+/// `eprintln!` is not used: it would panic then, and its lock could stay locked forever in a forked child.
 pub fn print_line(text: &str) {
     let parts = ["sun2xp: ", text, "\n"]
         .map(|part| libc::iovec { iov_base: part.as_ptr().cast_mut().cast(), iov_len: part.len() });
     let _whole = NoCancellation::begin();
     let _blocked = SignalsBlocked::these(&RAISING.map(|(_, signal)| signal));
     let planners = RAISING.map(|(_, signal)| is_pending(signal));
-    // SAFETY: each part points to a live string of its length. A short or failed write has no remedy.
+    // SAFETY: each part points to a live string of its length. A short or failed write cannot be repaired.
     let written = unsafe { libc::writev(libc::STDERR_FILENO, parts.as_ptr(), parts.len() as c_int) };
     let error = if written < 0 { io::Error::last_os_error().raw_os_error() } else { None };
     for ((raising, signal), planners) in RAISING.into_iter().zip(planners) {
         if error == Some(raising) && !planners {
-            // This write has raised it.
+            // This write raised the signal; it was not pending before.
             take_back(signal);
         }
     }

@@ -1,25 +1,25 @@
-//! The part of every thread's stack that the C library uses for itself.
+//! Size of the part of every thread's stack that the C library uses for itself.
 #![allow(unsafe_code, reason = "a function that the libc crate does not have")]
 
 use std::ffi::c_void;
 use std::mem::MaybeUninit;
 
 /// Bytes that the C library takes from the stack of every thread before the thread runs. glibc puts the thread-local
-/// data of the program and of its libraries there: a planner with large `__thread` arrays makes this large. A C library
-/// without this function, such as musl, adds the thread-local data to the stack that a program asks for, and takes
+/// data of the program and of its libraries there, so that large `__thread` arrays in a planner make this large. A C
+/// library without this function, such as musl, adds the thread-local data to the requested stack size and takes
 /// nothing from it.
 pub(super) fn taken_by_the_c_library() -> usize {
-    // SAFETY: a constant name. The address is null where no library has such a function.
+    // SAFETY: a constant name. The address is null if no library has such a function.
     let function = unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"__pthread_get_minstack".as_ptr()) };
     if function.is_null() {
         return 0;
     }
-    // SAFETY: the type that the function has in every glibc since 2.15. The standard library of Rust calls it in this
-    // way too.
+    // SAFETY: the function has had this type in every glibc since 2.15. The standard library of Rust calls it in the
+    // same way.
     let least_stack: unsafe extern "C" fn(*const libc::pthread_attr_t) -> usize =
         unsafe { std::mem::transmute::<*mut c_void, _>(function) };
     let mut attributes = MaybeUninit::uninit();
-    // SAFETY: the attributes are initialised before the function looks at them, and destroyed once.
+    // SAFETY: the attributes are initialised before the function reads them, and destroyed once.
     unsafe {
         if libc::pthread_attr_init(attributes.as_mut_ptr()) != 0 {
             return 0;

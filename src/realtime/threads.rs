@@ -1,4 +1,4 @@
-//! Threads that leave the planner's signals alone and run real-time where the system permits it.
+//! Threads that block the planner's signals and run in real time if the system permits it.
 #![allow(unsafe_code)]
 
 use super::floating_point::use_default_environment;
@@ -10,56 +10,57 @@ use std::io;
 use std::mem::MaybeUninit;
 use std::thread::{Builder, JoinHandle};
 
-/// Small, so that a planner that locks its memory (mlockall) locks little of ours; many times what a servo cycle uses.
-/// Every thread gets this beside the part of its stack that the C library takes.
+/// Stack of a servo thread. It is many times what a servo cycle uses, but small, so that a planner that locks all of
+/// its memory (mlockall) locks little for this library. The part that the C library takes from the stack is added to
+/// it.
 const STACK_BYTES: usize = 256 * 1024;
 
-/// Opening a hand takes 290 KiB.
-const STAND_IN_STACK_BYTES: usize = 512 * 1024;
+/// Stack of a thread that does a planner's call. Opening a hand needs 290 KiB.
+const CALL_STACK_BYTES: usize = 512 * 1024;
 
-/// The numbers of the threads that were started here and have not ended.
+/// Thread numbers of the running threads that this library has started.
 static OWN: Mutex<Vec<libc::pid_t>> = Mutex::new(Vec::new());
 
 /// How a thread is scheduled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Priority {
-    /// SCHED_FIFO priority, 1 to 99; 0: an ordinary thread.
+    /// SCHED_FIFO priority, 1 to 99; 0 for an ordinary thread.
     pub fifo: u8,
     /// Core that the thread is bound to.
     pub core: Option<usize>,
 }
 
-/// What of a [`Priority`] was had.
+/// The parts of a [`Priority`] and of locked memory that the system refused to a thread, with the reasons.
 #[derive(Debug, Default)]
-pub struct Realtime {
-    /// Why the thread is not real-time, though it was asked to be.
+pub struct RealtimeRefusals {
+    /// Why the thread is not real-time although that was requested.
     pub scheduling: Option<io::Error>,
-    /// Why the thread is not bound to its core, though it was asked to be.
+    /// Why the thread is not bound to its core although that was requested.
     pub core: Option<io::Error>,
-    /// Why its memory is not locked, though that was asked for.
+    /// Why its memory is not locked although that was requested.
     pub memory: Option<io::Error>,
 }
 
-/// Starts a thread with all signals blocked, so that it takes none of the planner's: not one that the process receives,
-/// nor one that its own system calls let in; and with the default floating-point environment. `body` runs after the
-/// thread has the priority it could get, and is told.
+/// Starts a thread with all signals blocked and with the default floating-point environment. The thread receives no
+/// signal of the planner's, neither one that is sent to the process nor one that its own system calls raise. `body`
+/// runs after the priority is set, and gets what the system refused.
 ///
 /// # Errors
 /// The system refuses a thread.
 pub fn spawn<T: Send + 'static>(
     name: &str,
     priority: Priority,
-    body: impl FnOnce(Realtime) -> T + Send + 'static,
+    body: impl FnOnce(RealtimeRefusals) -> T + Send + 'static,
 ) -> io::Result<JoinHandle<T>> {
     start(name, STACK_BYTES, move || body(apply(priority)))
 }
 
-/// Starts such a thread that is scheduled as the calling thread is: it works in its place.
+/// Starts such a thread with the scheduling of the calling thread, because it works in that thread's place.
 pub(super) fn spawn_alike<T: Send + 'static>(
     name: &str,
     body: impl FnOnce() -> T + Send + 'static,
 ) -> io::Result<JoinHandle<T>> {
-    start(name, STAND_IN_STACK_BYTES, body)
+    start(name, CALL_STACK_BYTES, body)
 }
 
 fn start<T: Send + 'static>(
@@ -77,17 +78,17 @@ fn start<T: Send + 'static>(
     })
 }
 
-/// The numbers of the threads of this library.
+/// The thread numbers of the running threads of this library.
 pub(super) fn own_threads() -> Vec<libc::pid_t> {
     OWN.lock().clone()
 }
 
-/// A thread of this library, from its beginning to its end.
+/// Registers the calling thread as one of this library until it ends.
 struct OwnThread(libc::pid_t);
 
 impl OwnThread {
     fn begin() -> Self {
-        // SAFETY: no arguments. Not `gettid`, which old C libraries do not have.
+        // SAFETY: no arguments. `gettid` is not used, because old C libraries do not have it.
         let number = unsafe { libc::syscall(libc::SYS_gettid) } as libc::pid_t;
         OWN.lock().push(number);
         Self(number)
@@ -100,8 +101,8 @@ impl Drop for OwnThread {
     }
 }
 
-/// The locked stack of the thread that has it, which drops it before it ends: the C library keeps the stacks of threads
-/// that have ended for others.
+/// The locked stack of a thread. The thread drops it before it ends, because the C library reuses the stacks of ended
+/// threads for others.
 #[derive(Debug)]
 pub struct LockedStack {
     lowest: *mut libc::c_void,
@@ -109,14 +110,14 @@ pub struct LockedStack {
 }
 
 impl LockedStack {
-    /// Locks the stack of the calling thread, all of it, and so faults it in.
+    /// Locks the whole stack of the calling thread, which also faults it in.
     ///
     /// # Errors
-    /// What the system says: EPERM without any right to lock, ENOMEM beyond the memlock limit.
+    /// The system's error: EPERM without the right to lock, ENOMEM beyond the memlock limit.
     pub fn lock() -> io::Result<Self> {
         let mut attributes = MaybeUninit::uninit();
         let (mut lowest, mut bytes) = (std::ptr::null_mut(), 0);
-        // SAFETY: the calling thread; the attributes are initialised before they are looked at, and destroyed once.
+        // SAFETY: the calling thread. The attributes are initialised before they are read, and destroyed once.
         unsafe {
             match libc::pthread_getattr_np(libc::pthread_self(), attributes.as_mut_ptr()) {
                 0 => {}
@@ -125,58 +126,59 @@ impl LockedStack {
             libc::pthread_attr_getstack(attributes.as_ptr(), &mut lowest, &mut bytes);
             libc::pthread_attr_destroy(attributes.as_mut_ptr());
         }
-        // Made first: a refused lock may have locked a part.
+        // Created before mlock, so that it unlocks what a failed mlock may have locked.
         let locked = Self { lowest, bytes };
-        // SAFETY: locking changes no contents.
+        // SAFETY: locking does not change the contents.
         if unsafe { libc::mlock(lowest, bytes) } == 0 { Ok(locked) } else { Err(io::Error::last_os_error()) }
     }
 }
 
 impl Drop for LockedStack {
     fn drop(&mut self) {
-        // A planner that has locked all of its memory has locked this too.
+        // If the planner has locked all of its memory, the stack must stay locked.
         if !every_page_is_locked() {
-            // SAFETY: unlocking changes no contents.
+            // SAFETY: unlocking does not change the contents.
             unsafe { libc::munlock(self.lowest, self.bytes) };
         }
     }
 }
 
-/// Faults in half of the stack of a thread that [`spawn`] has started: for where it cannot be locked.
+/// Faults in half of the stack of a thread that [`spawn`] has started. It is for stacks that cannot be locked.
 #[inline(never)]
 pub fn touch_stack() {
     const PAGE: usize = 4096;
     let mut stack = [MaybeUninit::<u8>::uninit(); STACK_BYTES / 2];
     for byte in stack.iter_mut().step_by(PAGE) {
-        // SAFETY: a byte of a local array; volatile, because nobody ever reads it.
+        // SAFETY: a byte of a local array. The write is volatile, because nothing reads the array.
         unsafe { std::ptr::from_mut(byte).write_volatile(MaybeUninit::new(0)) };
     }
 }
 
-fn apply(priority: Priority) -> Realtime {
-    let mut had = Realtime::default();
-    // An ordinary thread's timers are 50 us late by default; real-time threads have no slack.
-    // SAFETY: PR_SET_TIMERSLACK takes ns as a number and changes the calling thread only.
+fn apply(priority: Priority) -> RealtimeRefusals {
+    let mut refusals = RealtimeRefusals::default();
+    // The timers of an ordinary thread may be 50 us late by default. Real-time threads have no slack.
+    // SAFETY: PR_SET_TIMERSLACK takes ns as a number and affects the calling thread only.
     unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1 as libc::c_ulong) };
-    // An ordinary thread is made one, because a thread inherits: a real-time planner's would all be real-time.
+    // The policy of an ordinary thread is set too, because a thread inherits it: all threads of a real-time planner
+    // would be real-time.
     let policy = if priority.fifo > 0 { libc::SCHED_FIFO } else { libc::SCHED_OTHER };
     let parameters = libc::sched_param { sched_priority: priority.fifo.into() };
-    // SAFETY: the calling thread, a valid parameter block.
+    // SAFETY: the calling thread, and a valid parameter block.
     let refused = unsafe { libc::pthread_setschedparam(libc::pthread_self(), policy, &parameters) };
     if refused != 0 && priority.fifo > 0 {
-        had.scheduling = Some(io::Error::from_raw_os_error(refused));
+        refusals.scheduling = Some(io::Error::from_raw_os_error(refused));
     }
     if let Some(core) = priority.core {
-        had.core = bind(core).err();
+        refusals.core = bind(core).err();
     }
-    had
+    refusals
 }
 
 fn bind(core: usize) -> io::Result<()> {
     if core >= libc::CPU_SETSIZE as usize {
         return Err(io::Error::from_raw_os_error(libc::EINVAL));
     }
-    // SAFETY: a cpu_set_t is plain bits, all zero is the empty set; `core` is within it.
+    // SAFETY: a cpu_set_t is plain bits, and all zeros is the empty set. `core` is within it.
     let refused = unsafe {
         let mut set: libc::cpu_set_t = std::mem::zeroed();
         libc::CPU_SET(core, &mut set);
@@ -193,7 +195,7 @@ mod tests {
     fn a_thread_has_every_signal_blocked_and_its_starter_has_not() {
         let blocked = |signal| {
             let mut mask = MaybeUninit::uninit();
-            // SAFETY: a null new mask only reads the old one into `mask`.
+            // SAFETY: with a null new mask, the call only reads the current mask into `mask`.
             unsafe {
                 libc::pthread_sigmask(libc::SIG_BLOCK, std::ptr::null(), mask.as_mut_ptr());
                 libc::sigismember(&mask.assume_init(), signal) == 1
@@ -215,9 +217,9 @@ mod tests {
     }
 
     #[test]
-    fn a_core_that_is_not_there_is_told_and_survived() {
+    fn a_core_that_does_not_exist_is_reported_and_the_thread_runs() {
         let priority = Priority { fifo: 0, core: Some(1023) };
-        let had = spawn("lost", priority, |had| had).expect("a thread").join().expect("no panic");
-        assert!(had.core.is_some() && had.scheduling.is_none());
+        let refusals = spawn("lost", priority, |refusals| refusals).expect("a thread").join().expect("no panic");
+        assert!(refusals.core.is_some() && refusals.scheduling.is_none());
     }
 }

@@ -1,32 +1,32 @@
-//! Where the time of a cycle goes, as data: the servo writes one small record a finger and cycle, whoever collects the
+//! Timing of the cycles as data. The servo writes one small record per finger and cycle. The thread that collects the
 //! reports counts them.
 
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
 
-/// A part of a finger's cycle.
+/// A stage of a finger's cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleStage {
     /// From the scheduled beginning of the cycle to the thread's first instruction.
     WakeUp,
-    /// Handing the commands of the port to the system.
+    /// Passing the commands of the port to the system.
     Write,
-    /// From there until reply bytes can be read: both ways on the line, and the board.
+    /// From the end of the write until reply bytes can be read: the line in both directions, and the board.
     Wire,
-    /// Reading them.
+    /// Reading the reply bytes.
     Read,
-    /// From bytes to the finger's reply, checks included.
+    /// From bytes to the finger's reply, including the checks.
     Decode,
-    /// The pure core, and the report.
+    /// The control computation and the report.
     Compute,
     /// From the scheduled beginning to the end of the computation.
     Whole,
-    /// How old the newest measurement is when the command computed from it takes effect, by the board's clock.
+    /// Age of the newest measurement when the command computed from it takes effect, by the board's clock.
     Age,
 }
 
 impl CycleStage {
-    /// Every stage: the parts in the order of time, then what they add up to.
+    /// Every stage: first the parts in order of time, then the totals.
     pub const ALL: [CycleStage; 8] = [
         CycleStage::WakeUp,
         CycleStage::Write,
@@ -39,8 +39,8 @@ impl CycleStage {
     ];
 }
 
-/// The times of one cycle of one finger, ns, by [`CycleStage::ALL`]; none where there was no such stage, as without a
-/// reply.
+/// The times of one finger's cycle, ns, in the order of [`CycleStage::ALL`]. A stage that did not take place has none,
+/// for example because there was no reply.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct CycleTiming {
@@ -48,37 +48,37 @@ pub struct CycleTiming {
 }
 
 impl CycleTiming {
-    /// Notes a stage that lasted from one time to another, ns.
+    /// Notes the duration of a stage from its beginning and end, ns.
     pub fn note(&mut self, stage: CycleStage, from: u64, to: u64) {
         self.stages[stage as usize] = Some(u32::try_from(to.saturating_sub(from)).unwrap_or(u32::MAX));
     }
 }
 
-/// The distribution of one stage, microseconds.
+/// The distribution of a stage's duration, microseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distribution {
-    /// How many cycles were counted.
+    /// Number of cycles.
     pub count: u64,
-    /// The shortest.
+    /// Shortest duration.
     pub minimum: f64,
-    /// Half of them took no longer.
+    /// Median.
     pub median: f64,
-    /// 99 of 100 took no longer.
+    /// 99 % of the durations are not longer.
     pub p99: f64,
-    /// 999 of 1000 took no longer.
+    /// 99.9 % of the durations are not longer.
     pub p999: f64,
-    /// The longest.
+    /// Longest duration.
     pub maximum: f64,
 }
 
-/// Distributions of every stage since they were last reset.
+/// Distributions of every stage since the last reset.
 #[derive(Clone, Debug)]
 pub struct Histograms {
     stages: [Histogram<u32>; CycleStage::ALL.len()],
 }
 
 impl Histograms {
-    /// Empty ones. Fixed in size: 1 ns to 4.3 s in steps of 1 %.
+    /// Empty histograms of a fixed size: 1 ns to 4.3 s in steps of 1 %.
     pub fn new() -> Self {
         let empty = |_| {
             Histogram::new_with_bounds(1, u64::from(u32::MAX), 2)
@@ -96,12 +96,12 @@ impl Histograms {
         }
     }
 
-    /// Forgets everything.
+    /// Clears all counts.
     pub fn reset(&mut self) {
         self.stages.iter_mut().for_each(Histogram::reset);
     }
 
-    /// What was counted of a stage; zeros if nothing was.
+    /// The distribution of a stage; zeros if nothing was counted.
     pub fn distribution(&self, stage: CycleStage) -> Distribution {
         let histogram = &self.stages[stage as usize];
         let microseconds = |ns: u64| ns as f64 * 1e-3;

@@ -1,45 +1,44 @@
-//! The newest value of one thread for another, wait-free on both sides: three places in pages of their own. One is the
-//! writer's, one the reader's, and the third changes hands.
-#![allow(unsafe_code, reason = "places that two threads take turns at")]
+//! A wait-free channel for the newest value of one thread: three places in memory pages of their own. One belongs to
+//! the writer and one to the reader. The third is swapped with one of them.
+#![allow(unsafe_code, reason = "places that two threads access in turns")]
 
 use super::LockedMemory;
 use super::pages::{Pages, SharedPages};
 use std::cell::UnsafeCell;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// In the number of the place between: the writer has left it since the reader took one.
+/// Bit of `between`: the writer has published a value that the reader has not taken yet.
 const NEW: u8 = 4;
 
-/// Where the number of a place is.
+/// Bits of `between` that hold the number of the place.
 const PLACE: u8 = 3;
 
-/// The writer's end.
+/// The writer's end of a triple buffer.
 pub struct Input<T> {
     places: SharedPages<Places<T>>,
     own: u8,
 }
 
-/// The reader's end.
+/// The reader's end of a triple buffer.
 pub struct Output<T> {
     places: SharedPages<Places<T>>,
     own: u8,
 }
 
 struct Places<T> {
-    /// Apart from the values: both threads write to it.
+    /// The place that belongs to neither end. It has cache lines of its own, because both threads write to it.
     between: Line<AtomicU8>,
     places: [Line<UnsafeCell<T>>; 3],
 }
 
-/// In cache lines of its own.
+/// A value in cache lines of its own.
 #[repr(align(128))]
 struct Line<T>(T);
 
-// SAFETY: a place is reached by one end at a time, the one that has its number, and values go from one thread to
-// another.
+// SAFETY: only the end that has the number of a place accesses it. `T` is `Send`, because values move between threads.
 unsafe impl<T: Send> Sync for Places<T> {}
 
-/// Both ends, with the same value in every place.
+/// Returns both ends, with the same value in every place.
 pub fn triple_buffer<T: Clone>(initial: &T) -> (Input<T>, Output<T>) {
     let places = [(); 3].map(|()| Line(UnsafeCell::new(initial.clone())));
     let places = SharedPages::from(Pages::new(Places { between: Line(AtomicU8::new(1)), places }));
@@ -47,15 +46,15 @@ pub fn triple_buffer<T: Clone>(initial: &T) -> (Input<T>, Output<T>) {
 }
 
 impl<T> Input<T> {
-    /// The value that is published next. What is in it is that of some time ago.
+    /// The buffer of the next value to publish. It holds an older value.
     pub fn input_buffer_mut(&mut self) -> &mut T {
-        // SAFETY: the number of this place is nowhere else, and this end is borrowed mutably.
+        // SAFETY: only this end has the number of this place, and it is borrowed mutably.
         unsafe { &mut *self.places.places[usize::from(self.own)].0.get() }
     }
 
-    /// Publishes it.
+    /// Publishes the buffer.
     pub fn publish(&mut self) {
-        // Released: the value. Acquired: what the reader has read of the place that it gave back.
+        // Release: the value is written before. Acquire: the reader has finished reading the place that comes back.
         self.own = self.places.between.0.swap(self.own | NEW, Ordering::AcqRel) & PLACE;
     }
 
@@ -65,27 +64,27 @@ impl<T> Input<T> {
         self.publish();
     }
 
-    /// Adds its pages.
+    /// Adds its pages to `memory`.
     pub fn add_to(&self, memory: &mut LockedMemory) {
         memory.add_shared(&self.places);
     }
 }
 
 impl<T> Output<T> {
-    /// Takes the newest value, if there is one since the last call; whether there was.
+    /// Takes the newest value if one was published since the last call. Returns whether it did.
     pub fn update(&mut self) -> bool {
         let between = &self.places.between.0;
         if between.load(Ordering::Relaxed) & NEW == 0 {
             return false;
         }
-        // Acquired: the value. Released: what was read of the place that is given back.
+        // Acquire: the value is complete. Release: this end has finished reading the place that it gives back.
         self.own = between.swap(self.own, Ordering::AcqRel) & PLACE;
         true
     }
 
     /// The value that was taken last.
     pub fn output_buffer(&mut self) -> &T {
-        // SAFETY: the number of this place is nowhere else, and this end is borrowed mutably.
+        // SAFETY: only this end has the number of this place, and it is borrowed mutably.
         unsafe { &*self.places.places[usize::from(self.own)].0.get() }
     }
 
@@ -117,8 +116,8 @@ mod tests {
         assert_eq!(*output.read(), 3);
     }
 
-    /// A value that two threads reached at once would have entries of different ages, and a value that comes late would
-    /// be older than one before it.
+    /// If both threads accessed a place at once, its entries would differ. A value that came late would be smaller than
+    /// the one before.
     #[test]
     fn values_are_whole_and_in_order() {
         const LAST: u64 = 200_000;

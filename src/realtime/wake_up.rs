@@ -1,29 +1,30 @@
-//! How late a thread is woken on this machine: what a servo will meet, measured without one.
+//! Measures how late a thread is woken on this machine, as a servo thread would be.
 #![allow(unsafe_code)]
 
 use crate::realtime::{
-    Clock, CycleStage, CycleTiming, Distribution, Histograms, MonotonicClock, Priority, Realtime, Schedule, spawn,
+    Clock, CycleStage, CycleTiming, Distribution, Histograms, MonotonicClock, Priority, RealtimeRefusals, Schedule,
+    spawn,
 };
 use std::io;
 use std::thread::JoinHandle;
 
-/// What was measured.
+/// The result of a measurement.
 #[derive(Debug)]
 pub struct WakeUp {
     /// From the scheduled beginning of a period to the thread's first instruction.
     pub late: Distribution,
-    /// What the thread was given.
-    pub had: Realtime,
-    /// How late the kernel may let an ordinary thread's timers be, ns.
+    /// What the system refused to the thread.
+    pub refusals: RealtimeRefusals,
+    /// Timer slack: how late the kernel may wake an ordinary thread, ns.
     pub timer_slack: u64,
 }
 
-/// Starts a thread that wakes up `cycles` times as `schedule` says, and does nothing else.
+/// Starts a thread that wakes up `cycles` times by `schedule`, and does nothing else.
 ///
 /// # Errors
 /// The system refuses a thread.
 pub fn measure_wake_up(priority: Priority, mut schedule: Schedule, cycles: u64) -> io::Result<JoinHandle<WakeUp>> {
-    spawn("sun2xp doctor", priority, move |had| {
+    spawn("sun2xp doctor", priority, move |refusals| {
         let mut histograms = Histograms::new();
         for _ in 0..cycles {
             let beginning = schedule.next();
@@ -33,9 +34,9 @@ pub fn measure_wake_up(priority: Priority, mut schedule: Schedule, cycles: u64) 
             histograms.record(&timing);
             schedule.advance(MonotonicClock.now());
         }
-        // SAFETY: PR_GET_TIMERSLACK takes nothing and tells of the calling thread; it does not fail.
+        // SAFETY: PR_GET_TIMERSLACK takes no argument, concerns the calling thread, and does not fail.
         let timer_slack = u64::try_from(unsafe { libc::prctl(libc::PR_GET_TIMERSLACK) }).unwrap_or(0);
-        WakeUp { late: histograms.distribution(CycleStage::WakeUp), had, timer_slack }
+        WakeUp { late: histograms.distribution(CycleStage::WakeUp), refusals, timer_slack }
     })
 }
 
@@ -50,6 +51,6 @@ mod tests {
         let thread = measure_wake_up(Priority::default(), schedule, 50).expect("a thread");
         let measured = thread.join().expect("no panic");
         assert_eq!((measured.late.count, measured.timer_slack), (50, 1));
-        assert!(measured.late.maximum >= measured.late.median && measured.had.scheduling.is_none());
+        assert!(measured.late.maximum >= measured.late.median && measured.refusals.scheduling.is_none());
     }
 }

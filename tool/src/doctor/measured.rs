@@ -50,7 +50,7 @@ pub(super) fn wake_ups(configuration: &Configuration, duration: Duration) -> Res
 
 fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding {
     let subject = format!("wake-up of servo thread {thread}");
-    let WakeUp { late, had, .. } = wake_up;
+    let WakeUp { late, refusals, .. } = wake_up;
     let period = 1e6 / configuration.hand.rate;
     let found = format!(
         "median {:.0}, 99 % {:.0}, worst {:.0} us of a period of {period:.0} us",
@@ -66,7 +66,7 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
                       machine, power saving. Isolate a core for it (finger.core), or lower hand.rate";
         return Finding::new(verdict, subject, found, advice);
     }
-    if let Some(missing) = missing_permissions(vec![had]).first() {
+    if let Some(missing) = missing_permissions(vec![refusals]).first() {
         return lacking(configuration, &subject, found, missing.to_string());
     }
     Finding::good(subject, found)
@@ -77,7 +77,7 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
     if slack <= SLACK {
         return Finding::good(subject, format!("{slack} ns"));
     }
-    if asked && wake_up.had.scheduling.is_none() {
+    if asked && wake_up.refusals.scheduling.is_none() {
         return Finding::good(subject, format!("{slack} ns, which a real-time thread does not wait for"));
     }
     let advice = "The kernel may wake this thread up late by this time, and has refused to change it (prctl, \
@@ -89,29 +89,29 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sun2xp::realtime::{Distribution, Realtime};
+    use sun2xp::realtime::{Distribution, RealtimeRefusals};
 
     #[test]
     fn wake_ups_are_judged_by_the_period() {
-        let judged = |rate, p99, had| {
+        let judged = |rate, p99, refusals| {
             let mut configuration = Configuration::default();
             configuration.hand.rate = rate;
             let late = Distribution { p99, ..Distribution::default() };
-            judge(&configuration, 1, WakeUp { late, had, timer_slack: 1 })
+            judge(&configuration, 1, WakeUp { late, refusals, timer_slack: 1 })
         };
-        assert_eq!(judged(1000.0, 90.0, Realtime::default()).verdict, Rating::Good);
-        assert_eq!(judged(1000.0, 110.0, Realtime::default()).verdict, Rating::Warning);
-        assert_eq!(judged(5000.0, 110.0, Realtime::default()).verdict, Rating::Failure);
+        assert_eq!(judged(1000.0, 90.0, RealtimeRefusals::default()).verdict, Rating::Good);
+        assert_eq!(judged(1000.0, 110.0, RealtimeRefusals::default()).verdict, Rating::Warning);
+        assert_eq!(judged(5000.0, 110.0, RealtimeRefusals::default()).verdict, Rating::Failure);
         let scheduling = Some(std::io::Error::from_raw_os_error(libc::EPERM));
-        let refused = judged(1000.0, 90.0, Realtime { scheduling, ..Realtime::default() });
+        let refused = judged(1000.0, 90.0, RealtimeRefusals { scheduling, ..RealtimeRefusals::default() });
         assert!(refused.verdict == Rating::Warning && refused.advice.contains("rtprio"), "{refused:?}");
     }
 
     #[test]
     fn timer_slack_counts_for_a_thread_that_is_not_real_time() {
         let judged = |timer_slack, asked, scheduling| {
-            let had = Realtime { scheduling, ..Realtime::default() };
-            judge_slack(1, asked, &WakeUp { late: Distribution::default(), had, timer_slack }).verdict
+            let refusals = RealtimeRefusals { scheduling, ..RealtimeRefusals::default() };
+            judge_slack(1, asked, &WakeUp { late: Distribution::default(), refusals, timer_slack }).verdict
         };
         let refused = || Some(std::io::Error::from_raw_os_error(libc::EPERM));
         assert_eq!(judged(1, false, None), Rating::Good);
