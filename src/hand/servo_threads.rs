@@ -87,7 +87,8 @@ fn port_servo(configuration: &Configuration, ports: Vec<ServedPort<Port>>, place
     }
 }
 
-/// The life of a servo thread: it prepares its memory, reports what the system refused, waits for its first cycle and runs.
+/// The life of a servo thread: it prepares its memory, reports what the system refused, waits for its first cycle and
+/// runs.
 fn run(
     mut servo: PortServo,
     mut refusals: RealtimeRefusals,

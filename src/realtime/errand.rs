@@ -27,8 +27,8 @@ struct Outcome<T> {
 }
 
 thread_local! {
-    /// The thread that works for the calling thread. If one is still here when the next work starts, a siglongjmp left the
-    /// wait for it.
+    /// The thread that works for the calling thread. If one is still here when the next work starts, a siglongjmp left
+    /// the wait for it.
     static WORKER: RefCell<Option<JoinHandle<()>>> = const { RefCell::new(None) };
 }
 
