@@ -11,7 +11,7 @@
 
 enum { FINGER = 2, STEPS = 100, STEP_MS = 10, REST_MS = 2000 };
 
-/* Tells why the last call was refused, stops the hand and ends the program. */
+/* Reports why the last call was refused, stops the hand and ends the program. */
 static _Noreturn void give_up(const char *doing)
 {
     fprintf(stderr, "while %s: %s\n", doing, HandError());
@@ -25,7 +25,7 @@ static void pause_ms(long milliseconds)
     nanosleep(&span, NULL);
 }
 
-/* Moves a finger along a minimum-jerk path in STEPS steps. */
+/* Moves a finger along a minimum-jerk path of STEPS steps. */
 static void reach(int finger, const double to[3])
 {
     double from[3];
@@ -52,7 +52,7 @@ int main(void)
     if (SendKx(FINGER, soft_along_z) != 0)
         give_up("setting the stiffness");
 
-    /* A pose beyond the joint limits: refused, nothing changed, and the program goes on. */
+    /* A pose beyond the joint limits is refused. The set point stays as it was, and the program continues. */
     if (SendPos(FINGER, (double[]){0.0, 0.0, 3.0}) == 0 || errno != ERANGE)
         give_up("expecting a refusal");
     printf("as expected: %s\n", HandError());

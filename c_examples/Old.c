@@ -1,8 +1,8 @@
-/* Old.c - a planner in the C of 1990: no header of the hand, no prototypes, implicit int, no look at results.
-   The functions are those for arrays of float. For a planner like this with arrays of double add
+/* Old.c - a planner in the C of 1990: no header of the hand, no prototypes, implicit int, and results that are
+   ignored. The functions are those for arrays of float. For a planner like this one with arrays of double, add
    -DREAL=double -DSendPos=SendPosD -DSendKx=SendKxD -DGetPos=GetPosD.
 
-   gcc -std=gnu89 Old.c -lsun2xp */
+       gcc -std=gnu89 Old.c -lsun2xp */
 
 #include <stdio.h>
 

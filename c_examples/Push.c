@@ -1,6 +1,7 @@
-/* Push.c - feels the spring: pushes a fingertip of the simulated hand to and fro along each axis, and prints the
-   stiffness that it meets beside the one that was commanded. Friction in the joints makes a finger that is pushed from
-   rest feel a little stiffer than it is. Simulated hand only: a real one is pushed by hand. C89. */
+/* Push.c - measures the spring. It pushes a fingertip of the simulated hand to and fro along each axis, and prints
+   the measured stiffness beside the commanded one. Friction in the joints makes a finger that is pushed from rest
+   feel a little stiffer than it is. The program works with the simulated hand only: a real hand is pushed by hand.
+   C89. */
 
 #include <math.h>
 #include <stdio.h>
@@ -40,7 +41,7 @@ static int rest(double *tip)
     return 0;
 }
 
-/* Pushes with so much force along one axis; where the tip comes to rest. */
+/* Pushes with the given force along one axis and reports where the tip comes to rest. */
 static int push(int axis, double newton, double *tip)
 {
     double force[3] = {0.0, 0.0, 0.0};

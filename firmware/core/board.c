@@ -10,7 +10,7 @@ void board_start(struct board *board, unsigned line, struct finger *fingers, siz
     board->count = count;
 }
 
-/* None: not for this board. */
+/* The finger that a request addresses, or NULL if it is not on this board. */
 static struct finger *meant(struct board *board, const struct frame *request)
 {
     if (frame_address(request) == ANY_ADDRESS)
@@ -29,7 +29,7 @@ static uint16_t addresses(const struct board *board)
     return (uint16_t)bits;
 }
 
-/* The body's length that a type must have, or -1 for a type that this board does not know. */
+/* The body length of a request type, or -1 if this board does not know the type. */
 static int expected_length(uint8_t type)
 {
     switch (type) {
@@ -43,11 +43,11 @@ static int expected_length(uint8_t type)
 
 static void answer(struct board *board, const struct frame *request, uint32_t arrived_at)
 {
-    /* An answer is not answered: a line that is short-circuited brings back what was sent. */
+    /* Answers are never answered: a short-circuited line echoes what was sent. */
     struct finger *finger = frame_type(request) & TYPE_IS_ANSWER ? NULL : meant(board, request);
     if (finger == NULL)
         return;
-    /* Whatever ran out before this arrived has run out. */
+    /* Applies every time-out that expired before this request arrived. */
     finger_tick(finger, arrived_at);
 
     struct frame reply;
@@ -71,7 +71,7 @@ void board_poll(struct board *board)
     uint8_t bytes[64];
     uint32_t arrived_at;
     size_t taken;
-    /* All that has arrived, but not for ever: a line that never falls silent must not keep the watchdogs from running. */
+    /* Takes at most 32 runs of bytes: a line that never falls silent must not keep the watchdogs from running. */
     for (int runs = 0; runs < 32 && (taken = hal_receive(board->line, bytes, sizeof bytes, &arrived_at)) > 0; runs++) {
         for (size_t i = 0; i < taken; i++) {
             struct frame request;

@@ -1,4 +1,4 @@
-/* A board: one line, and the fingers that are reached over it. */
+/* A board: one line and the fingers that are reached over it. */
 
 #ifndef FIRMWARE_BOARD_H
 #define FIRMWARE_BOARD_H
@@ -9,15 +9,15 @@
 struct board {
     unsigned line;
     struct receiver receiver;
-    struct finger *fingers; /* In the order of their addresses. */
+    struct finger *fingers; /* Sorted by address. */
     size_t count;
 };
 
-/* Takes fingers that finger_start has started. */
+/* The fingers must have been started with finger_start. */
 void board_start(struct board *board, unsigned line, struct finger *fingers, size_t count);
 
-/* Answers what has arrived, then looks after watchdogs and faults. Call it whenever bytes have arrived, and every millisecond
-   at least; it never waits. */
+/* Answers every request that has arrived, then checks watchdogs and faults. Call it whenever bytes have arrived, and
+   at least every millisecond. It never blocks. */
 void board_poll(struct board *board);
 
 #endif

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* CRC-32/ISO-HDLC, as of zlib and Ethernet. */
+/* CRC-32/ISO-HDLC, the CRC of zlib and Ethernet. */
 uint32_t crc32(const uint8_t *bytes, size_t length);
 
 #endif

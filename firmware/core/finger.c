@@ -19,7 +19,8 @@ static int64_t clip(int64_t value, int64_t limit)
     return value > limit ? limit : value < -limit ? -limit : value;
 }
 
-/* Torques within `limits` and within what the drivers bear, as currents on the motors. True: one was clipped. */
+/* Clamps torques to `limits` and to the currents that the drivers allow, and sets the motor currents. Returns true
+   if a torque was clamped. */
 static bool drive(struct finger *finger, const int16_t wanted[MOTORS], const uint16_t limits[MOTORS])
 {
     bool clipped = false;
@@ -29,7 +30,7 @@ static bool drive(struct finger *finger, const int16_t wanted[MOTORS], const uin
         if (constant == 0)
             constant = finger->traits->torque_constants[i];
         finger->torques[i] = (int16_t)clip(wanted[i], limits[i]);
-        /* nN m / (uN m/A) is mA; at most 2^15 * 2^32 * 1000, which 63 bits hold. */
+        /* nN m / (uN m/A) is mA; the product is at most 2^15 * 2^32 * 1000, which fits 63 bits. */
         int64_t current = (int64_t)finger->torques[i] * finger->traits->torque_unit * 1000 / constant;
         int64_t borne = clip(current, finger->traits->largest_currents[i]);
         currents[i] = (int32_t)borne;
@@ -56,10 +57,11 @@ void finger_start(struct finger *finger, const struct finger_traits *traits, uns
     motors_off(finger);
 }
 
-/* The end state, from ready or enabled. */
+/* Enters the end state from ready or enabled. */
 static void end(struct finger *finger, uint32_t now)
 {
-    bool hold = finger->state == FINGER_ENABLED && finger->terms.end_state == END_STATE_HOLD && finger->terms.hold_time_ms > 0;
+    const struct configure *terms = &finger->terms;
+    bool hold = finger->state == FINGER_ENABLED && terms->end_state == END_STATE_HOLD && terms->hold_time_ms > 0;
     finger->state = FINGER_ENDED;
     if (hold) {
         uint16_t limits[MOTORS];
@@ -75,8 +77,9 @@ static void end(struct finger *finger, uint32_t now)
     }
 }
 
-/* Whether more than `milliseconds` lie between two instants. Signed, because `now` may be the older by a little: it was read
-   before the last bytes came. 65 535 ms are far from where this wraps. */
+/* Returns whether more than `milliseconds` lie between two instants. The difference is taken as signed, because
+   `now` may be slightly older than `since`: the main loop may read the clock before the last bytes arrive. 65 535 ms
+   is far from the wrap of the timer. */
 static bool passed(uint32_t since, uint32_t now, uint16_t milliseconds)
 {
     uint32_t elapsed = now - since;
@@ -142,7 +145,7 @@ void finger_hello(struct finger *finger, const struct frame *request, uint16_t a
     write_identity(answer, &identity);
 }
 
-/* Where the first field begins that cannot be carried out; 0: all can. */
+/* Returns the offset of the first field that this board cannot carry out, or 0 if it can carry out all of them. */
 static uint16_t wrong_field(const struct finger_traits *traits, const struct configure *terms)
 {
     if (terms->version != PROTOCOL_VERSION)
@@ -191,7 +194,7 @@ void finger_command(struct finger *finger, const struct frame *request, uint32_t
     struct command command;
     read_command(request, &command);
     hal_set_toggle(finger->index, command.toggle);
-    /* Before the torques: what is sampled is what the last ones did. */
+    /* Sampled before the torques are set, so that the sensors show the effect of the previous torques. */
     struct sensors sensors;
     uint32_t sampled_at = hal_microseconds();
     hal_sample(finger->index, &sensors);

@@ -1,4 +1,4 @@
-/* A frame: header, sequence number, body, check; and its bytes on the wire. */
+/* A frame: header, sequence number, body and checksum; and its bytes on the wire. */
 
 #ifndef FIRMWARE_FRAME_H
 #define FIRMWARE_FRAME_H
@@ -16,7 +16,8 @@ enum {
     WIRE_MOST = STUFFED_MOST + 1
 };
 
-/* Without its check: one that was received has passed it, one that is being built gets it on the way out. */
+/* A frame without its checksum. The checksum of a received frame has been verified; frame_to_wire appends that of a
+   frame to send. */
 struct frame {
     size_t length;
     uint8_t bytes[FRAME_MOST];
@@ -27,7 +28,7 @@ uint8_t frame_address(const struct frame *frame);
 uint8_t frame_sequence(const struct frame *frame);
 size_t frame_body_length(const struct frame *frame);
 
-/* Little-endian numbers, `offset` counted from the header as in the tables of the protocol. */
+/* Little-endian numbers. `offset` counts from the header, as in the tables of the protocol. */
 uint8_t frame_get8(const struct frame *frame, size_t offset);
 uint16_t frame_get16(const struct frame *frame, size_t offset);
 uint32_t frame_get32(const struct frame *frame, size_t offset);
@@ -37,10 +38,10 @@ void frame_put8(struct frame *frame, uint8_t value);
 void frame_put16(struct frame *frame, uint16_t value);
 void frame_put32(struct frame *frame, uint32_t value);
 
-/* Check, stuffing and delimiter; returns the length on the wire. */
+/* Appends checksum and delimiter, and stuffs the bytes. Returns the length on the wire. */
 size_t frame_to_wire(const struct frame *frame, uint8_t wire[WIRE_MOST]);
 
-/* From the bytes between two delimiters. False: damaged. */
+/* Decodes the bytes between two delimiters. Returns false if the frame is damaged. */
 bool frame_from_wire(struct frame *frame, const uint8_t *stuffed, size_t length);
 
 #endif

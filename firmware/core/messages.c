@@ -20,7 +20,7 @@ void read_configure(const struct frame *frame, struct configure *configure)
     }
 }
 
-/* Two's complement without relying on what a conversion out of range does. */
+/* Converts to two's complement. An out-of-range conversion would be implementation-defined. */
 static int16_t as_signed(uint16_t value)
 {
     return (int16_t)(value < 0x8000u ? (int32_t)value : (int32_t)value - 0x10000);
@@ -58,7 +58,8 @@ static void write_gauges(struct frame *frame, const struct sensors *sensors)
         frame_put16(frame, sensors->gauges[i]);
 }
 
-void write_configured(struct frame *frame, const struct configure *terms, const struct sensors *sensors, uint16_t status)
+void write_configured(struct frame *frame, const struct configure *terms, const struct sensors *sensors,
+                      uint16_t status)
 {
     frame_put8(frame, terms->version);
     frame_put16(frame, terms->watchdog_ms);

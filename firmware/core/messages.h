@@ -1,4 +1,4 @@
-/* The frames of the protocol as structures: what a board reads and what it writes. Units are those of
+/* The frames of the protocol as structures: those that a board receives and those that it sends. Units are those of
    docs/board-protocol.md. */
 
 #ifndef FIRMWARE_MESSAGES_H
@@ -18,7 +18,7 @@ struct configure {
     uint16_t hold_time_ms;
     uint16_t hold_torque_limit;
     uint16_t torque_limits[MOTORS];
-    uint32_t torque_constants[MOTORS]; /* uN m/A; 0: the board's own. */
+    uint32_t torque_constants[MOTORS]; /* uN m/A; 0 selects the board's own value. */
 };
 
 enum { END_STATE_RELEASE = 0, END_STATE_HOLD = 1 };
@@ -42,14 +42,15 @@ struct identity {
     uint32_t capabilities;
 };
 
-/* From frames whose type and length have been checked. */
+/* Type and length of the frame must have been checked. */
 void read_hello(const struct frame *frame, struct hello *hello);
 void read_configure(const struct frame *frame, struct configure *configure);
 void read_command(const struct frame *frame, struct command *command);
 
-/* Append a body to a frame that frame_begin began. */
+/* These functions append a body to a frame that frame_begin has started. */
 void write_identity(struct frame *frame, const struct identity *identity);
-void write_configured(struct frame *frame, const struct configure *terms, const struct sensors *sensors, uint16_t status);
+void write_configured(struct frame *frame, const struct configure *terms, const struct sensors *sensors,
+                      uint16_t status);
 void write_reply(struct frame *frame, uint16_t status, const struct sensors *sensors, uint16_t sampled_at);
 void write_stopped(struct frame *frame, uint16_t status);
 void write_refused(struct frame *frame, uint8_t type, uint8_t reason, uint16_t detail);

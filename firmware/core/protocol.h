@@ -5,7 +5,7 @@
 
 enum { PROTOCOL_VERSION = 1 };
 
-/* Frame types, the high half of the header. An answer has the top bit set. */
+/* Frame types, which are the high half of the header. The top bit marks an answer. */
 enum {
     TYPE_HELLO = 0x1,
     TYPE_CONFIGURE = 0x2,
@@ -19,10 +19,10 @@ enum {
     TYPE_IS_ANSWER = 0x8
 };
 
-/* Lengths of the bodies that a board receives. */
+/* Body lengths of the requests that a board receives. */
 enum { HELLO_LENGTH = 2, CONFIGURE_LENGTH = 32, COMMAND_LENGTH = 9, STOP_LENGTH = 0 };
 
-/* A Hello to this address is for the finger with the lowest address on the board. */
+/* A Hello to address 0 is for the finger with the lowest address on the board. */
 enum { ANY_ADDRESS = 0, HIGHEST_ADDRESS = 15 };
 
 /* Reasons of a Refused. */
@@ -35,13 +35,13 @@ enum {
     REASON_UNKNOWN_FRAME = 6
 };
 
-/* Where the fields of a Configure begin, counted from the header: the detail of a Refused 2. */
+/* Offsets of the fields of a Configure, counted from the header. A Refused 2 carries them as its detail. */
 enum { FIELD_VERSION = 2, FIELD_WATCHDOG = 3, FIELD_END_STATE = 5, FIELD_TORQUE_LIMITS = 10 };
 
 /* Flags of a Command. */
 enum { FLAG_TOGGLE = 1 << 0, FLAG_ENABLE = 1 << 1 };
 
-/* Status. */
+/* Bits of the status. */
 enum {
     STATUS_CONFIGURED = 1 << 0,
     STATUS_ENABLED = 1 << 1,

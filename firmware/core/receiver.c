@@ -11,7 +11,7 @@ enum received receiver_take(struct receiver *receiver, uint8_t byte, struct fram
     }
     size_t length = receiver->collected;
     receiver->collected = 0;
-    /* Two delimiters in a row: somebody is resynchronising. */
+    /* An empty run between two delimiters is no damage: the host sends delimiters to resynchronise. */
     if (length == 0)
         return RECEIVED_NOTHING;
     if (length > STUFFED_MOST || !frame_from_wire(frame, receiver->stuffed, length))

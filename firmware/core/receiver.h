@@ -5,15 +5,15 @@
 
 #include "frame.h"
 
-/* All zeros to begin with. */
+/* Must be all zeros at the start. */
 struct receiver {
-    size_t collected; /* Since the last delimiter; one more than fits a frame means too many. */
+    size_t collected; /* Bytes since the last delimiter. Stays at STUFFED_MOST + 1 once there are too many. */
     uint8_t stuffed[STUFFED_MOST];
 };
 
 enum received { RECEIVED_NOTHING, RECEIVED_FRAME, RECEIVED_DAMAGE };
 
-/* Takes one byte. RECEIVED_FRAME: it completed `frame`. */
+/* Takes one byte. Returns RECEIVED_FRAME if the byte completed `frame`. */
 enum received receiver_take(struct receiver *receiver, uint8_t byte, struct frame *frame);
 
 #endif

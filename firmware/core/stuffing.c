@@ -2,7 +2,7 @@
 
 void stuff(const uint8_t *bytes, size_t length, uint8_t *stuffed)
 {
-    /* Where the distance to the next zero goes. */
+    /* Index of the byte that receives the distance to the next zero. */
     size_t distance_at = 0;
     for (size_t i = 0; i < length; i++) {
         if (bytes[i] != 0) {
@@ -17,7 +17,7 @@ void stuff(const uint8_t *bytes, size_t length, uint8_t *stuffed)
 
 size_t unstuff(const uint8_t *stuffed, size_t length, uint8_t *bytes, size_t room)
 {
-    /* Every stuffed byte but the first becomes one byte: itself, or the zero that its distance led to. */
+    /* Every stuffed byte except the first becomes one byte: the byte itself, or the zero to which its distance led. */
     if (length < 2 || length - 1 > room)
         return 0;
     size_t next_zero = stuffed[0];

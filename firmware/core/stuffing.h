@@ -1,4 +1,4 @@
-/* Consistent overhead byte stuffing (COBS): bytes without zeros, so that a zero can end a frame. */
+/* Consistent overhead byte stuffing (COBS): it removes all zeros, so that a zero can delimit frames. */
 
 #ifndef FIRMWARE_STUFFING_H
 #define FIRMWARE_STUFFING_H
@@ -6,13 +6,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Longest input for which one byte more is enough. */
+/* Longest input that stuffing lengthens by only one byte. */
 enum { STUFF_MOST = 254 };
 
-/* Stuffs `length` bytes, STUFF_MOST at most, into length + 1 bytes. */
+/* Stuffs `length` bytes, at most STUFF_MOST, into length + 1 bytes. */
 void stuff(const uint8_t *bytes, size_t length, uint8_t *stuffed);
 
-/* The inverse; returns the length, or 0 where this is no stuffing or does not fit into `room` bytes. */
+/* The inverse. Returns the length, or 0 if the input is not validly stuffed or does not fit into `room` bytes. */
 size_t unstuff(const uint8_t *stuffed, size_t length, uint8_t *bytes, size_t room);
 
 #endif

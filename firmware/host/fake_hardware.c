@@ -4,13 +4,13 @@
 
 struct fake_hardware fake;
 
-#define TRAITS(number)                                                                                                  \
-    {                                                                                                                   \
-        .address = number, .unique_number = {'f', 'a', 'k', 'e', number}, .firmware_version = {1, 0, 0},                \
-        .counts_per_revolution = 2000, .gauge_bits = 12, .torque_unit = 2000, .torque_limit = 30000,                    \
-        .shortest_watchdog_ms = 2,                                                                                      \
-        .capabilities = CAPABILITY_HOLD | CAPABILITY_KEEPS_ZERO | CAPABILITY_EMERGENCY_STOP | CAPABILITY_TOGGLE_PIN,    \
-        .torque_constants = {20000, 20000, 20000, 20000}, .largest_currents = {3000000, 3000000, 3000000, 3000000},     \
+#define TRAITS(number)                                                                                                 \
+    {                                                                                                                  \
+        .address = number, .unique_number = {'f', 'a', 'k', 'e', number}, .firmware_version = {1, 0, 0},               \
+        .counts_per_revolution = 2000, .gauge_bits = 12, .torque_unit = 2000, .torque_limit = 30000,                   \
+        .shortest_watchdog_ms = 2,                                                                                     \
+        .capabilities = CAPABILITY_HOLD | CAPABILITY_KEEPS_ZERO | CAPABILITY_EMERGENCY_STOP | CAPABILITY_TOGGLE_PIN,   \
+        .torque_constants = {20000, 20000, 20000, 20000}, .largest_currents = {3000000, 3000000, 3000000, 3000000},    \
     }
 
 const struct finger_traits fake_traits[FAKE_FINGERS] = {TRAITS(1), TRAITS(2)};
@@ -68,7 +68,7 @@ void hal_set_toggle(unsigned finger, bool high)
 
 int32_t fake_torque(unsigned finger, size_t motor, uint32_t torque_constant)
 {
-    /* uA * uN m/A is 1e-3 nN m; to the nearest unit, because the current was rounded too. */
+    /* uA * uN m/A is 1e-3 nN m. The torque is rounded to the nearest unit, because the current was rounded too. */
     int64_t unit = (int64_t)fake_traits[finger].torque_unit * 1000;
     int64_t torque = (int64_t)fake.currents[finger][motor] * torque_constant;
     return (int32_t)((torque + (torque < 0 ? -unit : unit) / 2) / unit);

@@ -1,4 +1,4 @@
-/* A hardware layer made of memory, for tests: time passes when it is told to, what is put in arrives, what is sent is kept. */
+/* A hardware layer in memory, for tests. The test advances the time, supplies the input and reads the output. */
 
 #ifndef FIRMWARE_FAKE_HARDWARE_H
 #define FIRMWARE_FAKE_HARDWARE_H
@@ -9,7 +9,7 @@ enum { FAKE_FINGERS = 2 };
 
 struct fake_hardware {
     uint32_t now;   /* us. */
-    uint32_t delay; /* How long bytes have been there before the board looks, us. */
+    uint32_t delay; /* Time that the bytes have been waiting when the board reads them, us. */
     const uint8_t *input;
     size_t input_length;
     uint8_t output[4096];
@@ -21,16 +21,16 @@ struct fake_hardware {
 
 extern struct fake_hardware fake;
 
-/* Fingers 1 and 2 of a board that can do all that the core can. */
+/* Fingers 1 and 2 of a board with every capability that the core supports. */
 extern const struct finger_traits fake_traits[FAKE_FINGERS];
 
-/* The torque that a finger's motor truly gives, torque units: from the current on it, by the torque constant in uN m/A. */
+/* The torque that corresponds to the current on a motor, torque units. The torque constant is in uN m/A. */
 int32_t fake_torque(unsigned finger, size_t motor, uint32_t torque_constant);
 
-/* These bytes arrive now; polls the board until all are taken. */
+/* Delivers these bytes now, and polls the board until it has taken all of them. */
 void fake_arrive(struct board *board, const uint8_t *bytes, size_t length);
 
-/* Time passes in steps of half a millisecond, as a timer would wake the main loop. */
+/* Advances the time in steps of half a millisecond, like a timer that wakes the main loop. */
 void fake_wait(struct board *board, uint32_t microseconds);
 
 #endif

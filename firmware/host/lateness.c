@@ -1,4 +1,5 @@
-/* What no vector can say: it is the arrival of a Command that counts, and not when the main loop gets to it. */
+/* Tests that no vector can express: the arrival of a Command restarts the watchdog, not the moment at which the main
+   loop reads it. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"
@@ -34,7 +35,7 @@ static void command(void)
     say(&frame);
 }
 
-/* Enabled now, with a watchdog of 20 ms. */
+/* Enables the finger at `now`, with a watchdog of 20 ms. */
 static void enable(uint32_t now)
 {
     struct frame frame;
@@ -58,7 +59,7 @@ static void enable(uint32_t now)
 
 int main(void)
 {
-    /* Also where the timer wraps. */
+    /* Includes instants just before the timer wraps. */
     static const uint32_t beginnings[] = {0, 0xFFFFFFFFu - 10000, 0x7FFFFFFFu - 10000};
     for (size_t i = 0; i < 3; i++) {
         enable(beginnings[i]);
@@ -75,7 +76,7 @@ int main(void)
         command();
         expect(finger.state == FINGER_ENDED && fake.currents[0][0] == 0, "a Command that came too late was obeyed");
 
-        /* An interrupt that reads the timer a little after the main loop did. */
+        /* An interrupt may read the timer slightly later than the main loop did. */
         enable(beginnings[i]);
         fake.delay = 0u - 50u;
         command();

@@ -7,19 +7,20 @@ static const double pulley = 4.75e-4;
 static const double stiffness = 30000.0;
 static const double rotor_inertia = 6e-7, rotor_damping = 2e-6;
 static const double joint_inertia[JOINTS] = {3.7e-4, 1.4e-4, 2.5e-5};
-/* More than a real finger has: it stands for the friction and the coupling that are left out. */
+/* More than a real finger has: it replaces the friction and the coupling that this model leaves out. */
 static const double joint_damping = 2e-3;
 static const double gauge_range = 100.0, gauge_counts = 4096.0, counts_a_revolution = 2000.0;
 static const double start_degrees[JOINTS] = {0.0, 30.0, 60.0};
 static const double stop_degrees[JOINTS][2] = {{-63.0, 63.0}, {-33.0, 103.0}, {2.0, 123.0}};
 
-/* Joint torque of each tendon's tension, m. A pull on a tendon's motor shortens it, and so turns the joints this way. */
+/* Moment arms: joint torque for each tendon's tension, m. A motor that pulls its tendon shortens it and so turns the
+   joints in this direction. */
 static const double R[JOINTS][MOTORS] = {
     {-0.0109, 0.0062, 0.0062, -0.0109},
     {0.0109, 0.0062, -0.0062, -0.0109},
     {0, 0.0062, -0.0062, 0},
 };
-/* Tensions at which no joint feels a torque, and the least is 5 N. */
+/* Tensions that leave every joint without torque and have a minimum of 5 N. */
 static const double home_tension[MOTORS] = {5.0, 5.0 * 109 / 62, 5.0 * 109 / 62, 5.0};
 
 static double tension(const struct mechanism *finger, size_t i)
@@ -79,10 +80,10 @@ void mechanism_advance(struct mechanism *finger, uint32_t microseconds)
 
 void mechanism_sample(const struct mechanism *finger, struct sensors *sensors)
 {
-    /* The noise of a converter, one count up or down: the library takes a gauge that shows one count for ever for a dead one. */
+    /* Converter noise, one count up or down: the library takes a gauge whose count never changes for a dead one. */
     static uint32_t random = 1;
     for (size_t i = 0; i < MOTORS; i++) {
-        /* Zero is the straight finger under the tension of the start. */
+        /* Encoder zero is the straight finger under the tension of the start. */
         double angle = finger->motor[i] - home_tension[i] / stiffness / pulley;
         random = random * 1664525u + 1013904223u;
         double noise = (double)(random >> 16) * 3 / 65536 - 1;

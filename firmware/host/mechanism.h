@@ -1,5 +1,5 @@
-/* A finger for a board without one: four motors, each pulling an elastic tendon, and three joints whose inertias do not
-   couple. Enough to come under tension and to settle; no measure of how a real finger moves. */
+/* A finger for a board without one: four motors, each with an elastic tendon, and three joints whose inertias do not
+   couple. It builds up tension and settles, but it is no measure of how a real finger moves. */
 
 #ifndef FIRMWARE_MECHANISM_H
 #define FIRMWARE_MECHANISM_H
@@ -13,7 +13,7 @@ struct mechanism {
     double theta[JOINTS], theta_rate[JOINTS];
     double motor[MOTORS], motor_rate[MOTORS];
     double torque[MOTORS];
-    bool braked; /* Until the first torque. */
+    bool braked; /* Until the first non-zero torque. */
 };
 
 void mechanism_start(struct mechanism *finger);

@@ -1,9 +1,10 @@
-/* The firmware under anything that a cable can deliver, to be built with -fsanitize=address,undefined.
+/* Runs the firmware with anything that a cable can deliver. Build it with -fsanitize=address,undefined.
 
        noise STREAMS SEED
 
-   Each stream is a row of random bytes, or of frames of which some are damaged, with pauses. Whatever comes: answers are whole
-   frames of this board, no frame passes with a wrong check, no motor turns that must not, and the frame after it is found. */
+   Each stream is a sequence of random bytes, or of frames, some of them damaged, with pauses between streams. After
+   each one the program checks that answers are whole frames of this board, that no frame with a wrong checksum
+   passes, that no motor has torque unless it is enabled or holding, and that the next good frame is found. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"
@@ -37,7 +38,7 @@ static void require(bool holds, const char *what)
     exit(1);
 }
 
-/* By other means than the firmware's: bit by bit. */
+/* An independent implementation of the firmware's checksum: it works bit by bit. */
 static uint32_t slow_check(const uint8_t *bytes, size_t length)
 {
     uint32_t crc = 0xFFFFFFFFu;
@@ -53,7 +54,7 @@ static struct finger fingers[FAKE_FINGERS];
 static struct board board;
 static unsigned long long accepted, answered, enabled;
 
-/* A request of which most fields make sense; the rest shall not matter. */
+/* A request whose fields are mostly valid. The firmware must cope with the others. */
 static size_t some_request(uint8_t wire[WIRE_MOST])
 {
     struct frame frame;
@@ -110,7 +111,7 @@ static void check_motors(void)
     }
 }
 
-/* Answers are frames of this board and nothing else. */
+/* Checks that the output consists of answers of this board only. */
 static void check_output(void)
 {
     struct receiver receiver = {0};
@@ -139,7 +140,7 @@ static void arrive(const uint8_t *bytes, size_t length)
             accepted++;
         }
     }
-    /* In pieces, as a driver delivers them. */
+    /* Delivered in pieces, as a driver would. */
     while (length > 0) {
         size_t piece = 1 + below((uint32_t)length);
         fake_arrive(&board, bytes, piece);
@@ -171,7 +172,7 @@ static void one_stream(void)
         fake_wait(&board, below(40) * 1000);
         check_motors();
     }
-    /* Whatever was left open ends here, and the next frame is whole. */
+    /* The delimiter ends any open frame, so the Hello after it must be answered. */
     static const uint8_t delimiter = 0, hello[] = {0x09, 0x11, 0x01, 0x01, 0x01, 0x06, 0x84, 0x3F, 0xA6, 0x00};
     if (below(4) == 0) {
         arrive(&delimiter, 1);
@@ -179,7 +180,7 @@ static void one_stream(void)
         arrive(hello, sizeof hello);
         require(answered == before + 1, "a good frame was lost");
     }
-    /* Silence beyond any watchdog and hold leaves no torque. */
+    /* Silence longer than any watchdog and hold time must stop every motor. */
     if (below(64) == 0) {
         fake_wait(&board, 70000000);
         for (unsigned n = 0; n < FAKE_FINGERS; n++)

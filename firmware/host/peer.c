@@ -1,9 +1,9 @@
-/* The firmware as a program: a board on a pseudo-terminal, to open as a port, with simple fingers.
+/* The firmware as a program: a board on a pseudo-terminal that can be opened as a port, with simulated fingers.
 
        peer ADDRESS...
 
-   The first line of output is the port's path. A line on standard input asks where the joints truly are: three angles, rad,
-   for each finger. The end of standard input ends the program. */
+   The first line of output is the path of the port. For each line on standard input it prints the true joint angles:
+   three a finger, rad. The end of standard input ends the program. */
 
 #define _XOPEN_SOURCE 700
 
@@ -28,8 +28,8 @@ static int line;
 static struct finger_traits traits[FINGERS_MOST];
 static struct finger fingers[FINGERS_MOST];
 static struct mechanism mechanisms[FINGERS_MOST];
-/* How much longer each finger may move before its next Command, us. No real finger waits, but on a busy machine host and board
-   are both later than any loop can bear. */
+/* How much longer each finger may move before its next sample, us. A real finger does not wait. On a busy machine,
+   however, host and board are both delayed by more than any control loop tolerates. */
 static uint32_t motion_left[FINGERS_MOST];
 static const uint32_t motion_most = 2000;
 
@@ -42,7 +42,7 @@ uint32_t hal_microseconds(void)
 
 size_t hal_receive(unsigned number, uint8_t *bytes, size_t room, uint32_t *arrived_at)
 {
-    /* What was read and not yet handed on: the core wants no more than one frame at a time. */
+    /* Bytes that were read but not yet passed on: hal_receive must not return more than one frame at a time. */
     static uint8_t pending[512];
     static size_t begin, end;
     (void)number;
@@ -95,8 +95,8 @@ void hal_set_toggle(unsigned finger, bool high)
     (void)high;
 }
 
-/* Raw before the path is known to anybody: a terminal that edits lines or echoes would damage the first frames. The far end stays
-   open, or the line would hang up whenever no host has it open. */
+/* Sets raw mode before the path is printed: a terminal that edits lines or echoes would damage the first frames. The
+   far end stays open, or the line would hang up whenever no host has it open. */
 static bool open_line(void)
 {
     struct termios raw;
@@ -130,7 +130,7 @@ static struct finger_traits traits_of(uint8_t address)
         made.torque_constants[i] = TORQUE_CONSTANT;
         made.largest_currents[i] = 2100000;
     }
-    /* Two peers may be alike but for their process. */
+    /* Two peers may differ in nothing but their process. */
     pid_t process = getpid();
     memcpy(made.unique_number + 8, &process, 4);
     return made;

@@ -1,4 +1,5 @@
-/* One line of the test vectors at a time: an object of numbers, lists of numbers and texts without escapes. */
+/* Reads the test vectors one line at a time. A line is an object of numbers, lists of numbers and strings without
+   escapes. */
 
 #ifndef VECTOR_LINE_H
 #define VECTOR_LINE_H
@@ -9,26 +10,26 @@
 
 enum { LINE_MOST = 4096, BYTES_MOST = 1024 };
 
-/* The line that is checked, and the conversation that it belongs to; empty without one. */
+/* The line under test and the conversation that it belongs to; empty if there is none. */
 extern const char *current_line;
 extern char conversation[LINE_MOST];
 extern unsigned line_number;
 
-/* What the checks have found so far. */
+/* Counts of failed and of all checks so far. */
 extern unsigned failures, checked;
 
 void fail(const char *what);
 void expect(bool holds, const char *what);
 
-/* What follows `"name": `; NULL without it. */
+/* The text after `"name": `, or NULL if the line has no such field. */
 const char *value(const char *name);
 
-/* The number, or the `index`th of a list. */
+/* The number of this name, or element `index` of a list. */
 long long number(const char *name, size_t index);
 
 bool text_is(const char *name, const char *wanted);
 
-/* Reads a text of hexadecimal digits. Returns the number of bytes. */
+/* Reads a string of hexadecimal digits. Returns the number of bytes. */
 size_t bytes_of(const char *name, uint8_t bytes[BYTES_MOST]);
 
 #endif

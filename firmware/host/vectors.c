@@ -1,9 +1,9 @@
-/* The firmware against the test vectors.
+/* Tests the firmware against the test vectors.
 
        vectors protocol/vectors.json
 
-   It reads the file line by line: every vector is an object on a line of its own. A board of your own design can be
-   tested with this program too: give it a hardware layer like fake_hardware.c and keep the rest. */
+   The program reads the file line by line: every vector is an object on its own line. It can test a board of your
+   own design too: write a hardware layer like fake_hardware.c for it and keep the rest. */
 
 #include "fake_hardware.h"
 #include "../core/protocol.h"
@@ -43,7 +43,7 @@ static void terms_of_line(struct configure *terms)
     }
 }
 
-/* Requests are read and compared field by field. */
+/* Reads a request and compares it field by field. */
 static void check_request(const struct frame *frame)
 {
     if (frame_type(frame) == TYPE_HELLO) {
@@ -73,7 +73,8 @@ static void check_request(const struct frame *frame)
     }
 }
 
-/* Answers are written from their fields and compared byte by byte. False: this board sends no such frame. */
+/* Writes an answer from its fields, to be compared byte by byte. Returns false for frames that this board never
+   sends. */
 static bool write_answer(struct frame *frame, uint8_t type)
 {
     struct sensors sensors = {0};
@@ -138,7 +139,7 @@ static void check_frame(void)
 
 static const uint8_t good_frame[] = {0x07, 0x41, 0x03, 0x01, 0x3D, 0xB2, 0x31, 0x00};
 
-/* A bad frame, and a good one after it. */
+/* Checks that a bad frame is rejected and the good frame after it is found. */
 static void check_bad(void)
 {
     uint8_t wire[BYTES_MOST + sizeof good_frame];
@@ -151,7 +152,7 @@ static void check_bad(void)
     expect(frame_sequence(&frame) == 3, "not the next frame");
 }
 
-/* A board, and what is said to it */
+/* A board and a conversation with it */
 
 static struct finger fingers[1];
 static struct board board;
@@ -160,7 +161,7 @@ static void power_up(void)
 {
     uint32_t now = fake.now;
     memset(&fake, 0, sizeof fake);
-    /* Near where the clock wraps, which must change nothing. */
+    /* The conversation starts shortly before the clock wraps, which must not matter. */
     fake.now = now == 0 ? 0xFFFFFFFFu - 50000u : now;
     finger_start(&fingers[0], &fake_traits[0], 0);
     board_start(&board, 0, fingers, 1);
@@ -182,7 +183,7 @@ static void check_ignored(void)
     expect(!fingers[0].damaged, "taken for damage");
 }
 
-/* Sends a request, and checks the answer. */
+/* Sends a request and checks the answer. */
 static void check_exchange(void)
 {
     say("send");

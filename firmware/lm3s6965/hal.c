@@ -1,4 +1,4 @@
-/* The part of the hardware layer that is the processor's. */
+/* The processor's part of the hardware layer. */
 
 #include "../hal.h"
 #include "plant.h"

@@ -5,13 +5,13 @@
 #include "plant.h"
 #include "processor.h"
 
-#define TRAITS(number)                                                                                                  \
-    {                                                                                                                   \
-        .address = number, .unique_number = {'l', 'm', '3', 's', '6', '9', '6', '5', 0, 0, 0, number},                  \
-        .firmware_version = {1, 0, 0}, .counts_per_revolution = 2000, .gauge_bits = 12, .torque_unit = 2000,            \
-        .torque_limit = 23750, .shortest_watchdog_ms = 2,                                                               \
-        .capabilities = CAPABILITY_HOLD | CAPABILITY_KEEPS_ZERO | CAPABILITY_EMERGENCY_STOP | CAPABILITY_TOGGLE_PIN,    \
-        .torque_constants = {23400, 23400, 23400, 23400}, .largest_currents = {2100000, 2100000, 2100000, 2100000},     \
+#define TRAITS(number)                                                                                                 \
+    {                                                                                                                  \
+        .address = number, .unique_number = {'l', 'm', '3', 's', '6', '9', '6', '5', 0, 0, 0, number},                 \
+        .firmware_version = {1, 0, 0}, .counts_per_revolution = 2000, .gauge_bits = 12, .torque_unit = 2000,           \
+        .torque_limit = 23750, .shortest_watchdog_ms = 2,                                                              \
+        .capabilities = CAPABILITY_HOLD | CAPABILITY_KEEPS_ZERO | CAPABILITY_EMERGENCY_STOP | CAPABILITY_TOGGLE_PIN,   \
+        .torque_constants = {23400, 23400, 23400, 23400}, .largest_currents = {2100000, 2100000, 2100000, 2100000},    \
     }
 
 static const struct finger_traits traits[PLANT_FINGERS] = {TRAITS(1), TRAITS(2), TRAITS(3)};

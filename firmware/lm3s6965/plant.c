@@ -15,7 +15,7 @@ struct answer {
     uint16_t faults, unused;
 };
 
-/* us. */
+/* How old the plant's last answer may become before plant_poll queries it, us. */
 enum { REFRESH = 5000 };
 
 static struct {
@@ -24,7 +24,7 @@ static struct {
     uint16_t faults;
 } fingers[PLANT_FINGERS];
 
-/* Semihosting. */
+/* Operations of semihosting. */
 enum { OPEN = 1, WRITE = 5, READ = 6 };
 enum { OPEN_READ_AND_WRITE = 3 };
 
@@ -56,7 +56,7 @@ static void transfer(int operation, int file, void *bytes, size_t length)
         void *bytes;
         size_t length;
     } parameters = {file, bytes, length};
-    /* The result is how many bytes are left. */
+    /* The call returns the number of bytes that are left. */
     while (parameters.length > 0) {
         size_t left = (size_t)semihost(operation, &parameters);
         parameters.bytes = (uint8_t *)parameters.bytes + (parameters.length - left);
@@ -96,7 +96,7 @@ void plant_poll(void)
     }
 }
 
-/* The part of the hardware layer that is the fingers' */
+/* The fingers' part of the hardware layer */
 
 void hal_sample(unsigned finger, struct sensors *sensors)
 {

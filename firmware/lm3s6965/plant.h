@@ -1,11 +1,13 @@
-/* What stands in for motors and sensors: a plant on the machine that emulates this processor. It takes the motors' currents and
-   gives back what the sensors read. A real board has PWM, counters and a converter here instead.
+/* Replaces motors and sensors by a plant on the machine that emulates this processor. The plant receives the motor
+   currents and returns the sensor counts. A real board has PWM, counters and a converter here instead.
 
-   It is reached by semihosting, through two files that the plant has made: a whole request or answer costs one trap. A UART of
-   the emulator carries byte by byte, and took 1 ms for the same.
+   It is reached by semihosting, through two files that the plant has created: a whole request or answer costs one
+   trap. A UART of the emulator transfers single bytes and took 1 ms for the same exchange.
 
-   Request, in plant_to: u8 finger; u8 1 for a sample that a host asked for, else 0; u16 0; u32 this timer, us; u32 when the
-   last frame had arrived, us; u32 when the currents were last set, us; 4 x i32 currents that have flowed since the last request, uA.
+   Request, in plant_to: u8 finger; u8 1 for a sample that a host requested, else 0; u16 0; u32 this timer, us; u32
+   arrival of the last frame, us; u32 when the currents were last set, us; 4 x i32 currents since the last request,
+   uA.
+
    Answer, in plant_from: 4 x i32 encoder counts; 4 x u16 gauge counts; u16 faults; u16 0. */
 
 #ifndef FIRMWARE_PLANT_H
@@ -15,13 +17,13 @@
 
 enum { PLANT_FINGERS = 3 };
 
-/* Waits for the plant. */
+/* Opens the two files of the plant. */
 void plant_start(void);
 
-/* The last byte of a frame came in then, us. */
+/* Records when the last byte of a frame arrived, us. */
 void plant_note_frame(uint32_t arrived_at);
 
-/* Asks for every finger that no host has asked for in a while. */
+/* Queries the plant for every finger that no host has sampled for a while. */
 void plant_poll(void);
 
 #endif

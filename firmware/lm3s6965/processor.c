@@ -1,7 +1,7 @@
 #include "processor.h"
 #include <string.h>
 
-/* Registers, as the LM3S6965's data sheet and ARM's manual of the Cortex-M3 have them. */
+/* Registers, named after the LM3S6965's data sheet and ARM's manual of the Cortex-M3. */
 
 #define REGISTER(name, address) static volatile uint32_t *const name = (volatile uint32_t *)address
 
@@ -22,28 +22,28 @@ REGISTER(systick_value, 0xE000E018u);
 REGISTER(interrupt_enable, 0xE000E100u);
 REGISTER(interrupt_priorities, 0xE000E400u);
 
-/* Of a port, in words. */
+/* Registers of a port, as word offsets. */
 enum { PORT_DIRECTION = 0x400 / 4, PORT_ALTERNATE = 0x420 / 4, PORT_DIGITAL = 0x51C / 4 };
 
 static struct {
-    volatile uint32_t data, error, unused[4], flags, unused_too, low_power, divider, divider_fraction, line_control, control,
-        interrupt_level, interrupt_mask, interrupts_raw, interrupts, interrupt_clear;
+    volatile uint32_t data, error, unused[4], flags, unused_too, low_power, divider, divider_fraction, line_control,
+        control, interrupt_level, interrupt_mask, interrupts_raw, interrupts, interrupt_clear;
 } *const uart = (void *)0x4000C000u;
 
 enum { RECEIVE_EMPTY = 1 << 4, TRANSMIT_FULL = 1 << 5 };
-/* Received up to the level; room to send; silence after bytes below the level. */
+/* Receive FIFO at its level; transmit FIFO below its level; silence after bytes below the receive level. */
 enum { INTERRUPT_RECEIVED = 1 << 4, INTERRUPT_ROOM = 1 << 5, INTERRUPT_SILENCE = 1 << 6 };
 
 enum { CLOCK_MEGAHERTZ = 50, WAKE_UP_MICROSECONDS = 500, BAUD = 1000000 };
-/* SysTick's 24 bits. */
+/* SysTick counts 24 bits. */
 enum { SYSTICK_MOST = 0xFFFFFF };
 
-/* Rings between interrupt and main loop. Of the input each index has one writer only; the output is touched with interrupts
-   masked. They hold a burst of 15 Commands, and the answers to them. */
+/* Rings between interrupt and main loop. Each index of the input ring has only one writer; the output ring is
+   accessed with interrupts masked. The rings hold a burst of 15 Commands and the answers to them. */
 enum { INPUT_ROOM = 512, OUTPUT_ROOM = 1024 };
 
 static struct {
-    volatile size_t written, taken; /* Counted on for ever; their difference is what waits. */
+    volatile size_t written, taken; /* Never reset; their difference is the number of bytes that wait. */
     volatile uint8_t bytes[INPUT_ROOM];
     volatile uint32_t arrived_at[INPUT_ROOM];
 } input;
@@ -70,13 +70,13 @@ void systick_interrupt(void)
     systick_rounds++;
 }
 
-/* It only wakes the main loop. */
+/* Wakes the main loop, which is its only purpose. */
 void wake_up_interrupt(void)
 {
     *timer_interrupt_clear = 1;
 }
 
-/* SysTick's interrupt goes before the UART's, so that may ask too. */
+/* Other interrupts may call this too: SysTick preempts the UART. */
 uint32_t timer_microseconds(void)
 {
     static volatile uint32_t latest;
@@ -86,7 +86,8 @@ uint32_t timer_microseconds(void)
         left = *systick_value;
     } while (rounds != systick_rounds);
     now = (uint32_t)(((uint64_t)rounds * (SYSTICK_MOST + 1) + SYSTICK_MOST - left) / CLOCK_MEGAHERTZ);
-    /* The counter may have begun its next round a little before the interrupt tells; time does not run backward meanwhile. */
+    /* SysTick may wrap slightly before its interrupt runs. Until then the latest value is kept, so that time never
+       runs backward. */
     if (now - latest < 0x80000000u)
         latest = now;
     return latest;
@@ -97,7 +98,7 @@ static void receive(void)
     while (!(uart->flags & RECEIVE_EMPTY)) {
         uint8_t byte = (uint8_t)uart->data;
         size_t place = input.written % INPUT_ROOM;
-        /* What finds no room is lost, as on any UART; the check will tell. */
+        /* Bytes that do not fit are lost, as on any UART. The checksum reveals the damage. */
         if (input.written - input.taken < INPUT_ROOM) {
             input.bytes[place] = byte;
             input.arrived_at[place] = timer_microseconds();
@@ -106,7 +107,7 @@ static void receive(void)
     }
 }
 
-/* As much as the transmitter takes now; it interrupts when it takes more. */
+/* Fills the transmit FIFO. The transmit interrupt is enabled only while more bytes wait. */
 static void transmit(void)
 {
     while (output.begin < output.end && !(uart->flags & TRANSMIT_FULL))
@@ -148,7 +149,7 @@ void uart_send(const uint8_t *bytes, size_t length)
 
 void sleep(void)
 {
-    /* With interrupts masked, a byte that comes between the look and the sleep still ends the sleep. */
+    /* WFI also wakes on a masked interrupt, so a byte that arrives between the check and WFI still ends the sleep. */
     mask_interrupts();
     if (input.taken == input.written)
         __asm__ volatile("wfi" ::: "memory");
@@ -157,7 +158,7 @@ void sleep(void)
 
 void pin_set(unsigned pin, bool high)
 {
-    /* Bits 2 to 9 of the address say which pins are meant. */
+    /* Bits 2 to 9 of the address select the pins to write. */
     port_f[1u << pin] = high ? 0xFFu : 0u;
 }
 
@@ -174,11 +175,11 @@ static void start_clock(void)
 static void start_uart(void)
 {
     enum { WHOLE = CLOCK_MEGAHERTZ * 1000000 / (16 * BAUD), FRACTION_64 = CLOCK_MEGAHERTZ * 1000000 / BAUD * 4 % 64 };
-    /* On pins 0 and 1 of port A. */
+    /* The UART uses pins 0 and 1 of port A. */
     port_a[PORT_ALTERNATE] = port_a[PORT_DIGITAL] = 3u;
     uart->divider = WHOLE;
     uart->divider_fraction = FRACTION_64;
-    uart->line_control = 3u << 5 | 1u << 4; /* Eight bits, FIFOs. */
+    uart->line_control = 3u << 5 | 1u << 4; /* Eight bits, FIFOs on. */
     uart->control = 1u << 9 | 1u << 8 | 1u << 0;
     uart->interrupt_mask = INTERRUPT_RECEIVED | INTERRUPT_SILENCE;
 }
@@ -192,12 +193,12 @@ void processor_start(void)
     start_uart();
     *systick_reload = SYSTICK_MOST;
     *systick_value = 0;
-    *systick_control = 7; /* The processor's clock, interrupt, on. */
-    *timer_mode = 2;      /* Again and again. */
+    *systick_control = 7; /* Processor clock, interrupt, on. */
+    *timer_mode = 2;      /* Periodic. */
     *timer_reload = CLOCK_MEGAHERTZ * WAKE_UP_MICROSECONDS - 1;
     *timer_interrupt_mask = 1;
     *timer_control = 1;
-    /* Four to a word. UART 0 is interrupt 5, timer 0 is 19; SysTick has priority 0, which goes first. */
+    /* Four priorities a word. UART 0 is interrupt 5 and timer 0 is 19. SysTick has priority 0, the highest. */
     interrupt_priorities[5 / 4] = 0x80u << 8;
     interrupt_priorities[19 / 4] = 0x80u << 24;
     *interrupt_enable = 1u << 5 | 1u << 19;

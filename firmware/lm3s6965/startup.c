@@ -1,8 +1,8 @@
-/* From reset to main: what an operating system would do, and what the processor wants to find. */
+/* From reset to main: initialises memory and defines the vector table. */
 
 #include "processor.h"
 
-/* Of the linker script. */
+/* Symbols of the linker script. */
 extern uint32_t data_begin, data_end, bss_begin, bss_end, stack_top;
 extern const uint32_t data_image;
 
@@ -19,7 +19,8 @@ void reset(void)
     main();
 }
 
-/* A fault of the processor. On a real board a hardware watchdog resets it, and a reset takes the torque off. */
+/* Handles a processor fault. On a real board a hardware watchdog then resets the processor, and a reset removes the
+   torque. */
 static void stand_still(void)
 {
     for (;;)
@@ -31,7 +32,7 @@ union vector {
     void (*handler)(void);
 };
 
-/* Sixteen of the processor, then those of the chip: 5 is UART 0, 19 is timer 0. */
+/* Sixteen vectors of the processor, then those of the chip: 5 is UART 0, 19 is timer 0. */
 __attribute__((section(".vectors"), used)) static const union vector vectors[16 + 20] = {
     {.stack = &stack_top},
     {.handler = reset},
