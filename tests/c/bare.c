@@ -1,4 +1,5 @@
-/* Opens the hand without standard descriptors: no port may take their place, or refusals would be printed to a board. */
+/* Opens the hand without standard descriptors. No port may take their numbers, or messages to standard error would
+   go to a board. */
 #include <sys/stat.h>
 #include <unistd.h>
 #include "Sun2Xp.h"

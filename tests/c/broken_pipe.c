@@ -1,5 +1,5 @@
-/* Standard error is a pipe that nobody reads. The lines of the library are lost there, and the planner lives on: it gets
-   no SIGPIPE from the library, and keeps the one that was pending before. */
+/* Standard error is a pipe that nobody reads. The messages of the library are lost, but the planner survives: the
+   library causes no SIGPIPE, and a SIGPIPE that was already pending stays pending. */
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include "Sun2Xp.h"
 
-/* CHECK of check.h prints on standard error. */
+/* CHECK of check.h cannot be used, because it prints to standard error. */
 #define HOLDS(Condition) \
     do { \
         if (!(Condition)) { \
@@ -43,23 +43,23 @@ int main(void)
     close(ends[1]);
     signal(SIGPIPE, SIG_DFL);
 
-    /* No hand: the first refusal of its kind prints a line. */
+    /* Without a hand, the first refusal of its kind prints a message. */
     HOLDS(SendPos(1, Pos) == -1 && errno == ENODEV);
     HOLDS(strstr(HandError(), "no hand is open") != NULL);
     HOLDS(!is_pending() && !is_blocked());
 
-    /* The simulated hand is announced. */
+    /* Opening the simulated hand prints a message. */
     HOLDS(OpenHand() == 0);
     HOLDS(!is_pending() && !is_blocked());
 
-    /* The planner blocks SIGPIPE, and has none pending: it gets none. */
+    /* The planner blocks SIGPIPE, and none is pending: none may be pending afterwards. */
     sigemptyset(&pipe_only);
     sigaddset(&pipe_only, SIGPIPE);
     HOLDS(sigprocmask(SIG_BLOCK, &pipe_only, NULL) == 0);
     HOLDS(SendPos(1, Beyond) == -1 && errno == ERANGE);
     HOLDS(!is_pending() && is_blocked());
 
-    /* It has one pending: it keeps that. */
+    /* One is pending: it must stay pending. */
     raise(SIGPIPE);
     HOLDS(SendPos(4, Pos) == -1 && errno == EINVAL);
     HOLDS(is_pending() && is_blocked());

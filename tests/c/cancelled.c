@@ -1,5 +1,5 @@
-/* Threads that are cancelled inside calls: the call goes on to its end, and the cancellation takes effect at the planner's
-   own cancellation point after it; with asynchronous cancellation as soon as the call has returned. */
+/* Threads that are cancelled inside calls. The call completes, and the cancellation takes effect at the planner's
+   own cancellation point after it. With asynchronous cancellation it takes effect as soon as the call has returned. */
 #include <errno.h>
 #include <pthread.h>
 #include <stdint.h>
@@ -11,7 +11,7 @@
 
 static double Pos[3] = {0.0, 0.5, 0.8}, Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
 
-/* The call that a thread makes, and what it returned; 2: it has not. */
+/* The call that a thread makes, and its result; 2 while it has not returned. */
 struct job {
     int (*call)(void);
     int asynchronous;
@@ -23,7 +23,7 @@ static int identify(void) { return IdentifyFinger(2); }
 static int write_black_box(void) { return WriteBlackBox(3, "cancelled.jsonl"); }
 static int adjust(void) { return AdjustFinger(3, "tendon.minimum = 6"); }
 
-/* A busy machine may keep the board from answering in time. */
+/* Tries several times, because on a busy machine the board may not answer in time. */
 static int recover_finger(int finger)
 {
     int attempts = 10;
@@ -40,7 +40,7 @@ static int recover(void)
     return recover_finger(1);
 }
 
-/* Prints a line: this kind of refusal is the first of this process. */
+/* This refusal is the first of its kind in this process, so the library prints a message. */
 static int refused(void) { return SendPos(1, NULL) == -1 && errno == EFAULT ? 0 : -1; }
 
 static void *work(void *own)
@@ -55,7 +55,7 @@ static void *work(void *own)
     return NULL;
 }
 
-/* Cancels a thread a while after it has begun a call; what the call returned. */
+/* Cancels a thread some time after it has begun a call. Returns the result of the call. */
 static int cancelled_in(int (*call)(void), int asynchronous, int milliseconds)
 {
     struct job job;
@@ -72,17 +72,17 @@ static int cancelled_in(int (*call)(void), int asynchronous, int milliseconds)
     return job.result;
 }
 
-/* Calls that the planner makes all the while. */
+/* Makes calls without a pause until it is cancelled. */
 static void *hammer(void *own)
 {
     int unused;
-    double Heard[3];
+    double Measured[3];
     struct FingerTip Tip;
     Tip.Size = sizeof Tip;
     pthread_setcanceltype(*(int *)own ? PTHREAD_CANCEL_ASYNCHRONOUS : PTHREAD_CANCEL_DEFERRED, &unused);
     for (;;) {
         SendPos(1, Pos);
-        GetPos(1, Heard);
+        GetPos(1, Measured);
         SendKx(1, Kx);
         SendPos(1, NULL);
         GetTip(1, &Tip);
@@ -97,15 +97,15 @@ int main(void)
 {
     struct job identifying = {identify, 0, 2};
     int asynchronous, round;
-    double Heard[3];
+    double Measured[3];
     pthread_t thread;
     void *end;
 
     for (asynchronous = 0; asynchronous < 2; asynchronous++) {
         int result = cancelled_in(OpenHand, asynchronous, 20);
-        /* An asynchronous cancellation takes effect before the thread can note the result. */
+        /* An asynchronous cancellation may take effect before the thread can store the result. */
         CHECK(result == 0 || (asynchronous && result == 2));
-        CHECK(GetPos(1, Heard) == 0);
+        CHECK(GetPos(1, Measured) == 0);
         if (!asynchronous)
             CHECK(cancelled_in(refused, 0, 0) == 0);
         result = cancelled_in(zero, asynchronous, 100);
@@ -126,11 +126,11 @@ int main(void)
             CHECK(pthread_cancel(thread) == 0);
             CHECK(pthread_join(thread, &end) == 0 && end == PTHREAD_CANCELED);
         }
-        /* No lock was left behind. */
-        CHECK(SendPos(1, Pos) == 0 && SendKx(1, Kx) == 0 && GetPos(1, Heard) == 0);
+        /* The cancelled calls must have released every lock. */
+        CHECK(SendPos(1, Pos) == 0 && SendKx(1, Kx) == 0 && GetPos(1, Measured) == 0);
         result = cancelled_in(CloseHand, asynchronous, 5);
         CHECK(result == 0 || (asynchronous && result == 2));
-        CHECK(GetPos(1, Heard) == -1 && errno == ENODEV);
+        CHECK(GetPos(1, Measured) == -1 && errno == ENODEV);
     }
     /* Identifying takes a minute: CloseHand ends it. */
     CHECK(OpenHand() == 0);

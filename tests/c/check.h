@@ -1,9 +1,9 @@
-/* check.h - what the test programs share. C89. */
+/* check.h - shared by the test programs. C89. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
-/* Ends the program with the place and the library's reason where a condition does not hold. */
+/* Ends the program with the source line and the library's reason if a condition does not hold. */
 #define CHECK(Condition) \
     do { \
         if (!(Condition)) { \

@@ -1,4 +1,5 @@
-/* Without a hand: ENODEV, but a null pointer is told first; CloseHand has nothing to do. Open and close repeat. */
+/* Without a hand every call is refused with ENODEV, except that a null pointer is reported first. CloseHand has
+   nothing to do. The hand can be opened and closed repeatedly. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"

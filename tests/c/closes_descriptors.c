@@ -1,7 +1,7 @@
-/* A planner that closes descriptors it has not opened, as old daemons do, and opens files of its own at once, which get
-   the numbers of those that it has closed. Its files stay as they are, no thread spins, a fault says what happened, and
-   CloseHand leaves its files open. The arguments: how many descriptors the process may have, and the highest one that is
-   closed. */
+/* A planner that closes descriptors it has not opened, as old daemons do, and at once opens files of its own, which
+   get the numbers of the closed ones. Its files must stay intact, no thread may spin, a fault must report what
+   happened, and CloseHand must leave the planner's files open. The arguments are the limit of descriptors for the
+   process and the highest descriptor that is closed. */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -12,14 +12,14 @@
 #include "check.h"
 
 #define MOST 4096
-#define OWN 4 /* bytes of every file */
+#define OWN 4 /* bytes in every file */
 
 #define TERMINALS 8
 
 static int own[MOST], owned, terminals[TERMINALS];
 static char folder[] = "/tmp/sun2xp-descriptors-XXXXXX";
 
-/* Opens one more file, and as the number `wanted` if that is not negative. */
+/* Opens one more file. It gets the number `wanted` unless that is negative. */
 static void open_one(int wanted)
 {
     char name[64];
@@ -38,7 +38,7 @@ static void open_one(int wanted)
     own[owned++] = file;
 }
 
-/* Opens pseudo-terminals, which get the names of those that are gone. */
+/* Opens pseudo-terminals, which get the names of those that were closed. */
 static void open_terminals(void)
 {
     int number;
@@ -75,64 +75,95 @@ static double cpu_seconds(void)
     return used.tv_sec + 1e-9 * used.tv_nsec;
 }
 
+static int taken[MOST], takes;
+
+static void close_descriptors(int highest)
+{
+    int descriptor;
+
+    takes = 0;
+    for (descriptor = 3; descriptor <= highest; descriptor++)
+        if (close(descriptor) == 0)
+            taken[takes++] = descriptor;
+}
+
+/* The first files get the lowest free numbers. The others then take the remaining numbers that were closed. */
+static void open_files(void)
+{
+    int number;
+
+    owned = 0;
+    for (number = 0; number < 30; number++)
+        open_one(-1);
+    for (number = 0; number < takes; number++)
+        if (fcntl(taken[number], F_GETFD) < 0)
+            open_one(taken[number]);
+}
+
+static void close_own(void)
+{
+    int number;
+
+    for (number = 0; number < owned; number++)
+        CHECK(close(own[number]) == 0);
+    for (number = 0; number < TERMINALS; number++)
+        CHECK(close(terminals[number]) == 0);
+}
+
+static void check_fingers(int all)
+{
+    struct Fault Fault;
+    float Pos[3];
+    int finger;
+
+    for (finger = 1; finger <= 3; finger++) {
+        Fault.Size = sizeof Fault;
+        CHECK(GetFault(finger, &Fault) == 0);
+        printf("%d descriptors were open, finger %d: fault %d\n", takes, finger, Fault.Number);
+        if (!all) {
+            CHECK(Fault.Number == 0 && GetPos(finger, Pos) == 0);
+            continue;
+        }
+        /* If the descriptors of a simulated board are closed first, the board ends and its port vanishes. */
+        CHECK(Fault.Number == FAULT_PORT_CLOSED || Fault.Number == FAULT_PORT_VANISHED);
+        CHECK(GetPos(finger, Pos) == -1 && errno == EIO);
+        CHECK(strstr(HandError(), "CloseHand and OpenHand") != NULL);
+    }
+}
+
 int main(int count, char **arguments)
 {
     struct rlimit limit;
-    struct Fault Fault;
-    float Pos[3];
     double used;
-    int all, highest, descriptor, taken[MOST], takes = 0, round, finger;
+    int all, highest, descriptor, round;
 
     CHECK(count == 3);
     alarm(60);
     CHECK(mkdtemp(folder) != NULL);
     for (descriptor = 3; descriptor < MOST; descriptor++)
-        close(descriptor); /* inherited ones */
+        close(descriptor); /* inherited descriptors */
     CHECK(getrlimit(RLIMIT_NOFILE, &limit) == 0);
     limit.rlim_cur = atoi(arguments[1]);
     CHECK(setrlimit(RLIMIT_NOFILE, &limit) == 0);
     highest = atoi(arguments[2]);
     all = highest + 1 >= (int)limit.rlim_cur;
     for (round = 0; round < 3; round++) {
-        owned = takes = 0;
         CHECK(OpenHand() == 0);
-        for (descriptor = 3; descriptor <= highest; descriptor++)
-            if (close(descriptor) == 0)
-                taken[takes++] = descriptor;
-        /* The lowest numbers first, as open gives them; then those that were the library's. */
-        for (descriptor = 0; descriptor < 30; descriptor++)
-            open_one(-1);
-        for (descriptor = 0; descriptor < takes; descriptor++)
-            if (fcntl(taken[descriptor], F_GETFD) < 0)
-                open_one(taken[descriptor]);
+        close_descriptors(highest);
+        open_files();
         open_terminals();
         PAUSE_MS(300);
         used = cpu_seconds();
         PAUSE_MS(500);
         used = cpu_seconds() - used;
+        printf("round %d: %.3f s of processor time\n", round, used);
         check_files();
-        for (finger = 1; finger <= 3; finger++) {
-            Fault.Size = sizeof Fault;
-            CHECK(GetFault(finger, &Fault) == 0);
-            printf("round %d: %d were open, finger %d: fault %d, %.3f s of processor time\n", round, takes, finger,
-                   Fault.Number, used);
-            if (!all) {
-                CHECK(Fault.Number == 0 && GetPos(finger, Pos) == 0);
-                continue;
-            }
-            /* A simulated board whose descriptors are closed first ends, and its port with it. */
-            CHECK(Fault.Number == FAULT_PORT_CLOSED || Fault.Number == FAULT_PORT_VANISHED);
-            CHECK(GetPos(finger, Pos) == -1 && errno == EIO);
-            CHECK(strstr(HandError(), "CloseHand and OpenHand") != NULL);
-        }
+        check_fingers(all);
         CHECK(all == (takes > 0));
         CHECK(!all || used < 0.1);
         CHECK(CloseHand() == 0);
         check_files();
-        for (descriptor = 0; descriptor < owned; descriptor++)
-            CHECK(close(own[descriptor]) == 0);
-        for (descriptor = 0; descriptor < TERMINALS; descriptor++)
-            CHECK(close(terminals[descriptor]) == 0);
+        close_own();
     }
     CHECK(rmdir(folder) == 0);
     return 0;

@@ -1,5 +1,5 @@
-/* A planner under SCHED_DEADLINE may not start threads without SCHED_FLAG_RESET_ON_FORK, and is told so. With the flag the hand
-   opens. Exits with 77 where the system does not permit SCHED_DEADLINE. */
+/* A planner under SCHED_DEADLINE may not start threads without SCHED_FLAG_RESET_ON_FORK, and HandError says so. With
+   the flag the hand opens. Exits with 77 if the system does not permit SCHED_DEADLINE. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #define DEADLINE 6
 #define RESET_ON_FORK 1
 
-/* struct sched_attr of the kernel, which new C libraries have too. */
+/* A copy of the kernel's struct sched_attr under another name, because recent C libraries define it too. */
 struct attributes {
     unsigned size, policy;
     unsigned long flags;

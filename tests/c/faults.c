@@ -1,5 +1,5 @@
-/* GetFault and FaultText: a finger without faults, one whose board dies, a struct that is too small, and every text. The argument
-   is the process of the board of finger 1. */
+/* GetFault and FaultText: a finger without faults, one whose board dies, a struct that is too small, and every text.
+   The argument is the process number of the board of finger 1. */
 #include <errno.h>
 #include <signal.h>
 #include <string.h>

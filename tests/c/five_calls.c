@@ -1,6 +1,6 @@
-/* A planner that has functions, types and numbers of its own named like the library's later calls. It knows the five
-   calls of 1990 and HandError. If the library took one of these functions for its own, the planner would
-   abort. */
+/* A planner whose own functions, types and numbers have the names of the library's later calls. It uses only the
+   five calls of 1990 and HandError. If the library called one of the planner's functions by mistake, the planner
+   would abort. */
 #define SUN2XP_FIVE_CALLS
 #include "Sun2Xp.h"
 #include "check.h"
@@ -15,7 +15,7 @@ struct FingerTiming { short Size; };
 struct FingerTip { short Tip; };
 struct FingerRecord { short Pos; };
 
-/* Objects in the place of functions do most damage: they cannot be called. */
+/* Objects are the harder case: a library that calls them would crash. */
 int GetRecord = 1, ResetTiming = 2;
 
 #define OWN(Name) \

@@ -1,4 +1,4 @@
-/* A forked child is refused everything but three calls, ends without touching the hand, and the parent's hand goes on. */
+/* A forked child is refused all calls but three and ends without touching the hand. The parent's hand keeps running. */
 #include <errno.h>
 #include <string.h>
 #include <sys/wait.h>

@@ -1,5 +1,6 @@
-/* Children in which no handler of the library has run: those of _Fork and of raw system calls, and a child in which a handler of
-   the planner's, registered before OpenHand, makes the calls. All are refused, and the parent's hand goes on. */
+/* Children in which no fork handler of the library has run: those of _Fork and of raw system calls, and a child in
+   which a handler of the planner, registered before OpenHand, makes the calls. All calls are refused, and the
+   parent's hand keeps running. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <pthread.h>
@@ -11,7 +12,7 @@
 #include "Sun2Xp.h"
 #include "check.h"
 
-/* What a process is ended by that hangs. */
+/* A child that hangs is ended by SIGALRM after this time. */
 #define PATIENCE_S 20
 
 static double Pos[3] = {0.1, 0.5, 0.9};

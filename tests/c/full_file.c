@@ -1,5 +1,5 @@
-/* Standard error is a file that is as large as the process may make it. The lines of the library are lost there, and the
-   planner gets no SIGXFSZ for them. */
+/* Standard error is a file that has reached the largest size the process may write. The messages of the library are
+   lost, and the planner gets no SIGXFSZ for them. */
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -7,7 +7,7 @@
 #include <unistd.h>
 #include "Sun2Xp.h"
 
-/* CHECK of check.h prints on standard error. */
+/* CHECK of check.h cannot be used, because it prints to standard error. */
 #include <stdio.h>
 #include <stdlib.h>
 #define HOLDS(Condition) \
@@ -44,12 +44,12 @@ int main(void)
     HOLDS(setrlimit(RLIMIT_FSIZE, &limit) == 0);
     HOLDS(dup2(file, 2) == 2);
 
-    /* No hand: the first refusal of its kind prints a line. Then the simulated hand is announced. */
+    /* Without a hand, the first refusal of its kind prints a message. Opening the simulated hand prints another. */
     HOLDS(SendPos(1, Pos) == -1 && errno == ENODEV);
     HOLDS(OpenHand() == 0);
     HOLDS(!is_pending());
 
-    /* A signal that was pending before stays. */
+    /* A signal that was already pending must stay pending. */
     sigemptyset(&only);
     sigaddset(&only, SIGXFSZ);
     HOLDS(sigprocmask(SIG_BLOCK, &only, NULL) == 0);

@@ -1,5 +1,5 @@
-/* Opens, sends every finger to one pose, says so on standard output, and ends with the hand open: after "return" by returning
-   from main, after "exit" by exit, after "_exit" past every handler, after "wait" never. */
+/* Opens the hand, sends every finger to one pose, prints a line, and ends with the hand open. The argument selects
+   how: "return" from main, "exit", "_exit" without exit handlers, or "wait", which never ends. */
 #include <string.h>
 #include <unistd.h>
 #include "Sun2Xp.h"

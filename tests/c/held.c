@@ -1,4 +1,4 @@
-/* A planner looks at the status while the servo thread of finger 1 is stopped, as a debugger stops it, and afterwards. */
+/* A planner reads the status while the servo thread of finger 1 is stopped as by a debugger, and afterwards. */
 #include <dirent.h>
 #include <errno.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "Sun2Xp.h"
 #include "check.h"
 
-/* The number of the servo thread of finger 1. */
+/* The thread number of the servo of finger 1. */
 static int servo(void)
 {
     DIR *threads = opendir("/proc/self/task");
@@ -32,7 +32,7 @@ static int servo(void)
     return number;
 }
 
-/* In a child: stops the thread, says so, and lets it go when the parent says so. */
+/* Runs in a child: stops the thread, reports it to the parent, and releases the thread when the parent asks for it. */
 static void hold(int thread, int held, int go)
 {
     char byte = 0;
@@ -65,12 +65,12 @@ int main(void)
     PAUSE_MS(200);
     thread = servo();
     CHECK(thread > 0 && pipe(to_child) == 0 && pipe(to_parent) == 0);
-    /* Where only descendants may be traced by default. It fails where there is no such restriction. */
+    /* Needed where only descendants may be traced by default. The call fails where there is no such restriction. */
     prctl(PR_SET_PTRACER, -1L, 0, 0, 0);
     child = fork();
     CHECK(child >= 0);
     if (child == 0) {
-        /* Where the parent ends early, the child reads the end of the pipe and lets the thread go. */
+        /* If the parent ends early, the child reads the end of the pipe and releases the thread. */
         close(to_child[1]);
         hold(thread, to_parent[1], to_child[0]);
     }
@@ -89,7 +89,7 @@ int main(void)
     CHECK(waitpid(child, &status, 0) == child && status == 0);
     PAUSE_MS(100);
     Later = look();
-    /* What was missing is counted once. */
+    /* The periods that were skipped must be counted only once. */
     CHECK(Later.Cycles > Held.Cycles);
     CHECK(Later.SkippedPeriods >= Held.SkippedPeriods);
     CHECK(Later.SkippedPeriods + Later.Cycles < Held.SkippedPeriods + Held.Cycles + 2000);

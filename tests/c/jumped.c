@@ -1,5 +1,5 @@
-/* An alarm handler that jumps out of slow calls, as planners of 1990 limited their time. The call goes on to its end by
-   itself; the calls after it are served, or refused with EBUSY until it has ended. */
+/* An alarm handler that jumps out of slow calls, as planners of 1990 did to limit their time. The abandoned call
+   completes in the background. Later calls are served, or refused with EBUSY until it has completed. */
 #include <errno.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -15,7 +15,7 @@ static void on_alarm(int number)
     siglongjmp(out, number);
 }
 
-/* Jumps out of a call after so many microseconds. 1: it was jumped out of. */
+/* Jumps out of a call after the given time. Returns 1 if the jump happened before the call returned. */
 static int jumped_out_of(int (*call)(void), long microseconds)
 {
     struct itimerval soon;
@@ -41,7 +41,7 @@ int main(void)
     signal(SIGALRM, on_alarm);
     for (round = 0; round < 20; round++) {
         jumps += jumped_out_of(OpenHand, 500 + 1700 * round);
-        /* Opening goes on by itself, if it has begun. CloseHand waits for its end. */
+        /* An opening that has begun completes in the background. CloseHand waits for its end. */
         CHECK(OpenHand() == 0 || errno == EBUSY);
         jumps += jumped_out_of(CloseHand, 300 + 1300 * round);
         CHECK(CloseHand() == 0);
@@ -55,7 +55,7 @@ int main(void)
     for (round = 0; round < 50; round++)
         jumped_out_of(write_black_box, 100 + 500 * round);
     while (ZeroFinger(1) != 0) {
-        /* Also at the moment between the verdict of the first call and the use of what it has found. */
+        /* Until the values that the first call found are in force, EBUSY is the only errno. */
         CHECK(errno == EBUSY);
         PAUSE_MS(1);
     }

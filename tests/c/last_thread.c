@@ -1,6 +1,6 @@
-/* The planner's last thread ends with the hand open: the process ends as it would without the library, with the status 0,
-   after its exit handlers, one of which closes the hand. "main": main itself is the last thread; "other": another one is,
-   three seconds later. */
+/* The planner's last thread ends with the hand open. The process must end as it would without the library: with the
+   status 0, after its exit handlers, one of which closes the hand. With "main" the last thread is main itself; with
+   "other" it is another thread, three seconds later. */
 #include <pthread.h>
 #include <string.h>
 #include "Sun2Xp.h"

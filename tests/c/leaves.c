@@ -1,5 +1,5 @@
-/* Ends with the hand open: "return" from main, "exit", "handler" by exit in a signal handler, "thread" with other threads in
-   the calls, each with the status 3; or "killed". */
+/* Ends with the hand open and the status 3: by "return" from main, "exit", "handler", which calls exit in a signal
+   handler, or "thread", with other threads inside calls. With "killed" the process ends by a signal. */
 #include <pthread.h>
 #include <signal.h>
 #include <string.h>

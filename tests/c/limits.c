@@ -1,6 +1,6 @@
-/* The system refuses descriptors, threads and pseudo-terminals, one after the other: OpenHand tells the system's errno and
-   the remedy, leaves nothing behind, and succeeds when the limit is gone. The calls that are refused are the planner's
-   own, in front of the system's. */
+/* The system refuses descriptors, threads and pseudo-terminals, one after the other. OpenHand reports the system's
+   errno and the remedy, leaves nothing behind, and succeeds once the limit is gone. Functions of this program, in
+   front of the system's, refuse the threads and the pseudo-terminals. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <dlfcn.h>
@@ -14,7 +14,7 @@
 #include "check.h"
 #include "refused.h"
 
-/* The thread and the pseudo-terminal that is refused, counted from 1; 0: none. */
+/* Numbers of the thread and of the pseudo-terminal that is refused, counted from 1; 0 refuses none. */
 static int refused_thread, refused_terminal, threads, terminals;
 
 typedef int thread_maker(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
@@ -39,7 +39,7 @@ int posix_openpt(int flags)
     return -1;
 }
 
-/* How many entries a folder has. */
+/* The number of entries in a folder. */
 static int entries(const char *folder)
 {
     DIR *open = opendir(folder);
@@ -58,25 +58,22 @@ static void open_and_close(void)
     CHECK(CloseHand() == 0);
 }
 
-int main(void)
+static int descriptors, tasks;
+
+static void check_that_nothing_is_left(void)
+{
+    CHECK(entries("/proc/self/fd") == descriptors && entries("/proc/self/task") == tasks);
+}
+
+static void refuse_descriptors(void)
 {
     struct rlimit limit, before;
-    int descriptors, tasks, refused, number;
+    int result, number, refused = 0;
 
-    alarm(100);
-    for (number = 3; number < 1024; number++)
-        close(number);
-    open_and_close();
-    descriptors = entries("/proc/self/fd");
-    tasks = entries("/proc/self/task");
-
-    /* The highest number that is possible rises by one each time. */
     CHECK(getrlimit(RLIMIT_NOFILE, &before) == 0);
     limit = before;
-    refused = 0;
+    /* The limit of descriptors rises by one each time. */
     for (limit.rlim_cur = 3;; limit.rlim_cur++) {
-        int result;
-
         CHECK(setrlimit(RLIMIT_NOFILE, &limit) == 0);
         result = OpenHand();
         number = errno;
@@ -84,19 +81,27 @@ int main(void)
         if (result == 0)
             break;
         CHECK(number == EMFILE && strstr(HandError(), "ulimit -n") != NULL);
-        CHECK(entries("/proc/self/fd") == descriptors && entries("/proc/self/task") == tasks);
+        check_that_nothing_is_left();
         refused++;
     }
     CHECK(CloseHand() == 0);
     printf("%d times too few descriptors\n", refused);
     CHECK(refused >= 9);
+}
 
+static void refuse_terminals(void)
+{
     for (refused_terminal = 1; refused_terminal <= 3; refused_terminal++) {
         terminals = 0;
         REFUSED(OpenHand(), ENOSPC, "kernel.pty.max");
-        CHECK(entries("/proc/self/fd") == descriptors && entries("/proc/self/task") == tasks);
+        check_that_nothing_is_left();
     }
     refused_terminal = 0;
+}
+
+static void refuse_threads(void)
+{
+    int number;
 
     threads = 0;
     CHECK(OpenHand() == 0);
@@ -106,12 +111,15 @@ int main(void)
     for (refused_thread = 1; refused_thread <= number; refused_thread++) {
         threads = 0;
         REFUSED(OpenHand(), EAGAIN, "ulimit -u");
-        CHECK(entries("/proc/self/fd") == descriptors && entries("/proc/self/task") == tasks);
+        check_that_nothing_is_left();
     }
     refused_thread = 0;
     printf("each of %d threads was refused\n", number);
+}
 
-    /* Other slow calls need a thread too; CloseHand closes the hand without one. */
+/* Other slow calls need a thread too. CloseHand closes the hand even if it cannot get one. */
+static void refuse_the_thread_of_a_call(void)
+{
     CHECK(OpenHand() == 0);
     threads = 0;
     refused_thread = 1;
@@ -120,6 +128,22 @@ int main(void)
     CHECK(CloseHand() == 0);
     CHECK(threads == 1);
     refused_thread = 0;
+}
+
+int main(void)
+{
+    int number;
+
+    alarm(100);
+    for (number = 3; number < 1024; number++)
+        close(number);
+    open_and_close();
+    descriptors = entries("/proc/self/fd");
+    tasks = entries("/proc/self/task");
+    refuse_descriptors();
+    refuse_terminals();
+    refuse_threads();
+    refuse_the_thread_of_a_call();
     open_and_close();
     return 0;
 }

@@ -1,4 +1,4 @@
-/* dlclose leaves the library and the hand as they are. */
+/* dlclose must leave the library and the hand as they are. */
 #include <dlfcn.h>
 #include <string.h>
 #include "check.h"
@@ -6,7 +6,7 @@
 static const char *(*why)(void);
 #define HandError why
 
-/* Through memcpy: ISO C has no conversion from an object pointer to a function pointer. */
+/* Copies with memcpy, because ISO C has no conversion from an object pointer to a function pointer. */
 static void find(void *library, const char *name, void *function)
 {
     void *symbol = dlsym(library, name);

@@ -1,5 +1,5 @@
-/* Locked memory: while a hand is open no more than the mebibytes of the first argument, and none after CloseHand, whatever
-   thread opens and closes; what the planner has locked stays locked. */
+/* Locked memory: while a hand is open it is at most the first argument, in mebibytes, and none after CloseHand,
+   whichever threads open and close the hand. Memory that the planner has locked stays locked. */
 #include <pthread.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -35,7 +35,7 @@ static void *open_and_close(void *unused)
     CHECK(own != NULL);
     CHECK(OpenHand() == 0);
     CHECK(GetStatus(1, &Status) == 0);
-    /* Where nothing can be locked this would show nothing. */
+    /* If nothing could be locked, this program would prove nothing. */
     CHECK(Status.MemoryLocked == 1);
     CHECK(locked() > 100);
     if (locked() > most)
@@ -59,7 +59,7 @@ int main(int count, char **arguments)
 
     CHECK(count == 2);
     limit = atol(arguments[1]) * 1024;
-    /* A page of the heap, between what the library will allocate, and some of the planner's own. */
+    /* The planner locks a heap block. The pages at its ends may also hold memory that the library allocates. */
     own = malloc(OWN_KILOBYTES * 1024);
     CHECK(own != NULL && mlock(own, OWN_KILOBYTES * 1024) == 0);
     before = locked();

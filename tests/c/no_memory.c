@@ -1,5 +1,6 @@
-/* Memory runs out while a hand is open: malloc and its relatives return NULL from some moment on. The hand goes on, and no call ends
-   the process: quick calls work, slow calls are refused with ENOMEM, and CloseHand closes. */
+/* Memory runs out while a hand is open: malloc and its relatives return NULL from some moment on. The hand keeps
+   running, and no call ends the process: quick calls work, slow calls are refused with ENOMEM, and CloseHand closes
+   the hand. */
 #include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -8,7 +9,7 @@
 #include "Sun2Xp.h"
 #include "check.h"
 
-/* The functions of glibc behind the names that this program takes over. */
+/* The glibc functions behind the names that this program redefines. */
 extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
 extern void *__libc_memalign(size_t, size_t);
 
@@ -103,7 +104,8 @@ int main(void)
     REFUSED(AdjustFinger(1, "tendon.minimum = 6"), ENOMEM, "memory");
     REFUSED(WriteBlackBox(1, "no_memory.jsonl"), ENOMEM, "memory");
     REFUSED(ZeroFinger(1), ENOMEM, "memory");
-    /* The library's own threads look and collect meanwhile: every 50 ms, every second, and for as long as a black box fills. */
+    /* Meanwhile the library's own threads do their periodic work: every 50 ms, every second, and until a black box
+       is full. */
     PAUSE_MS(3500);
     quick_calls();
     CHECK(StopHand() == 0);

@@ -1,12 +1,12 @@
-/* A null pointer of any spelling compiles, and is refused at run time. The text names the call as it is written here,
-   and what to pass. */
+/* A null pointer in any spelling compiles and is refused at run time. The text names the call as the planner wrote
+   it, and what to pass. */
 #include <errno.h>
 #include <stddef.h>
 #include <string.h>
 #include "Sun2Xp.h"
 #include "check.h"
 
-/* Not by CHECK: it would make a string of the expanded call, longer than C89 promises. */
+/* CHECK would turn the expanded call into a string that is longer than C89 guarantees. */
 #define REFUSED(Call, Text) \
     do { \
         errno = 0; \

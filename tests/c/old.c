@@ -1,4 +1,4 @@
-/* A planner of 1990: no include of ours, no prototypes, implicit int, results never looked at. */
+/* A planner of 1990: no header of the library, no prototypes, implicit int, and results that are ignored. */
 #include <stdio.h>
 
 #ifndef REAL

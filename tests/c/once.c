@@ -1,4 +1,4 @@
-/* Each argument of a call is evaluated once; compound literals and an if without braces do. C99. */
+/* Each argument of a call is evaluated once. Compound literals work, and so does an if without braces. C99. */
 #include <stddef.h>
 #include "Sun2Xp.h"
 #include "check.h"

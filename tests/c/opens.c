@@ -1,4 +1,4 @@
-/* Opens, tells on standard output how that went, refuses a few calls and closes. */
+/* Opens the hand, prints the result on standard output, makes a few calls that are refused, and closes the hand. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"

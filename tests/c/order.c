@@ -1,5 +1,5 @@
-/* Calls with several things wrong at once, of which one more is put right each time. Prints a line for each call: its
-   name and what it was refused for. Finger 1 is on a real port, the others are simulated. */
+/* Calls with several things wrong at once. Each call corrects one more of them than the call before. Prints a line
+   for each call: its name and the errno of its refusal. Finger 1 is on a real port, the others are simulated. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -22,7 +22,7 @@ static const char *name_of(int number)
     }
 }
 
-/* Refused, for the reason that has this word in its text. */
+/* Checks that the call is refused for the reason that has this word in its text. */
 #define REFUSED(Call, Result, Word) \
     do { \
         CHECK((Result) == -1); \
@@ -53,7 +53,7 @@ static void make_arguments(void)
     Nan[0][1] = NanPos[2] = NanTip[2] = NanForce[2] = NanNormal[2] = NAN;
 }
 
-/* The first nine entries of a matrix of 4 x 4. */
+/* The upper left 3 x 3 block of a 4 x 4 matrix. */
 static double *three(double K[4][4])
 {
     static double Kx[9];
@@ -177,7 +177,7 @@ static void wrong_values_on_a_faulted_finger(void)
     REFUSED("ZeroFinger", ZeroFinger(1), "stop");
 }
 
-/* The last configuration stays wrong in fewer respects than the ones before. */
+/* Writes a configuration file and names it in SUN2XP_CONFIG. */
 static void configure(const char *text)
 {
     FILE *file = fopen("order.toml", "w");

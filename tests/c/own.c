@@ -1,4 +1,5 @@
-/* A planner that declares the calls itself and takes their addresses; it says with SUN2XP_REAL what its arrays are. */
+/* A planner that declares the calls itself and takes their addresses. It declares the type of its arrays with
+   SUN2XP_REAL. */
 #include "Sun2Xp.h"
 #include "check.h"
 

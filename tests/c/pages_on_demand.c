@@ -1,5 +1,5 @@
-/* A planner whose handler of SIGSEGV makes a page accessible when it is first touched, as memory collectors do. Every call that
-   reads or writes the planner's memory finds such a page. */
+/* A planner whose SIGSEGV handler makes a page accessible when it is first touched, as garbage collectors do. Every
+   call that reads or writes the planner's memory finds such a page. */
 #define _GNU_SOURCE
 #include <signal.h>
 #include <string.h>
@@ -22,7 +22,7 @@ static void on_fault(int signal_number, siginfo_t *fault, void *context)
     mprotect(page, PAGE, PROT_READ | PROT_WRITE);
 }
 
-/* Makes the call with the page not accessible. */
+/* Makes the call while the page is not accessible. */
 #define ON_DEMAND(Call) \
     do { \
         faults = 0; \

@@ -1,4 +1,4 @@
-/* A planner with arrays of REAL, in what C89 to C23 have in common: every finger arrives. */
+/* A planner with arrays of REAL, in the common subset of C89 to C23: every finger reaches its pose. */
 #include "Sun2Xp.h"
 #include "check.h"
 
@@ -8,7 +8,7 @@
 
 static const REAL targets[3][3] = {{0.15, 0.5, 0.9}, {-0.2, 0.4, 0.8}, {0.0, 0.7, 1.2}};
 
-/* Waits until the finger rests: no joint moves by more than a milliradian in 200 ms. Gives up after 10 s. */
+/* Waits until the finger is at rest: no joint moves by more than a milliradian in 200 ms. Gives up after 10 s. */
 static void rest(int finger, REAL *Pos)
 {
     REAL before[3];
@@ -50,7 +50,8 @@ int main(void)
     for (finger = 1; finger <= 3; finger++) {
         rest(finger, Pos);
         for (joint = 0; joint < 3; joint++) {
-            printf("finger %d joint %d: sent %.4f, is %.4f rad\n", finger, joint, targets[finger - 1][joint], Pos[joint]);
+            printf("finger %d joint %d: sent %.4f, is %.4f rad\n", finger, joint, targets[finger - 1][joint],
+                   Pos[joint]);
             CHECK(APART(Pos[joint], targets[finger - 1][joint]) < 0.02);
         }
     }

@@ -1,4 +1,4 @@
-/* refused.h - for programs that try many refusals: each with its errno and a word of its text. C89. */
+/* refused.h - for programs that test many refusals by errno and a word of the text. C89. */
 #include <errno.h>
 #include <string.h>
 

@@ -1,6 +1,7 @@
-/* A planner with a floating-point environment of its own: "upward" rounding, denormals "flushed" to zero, or "trapping"
-   exceptions. The library computes in the default one, in its threads and in the calls, and every call leaves the
-   planner's as it was, with its exception flags. The black box goes to the file of the second argument. */
+/* A planner with a floating-point environment of its own: "upward" rounding, denormals "flushed" to zero, or
+   "trapping" exceptions. The library computes in the default environment, both in its threads and in the calls, and
+   every call restores the planner's environment and exception flags. The black box goes to the file in the second
+   argument. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fenv.h>
@@ -17,7 +18,7 @@ static int rounding, traps;
 static unsigned csr;
 #endif
 
-/* Notes the environment without flags, and takes every flag down. */
+/* Clears every flag and stores the rest of the environment. */
 static void note(void)
 {
     feclearexcept(FE_ALL_EXCEPT);
@@ -44,20 +45,10 @@ static int is_as_noted(void)
         CHECK(is_as_noted()); \
     } while (0)
 
-int main(int count, char **arguments)
-{
-    const char *way = arguments[1];
-    int round;
-    double Pos[3] = {0.1, 0.5, 0.8}, Kx[3][3] = {{3, 0.1, 0}, {0.1, 3, 0}, {0, 0, 2.3}}, Heard[3];
-    double Tip[3] = {0.0, -6.0, 8.0}, Normal[3] = {0.3, -1, 0.2}, Stiff = 3.1, Tiny[3] = {1e-310, 0.5, 0.8};
-    float Single[3] = {0.1f, 0.5f, 0.8f};
-    struct FingerTip Found;
-    struct FingerStatus Status;
-    struct FingerTiming Timing;
-    struct FingerRecord Record;
-    struct Fault Fault;
+static double Pos[3] = {0.1, 0.5, 0.8}, Kx[3][3] = {{3, 0.1, 0}, {0.1, 3, 0}, {0, 0, 2.3}}, Measured[3];
 
-    CHECK(count == 3);
+static void change_environment(const char *way)
+{
     if (strcmp(way, "upward") == 0)
         fesetround(FE_UPWARD);
     if (strcmp(way, "trapping") == 0)
@@ -66,43 +57,73 @@ int main(int count, char **arguments)
     if (strcmp(way, "flushed") == 0)
         _mm_setcsr(_mm_getcsr() | 0x8040);
 #endif
+}
+
+static void quick_calls(void)
+{
+    double Tip[3] = {0.0, -6.0, 8.0}, Normal[3] = {0.3, -1, 0.2}, Stiff = 3.1, Tiny[3] = {1e-310, 0.5, 0.8};
+    float Single[3] = {0.1f, 0.5f, 0.8f};
+    struct FingerTip Found;
+    struct FingerStatus Status;
+    struct FingerTiming Timing;
+    struct FingerRecord Record;
+    struct Fault Fault;
+
     Found.Size = sizeof Found;
     Status.Size = sizeof Status;
     Timing.Size = sizeof Timing;
     Record.Size = sizeof Record;
     Fault.Size = sizeof Fault;
+    KEEPS(CHECK(SendPos(1, Pos) == 0));
+    KEEPS(CHECK(SendPos(2, Single) == 0));
+    KEEPS(CHECK(SendPos(3, Tiny) == 0));
+    KEEPS(CHECK(SendKx(1, Kx) == 0));
+    KEEPS(CHECK(GetPos(1, Measured) == 0));
+    KEEPS(CHECK(GetPos(1, Single) == 0));
+    KEEPS(CHECK(SendTip(1, Tip) == 0));
+    KEEPS(CHECK(GetTip(1, &Found) == 0));
+    KEEPS(CHECK(SendContact(2, 1, &Stiff, Normal) == 0));
+    KEEPS(CHECK(SendDamping(2, 1.0) == 0));
+    KEEPS(CHECK(GetStatus(1, &Status) == 0));
+    KEEPS(CHECK(GetTiming(1, TIMING_COMPUTE, &Timing) == 0));
+    KEEPS(CHECK(GetRecord(1, 0, &Record) == 0));
+    KEEPS(CHECK(GetFault(1, &Fault) == 0));
+}
 
-    KEEPS(CHECK(GetPos(1, Heard) == -1 && errno == ENODEV));
-    KEEPS(CHECK(OpenHand() == 0));
-    for (round = 0; round < 20; round++) {
-        KEEPS(CHECK(SendPos(1, Pos) == 0));
-        KEEPS(CHECK(SendPos(2, Single) == 0));
-        KEEPS(CHECK(SendPos(3, Tiny) == 0));
-        KEEPS(CHECK(SendKx(1, Kx) == 0));
-        KEEPS(CHECK(GetPos(1, Heard) == 0));
-        KEEPS(CHECK(GetPos(1, Single) == 0));
-        KEEPS(CHECK(SendTip(1, Tip) == 0));
-        KEEPS(CHECK(GetTip(1, &Found) == 0));
-        KEEPS(CHECK(SendContact(2, 1, &Stiff, Normal) == 0));
-        KEEPS(CHECK(SendDamping(2, 1.0) == 0));
-        KEEPS(CHECK(GetStatus(1, &Status) == 0));
-        KEEPS(CHECK(GetTiming(1, TIMING_COMPUTE, &Timing) == 0));
-        KEEPS(CHECK(GetRecord(1, 0, &Record) == 0));
-        KEEPS(CHECK(GetFault(1, &Fault) == 0));
-        PAUSE_MS(10);
-    }
-    /* An unsymmetric Kx, the eigenvalues of which are computed and printed; a value that underflows in float. */
+/* These refusals write numbers into their texts. */
+static void refused_calls(void)
+{
     Kx[0][1] = 2.7;
     KEEPS(CHECK(SendKx(1, Kx) == -1 && errno == EDOM));
     Pos[0] = 1e9 / 3.0;
     KEEPS(CHECK(SendPos(1, Pos) == -1 && errno == ERANGE));
+}
+
+static void slow_calls(const char *black_box)
+{
     KEEPS(CHECK(AdjustFinger(1, "tendon.minimum = 6.1") == 0));
     PAUSE_MS(200);
     KEEPS(CHECK(ZeroFinger(2) == 0));
-    KEEPS(CHECK(WriteBlackBox(1, arguments[2]) == 0));
+    KEEPS(CHECK(WriteBlackBox(1, black_box) == 0));
     KEEPS(StopHand());
     PAUSE_MS(50);
     KEEPS(CHECK(RecoverHand(1) == 0));
+}
+
+int main(int count, char **arguments)
+{
+    int round;
+
+    CHECK(count == 3);
+    change_environment(arguments[1]);
+    KEEPS(CHECK(GetPos(1, Measured) == -1 && errno == ENODEV));
+    KEEPS(CHECK(OpenHand() == 0));
+    for (round = 0; round < 20; round++) {
+        quick_calls();
+        PAUSE_MS(10);
+    }
+    refused_calls();
+    slow_calls(arguments[2]);
     KEEPS(CHECK(CloseHand() == 0));
     return 0;
 }

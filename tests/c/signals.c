@@ -1,4 +1,4 @@
-/* The planner's alarm goes off on the planner's own thread, as often as it should, while the servos run. */
+/* The planner's alarm signals arrive on the planner's own thread, as often as they should, while the servos run. */
 #include <pthread.h>
 #include <signal.h>
 #include <string.h>
@@ -41,7 +41,7 @@ int main(void)
         PAUSE_MS(1);
         clock_gettime(CLOCK_MONOTONIC, &now);
     } while (now.tv_sec - begin.tv_sec + 1e-9 * (now.tv_nsec - begin.tv_nsec) < 2.0);
-    /* 400 are due; a pause of the whole machine merges some. */
+    /* 400 are due. A pause of the whole machine merges some of them. */
     printf("%d alarms, %d of them elsewhere\n", (int)alarms, (int)strangers);
     CHECK(alarms > 200);
     CHECK(strangers == 0);

@@ -1,4 +1,5 @@
-/* Every call of the header in a thread of its own with 64 KiB of stack, which is painted: prints what each call has used. */
+/* Runs every call of the header in a thread of its own with a painted stack of 64 KiB. Prints how much of it each
+   call has used. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <pthread.h>
@@ -8,11 +9,12 @@
 #include "check.h"
 
 #define STACK_BYTES (64 * 1024)
-/* What the manual promises (chapter 6); the thread itself needs some of the stack too. */
+/* The manual's limit (chapter 6), for the call alone: the thread itself needs some of the stack too. */
 #define PROMISED_BYTES (16 * 1024)
 #define PAINT 0xA5
 
-static double Pos[3] = {0.0, 0.5, 0.8}, Beyond[3] = {9.0, 0.5, 0.8}, Tip[3] = {0.0, -6.0, 8.0}, Push[3], Normal[3] = {0, -1, 0};
+static double Pos[3] = {0.0, 0.5, 0.8}, Beyond[3] = {9.0, 0.5, 0.8};
+static double Tip[3] = {0.0, -6.0, 8.0}, Push[3], Normal[3] = {0, -1, 0};
 static double Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}, Skewed[3][3] = {{3, 1, 0}, {0, 3, 0}, {0, 0, 3}};
 static double K[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
 static float Single[3] = {0.0f, 0.5f, 0.8f}, SingleKx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
@@ -42,37 +44,37 @@ static int recover_hand(void) { StopHand(); PAUSE_MS(50); return RecoverHand(1);
 
 static int get_tip(void)
 {
-    struct FingerTip Told;
-    Told.Size = sizeof Told;
-    return GetTip(1, &Told);
+    struct FingerTip Found;
+    Found.Size = sizeof Found;
+    return GetTip(1, &Found);
 }
 
 static int get_status(void)
 {
-    struct FingerStatus Told;
-    Told.Size = sizeof Told;
-    return GetStatus(1, &Told);
+    struct FingerStatus Found;
+    Found.Size = sizeof Found;
+    return GetStatus(1, &Found);
 }
 
 static int get_timing(void)
 {
-    struct FingerTiming Told;
-    Told.Size = sizeof Told;
-    return GetTiming(1, TIMING_COMPUTE, &Told) + ResetTiming(0);
+    struct FingerTiming Found;
+    Found.Size = sizeof Found;
+    return GetTiming(1, TIMING_COMPUTE, &Found) + ResetTiming(0);
 }
 
 static int get_record(void)
 {
-    struct FingerRecord Told;
-    Told.Size = sizeof Told;
-    return GetRecord(1, 0, &Told);
+    struct FingerRecord Found;
+    Found.Size = sizeof Found;
+    return GetRecord(1, 0, &Found);
 }
 
 static int get_fault(void)
 {
-    struct Fault Told;
-    Told.Size = sizeof Told;
-    return GetFault(1, &Told);
+    struct Fault Found;
+    Found.Size = sizeof Found;
+    return GetFault(1, &Found);
 }
 
 static const struct job {
@@ -122,7 +124,7 @@ static void *work(void *own)
     return result == 0 ? own : NULL;
 }
 
-/* Bytes of stack that a job has used in a thread of its own, with what the thread itself needs. */
+/* Bytes of stack that a job and its thread have used. */
 static size_t used_by(const struct job *job)
 {
     pthread_t thread;
@@ -130,7 +132,7 @@ static size_t used_by(const struct job *job)
     void *end = NULL;
     size_t untouched = 0;
     unsigned char *stack;
-    /* A page below, that cannot be touched. */
+    /* The lowest page is a guard page. */
     stack = mmap(NULL, STACK_BYTES + 4096, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     CHECK(stack != MAP_FAILED);
     stack += 4096;

@@ -1,4 +1,5 @@
-/* A finger that is recovering reads so, and not that it is calibrated; a hand that exit has closed reads closed. */
+/* A finger that is recovering reports that state, not that it is calibrated. A hand that exit has closed reports
+   that it is closed. */
 #include <unistd.h>
 #include "Sun2Xp.h"
 #include "check.h"
@@ -12,7 +13,7 @@ static int state_of(int finger)
     return Status.State;
 }
 
-/* Registered before the library's own exit handler, so it runs after that. Its result is the program's. */
+/* Registered before the library's own exit handler, so it runs after that. Its result becomes the program's. */
 static void look_at_the_closed_hand(void)
 {
     int finger;

@@ -1,4 +1,4 @@
-/* GetStatus: what the servo does, and a struct that may grow. */
+/* GetStatus: the state of the servo, and a struct that may grow in later versions. */
 #include <string.h>
 #include "Sun2Xp.h"
 #include "check.h"
@@ -7,7 +7,7 @@ int main(void)
 {
     struct { struct FingerStatus Known; unsigned char Later[64]; } Larger;
     struct FingerStatus *Status = &Larger.Known;
-    /* Stretched, where the tendons carry less than the bound. */
+    /* Outstretched, where the tendons carry less stiffness than the bound. */
     static float Stretched[3] = { 0.0F, 0.0F, 0.1F };
     static float Stiffest[3][3] = { { 6.0F, 0.0F, 0.0F }, { 0.0F, 6.0F, 0.0F }, { 0.0F, 0.0F, 6.0F } };
     int finger, byte;
@@ -21,10 +21,10 @@ int main(void)
         CHECK(Status->Size == sizeof *Status);
         for (byte = 0; byte < 64; byte++)
             CHECK(Larger.Later[byte] == 0x55);
-        printf("finger %d: %.1f of %.1f Hz, wake-up %.1f %.1f %.1f us, %lu cycles, %lu late, %lu lost, %lu damaged, real-time %d\n",
-               finger, Status->MeasuredRate, Status->Rate, Status->WakeUpMedian, Status->WakeUp99,
-               Status->WakeUpMaximum, Status->Cycles, Status->SkippedPeriods, Status->LostReplies, Status->DamagedFrames,
-               Status->Realtime);
+        printf("finger %d: %.1f of %.1f Hz, wake-up %.1f %.1f %.1f us, ", finger, Status->MeasuredRate, Status->Rate,
+               Status->WakeUpMedian, Status->WakeUp99, Status->WakeUpMaximum);
+        printf("%lu cycles, %lu skipped, %lu lost, %lu damaged, real-time %d\n", Status->Cycles, Status->SkippedPeriods,
+               Status->LostReplies, Status->DamagedFrames, Status->Realtime);
         CHECK(Status->State == FINGER_RUNNING);
         CHECK(Status->Rate == 1000.0);
         CHECK(Status->MeasuredRate > 900.0 && Status->MeasuredRate < 1001.0);

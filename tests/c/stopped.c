@@ -1,4 +1,4 @@
-/* A planner that stops the hand from a signal handler, and goes on. */
+/* A planner that stops the hand from a signal handler and continues. */
 #include <errno.h>
 #include <signal.h>
 #include "Sun2Xp.h"

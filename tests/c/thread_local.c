@@ -1,4 +1,4 @@
-/* A planner with much thread-local data: glibc takes it from the stack of every thread, those of the library too. */
+/* A planner with large thread-local data: glibc takes it from the stack of every thread, including the library's. */
 #include <errno.h>
 #include "Sun2Xp.h"
 #include "check.h"

@@ -1,4 +1,5 @@
-/* Calls from several threads at once: each has its own text, all are served, a hand is opened by one of them only. */
+/* Calls from several threads at once: each thread has its own error text, all calls are served, and only one thread
+   opens the hand. */
 #include <errno.h>
 #include <pthread.h>
 #include <string.h>
@@ -21,7 +22,7 @@ static void *open_it(void *own)
 static void *call(void *own)
 {
     int finger = (int)((int *)own - opened), round;
-    double Pos[3] = {0.0, 0.5, 0.9}, Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}, Heard[3];
+    double Pos[3] = {0.0, 0.5, 0.9}, Kx[3][3] = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}}, Measured[3];
 
     for (round = 0; round < ROUNDS; round++) {
         if (finger == 0) {
@@ -30,8 +31,8 @@ static void *call(void *own)
         } else {
             CHECK(SendPos(finger, Pos) == 0);
             CHECK(SendKx(finger, Kx) == 0);
-            CHECK(GetPos(finger, Heard) == 0);
-            CHECK(Heard[2] > 0.0 && Heard[2] < 2.2);
+            CHECK(GetPos(finger, Measured) == 0);
+            CHECK(Measured[2] > 0.0 && Measured[2] < 2.2);
             CHECK(strcmp(HandError(), "") == 0);
         }
     }

@@ -1,4 +1,5 @@
-/* GetTiming and ResetTiming: every stage of a running servo, wrong arguments, and a struct that may grow. */
+/* GetTiming and ResetTiming: every stage of a running servo, wrong arguments, and a struct that may grow in later
+   versions. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"
@@ -34,17 +35,17 @@ int main(void)
             CHECK(Timing->Size == sizeof *Timing);
             for (byte = 0; byte < 64; byte++)
                 CHECK(Larger.Later[byte] == 0x55);
-            printf("finger %d stage %d: %lu of %lu cycles, ns: %lu %lu %lu %lu %lu; %lu overruns %lu skipped %lu lost %lu late %lu corrupt\n",
-                   finger, stage, Timing->Count, Timing->Cycles, Timing->Minimum, Timing->Median, Timing->P99,
-                   Timing->P999, Timing->Maximum, Timing->Overruns, Timing->SkippedPeriods, Timing->LostReplies,
-                   Timing->LateReplies, Timing->CorruptReplies);
+            printf("finger %d stage %d: %lu of %lu cycles, ns: %lu %lu %lu %lu %lu; ", finger, stage, Timing->Count,
+                   Timing->Cycles, Timing->Minimum, Timing->Median, Timing->P99, Timing->P999, Timing->Maximum);
+            printf("%lu overruns %lu skipped %lu lost %lu late %lu corrupt\n", Timing->Overruns, Timing->SkippedPeriods,
+                   Timing->LostReplies, Timing->LateReplies, Timing->CorruptReplies);
             CHECK(Timing->Stage == stage);
             CHECK(Timing->Count > 500 && Timing->Count <= Timing->Cycles);
             CHECK(Timing->Minimum <= Timing->Median && Timing->Median <= Timing->P99);
             CHECK(Timing->P99 <= Timing->P999 && Timing->P999 <= Timing->Maximum);
             CHECK(Timing->CorruptReplies == 0);
         }
-        /* The last stage was the age of the feedback: a period, 1 ms. */
+        /* The last stage is the age of the feedback: one period, 1 ms. */
         CHECK(Timing->Median > 900000 && Timing->Median < 1100000);
     }
 

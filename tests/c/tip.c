@@ -1,4 +1,4 @@
-/* SendTip, GetTip, SendContact, SendDamping, AdjustFinger: what they do, and every refusal. */
+/* SendTip, GetTip, SendContact, SendDamping, AdjustFinger: their effects and every refusal. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"
@@ -12,7 +12,7 @@ static double distance(const double *One, const double *Other)
     return x * x + y * y + z * z;
 }
 
-/* Until the tip is within 1 mm of where it shall be. */
+/* Waits until the tip is within 1 mm of the wanted position. */
 static void arrive(int finger, const double *Wanted, struct FingerTip *Tip)
 {
     int tries;
@@ -27,21 +27,15 @@ static void arrive(int finger, const double *Wanted, struct FingerTip *Tip)
     exit(1);
 }
 
-int main(void)
-{
-    struct { struct FingerTip Known; unsigned char Later[64]; } Larger;
-    struct FingerTip *Tip = &Larger.Known, Untouched;
-    double Wanted[3] = {1.0, -6.0, 8.0};
-    double Stiff[3][3] = {{6, 0, 0}, {0, 6, 0}, {0, 0, 6}};
-    double Far[3] = {0.0, 0.0, 14.0}, Near[3] = {0.0, 0.0, 4.0}, Behind[3] = {9.0, -2.0, -6.0};
-    double Soft[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
-    double Hard[9] = {3, 0.5, 0, 0.5, 3, 0, 0, 0, 3}, Skewed[9] = {3, 0.5, 0, 0, 3, 0, 0, 0, 3};
-    double Normal[3] = {0, -2, 0}, Nothing[3] = {0, 0, 0}, Nan[3] = {0, 0, 0}, Point = 3.0, Force[3] = {0, 0, -1};
-    double Lengths[9] = {-1, 1e-323, 1e-170, -1e-150, 1e-7, 1e154, 1e160, -1e200, 1.7e308};
-    int byte, tries, refused;
+static struct { struct FingerTip Known; unsigned char Later[64]; } Larger;
+static struct FingerTip *const Tip = &Larger.Known;
+static double Wanted[3] = {1.0, -6.0, 8.0}, Nan[3] = {0, 0, 0};
+static double Soft[4][4] = {{3, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 20}};
+static double Hard[9] = {3, 0.5, 0, 0.5, 3, 0, 0, 0, 3}, Normal[3] = {0, -2, 0}, Point = 3.0;
 
-    Nan[1] = strtod("nan", NULL);
-    Larger.Known.Size = sizeof Larger;
+static void without_a_hand(void)
+{
+    Tip->Size = sizeof Larger;
     REFUSED(SendTip(1, Wanted), ENODEV, "OpenHand");
     REFUSED(GetTip(1, Tip), ENODEV, "OpenHand");
     REFUSED(SendContact(1, 3, Hard, NULL), ENODEV, "OpenHand");
@@ -54,8 +48,14 @@ int main(void)
     REFUSED(SendContact(1, 4, &Soft[0][0], NULL), EFAULT, "Normal");
     REFUSED(SendContact(1, 1, &Point, NULL), EFAULT, "Normal");
     REFUSED(AdjustFinger(1, NULL), EFAULT, "Keys");
+}
 
-    CHECK(OpenHand() == 0);
+static void fingertip(void)
+{
+    double Far[3] = {0.0, 0.0, 14.0}, Near[3] = {0.0, 0.0, 4.0}, Behind[3] = {9.0, -2.0, -6.0};
+    struct FingerTip Untouched;
+    int byte;
+
     CHECK(SendTip(1, Wanted) == 0);
     memset(&Larger, 0x55, sizeof Larger);
     Tip->Size = sizeof Larger;
@@ -77,6 +77,13 @@ int main(void)
     REFUSED(GetTip(1, Tip), EINVAL, "Tip->Size");
     CHECK(memcmp(Tip, &Untouched, sizeof Untouched) == 0);
     Tip->Size = sizeof *Tip;
+}
+
+static void contact(void)
+{
+    double Skewed[9] = {3, 0.5, 0, 0, 3, 0, 0, 0, 3}, Nothing[3] = {0, 0, 0};
+    double Lengths[9] = {-1, 1e-323, 1e-170, -1e-150, 1e-7, 1e154, 1e160, -1e200, 1.7e308};
+    int length;
 
     CHECK(SendContact(1, 4, &Soft[0][0], Normal) == 0);
     CHECK(SendContact(1, 1, &Point, Normal) == 0);
@@ -89,15 +96,21 @@ int main(void)
     Soft[3][3] = -1;
     REFUSED(SendContact(1, 4, &Soft[0][0], Normal), EDOM, "eigenvalue");
     Soft[3][3] = 1000;
-    for (tries = 0; tries < 9; tries++) {
-        Normal[1] = Lengths[tries];
+    for (length = 0; length < 9; length++) {
+        Normal[1] = Lengths[length];
         CHECK(SendContact(1, 1, &Point, Normal) == 0);
         REFUSED(SendContact(1, 4, &Soft[0][0], Normal), ERANGE, "bound");
     }
+}
+
+static void damping(void)
+{
+    double Stiff[3][3] = {{6, 0, 0}, {0, 6, 0}, {0, 0, 6}};
+    int refused;
 
     CHECK(SendDamping(1, 0.8) == 0);
     CHECK(SendDamping(1, 1.5) == 0);
-    refused = SendKx(1, Stiff); /* not within REFUSED: its text would be longer than C89 promises */
+    refused = SendKx(1, Stiff); /* without REFUSED, whose string would be longer than C89 guarantees */
     CHECK(refused == -1 && errno == ERANGE && strstr(HandError(), "0.94 to 1.18") != NULL);
     CHECK(SendDamping(1, 1.0) == 0);
     CHECK(SendKx(1, Stiff) == 0);
@@ -106,6 +119,11 @@ int main(void)
     REFUSED(SendDamping(4, 1.0), EINVAL, "1, 2 and 3");
     REFUSED(SendDamping(1, 0.1), ERANGE, "0.72 to 1.73");
     REFUSED(SendDamping(1, Nan[1]), EINVAL, "Ratio");
+}
+
+static void adjustment(void)
+{
+    int tries, tendon;
 
     REFUSED(AdjustFinger(4, "tendon.minimum = 6"), EINVAL, "1, 2 and 3");
     REFUSED(AdjustFinger(1, "tendon.minimum = "), EINVAL, "line 1");
@@ -116,13 +134,19 @@ int main(void)
     CHECK(AdjustFinger(1, "tendon.minimum = 8\ncontroller.tension_gain = 3") == 0);
     for (tries = 0; tries < 250; tries++) {
         CHECK(GetTip(1, Tip) == 0);
-        for (byte = 0; byte < 4 && Tip->Tensions[byte] > 7.0; byte++)
+        for (tendon = 0; tendon < 4 && Tip->Tensions[tendon] > 7.0; tendon++)
             ;
-        if (byte == 4)
+        if (tendon == 4)
             break;
         PAUSE_MS(20);
     }
     CHECK(tries < 250);
+}
+
+static void force(void)
+{
+    double Force[3] = {0, 0, -1};
+    int tries;
 
     CHECK(PushFinger(1, Force) == 0);
     for (tries = 0; tries < 250; tries++) {
@@ -132,6 +156,18 @@ int main(void)
         PAUSE_MS(20);
     }
     CHECK(tries < 250);
+}
+
+int main(void)
+{
+    Nan[1] = strtod("nan", NULL);
+    without_a_hand();
+    CHECK(OpenHand() == 0);
+    fingertip();
+    contact();
+    damping();
+    adjustment();
+    force();
     CHECK(CloseHand() == 0);
     return 0;
 }

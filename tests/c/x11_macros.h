@@ -1,4 +1,4 @@
-/* x11_macros.h - macros of X11/X.h and X11/Xlib.h that are ordinary words, and some that other old headers define. A
+/* x11_macros.h - macros of X11/X.h and X11/Xlib.h that are ordinary words, and some macros of other old headers. A
    planner with a window includes them before this library's header. */
 #define Bool int
 #define Status int

@@ -1,4 +1,4 @@
-/* ZeroFinger: a finger is zeroed while the others go on; what it cannot do it says. */
+/* ZeroFinger: a finger is zeroed while the others keep running. Fingers that do not exist are refused. */
 #include <errno.h>
 #include <string.h>
 #include "Sun2Xp.h"

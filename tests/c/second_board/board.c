@@ -48,7 +48,7 @@ static void send_frame(struct board *board, struct frame *frame)
 {
     uint8_t wire[WIRE_MAXIMUM];
     unsigned length = to_wire(frame, wire);
-    /* As on a real line, what nobody takes is lost: a board never waits. */
+    /* A board never blocks. Bytes that nobody reads are lost, as on a real line. */
     ssize_t written = write(board->line, wire, length);
     (void)written;
 }
@@ -74,7 +74,7 @@ static void hello(struct board *board, const struct frame *request)
     put8(&answer, VERSION);
     put16(&answer, 1u << board->address);
     put16(&answer, KIND);
-    /* Two boards may be built alike and differ in their addresses only. The process makes them unique. */
+    /* Two boards may differ in nothing but their addresses. The process number makes their unique numbers differ. */
     put32(&answer, 0x5EC02D);
     put32(&answer, (uint32_t)getpid());
     put32(&answer, board->address);
@@ -200,7 +200,7 @@ static void answer(struct board *board, const struct frame *request, int64_t now
     case CONFIGURE: configure(board, request); break;
     case COMMAND: command(board, request, now); break;
     case STOP: stop(board, request, now); break;
-    /* It feels nothing. */
+    /* This board has no tactile sensors. */
     case TACTILE_REQUEST: refuse(board, request, 6, request->length - FRAME_OVERHEAD); break;
     }
 }

@@ -1,4 +1,4 @@
-/* The board: its states, and what it answers. */
+/* The board: its states and its answers. */
 
 #ifndef BOARD_H
 #define BOARD_H
@@ -28,7 +28,7 @@ struct board {
     enum state state;
     int tripped, holding, damaged;
     int64_t last_command, hold_until;
-    /* How much longer the finger may move before the next Command. */
+    /* How much longer the finger may move before the next Command, ns. */
     int64_t motion_left;
 
     uint8_t configure[32];
@@ -36,20 +36,20 @@ struct board {
     int hold;
     int32_t hold_limit, limit[MOTORS], torque[MOTORS];
 
-    /* What has come in since the last zero. One byte more than fits a frame marks one that is too long. */
+    /* Bytes since the last zero. One byte more than the longest frame marks a frame that is too long. */
     unsigned collected;
     uint8_t stuffed[STUFFED_MAXIMUM + 1];
 
     struct plant plant;
 };
 
-/* The longest motion in one wake-up of the board, and from one Command to the next, ns. */
+/* The longest motion in one wake-up of the board, and between two Commands, ns. */
 enum { MOTION_MOST = 2000000 };
 
-/* A byte of the line has arrived. */
+/* Handles one byte from the line. */
 void receive(struct board *board, uint8_t byte, int64_t now);
 
-/* Ends motion or hold when their time is over. */
+/* Ends motion or hold when their time has expired. */
 void watch_time(struct board *board, int64_t now);
 
 #endif

@@ -1,4 +1,4 @@
-/* The examples of the page, built from the values that stand beside them. */
+/* Builds the examples of the page from the values that stand beside them. */
 
 #include "examples.h"
 #include "board.h"
@@ -141,7 +141,7 @@ static const struct {
 };
 enum { EXAMPLES = sizeof examples / sizeof *examples };
 
-/* Returns what is wrong with the example, or null. */
+/* Returns what is wrong with the example, or NULL. */
 static const char *check_example(int which, const uint8_t *wire, unsigned length)
 {
     struct frame own, decoded;

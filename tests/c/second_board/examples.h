@@ -3,7 +3,7 @@
 #ifndef EXAMPLES_H
 #define EXAMPLES_H
 
-/* Compares the examples on the page with the codec of this board, and prints a line for each. Returns 0 where all agree. */
+/* Compares the examples on the page with the codec of this board and prints a line for each. Returns 0 if all agree. */
 int check_page(const char *path);
 
 #endif

@@ -24,7 +24,7 @@ uint32_t crc32_of(const uint8_t *bytes, unsigned length)
     for (unsigned i = 0; i < length; i++) {
         crc ^= bytes[i];
         for (int bit = 0; bit < 8; bit++)
-            /* 0xEDB88320 is 0x04C11DB7 with its bits in the other order. */
+            /* 0xEDB88320 is 0x04C11DB7 with its bits in reverse order. */
             crc = crc & 1 ? crc >> 1 ^ 0xEDB88320u : crc >> 1;
     }
     return crc ^ 0xFFFFFFFFu;

@@ -1,4 +1,4 @@
-/* Frames of the protocol, and how they go over the line. */
+/* Frames of the protocol and their encoding on the line. */
 
 #ifndef FRAME_H
 #define FRAME_H
@@ -15,7 +15,7 @@ struct frame {
     uint8_t bytes[FRAME_MAXIMUM];
 };
 
-/* Returns the whole length of a frame of this type, or 0 for a type of another version. */
+/* Returns the total length of a frame of this type, or 0 for a type of another version. */
 unsigned frame_length(unsigned type);
 
 uint32_t crc32_of(const uint8_t *bytes, unsigned length);
@@ -26,14 +26,14 @@ void put8(struct frame *frame, uint32_t value);
 void put16(struct frame *frame, uint32_t value);
 void put32(struct frame *frame, uint32_t value);
 
-/* Numbers of a received frame; the least significant byte comes first. */
+/* Reads a number from a received frame. The least significant byte comes first. */
 uint32_t get(const uint8_t *bytes, unsigned count);
 int32_t get_signed16(const uint8_t *bytes);
 
-/* Appends the check, stuffs, and appends the delimiter. Returns the number of bytes for the line. */
+/* Appends the checksum, stuffs the bytes, and appends the delimiter. Returns the number of bytes for the line. */
 unsigned to_wire(struct frame *frame, uint8_t wire[WIRE_MAXIMUM]);
 
-/* Takes the bytes between two delimiters. Returns 0 for a bad frame, else 1 and the frame with its check. */
+/* Decodes the bytes between two delimiters. Returns 0 for a bad frame, else 1 and the frame with its checksum. */
 int from_wire(const uint8_t *stuffed, unsigned length, struct frame *frame);
 
 #endif

@@ -1,11 +1,11 @@
-/* A board with one finger, written from docs/board-protocol.md alone. It shares no code with the library, so that the two
-   agree only where the page makes them agree.
+/* A board with one finger, written from docs/board-protocol.md alone. It shares no code with the library, so the two
+   can agree only through the page.
 
        second_board ADDRESS         a board on a pseudo-terminal, whose path is the first line of the output
        second_board --check PAGE    the hex examples of the page against the codec below
 
-   A line on its standard input asks where the joints truly are; it prints three angles, rad. The board ends when its standard
-   input does, so that it does not outlive whoever started it. */
+   For each line on its standard input the board prints the true joint angles: three, rad. It ends when its standard
+   input ends, so that it does not outlive the program that started it. */
 
 #include "board.h"
 #include "examples.h"
@@ -32,7 +32,7 @@ static int fail(const char *what)
     return 1;
 }
 
-/* Raw before the path is known to anybody: a terminal that edits lines or echoes would damage the first frames. */
+/* Sets raw mode before the path is printed: a terminal that edits lines or echoes would damage the first frames. */
 static int open_line(int *line, int *far_end)
 {
     struct termios raw;
@@ -71,8 +71,9 @@ static int run(unsigned address)
         if (poll(waits, 2, 1) < 0 && errno != EINTR)
             return fail("poll");
 
-        /* The finger waits for a host that is late, and is not moved far by a board that is. No real finger does either, but
-           on a busy machine both are late by more than any loop can bear. */
+        /* Limits how far the finger moves before the host's next Command, and in one wake-up of the board. A real
+           finger does not wait. On a busy machine, however, both are delayed by more than any control loop
+           tolerates. */
         int64_t now = nanoseconds();
         int64_t motion = now - then < MOTION_MOST ? now - then : MOTION_MOST;
         if (board.state == ENABLED) {
@@ -83,7 +84,8 @@ static int run(unsigned address)
         advance_plant(&board.plant, motion);
         then = now;
 
-        /* Input before the watchdog: what has arrived in time counts, however late it is looked at. */
+        /* Input is read before the watchdog is checked: a Command that arrived in time counts, however late it is
+           read. */
         uint8_t bytes[512];
         ssize_t count = waits[0].revents & POLLIN ? read(board.line, bytes, sizeof bytes) : 0;
         for (ssize_t i = 0; i < count; i++)

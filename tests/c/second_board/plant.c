@@ -7,19 +7,20 @@ static const double pulley = 4.75e-4;
 static const double stiffness = 30000.0;
 static const double rotor_inertia = 6e-7, rotor_damping = 2e-6;
 static const double joint_inertia[JOINTS] = {3.7e-4, 1.4e-4, 2.5e-5};
-/* More than a real finger has: it stands for the friction and the coupling that are left out. */
+/* More than a real finger has: it replaces the friction and the coupling that this model leaves out. */
 static const double joint_damping[JOINTS] = {2e-3, 2e-3, 2e-3};
 static const double gauge_range = 100.0;
 static const double start_degrees[JOINTS] = {0.0, 30.0, 60.0};
 static const double stop_degrees[JOINTS][2] = {{-63.0, 63.0}, {-33.0, 103.0}, {2.0, 123.0}};
 
-/* Joint torque of each tendon's tension, m. A pull on a tendon's motor shortens it, and so turns the joints this way. */
+/* Moment arms: joint torque for each tendon's tension, m. A motor that pulls its tendon shortens it and so turns the
+   joints in this direction. */
 static const double R[JOINTS][MOTORS] = {
     {-0.0109, 0.0062, 0.0062, -0.0109},
     {0.0109, 0.0062, -0.0062, -0.0109},
     {0, 0.0062, -0.0062, 0},
 };
-/* Tensions at which no joint feels a torque, and the least is 5 N. */
+/* Tensions that leave every joint without torque and have a minimum of 5 N. */
 static const double home_tension[MOTORS] = {5.0, 5.0 * 109 / 62, 5.0 * 109 / 62, 5.0};
 
 static void find_tensions(struct plant *plant)
@@ -83,14 +84,15 @@ void advance_plant(struct plant *plant, int64_t nanoseconds)
     find_tensions(plant);
 }
 
-/* Zero is the straight finger under the tension of the start. */
+/* Encoder zero is the straight finger under the tension of the start. */
 int32_t encoder(const struct plant *plant, int i)
 {
     double angle = plant->motor[i] - home_tension[i] / stiffness / pulley;
     return (int32_t)floor(angle * COUNTS_A_REVOLUTION / (2 * pi));
 }
 
-/* With the noise of a converter, one count up or down: the library takes a gauge that shows one count for ever for a dead one. */
+/* Includes converter noise, one count up or down: the library takes a gauge whose count never changes for a dead
+   one. */
 unsigned gauge(const struct plant *plant, int i)
 {
     static uint32_t random = 1;

@@ -1,4 +1,4 @@
-/* The finger: four motors, each pulling one elastic tendon, and three joints whose inertias do not couple. SI units. */
+/* The finger: four motors, each with an elastic tendon, and three joints whose inertias do not couple. SI units. */
 
 #ifndef PLANT_H
 #define PLANT_H
@@ -13,14 +13,14 @@ struct plant {
     double motor[MOTORS], motor_rate[MOTORS];
     double torque[MOTORS], tension[MOTORS];
     int braked;
-    /* Time that the finger has lived through. It lags behind the world's where the machine was too busy. */
+    /* Time of the simulation, ns. It lags behind real time if the machine was too busy. */
     int64_t clock;
 };
 
 void start_plant(struct plant *plant);
 void advance_plant(struct plant *plant, int64_t nanoseconds);
 
-/* What the encoder and the gauge of one motor show, in counts. */
+/* Readings of the encoder and the gauge of one motor, counts. */
 int32_t encoder(const struct plant *plant, int i);
 unsigned gauge(const struct plant *plant, int i);
 
