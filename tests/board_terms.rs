@@ -121,7 +121,9 @@ proptest! {
         // At least 1 nN m; and a limit of up to so many units.
         let unit = ((limit * 1e7 / parts) as u32).max(1);
         match terms(limit, hold, constant).configure(&board(unit)) {
-            Ok(Configure { torque_limits: [told, ..], hold_torque_limit, torque_constants: [constant_told, ..], .. }) => {
+            Ok(configure) => {
+                let Configure { torque_limits, hold_torque_limit, torque_constants, .. } = configure;
+                let (told, constant_told) = (torque_limits[0], torque_constants[0]);
                 let told = newton_centimetres(told.into(), unit);
                 prop_assert!(told <= limit && told >= 0.99 * limit, "{limit} N cm became {told}");
                 prop_assert!(newton_centimetres(hold_torque_limit.into(), unit) <= hold);

@@ -9,7 +9,8 @@ const END: &str = "<!-- End of the table -->";
 
 fn table() -> String {
     let mut table = String::from(
-        "| number | `FAULT_` | what becomes of the finger | part, value | what | likely cause | remedy |\n|---|---|---|---|---|---|---|\n",
+        "| number | `FAULT_` | what becomes of the finger | part, value | what | likely cause | remedy |\n\
+         |---|---|---|---|---|---|---|\n",
     );
     for kind in FaultKind::ALL {
         let told = kind.description();

@@ -86,7 +86,8 @@ fn serve(configuration: &Configuration, period: u64, end: u64) -> Result<Ran, Fa
 /// Prints a row for each finger. Returns how many cycles were late by the library's own computation.
 fn print_fingers(ran: &Ran, period: u64, pauses: &Pauses) -> usize {
     println!(
-        "| finger | cycles | replies lost | late | by their wake-up | by a pause of a core | kept from its core | by system calls of the exchange | by its computation |"
+        "| finger | cycles | replies lost | late | by their wake-up | by a pause of a core | kept from its core | \
+         by system calls of the exchange | by its computation |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     let mut own = 0;
@@ -122,7 +123,8 @@ fn explain(index: usize, cycle: &LateCycle) {
     let [woken, done, ran, computed] =
         [woken - beginning, done - beginning, ran, computed].map(|time| time as f64 * 1e-3);
     eprintln!(
-        "finger {}: woken after {woken:.0}, done after {done:.0} us; ran for {ran:.0} us, computed for {computed:.0} us",
+        "finger {}: woken after {woken:.0}, done after {done:.0} us; ran for {ran:.0} us, \
+         computed for {computed:.0} us",
         index + 1
     );
 }

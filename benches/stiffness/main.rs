@@ -1,7 +1,8 @@
 //! How well a finger is the spring that it is told to be: the figures of `docs/stiffness.md`.
 //!
-//!     cargo bench --bench stiffness -- [--quick] [--poses N] [--seed N] [--rates 500,1000,2000] [--controllers "figure 9,state feedback"]
-//!                                      [--only TEXT] [--out FOLDER] [--write docs/stiffness.md]
+//!     cargo bench --bench stiffness -- [--quick] [--poses N] [--seed N] [--rates 500,1000,2000]
+//!                                      [--controllers "figure 9,state feedback"] [--only TEXT] [--out FOLDER]
+//!                                      [--write docs/stiffness.md]
 //!
 //! The pure core against the simulated finger, in memory and on simulated time, with one cycle between sample and
 //! torque.

@@ -66,7 +66,9 @@ fn a_jammed_motor_does_not_wind_up_the_integral() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases.max(300), failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: ProptestConfig::default().cases.max(300), failure_persistence: None, ..Default::default()
+    })]
 
     /// Whatever the board says: finite torques within the limits, tensions within the bounds.
     #[test]

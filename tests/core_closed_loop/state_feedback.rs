@@ -109,7 +109,8 @@ fn steps(rate: f64, stiffness: f64, loss: f64, change: impl Fn(&mut ConfiguredFi
     found.median = times[times.len() / 2];
     found.worst = times[times.len() - 1];
     println!(
-        "{rate} Hz, {stiffness} N/cm, loss {loss}: {} steps, worst {:.3} s, median {:.3} s, overshoot {:.1} %, tension {:.2} N",
+        "{rate} Hz, {stiffness} N/cm, loss {loss}: {} steps, worst {:.3} s, median {:.3} s, overshoot {:.1} %, \
+         tension {:.2} N",
         times.len(),
         found.worst,
         found.median,

@@ -189,7 +189,8 @@ fn survive_all(times: u64) {
             (lost, late, doubled) = (lost + lost_replies, late + late_replies, doubled + duplicate_replies);
         }
         println!(
-            "{fault:?}, {times} times 1000 replies: {doubled} doubled, {late} late, {lost} lost; no fault, no wrong value"
+            "{fault:?}, {times} times 1000 replies: {doubled} doubled, {late} late, {lost} lost; no fault, \
+             no wrong value"
         );
     }
 }

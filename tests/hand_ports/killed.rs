@@ -106,7 +106,8 @@ fn a_killed_planners_motors_are_in_their_end_state_after_the_watchdogs_time() {
             .collect();
         let worst = |of: fn(&(f64, f64)) -> f64| figures.iter().map(of).fold(0.0, f64::max);
         println!(
-            "{name}, {} fingers: end state {:.1} ms after the last command at worst, {:.1} ms at most after the planner was gone",
+            "{name}, {} fingers: end state at most {:.1} ms after the last command, and at most {:.1} ms after the \
+             planner was gone",
             figures.len(),
             worst(|figure| figure.0),
             worst(|figure| figure.1)

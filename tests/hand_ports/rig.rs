@@ -243,7 +243,8 @@ pub fn close(hand: Hand) {
 /// Writes a configuration file with what [`on_ports`] configures, and more keys of `[hand]`.
 pub fn write_configuration(file: &Path, boards: &[Board; 3], hand: &str) {
     let mut text = format!(
-        "[hand]\nrate = 500\nwatchdog_ms = 1000\nopen_timeout_ms = 20000\n{hand}[finger.controller]\nset_point_speed = 1.0\n"
+        "[hand]\nrate = 500\nwatchdog_ms = 1000\nopen_timeout_ms = 20000\n\
+         {hand}[finger.controller]\nset_point_speed = 1.0\n"
     );
     for (index, board) in boards.iter().enumerate() {
         text += &format!("[finger.{}]\nport = '{}'\n", index + 1, board.port);

@@ -26,9 +26,9 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 ///     ball FINGER X Y Z RADIUS K             a ball
 ///     hold FINGER                            a hand that holds the finger in the pose it is in
 ///     free FINGER                            no force, no wall, no ball, no hand
-///     state FINGER                           true joints (rad), tip (cm) and tensions (N), torques of the motors (N cm),
-///                                            times by the board's clock (ms): now, of the last Command that was
-///                                            obeyed, of the end state that followed; NaN: not since the last
+///     state FINGER                           true joints (rad), tip (cm) and tensions (N), torques of the motors
+///                                            (N cm), times by the board's clock (ms): now, of the last Command that
+///                                            was obeyed, of the end state that followed; NaN: not since the last
 ///                                            Configure; status bits as in a Reply
 ///     quit
 ///

@@ -95,7 +95,8 @@ fn numbers_come_back_to_the_last_bit() {
     let third = |sign: f64| sign / 3.0;
     let mut record: CycleRecord<String> = serde_json::from_str(
         r#"{"cycle":1,"began":18446744073709551615,"stage":"running","timing":[1,null,4294967295,0,0,0,0,0],
-            "feedback":{"motor_counts":[-2147483648,2147483647,0,-1],"gauge_counts":[0,65535,1,2]},"status":65535,"control":null}"#,
+            "feedback":{"motor_counts":[-2147483648,2147483647,0,-1],"gauge_counts":[0,65535,1,2]},"status":65535,
+            "control":null}"#,
     )
     .expect("a record");
     record.began -= 1;
