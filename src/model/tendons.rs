@@ -64,8 +64,36 @@ impl Tendons {
 /// The direction in tendon space that R sends to zero, of length 1, with a positive sum; none where R has a rank below
 /// 3.
 fn null_vector(r: &Matrix3x4<f64>) -> Option<RowVector4<f64>> {
-    // Cofactors of the 3x4 matrix: exact, and it needs no tolerance.
     let minor = |skip: usize| r.remove_column(skip).determinant();
-    let vector = RowVector4::new(minor(0), -minor(1), minor(2), -minor(3)).try_normalize(1e-12)?;
+    let cofactors = RowVector4::new(minor(0), -minor(1), minor(2), -minor(3));
+    // No minor exceeds the product of the rows' lengths, so this bounds the rounding errors of the cofactors.
+    let rounding = 16.0 * f64::EPSILON * r.row_iter().map(|row| row.norm()).product::<f64>();
+    let vector = cofactors.try_normalize(rounding)?;
     Some(if vector.sum() < 0.0 { -vector } else { vector })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::configuration::ConfiguredFinger;
+
+    #[test]
+    fn the_null_vector_does_not_depend_on_the_unit_of_length() {
+        let r = ConfiguredFinger::default().r();
+        let whole = null_vector(&r).expect("R has rank 3");
+        assert!((r * whole.transpose()).amax() < 1e-15 && (whole.norm() - 1.0).abs() < 1e-15);
+        // Powers of two scale without rounding.
+        for scale in [2f64.powi(-40), 2f64.powi(-14), 2f64.powi(40)] {
+            assert_eq!(null_vector(&(r * scale)), Some(whole), "{scale:e}");
+        }
+    }
+
+    #[test]
+    fn a_matrix_of_a_lower_rank_has_no_null_vector_at_any_scale() {
+        let mut r = ConfiguredFinger::default().r();
+        r.set_row(2, &(r.row(0) * 0.3 + r.row(1) * 1.7));
+        for scale in [1e-9, 1.0, 1e9] {
+            assert_eq!(null_vector(&(r * scale)), None, "{scale:e}");
+        }
+    }
 }
