@@ -3,6 +3,7 @@
 mod calibrating;
 mod calibration;
 mod construction;
+mod control;
 mod exchange;
 mod life;
 
@@ -14,9 +15,7 @@ use crate::finger::Adjustable;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::ServoEnd;
 use crate::finger::supervision::Supervision;
-use crate::finger::{
-    ControlInput, ControlRecord, CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage, StopSignal,
-};
+use crate::finger::{CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage, StopSignal};
 use crate::model::configuration::EndState;
 use crate::realtime::{self, CycleTiming, LockedMemory, Producer};
 use calibration::Calibrating;
@@ -175,32 +174,6 @@ impl FingerServo {
         }
         self.recording = self.under_control();
         self.report.controller = self.adjustable.number;
-    }
-
-    /// Computes the next command.
-    fn control(&mut self, skipped: u64) -> ControlRecord {
-        let previous = self.take_commands();
-        let previous = self.calibrate().or(previous);
-        let input = ControlInput {
-            anew_from: std::mem::take(&mut self.anew).then_some(self.feedback),
-            activity: self.activity,
-            skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.most().into()) },
-            fading: self.link.fading(),
-        };
-        let Adjustable { controller, number, .. } = match &self.calibration {
-            Some(calibration) => calibration.computes_with(),
-            None => &self.adjustable,
-        };
-        let feedback = self.answered.then_some(&self.feedback);
-        let before = previous.as_ref().map(|previous| &previous.controller);
-        let adjusted = before.is_some();
-        let (command, report) = input.run(controller, before, &mut self.state, feedback);
-        (self.command, self.report.cycle) = (command, report);
-        let previous = previous.map_or(*number, |previous| previous.number);
-        let record = ControlRecord { controller: *number, previous, input, command, report };
-        self.watch(adjusted);
-        self.move_on();
-        record
     }
 
     /// Notes when a stage of this cycle began and ended, ns.

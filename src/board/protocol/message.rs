@@ -1,7 +1,7 @@
-//! A frame with its header and its fields.
+//! A frame with its header and its fields, and its bytes on the wire: with check and byte stuffing, then a zero.
 
 use super::fields::{FieldReader, FieldWriter};
-use super::packet::{CHECK, PREFIX, WIRE_OVERHEAD};
+use super::packet::{CHECK, MAX_FRAME, MAX_WIRE, PREFIX, WIRE_OVERHEAD, check};
 use super::{
     Command, Configure, Configured, Hello, Identity, Kind, Malformed, Packet, Refused, Reply, Stop, Stopped,
     TactileEvent, TactileRequest,
@@ -77,7 +77,7 @@ impl Frame {
         }
     }
 
-    pub(super) fn write(&self, fields: &mut FieldWriter) {
+    fn write(&self, fields: &mut FieldWriter) {
         match self {
             Frame::Hello(frame) => frame.write(fields),
             Frame::Configure(frame) => frame.write(fields),
@@ -116,5 +116,36 @@ impl Message {
             Kind::TactileEvent => Frame::TactileEvent(TactileEvent::read(fields)),
         };
         Ok(Self { address: packet.address(), sequence: packet.sequence(), frame })
+    }
+}
+
+/// A frame ready to be sent, with its delimiter.
+#[derive(Clone, Copy, Debug)]
+pub struct WireFrame {
+    bytes: [u8; MAX_WIRE],
+    length: usize,
+}
+
+impl WireFrame {
+    /// Encodes a message: adds check, byte stuffing and delimiter.
+    pub fn new(message: &Message) -> Self {
+        let mut content = [0; MAX_FRAME];
+        let mut fields = FieldWriter::new(&mut content);
+        fields.u8((message.frame.kind() as u8) << 4 | message.address & 0x0F);
+        fields.u8(message.sequence);
+        message.frame.write(&mut fields);
+        let check = check(fields.written());
+        fields.u32(check);
+
+        let mut bytes = [0; MAX_WIRE];
+        // `cobs::encode` panics when the destination is too small; MAX_WIRE holds MAX_FRAME bytes stuffed.
+        let stuffed = cobs::encode(fields.written(), &mut bytes);
+        // The buffer was filled with zeros, so the delimiter is already there.
+        Self { bytes, length: stuffed + 1 }
+    }
+
+    /// Returns the bytes to send.
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.bytes[..self.length]
     }
 }

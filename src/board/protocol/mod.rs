@@ -14,21 +14,19 @@ mod reply;
 mod status;
 mod stop;
 mod tactile;
-mod wire;
 
 pub use command::Command;
 pub use configure::{Configure, Configured};
 pub use decoder::{Decoder, DecoderCounters};
 pub use hello::{Capabilities, FirmwareVersion, Hello, Identity};
 pub use kind::{Kind, Malformed};
-pub use message::{Frame, Message};
+pub use message::{Frame, Message, WireFrame};
 pub use packet::{MAX_FRAME, MAX_WIRE, Packet, WIRE_OVERHEAD, check};
 pub use refused::{Reason, Refused};
 pub use reply::Reply;
 pub use status::Status;
 pub use stop::{Stop, Stopped};
 pub use tactile::{TactileChange, TactileEvent, TactileRequest};
-pub use wire::WireFrame;
 
 /// The protocol version that this library supports.
 pub const VERSION: u8 = 1;

@@ -3,10 +3,8 @@
 use super::{FingerServo, STOPS_AFTER_FAULT};
 use crate::board::protocol::Configured;
 use crate::control::{Activity, Feedback, MotorCommand, SetPoint};
-use crate::finger::{Adjustable, Order};
-use crate::finger::{Fault, FaultKind, Stage};
+use crate::finger::{Fault, FaultKind, Order, Stage};
 use crate::model::Part;
-use crate::model::configuration::EndState;
 use nalgebra::Vector4;
 
 /// While its tendons hang after a blow a joint seems to be so much further, rad, than any at rest does. Of 100 fingers
@@ -17,47 +15,7 @@ const FLUNG: f64 = 0.3;
 const MOSTLY: f64 = 0.75;
 
 impl FingerServo {
-    /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
-    pub(super) fn take_commands(&mut self) -> Option<Adjustable> {
-        let running = self.report.stage == Stage::Running;
-        let order = self.mailbox.new_order();
-        // After the order: what was handed over with it is there.
-        let new = self.mailbox.new_adjustable();
-        let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
-        if self.calibration.is_some() {
-            // It goes on with its own.
-            previous = None;
-        }
-        if let Some(order) = order {
-            self.report.orders += 1;
-            match order {
-                Order::Nothing | Order::Calibrate(_) => {}
-                Order::Restart { .. } => previous = None,
-            }
-            self.carry_out(order);
-        }
-        // One that was sent before the order for a calibration counts: the finger moves to it, and the routine must see
-        // that.
-        if let Some(set_point) = self.mailbox.new_set_point(self.report.springs)
-            && running
-        {
-            self.report.set_point = set_point;
-            self.activity = Activity::Follow(set_point);
-        }
-        if self.mailbox.closing() && self.report.stage != Stage::Closing {
-            self.enter(Stage::Closing);
-            self.calibration = None;
-            if self.end_state == EndState::Hold {
-                self.enter(Stage::Closed);
-            } else {
-                let ramp = f64::from(self.limits.ramp) * self.limits.period_ms * 1e-3;
-                self.activity = Activity::Release { ramp };
-            }
-        }
-        previous
-    }
-
-    fn carry_out(&mut self, order: Order) {
+    pub(super) fn carry_out(&mut self, order: Order) {
         match order {
             Order::Nothing => {}
             Order::Calibrate(run) => {

@@ -1,0 +1,74 @@
+//! A finger's command of one cycle: what planners have sent, then the controller.
+
+use super::FingerServo;
+use crate::control::Activity;
+use crate::finger::{Adjustable, ControlInput, ControlRecord, Order, Stage};
+use crate::model::configuration::EndState;
+
+impl FingerServo {
+    /// Computes the next command.
+    pub(super) fn control(&mut self, skipped: u64) -> ControlRecord {
+        let previous = self.take_commands();
+        let previous = self.calibrate().or(previous);
+        let input = ControlInput {
+            anew_from: std::mem::take(&mut self.anew).then_some(self.feedback),
+            activity: self.activity,
+            skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.most().into()) },
+            fading: self.link.fading(),
+        };
+        let Adjustable { controller, number, .. } = match &self.calibration {
+            Some(calibration) => calibration.computes_with(),
+            None => &self.adjustable,
+        };
+        let feedback = self.answered.then_some(&self.feedback);
+        let before = previous.as_ref().map(|previous| &previous.controller);
+        let adjusted = before.is_some();
+        let (command, report) = input.run(controller, before, &mut self.state, feedback);
+        (self.command, self.report.cycle) = (command, report);
+        let previous = previous.map_or(*number, |previous| previous.number);
+        let record = ControlRecord { controller: *number, previous, input, command, report };
+        self.watch(adjusted);
+        self.move_on();
+        record
+    }
+
+    /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
+    fn take_commands(&mut self) -> Option<Adjustable> {
+        let running = self.report.stage == Stage::Running;
+        let order = self.mailbox.new_order();
+        // After the order: what was handed over with it is there.
+        let new = self.mailbox.new_adjustable();
+        let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
+        if self.calibration.is_some() {
+            // It goes on with its own.
+            previous = None;
+        }
+        if let Some(order) = order {
+            self.report.orders += 1;
+            match order {
+                Order::Nothing | Order::Calibrate(_) => {}
+                Order::Restart { .. } => previous = None,
+            }
+            self.carry_out(order);
+        }
+        // One that was sent before the order for a calibration counts: the finger moves to it, and the routine must see
+        // that.
+        if let Some(set_point) = self.mailbox.new_set_point(self.report.springs)
+            && running
+        {
+            self.report.set_point = set_point;
+            self.activity = Activity::Follow(set_point);
+        }
+        if self.mailbox.closing() && self.report.stage != Stage::Closing {
+            self.enter(Stage::Closing);
+            self.calibration = None;
+            if self.end_state == EndState::Hold {
+                self.enter(Stage::Closed);
+            } else {
+                let ramp = f64::from(self.limits.ramp) * self.limits.period_ms * 1e-3;
+                self.activity = Activity::Release { ramp };
+            }
+        }
+        previous
+    }
+}
