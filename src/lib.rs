@@ -74,7 +74,8 @@ pub use finger::{
     Stage, stop_all,
 };
 pub use hand::{
-    Calibrating, Configured, FingerFault, FingerStatus, FingerTip, Fingers, Hand, HandError, Recovering, Standing,
+    Calibrating, ConfigurationError, Configured, FingerFault, FingerStatus, FingerTip, Fingers, Hand, HandError,
+    Recovering, RecoveryError, SetPointError, Standing,
 };
 pub use model::configuration::{
     Configuration, ConfiguredController, ConfiguredEncoder, ConfiguredFinger, ConfiguredFriction, ConfiguredGauge,

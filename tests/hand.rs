@@ -6,7 +6,7 @@ mod pauses;
 
 use std::time::{Duration, Instant};
 use sun2xp::finger::Stage;
-use sun2xp::hand::{Hand, HandError};
+use sun2xp::hand::{ConfigurationError, Hand, HandError};
 use sun2xp::model::configuration::{Configuration, EndState};
 
 const TARGET: [f64; 3] = [0.2, 0.6, 1.1];
@@ -126,7 +126,8 @@ fn a_rate_the_line_cannot_carry_is_refused_with_the_arithmetic() {
     let mut configuration = Configuration::default();
     configuration.fingers[1].port = "/dev/ttyS0".into();
     configuration.fingers[1].baud = 115_200;
-    let Err(HandError::Unusable { section, unusable }) = Hand::open(configuration) else {
+    let Err(HandError::Configuration(ConfigurationError::Unusable { section, unusable })) = Hand::open(configuration)
+    else {
         panic!("115 200 baud carry no 1000 cycles a second")
     };
     assert_eq!((section.as_str(), unusable.key), ("finger.2", "baud"));

@@ -7,7 +7,7 @@ mod pauses;
 use nalgebra::{Matrix4, Vector3, Vector4};
 use std::time::{Duration, Instant};
 use sun2xp::control::Law;
-use sun2xp::hand::{FingerTip, Hand, HandError};
+use sun2xp::hand::{FingerTip, Hand, HandError, SetPointError};
 use sun2xp::model::Contact;
 use sun2xp::model::configuration::{Configuration, OutOfRange};
 
@@ -110,11 +110,14 @@ fn an_adjustment_is_taken_over_whole_or_not_at_all() {
     hand.adjust(1, "controller.scheme = 'state feedback'").expect("adjusted");
     hand.send_damping(1, 1.8).expect("sent");
     let damped = hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]");
-    assert!(matches!(damped, Err(HandError::Damping { .. })), "{damped:?}");
+    assert!(matches!(damped, Err(HandError::SetPoint(SetPointError::Damping { .. }))), "{damped:?}");
     hand.send_damping(1, 1.0).expect("sent");
     // New limits are in force at once; the other fingers keep theirs.
     hand.adjust(1, "joints.maximum_degrees = [60, 40, 120]").expect("adjusted");
-    assert!(matches!(hand.send_position(1, [0.0, 0.8, 1.0]), Err(HandError::BeyondJointLimit { .. })));
+    assert!(matches!(
+        hand.send_position(1, [0.0, 0.8, 1.0]),
+        Err(HandError::SetPoint(SetPointError::BeyondJointLimit { .. }))
+    ));
     hand.send_position(2, [0.0, 0.8, 1.0]).expect("sent");
 }
 

@@ -7,7 +7,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use sun2xp::calibration::{Findings, Identified, Zeros};
-use sun2xp::hand::{Found, HandError, read_configuration, store_findings};
+use sun2xp::hand::{ConfigurationError, Found, read_configuration, store_findings};
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use tempfile::{TempDir, tempdir};
 
@@ -219,7 +219,7 @@ fn what_this_user_may_not_write_is_left_and_named() {
         set(&path, file_mode);
         as_nobody(|| {
             let error = store_findings(&path, std::slice::from_ref(&found)).expect_err("refused");
-            assert!(matches!(error, HandError::Store { .. }) && error.errno() == libc::EACCES, "{error}");
+            assert!(matches!(error, ConfigurationError::Unwritable { .. }) && error.errno() == libc::EACCES, "{error}");
             assert!(error.to_string().contains("hand.toml: Permission denied"), "{error}");
         });
         assert_eq!(fs::read_to_string(&path).expect("read"), FILE);

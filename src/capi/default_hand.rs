@@ -3,7 +3,7 @@
 use crate::calibration::Task;
 use crate::capi::process;
 use crate::capi::refusal::{self, Refusal};
-use crate::hand::{self, Calibrating, Hand, Recovering, Standing};
+use crate::hand::{self, Calibrating, Hand, HandError, Recovering, Standing};
 use parking_lot::{Mutex, RwLock};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
@@ -33,7 +33,7 @@ pub(super) fn open() -> Result<(), Refusal> {
         return Err(Refusal::AlreadyOpen);
     }
     process::watch(close_at_exit);
-    let configured = hand::find_configuration()?;
+    let configured = hand::find_configuration().map_err(HandError::from)?;
     refusal::set_printing(configured.configuration.hand.print_refusals);
     let hand = Hand::open_as(configured)?;
     // The exit handler waits only briefly for this call, which may have been slower. Returning drops the hand and so

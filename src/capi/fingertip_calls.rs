@@ -8,7 +8,7 @@ use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
 use crate::capi::default_hand;
 use crate::capi::memory::{fill, load, non_null, size_up_to};
 use crate::capi::refusal::Wanted;
-use crate::hand::{self, HandError};
+use crate::hand::{self, ConfigurationError, HandError, SetPointError};
 use crate::model::{Contact, ContactError};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use std::ffi::{CStr, c_char, c_int, c_uint};
@@ -154,12 +154,12 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
             1 => Contact::frictionless_point(unsafe { load::<f64, 1>(K, "K") }?[0], normal()?),
             3 => Contact::hard_finger(Matrix3::from_row_slice(&unsafe { load::<f64, 9>(K, "K") }?)),
             4 => Contact::soft_finger(Matrix4::from_row_slice(&unsafe { load::<f64, 16>(K, "K") }?), normal()?),
-            _ => return default_hand::command(|hand| hand.report(i).and(Err(HandError::NoSuchContact(D)))),
+            _ => return default_hand::command(|hand| hand.report(i).and(Err(SetPointError::NoSuchContact(D).into()))),
         };
         default_hand::command(|hand| -> Result<(), HandError> {
             // The finger's number is looked at first.
             hand.report(i)?;
-            hand.send_contact(i, contact.map_err(|source: ContactError| HandError::Contact { finger: i, source })?)
+            hand.send_contact(i, contact.map_err(|source: ContactError| SetPointError::Contact { finger: i, source })?)
         })
     })
 }
@@ -244,7 +244,8 @@ pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
             default_hand::command(|hand| -> Result<(), HandError> {
                 hand.report(i)?;
                 let reason = "is not UTF-8".to_string();
-                hand.adjust(i, keys.to_str().map_err(|_| HandError::Adjustment { finger: i, line: 1, reason })?)
+                let refused = |_| ConfigurationError::Adjustment { finger: i, line: 1, reason };
+                hand.adjust(i, keys.to_str().map_err(refused)?)
             })
         })
     })

@@ -71,7 +71,7 @@ impl Display for Wanted {
     }
 }
 
-type Kind = (Discriminant<Refusal>, Option<Discriminant<hand::HandError>>);
+type Kind = (Discriminant<Refusal>, Option<hand::ErrorKind>);
 
 impl Refusal {
     fn errno(&self) -> c_int {
@@ -90,7 +90,7 @@ impl Refusal {
 
     fn kind(&self) -> Kind {
         let hand = match self {
-            Self::Hand(error) => Some(discriminant(error)),
+            Self::Hand(error) => Some(error.kind()),
             _ => None,
         };
         (discriminant(self), hand)
@@ -153,6 +153,9 @@ mod tests {
         let no_finger = Refusal::Hand(hand::HandError::NoSuchFinger(7));
         let not_simulated = Refusal::Hand(hand::HandError::NotSimulated(1));
         assert_ne!(no_finger.kind(), not_simulated.kind());
+        let negative = hand::SetPointError::Negative { finger: 1, smallest: -1.0 };
+        let no_contact = hand::SetPointError::NoSuchContact(2);
+        assert_ne!(Refusal::Hand(negative.into()).kind(), Refusal::Hand(no_contact.into()).kind());
         assert_eq!(no_finger.kind(), Refusal::Hand(hand::HandError::NoSuchFinger(8)).kind());
     }
 }

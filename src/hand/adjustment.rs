@@ -7,7 +7,7 @@ use crate::hand::admission::Admission;
 use crate::hand::configuration_file::{Wrong, deserialize, overlay};
 use crate::hand::dispatcher::Member;
 use crate::hand::opening::{admission, check};
-use crate::hand::{Hand, HandError};
+use crate::hand::{ConfigurationError, Hand, HandError, SetPointError};
 use crate::model::Contact;
 use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, Unusable};
 use nalgebra::Matrix6;
@@ -53,7 +53,8 @@ impl Hand {
         let mut changed = configuration.clone();
         changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys, configuration.hand.rate)?;
         check(&changed)?;
-        let unusable = |unusable: Unusable| HandError::Unusable { section: format!("finger.{finger}"), unusable };
+        let unusable =
+            |unusable: Unusable| ConfigurationError::Unusable { section: format!("finger.{finger}"), unusable };
         let adjustable = Adjustable::new(&changed, index).map_err(unusable)?;
         self.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
             adjust_member(member, admission(&changed, index), adjustable)
@@ -70,7 +71,7 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     let sent = member.mailbox.sent();
     let joints = changed.joints(sent.joints.into())?;
     let contact = Contact::general(&sent.stiffness, &Matrix6::identity());
-    let stiffness = changed.contact(&contact.map_err(|source| HandError::Contact { finger, source })?)?;
+    let stiffness = changed.contact(&contact.map_err(|source| SetPointError::Contact { finger, source })?)?;
     let mut admitted = SetPoint { joints, stiffness, ..sent };
     changed.damping.admit(&mut admitted)?;
     let faulted = |fault| HandError::Faulted { finger, fault };
@@ -89,15 +90,20 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
 }
 
 /// The configuration of a finger at `rate`, Hz, with `keys` laid over it.
-fn adjusted(number: i32, finger: &ConfiguredFinger, keys: &str, rate: f64) -> Result<ConfiguredFinger, HandError> {
-    let refused = |wrong: Wrong| HandError::Adjustment {
+fn adjusted(
+    number: i32,
+    finger: &ConfiguredFinger,
+    keys: &str,
+    rate: f64,
+) -> Result<ConfiguredFinger, ConfigurationError> {
+    let refused = |wrong: Wrong| ConfigurationError::Adjustment {
         finger: number,
         line: wrong.line(keys).unwrap_or(1),
         reason: wrong.to_string(),
     };
     let over = Document::parse(keys).map_err(|error| refused(Wrong::in_syntax(error)))?;
     if let Some(key) = permanent(over.as_table(), "") {
-        return Err(HandError::Permanent { key });
+        return Err(ConfigurationError::Permanent { key });
     }
     let present = toml_edit::ser::to_document(finger).map_err(|error| refused(Wrong::at(None, error.to_string())))?;
     let mut merged = present.as_table().clone();
@@ -181,7 +187,7 @@ mod tests {
             "[stiffness]\nbound = 5\ninitial = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
         ] {
             let refusal = adjusted(1, &ConfiguredFinger::default(), keys, 1000.0).expect_err("refused");
-            assert!(matches!(refusal, HandError::Permanent { .. }), "{refusal}");
+            assert!(matches!(refusal, ConfigurationError::Permanent { .. }), "{refusal}");
             assert_eq!(refusal.errno(), libc::EBUSY);
         }
         let refusal = adjusted(1, &ConfiguredFinger::default(), "simulation.seed = 3", 1000.0).expect_err("refused");
@@ -198,7 +204,7 @@ mod tests {
             ("\ntendon.stiffness = [300, 300, 300, 300, 300]", 2, "tendon.stiffness: has 5 entries, and must have 4"),
         ] {
             match adjusted(2, &ConfiguredFinger::default(), keys, 1000.0).expect_err("refused") {
-                HandError::Adjustment { finger: 2, line, reason } => {
+                ConfigurationError::Adjustment { finger: 2, line, reason } => {
                     assert_eq!(line, place, "{keys}: {reason}");
                     assert!(reason.contains(word), "{reason}");
                 }

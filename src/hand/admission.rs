@@ -1,6 +1,6 @@
 //! What a planner may ask of a finger: the checks between a call and the servo. Nothing that fails one reaches it.
 
-use crate::hand::HandError;
+use crate::hand::SetPointError;
 use crate::hand::damping_admission::DampingAdmission;
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Law, OutOfRange};
@@ -31,7 +31,7 @@ pub(super) struct Admission {
 
 impl Admission {
     /// Desired joint angles, rad, as they may be sent to the servo.
-    pub fn joints(&self, joints: [f64; 3]) -> Result<Vector3<f64>, HandError> {
+    pub fn joints(&self, joints: [f64; 3]) -> Result<Vector3<f64>, SetPointError> {
         self.finite("Pos", &joints)?;
         let mut admitted = Vector3::from(joints);
         for joint in 0..3 {
@@ -40,7 +40,7 @@ impl Admission {
             let rounding = f64::from(f32::EPSILON) * low.abs().max(high.abs());
             let value = joints[joint];
             if (value < low - rounding || value > high + rounding) && self.out_of_range == OutOfRange::Refuse {
-                return Err(HandError::BeyondJointLimit { finger: self.finger, joint, value, low, high });
+                return Err(SetPointError::BeyondJointLimit { finger: self.finger, joint, value, low, high });
             }
             admitted[joint] = value.clamp(low, high);
         }
@@ -48,7 +48,7 @@ impl Admission {
     }
 
     /// Kx, N/cm, symmetric, positive semi-definite and within the bound. `rows[row][column]`.
-    pub fn stiffness(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, HandError> {
+    pub fn stiffness(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
         // nalgebra is column-major: this is the one place where the order of C is turned.
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
         let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| self.no_spring(error))?;
@@ -56,7 +56,7 @@ impl Admission {
         // A bound sent as `float` is a bound.
         let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
         if too_stiff && self.out_of_range == OutOfRange::Refuse {
-            return Err(HandError::TooStiff { finger: self.finger, largest, bound });
+            return Err(SetPointError::TooStiff { finger: self.finger, largest, bound });
         }
         if !too_stiff && smallest >= 0.0 {
             return Ok(symmetric);
@@ -69,28 +69,28 @@ impl Admission {
     }
 
     /// Why a Kx is no spring.
-    fn no_spring(&self, error: ContactError) -> HandError {
+    fn no_spring(&self, error: ContactError) -> SetPointError {
         let finger = self.finger;
         match error {
-            ContactError::NotFinite(value) => HandError::NotFinite { what: "Kx", finger, value },
+            ContactError::NotFinite(value) => SetPointError::NotFinite { what: "Kx", finger, value },
             ContactError::NotSymmetric { row, column, difference } => {
-                HandError::NotSymmetric { finger, row, column, difference }
+                SetPointError::NotSymmetric { finger, row, column, difference }
             }
-            ContactError::Negative { smallest } => HandError::Negative { finger, smallest },
-            ContactError::NoNormal => HandError::Contact { finger, source: error },
+            ContactError::Negative { smallest } => SetPointError::Negative { finger, smallest },
+            ContactError::NoNormal => SetPointError::Contact { finger, source: error },
         }
     }
 
     /// Joint angles, rad, for a tip position, cm, nearest to the `present` ones. Never clamped: the nearest point of
     /// the workspace may be on the other side of an object.
-    pub fn tip(&self, tip: [f64; 3], present: &Vector3<f64>) -> Result<Vector3<f64>, HandError> {
+    pub fn tip(&self, tip: [f64; 3], present: &Vector3<f64>) -> Result<Vector3<f64>, SetPointError> {
         self.finite("Tip", &tip)?;
         let found = self.inverse_kinematics.joints(&Vector3::from(tip), present);
-        found.map_err(|source| HandError::OutOfReach { finger: self.finger, tip, source })
+        found.map_err(|source| SetPointError::OutOfReach { finger: self.finger, tip, source })
     }
 
     /// The stiffness of a contact, within the bound. A rotation counts by the way it moves the last joint.
-    pub fn contact(&self, contact: &Contact) -> Result<Matrix6<f64>, HandError> {
+    pub fn contact(&self, contact: &Contact) -> Result<Matrix6<f64>, SetPointError> {
         let (bound, lever) = (self.stiffness_bound, self.links.0[2]);
         let largest = contact.largest_eigenvalue(lever);
         // A bound sent as `float` is a bound.
@@ -98,16 +98,16 @@ impl Admission {
             return Ok(*contact.stiffness());
         }
         match self.out_of_range {
-            OutOfRange::Refuse => Err(HandError::TooStiff { finger: self.finger, largest, bound }),
+            OutOfRange::Refuse => Err(SetPointError::TooStiff { finger: self.finger, largest, bound }),
             OutOfRange::Clamp => Ok(*contact.clamped(bound, lever).stiffness()),
         }
     }
 
     /// Refuses NaN and infinity: they must never reach the servo.
-    pub fn finite(&self, what: &'static str, values: &[f64]) -> Result<(), HandError> {
+    pub fn finite(&self, what: &'static str, values: &[f64]) -> Result<(), SetPointError> {
         match values.iter().find(|value| !value.is_finite()) {
             None => Ok(()),
-            Some(&value) => Err(HandError::NotFinite { what, finger: self.finger, value }),
+            Some(&value) => Err(SetPointError::NotFinite { what, finger: self.finger, value }),
         }
     }
 }
@@ -151,7 +151,7 @@ mod tests {
         assert_eq!(kx, kx.transpose());
         let skewed = [[3.0, 0.5, 0.004], [0.5, 2.0, 0.25], [0.0, 0.25, 1.0]];
         let refused = admission(OutOfRange::Refuse).stiffness(skewed);
-        assert!(matches!(refused, Err(HandError::NotSymmetric { row: 0, column: 2, .. })), "{refused:?}");
+        assert!(matches!(refused, Err(SetPointError::NotSymmetric { row: 0, column: 2, .. })), "{refused:?}");
     }
 
     #[test]
@@ -161,10 +161,10 @@ mod tests {
         for rows in [diagonal(0.0, 0.0, 0.0), diagonal(6.0, 0.0, 1.0), diagonal(6.0, 6.0, 6.0)] {
             assert!(refuse.stiffness(rows).is_ok(), "{rows:?}");
         }
-        assert!(matches!(refuse.stiffness(diagonal(6.1, 0.0, 0.0)), Err(HandError::TooStiff { .. })));
-        assert!(matches!(refuse.stiffness(diagonal(1.0, -0.1, 0.0)), Err(HandError::Negative { .. })));
-        assert!(matches!(refuse.stiffness(diagonal(-1.0, 0.0, 0.0)), Err(HandError::Negative { .. })));
-        assert!(matches!(refuse.stiffness(diagonal(f64::NAN, 0.0, 0.0)), Err(HandError::NotFinite { .. })));
+        assert!(matches!(refuse.stiffness(diagonal(6.1, 0.0, 0.0)), Err(SetPointError::TooStiff { .. })));
+        assert!(matches!(refuse.stiffness(diagonal(1.0, -0.1, 0.0)), Err(SetPointError::Negative { .. })));
+        assert!(matches!(refuse.stiffness(diagonal(-1.0, 0.0, 0.0)), Err(SetPointError::Negative { .. })));
+        assert!(matches!(refuse.stiffness(diagonal(f64::NAN, 0.0, 0.0)), Err(SetPointError::NotFinite { .. })));
         // Within rounding of zero: taken as zero.
         let kx = refuse.stiffness(diagonal(1.0, -0.0005, 0.0)).expect("admissible");
         assert!(kx.symmetric_eigenvalues().min() > -1e-12);
@@ -180,7 +180,7 @@ mod tests {
                 let refused = admission(OutOfRange::Refuse).stiffness(rows);
                 assert_eq!(refused.is_err(), value > 1.0, "{value:e}: {refused:?}");
                 let negative = admission(OutOfRange::Clamp).stiffness(rows.map(|row| row.map(|entry| -entry)));
-                assert!(matches!(negative, Err(HandError::Negative { .. })), "-{value:e}: {negative:?}");
+                assert!(matches!(negative, Err(SetPointError::Negative { .. })), "-{value:e}: {negative:?}");
             }
         }
     }
@@ -193,7 +193,7 @@ mod tests {
         // Eigenvalues 9 and 1 along the diagonals become 6 and 1.
         let expected = Matrix3::new(3.5, 2.5, 0.0, 2.5, 3.5, 0.0, 0.0, 0.0, 2.0);
         assert!((kx - expected).amax() < 1e-12, "{kx}");
-        assert!(matches!(clamp.joints([f64::INFINITY, 0.0, 1.0]), Err(HandError::NotFinite { .. })));
+        assert!(matches!(clamp.joints([f64::INFINITY, 0.0, 1.0]), Err(SetPointError::NotFinite { .. })));
     }
 
     #[test]
@@ -205,7 +205,7 @@ mod tests {
         // 6 N/cm at 4 cm.
         let (refuse, clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
         assert_eq!(refuse.contact(&contact(96.0)).expect("admissible"), *contact(96.0).stiffness());
-        assert!(matches!(refuse.contact(&contact(97.0)), Err(HandError::TooStiff { .. })));
+        assert!(matches!(refuse.contact(&contact(97.0)), Err(SetPointError::TooStiff { .. })));
         let clamped = clamp.contact(&contact(970.0)).expect("clamped");
         assert!((clamped - contact(96.0).stiffness()).amax() < 1e-10, "{clamped}");
     }
@@ -217,7 +217,10 @@ mod tests {
         let sent = f64::from(120f32.to_radians());
         assert!(sent > refuse.joint_limits.1[2], "the case must be one of rounding up");
         assert_eq!(refuse.joints([0.0, 0.0, sent]).expect("admitted")[2], refuse.joint_limits.1[2]);
-        assert!(matches!(refuse.joints([0.0, 0.0, sent + 1e-3]), Err(HandError::BeyondJointLimit { joint: 2, .. })));
+        assert!(matches!(
+            refuse.joints([0.0, 0.0, sent + 1e-3]),
+            Err(SetPointError::BeyondJointLimit { joint: 2, .. })
+        ));
     }
     proptest! {
         #![proptest_config(ProptestConfig {
@@ -272,7 +275,9 @@ mod tests {
             let (mut refuse, mut clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
             (refuse.links.0[2], clamp.links.0[2]) = (0.1, 0.1);
             match refuse.contact(&contact) {
-                Err(HandError::TooStiff { largest, bound: 6.0, .. }) => assert!(largest > 9e4 && largest.is_finite()),
+                Err(SetPointError::TooStiff { largest, bound: 6.0, .. }) => {
+                    assert!(largest > 9e4 && largest.is_finite())
+                }
                 other => panic!("{torsion:e}: {other:?}"),
             }
             let clamped = clamp.contact(&contact).expect("clamped");

@@ -224,7 +224,7 @@ pub(crate) struct ToStore {
 impl ToStore {
     pub(crate) fn store(&self) -> Result<(), HandError> {
         let finger = self.found.finger();
-        let not_stored = |source| HandError::NotStored { finger, source: Box::new(source) };
+        let not_stored = |source| HandError::NotStored { finger, source };
         store_findings(&self.file, std::slice::from_ref(&self.found)).map_err(not_stored)
     }
 }

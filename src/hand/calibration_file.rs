@@ -4,7 +4,7 @@ mod editing;
 
 use super::configuration_file::{LARGEST, parse};
 use crate::files::{UpdateError, update_file};
-use crate::hand::HandError;
+use crate::hand::ConfigurationError;
 use crate::hand::found::{Found, FoundValue, Misfit};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
 use editing::{child, same, set, written};
@@ -19,27 +19,27 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 /// at the same time: each waits for the others, for at most 30 seconds.
 ///
 /// # Errors
-/// A file that cannot be read, used or written; [`HandError::Unfit`] where the file has changed so that what was found
+/// A file that cannot be read, used or written; [`ConfigurationError::Mismatch`] where the file has changed so that what was found
 /// does not fit. The file is as it was then, and nothing of what was found is written.
-pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), HandError> {
+pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), ConfigurationError> {
     update_file(path, LARGEST, |text| change(path, text, found)).map_err(|error| match error {
-        UpdateError::File(source) => HandError::Store { path: path.to_path_buf(), source },
+        UpdateError::File(source) => ConfigurationError::Unwritable { path: path.to_path_buf(), source },
         UpdateError::Change(error) => error,
     })
 }
 
 /// The text with what was found; none where it stands there already.
-fn change(path: &Path, text: &str, found: &[Found]) -> Result<Option<String>, HandError> {
+fn change(path: &Path, text: &str, found: &[Found]) -> Result<Option<String>, ConfigurationError> {
     let file = || path.to_path_buf();
-    let before = parse(text).map_err(|wrong| HandError::Configuration {
+    let before = parse(text).map_err(|wrong| ConfigurationError::Invalid {
         file: file(),
         line: wrong.line(text),
         reason: wrong.to_string(),
     })?;
     if let Some(Misfit { key, was, is }) = found.iter().find_map(|found| found.misfit(&before)) {
-        return Err(HandError::Unfit { path: file(), key, was, is });
+        return Err(ConfigurationError::Mismatch { path: file(), key, was, is });
     }
-    let unusable = |reason: String| HandError::Configuration { file: file(), line: None, reason };
+    let unusable = |reason: String| ConfigurationError::Invalid { file: file(), line: None, reason };
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| unusable(error.to_string()))?;
     let mut changed = false;
     for found in found {
@@ -105,7 +105,7 @@ mod tests {
     use std::fs;
 
     /// What [`store`] makes of a file that was read before it became `text`.
-    fn try_to_store(text: &str, found: &[Found]) -> Result<String, HandError> {
+    fn try_to_store(text: &str, found: &[Found]) -> Result<String, ConfigurationError> {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("hand.toml");
         fs::write(&path, text).expect("written");
@@ -240,7 +240,7 @@ mod tests {
             [("[hand]\nrate = \n", Some(2), ""), ("\n[finger.3.tendon]\nmaximum = 8\n", Some(3), "for its pretension")]
         {
             match try_to_store(text, &[zeros(1, [5; 4], 0.0)]).expect_err("unusable") {
-                HandError::Configuration { line: found, reason: told, .. } => {
+                ConfigurationError::Invalid { line: found, reason: told, .. } => {
                     assert!(found == line && told.contains(reason), "{found:?} {told}");
                 }
                 other => panic!("{other}"),

@@ -7,7 +7,7 @@ mod wrong;
 
 use crate::files::{raised_privileges, read_regular_file};
 use crate::hand::notice::print_notice;
-use crate::hand::{Fingers, HandError};
+use crate::hand::{ConfigurationError, Fingers};
 use crate::model::ShownPath;
 use crate::model::configuration::{Configuration, FINGERS};
 use std::path::{Path, PathBuf};
@@ -40,7 +40,7 @@ pub struct Configured {
 /// A file that is named or found and cannot be read or used. A missing file that `SUN2XP_CONFIG` names is an error too,
 /// and so is `SUN2XP_CONFIG` where it is not trusted: a planner that believes it moves a real hand must never get the
 /// simulation instead.
-pub fn find_configuration() -> Result<Configured, HandError> {
+pub fn find_configuration() -> Result<Configured, ConfigurationError> {
     match place::locate()? {
         Some(path) => Configured::read(&path),
         None => Ok(Configured { configuration: Configuration::default(), file: None, ports_named: [false; FINGERS] }),
@@ -50,9 +50,9 @@ pub fn find_configuration() -> Result<Configured, HandError> {
 /// Reads and checks one configuration file.
 ///
 /// # Errors
-/// [`HandError::Configuration`] with file, line and reason; [`HandError::ConfigurationFile`] where it cannot be read,
+/// [`ConfigurationError::Invalid`] with file, line and reason; [`ConfigurationError::Unreadable`] where it cannot be read,
 /// is no regular file or is larger than 1 MiB.
-pub fn read_configuration(path: &Path) -> Result<Configuration, HandError> {
+pub fn read_configuration(path: &Path) -> Result<Configuration, ConfigurationError> {
     Configured::read(path).map(|configured| configured.configuration)
 }
 
@@ -66,13 +66,13 @@ impl Configured {
     ///
     /// # Errors
     /// As [`read_configuration`].
-    pub fn read(path: &Path) -> Result<Self, HandError> {
+    pub fn read(path: &Path) -> Result<Self, ConfigurationError> {
         let file = path.to_path_buf();
         let text = read_regular_file(path, LARGEST)
-            .map_err(|source| HandError::ConfigurationFile { path: file.clone(), source })?;
+            .map_err(|source| ConfigurationError::Unreadable { path: file.clone(), source })?;
         match text::parse(&text) {
             Ok((configuration, ports_named)) => Ok(Self { configuration, file: Some(file), ports_named }),
-            Err(wrong) => Err(HandError::Configuration { file, line: wrong.line(&text), reason: wrong.to_string() }),
+            Err(wrong) => Err(ConfigurationError::Invalid { file, line: wrong.line(&text), reason: wrong.to_string() }),
         }
     }
 

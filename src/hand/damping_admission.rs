@@ -1,7 +1,7 @@
 //! Whether the damping of a set point and its stiffness go together.
 
 use crate::control::{AdmissibleDamping, SetPoint};
-use crate::hand::HandError;
+use crate::hand::SetPointError;
 use crate::model::Contact;
 use crate::model::configuration::OutOfRange;
 use nalgebra::Matrix6;
@@ -22,18 +22,18 @@ pub(super) struct DampingAdmission {
 
 impl DampingAdmission {
     /// Refuses a set point whose damping is outside the range of its stiffness, or clamps its damping.
-    pub fn admit(&self, set_point: &mut SetPoint) -> Result<(), HandError> {
+    pub fn admit(&self, set_point: &mut SetPoint) -> Result<(), SetPointError> {
         if set_point.damping == 1.0 {
             return Ok(()); // Admitted with every stiffness: the calls that planners make most need no eigenvalue.
         }
         let finger = self.finger;
         let contact = Contact::general(&set_point.stiffness, &Matrix6::identity());
-        let contact = contact.map_err(|source| HandError::Contact { finger, source })?;
+        let contact = contact.map_err(|source| SetPointError::Contact { finger, source })?;
         let stiffness = contact.largest_eigenvalue(self.lever);
         let (least, most) = self.admissible.range(stiffness);
         let ratio = set_point.damping;
         if !(least..=most).contains(&ratio) && self.out_of_range == OutOfRange::Refuse {
-            return Err(HandError::Damping { finger, ratio, stiffness, least, most });
+            return Err(SetPointError::Damping { finger, ratio, stiffness, least, most });
         }
         set_point.damping = ratio.clamp(least, most);
         Ok(())
@@ -88,7 +88,7 @@ mod tests {
         torsion.stiffness[(3, 3)] = 96.0; // 6 N/cm at 4 cm
         let refused = admission(OutOfRange::Refuse).admit(&mut torsion);
         assert!(
-            matches!(refused, Err(HandError::Damping { stiffness, .. }) if (stiffness - 6.0).abs() < 1e-9),
+            matches!(refused, Err(SetPointError::Damping { stiffness, .. }) if (stiffness - 6.0).abs() < 1e-9),
             "{refused:?}"
         );
     }

@@ -10,7 +10,7 @@ use crate::hand::admission::Admission;
 use crate::hand::dispatcher::collected::Collected;
 use crate::hand::dispatcher::collecting::collect;
 use crate::hand::opening::Reached;
-use crate::hand::{Fingers, HandError};
+use crate::hand::{Fingers, HandError, SetPointError};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
 use crate::realtime::{CycleStage, Distribution, Histograms, Priority, spawn};
 use crossbeam_channel::{Sender, bounded};
@@ -98,15 +98,16 @@ impl Dispatcher {
 
     /// Sends the change that `admit` lets through. Both are one step: limits do not change between them. The change
     /// itself may still refuse the set point that it starts from.
-    pub fn send<C: FnOnce(&mut SetPoint) -> Result<(), HandError>>(
+    pub fn send<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,
         finger: i32,
-        admit: impl FnOnce(&Admission) -> Result<C, HandError>,
+        admit: impl FnOnce(&Admission) -> Result<C, SetPointError>,
     ) -> Result<(), HandError> {
         let member = self.member(finger)?;
         let admission = member.admission.read();
         let change = admit(&admission)?;
-        member.mailbox.try_send(change).map_err(|fault| HandError::Faulted { finger, fault })?
+        member.mailbox.try_send(change).map_err(|fault| HandError::Faulted { finger, fault })??;
+        Ok(())
     }
 
     /// Joints 0, 1, 2 of a finger that is not faulted, rad.

@@ -4,13 +4,13 @@ use crate::board::protocol::Status;
 use crate::board::{Link, Port, Terms, capacity};
 use crate::control::AdmissibleDamping;
 use crate::finger::{BlackBox, FingerServo, Mailbox, ServedPort, StopSignal, link_handover, stop_calls};
-use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::damping_admission::DampingAdmission;
 use crate::hand::fingers::Fingers;
 use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
 use crate::hand::workshop::{KnownBoard, Workshop};
+use crate::hand::{ConfigurationError, HandError, SetPointError};
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
 use crate::model::{Shown, ShownPath, UnusableConfiguration};
@@ -199,7 +199,7 @@ fn shake_hands(
     link: &mut Link<Port>,
 ) -> Result<(FingerServo, Reached, KnownBoard), HandError> {
     let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
-    let unusable = |unusable| HandError::Unusable { section: format!("finger.{}", index + 1), unusable };
+    let unusable = |unusable| ConfigurationError::Unusable { section: format!("finger.{}", index + 1), unusable };
     let (address, terms) = (configuration.address(index), Terms::new(hand, finger));
     let deadline = now() + u64::from(hand.open_timeout_ms) * 1_000_000;
     let (identity, configured) =
@@ -209,7 +209,7 @@ fn shake_hands(
     let counts = identity.counts_per_revolution;
     if counts != 0 && finger.encoder.counts_per_revolution.iter().any(|&configured| configured != counts) {
         let reason = format!("the board of finger {} says that its encoders have {counts}", index + 1);
-        return Err(unusable(Unusable { key: "encoder.counts_per_revolution", reason }));
+        return Err(unusable(Unusable { key: "encoder.counts_per_revolution", reason }).into());
     }
     let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;
     let (producer, timings) = ring((UNCOLLECTED * hand.rate).ceil() as usize);
@@ -246,7 +246,7 @@ pub(super) fn admission(configuration: &Configuration, index: usize) -> Admissio
 }
 
 fn initial_stiffness(configuration: &Configuration, index: usize) -> Result<Matrix3<f64>, Unusable> {
-    let refused = |error: HandError| Unusable { key: "stiffness.initial", reason: error.to_string() };
+    let refused = |error: SetPointError| Unusable { key: "stiffness.initial", reason: error.to_string() };
     admission(configuration, index).stiffness(configuration.fingers[index].stiffness.initial).map_err(refused)
 }
 

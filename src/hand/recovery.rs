@@ -7,7 +7,7 @@
 
 use crate::finger::{Stage, stop_calls};
 use crate::hand::reconnection::Place;
-use crate::hand::{Hand, HandError};
+use crate::hand::{Hand, HandError, RecoveryError};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::sleep;
@@ -85,7 +85,7 @@ impl Recovering {
                     return Ok(());
                 }
                 if workshop.servo_ended() {
-                    return Err(HandError::ServoEnded(finger));
+                    return Err(RecoveryError::ServoEnded(finger).into());
                 }
                 if workshop.fetch() {
                     let configured = workshop.mend()?;
@@ -98,7 +98,7 @@ impl Recovering {
                 return Err(HandError::NoAnswer(finger));
             }
             if let Some(refusal) = not_lent(finger, running, waiting.elapsed()) {
-                return Err(refusal);
+                return Err(refusal.into());
             }
             sleep(LOOKING);
         }
@@ -129,10 +129,10 @@ impl Recovering {
 
 /// What is wrong where a servo has not lent the link of a finger for so long, if that is too long. `running`: another
 /// finger of the port, which was not faulted in the beginning.
-fn not_lent(finger: i32, running: Option<i32>, waited: Duration) -> Option<HandError> {
+fn not_lent(finger: i32, running: Option<i32>, waited: Duration) -> Option<RecoveryError> {
     match running {
-        Some(other) if waited > LENDING => Some(HandError::PortInUse { finger, other }),
-        None if waited > TAKING_BACK => Some(HandError::ServoStalled(finger)),
+        Some(other) if waited > LENDING => Some(RecoveryError::PortInUse { finger, other }),
+        None if waited > TAKING_BACK => Some(RecoveryError::ServoStalled(finger)),
         _ => None,
     }
 }
@@ -163,7 +163,7 @@ mod tests {
         for waited in [0, 100, 400].map(Duration::from_millis) {
             assert!(not_lent(1, None, waited).is_none() && not_lent(1, Some(2), waited).is_none());
         }
-        assert!(matches!(not_lent(1, Some(2), 2 * LENDING), Some(HandError::PortInUse { finger: 1, other: 2 })));
+        assert!(matches!(not_lent(1, Some(2), 2 * LENDING), Some(RecoveryError::PortInUse { finger: 1, other: 2 })));
         // A finger alone, whose servo is kept from running for a while.
         assert!(not_lent(1, None, 2 * LENDING).is_none());
         let text = not_lent(1, None, 2 * TAKING_BACK).expect("too long").to_string();

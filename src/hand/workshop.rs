@@ -3,7 +3,7 @@
 use crate::board::protocol::{Configured, Identity, Status};
 use crate::board::{Link, LinkError, Port, Terms};
 use crate::finger::{Borrower, Fault, FaultKind, Mended};
-use crate::hand::HandError;
+use crate::hand::{HandError, RecoveryError};
 use crate::model::configuration::FINGERS;
 use crate::realtime::now;
 use std::path::PathBuf;
@@ -67,7 +67,7 @@ impl Workshop {
             Some(link) => link,
             None if self.reconnect => Link::open(&self.path, self.baud)
                 .map_err(|source| HandError::Link { finger: first as usize, source })?, // 1 to 3
-            None => return Err(HandError::NotReconnected(first)),
+            None => return Err(RecoveryError::NotReconnected(first).into()),
         };
         let met = self.meet(&mut link);
         // A port that has failed is closed here; the next attempt opens it.

@@ -1,7 +1,7 @@
 //! Reads configurations, and the reference with every key.
 
 use std::fs;
-use sun2xp::hand::{self, HandError};
+use sun2xp::hand::{self, ConfigurationError};
 use sun2xp::model::configuration::Configuration;
 
 pub const REFERENCE: &str = include_str!("../../docs/sun2xp.toml");
@@ -11,7 +11,7 @@ pub fn read(text: &str) -> Result<Configuration, (Option<usize>, String)> {
     let file = folder.path().join("sun2xp.toml");
     fs::write(&file, text).expect("written");
     hand::read_configuration(&file).map_err(|error| match error {
-        HandError::Configuration { line, reason, .. } => (line, reason),
+        ConfigurationError::Invalid { line, reason, .. } => (line, reason),
         other => panic!("{other}"),
     })
 }

@@ -1,7 +1,7 @@
 //! Where the configuration file is.
 
 use crate::files::raised_privileges;
-use crate::hand::HandError;
+use crate::hand::ConfigurationError;
 use etcetera::BaseStrategy;
 use std::env;
 use std::ffi::OsString;
@@ -26,7 +26,7 @@ struct Environment {
 ///
 /// # Errors
 /// `SUN2XP_CONFIG` in a program with raised privileges: the planner would get another hand than the one that was named.
-pub(super) fn locate() -> Result<Option<PathBuf>, HandError> {
+pub(super) fn locate() -> Result<Option<PathBuf>, ConfigurationError> {
     let environment = Environment {
         raised_privileges: raised_privileges(),
         named: env::var_os("SUN2XP_CONFIG"),
@@ -39,11 +39,11 @@ pub(super) fn locate() -> Result<Option<PathBuf>, HandError> {
 }
 
 impl Environment {
-    fn file(self, there: impl Fn(&Path) -> bool) -> Result<Option<PathBuf>, HandError> {
+    fn file(self, there: impl Fn(&Path) -> bool) -> Result<Option<PathBuf>, ConfigurationError> {
         let named = self.named.filter(|name| !name.is_empty()).map(PathBuf::from);
         match (named, self.raised_privileges) {
             (Some(path), false) => return Ok(Some(path)),
-            (Some(path), true) => return Err(HandError::UntrustedEnvironment { path, system: SYSTEM_FILE }),
+            (Some(path), true) => return Err(ConfigurationError::UntrustedEnvironment { path, system: SYSTEM_FILE }),
             (None, true) => return Ok(Some(PathBuf::from(SYSTEM_FILE)).filter(|path| there(path))),
             (None, false) => {}
         }
@@ -61,7 +61,7 @@ impl Environment {
 mod tests {
     use super::*;
 
-    fn found(raised_privileges: bool, named: &str, files: &[&str]) -> Result<Option<String>, HandError> {
+    fn found(raised_privileges: bool, named: &str, files: &[&str]) -> Result<Option<String>, ConfigurationError> {
         let environment = Environment {
             raised_privileges,
             named: Some(named.into()),
