@@ -1,5 +1,5 @@
-//! Files on disk, handled so that no path that a person or a program names can hang the library or exhaust its memory,
-//! and so that no failure and no other process destroys what is in a file.
+//! Reads and writes files. A path from a person or a program cannot make the library wait without end or exhaust its
+//! memory. No failure and no other process can destroy the content of a file.
 
 mod privileges;
 mod regular;
@@ -13,7 +13,7 @@ pub use update::{UpdateError, update_file};
 
 use std::io::{Error, ErrorKind};
 
-/// The errno that is nearest to an error of this module, which the system may have reported or not.
+/// Returns the closest errno for an error of this module, whether or not the system reported one.
 pub(crate) fn errno(error: &Error) -> i32 {
     error.raw_os_error().unwrap_or(match error.kind() {
         ErrorKind::InvalidInput | ErrorKind::InvalidData => libc::EINVAL,

@@ -1,9 +1,10 @@
-//! Whether this process may do more than the user who has started it.
+//! Checks whether this process has more rights than the user who started it.
 #![allow(unsafe_code)]
 
-/// Whether the program was started with more rights than its caller has: it is setuid or setgid, or its file has
-/// capabilities. What the caller decides is not to be trusted then, such as the environment and the working directory.
+/// Returns whether the program runs with more rights than its caller: it is setuid or setgid, or its file has
+/// capabilities. Such a program must not trust what the caller controls, such as the environment and the working
+/// directory.
 pub fn raised_privileges() -> bool {
-    // SAFETY: it reads what the kernel has left for this process at its start, and has no other effect.
+    // SAFETY: the call reads a value that the kernel stored at the start of this process, and has no other effect.
     unsafe { libc::getauxval(libc::AT_SECURE) != 0 }
 }

@@ -8,23 +8,25 @@ use std::path::Path;
 /// Opens a regular file for reading. The reader ends after `largest` + 1 bytes, so that a file that grows while it is
 /// read cannot fill the memory.
 ///
-/// A path that leads to a FIFO, a device, a socket or a directory is refused without waiting for anything.
+/// A path to a FIFO, a device, a socket or a directory is refused without waiting.
 ///
 /// # Errors
-/// What the system reports; [`io::ErrorKind::InvalidInput`] where the path leads to something other than a regular
-/// file; [`io::ErrorKind::FileTooLarge`] where the file has more than `largest` bytes.
+/// - the error that the system reports
+/// - [`io::ErrorKind::InvalidInput`] if the path does not lead to a regular file
+/// - [`io::ErrorKind::FileTooLarge`] if the file has more than `largest` bytes
 pub fn open_regular_file(path: &Path, largest: u64) -> io::Result<Take<File>> {
     Ok(open(path, OpenOptions::new().read(true), largest)?.take(largest.saturating_add(1)))
 }
 
 /// Opens a regular file of at most `largest` bytes with these options.
 pub(super) fn open(path: &Path, options: &mut OpenOptions, largest: u64) -> io::Result<File> {
-    // Opening some devices has an effect: a modem line rises, a tape rewinds. So the kind is known before the path is
+    // Opening some devices has an effect: a modem line rises, a tape rewinds. So the kind is checked before the path is
     // opened.
     check(&metadata(path)?, largest)?;
-    // O_NONBLOCK: the path may lead to a FIFO by now, which would wait for a writer. It has no effect on regular files.
+    // O_NONBLOCK: the path may lead to a FIFO by now, and opening that would wait for a writer. The flag has no effect
+    // on regular files.
     let file = options.custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY).open(path)?;
-    // What counts is what was opened.
+    // The path may have changed in between, so the opened file is checked too.
     check(&file.metadata()?, largest)?;
     Ok(file)
 }
@@ -32,7 +34,8 @@ pub(super) fn open(path: &Path, options: &mut OpenOptions, largest: u64) -> io::
 /// Reads a regular file of at most `largest` bytes as text.
 ///
 /// # Errors
-/// As [`open_regular_file`], and [`io::ErrorKind::InvalidData`] with the line where the file is not UTF-8.
+/// The errors of [`open_regular_file`], and [`io::ErrorKind::InvalidData`] with the line at which the file is not
+/// UTF-8.
 pub fn read_regular_file(path: &Path, largest: u64) -> io::Result<String> {
     read_text(&mut open_regular_file(path, largest)?, largest)
 }
@@ -51,7 +54,7 @@ pub(super) fn read_text(input: &mut impl Read, largest: u64) -> io::Result<Strin
     })
 }
 
-/// Refuses everything but regular files.
+/// Refuses everything except regular files.
 pub(super) fn check_kind(kind: FileType) -> io::Result<()> {
     if kind.is_file() {
         return Ok(());
@@ -125,7 +128,7 @@ mod tests {
 
     #[test]
     fn a_file_without_a_size_is_read_no_further_than_the_limit() {
-        // The kernel gives files in /proc no size.
+        // The kernel reports no size for files in /proc.
         let maps = Path::new("/proc/self/maps");
         assert!(read_regular_file(maps, 1 << 20).expect("read").contains("[stack]"));
         assert_eq!(read_regular_file(maps, 10).expect_err("refused").kind(), io::ErrorKind::FileTooLarge);

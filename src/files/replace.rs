@@ -1,4 +1,4 @@
-//! Writes files whole: beside their place first, and into it in one step.
+//! Writes complete files: first under a temporary name in the same folder, then in one step to their place.
 
 use super::regular::check_kind;
 use std::collections::hash_map::RandomState;
@@ -8,21 +8,23 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
 
-/// How many names are tried. Two names of 64 random bits are never the same by accident.
+/// Number of temporary names that are tried. Two names of 64 random bits are never equal by accident.
 const ATTEMPTS: u32 = 16;
 
-/// The bits of a mode that a new file inherits: neither set-user-ID nor set-group-ID nor sticky.
+/// The bits of a mode that a new file inherits. Set-user-ID, set-group-ID and sticky are not inherited.
 const PERMISSIONS: u32 = 0o777;
 
-/// Puts a file with what `write` writes in the place of the one at `path`, or where there was none.
+/// Writes a file with the content that `write` gives. It replaces the one at `path`, if there is one.
 ///
-/// Readers see the old file or the new one, whole, and so does whoever looks after a power cut. If anything fails, the
-/// old file stays as it was. The new file has the permissions of the old one, and its owner and group where this
-/// process may give them away.
+/// A reader sees either the complete old file or the complete new one, even after a power cut. If anything fails, the
+/// old file stays unchanged. The new file gets the permissions of the old one, and its owner and group if this process
+/// may set them.
+///
+/// Symbolic links are not followed. A caller that wants the target of a link must resolve the link first.
 ///
 /// # Errors
-/// What the system reports; [`io::ErrorKind::InvalidInput`] where `path` is something other than a regular file.
-/// Symbolic links are not followed: who wants the file behind a link resolves it first.
+/// - the error that the system reports
+/// - [`io::ErrorKind::InvalidInput`] if `path` is not a regular file
 pub fn replace_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let old = match fs::symlink_metadata(path) {
         Ok(old) => Some(old),
@@ -36,11 +38,12 @@ pub fn replace_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Resul
     new.replace(path)
 }
 
-/// Writes a file under the first of `names` that no file in `folder` has yet, and returns its path. Nobody sees a part
-/// of it, and no file is written over.
+/// Writes a file under the first of `names` that is free in `folder`, and returns its path. The file appears complete,
+/// and no file is overwritten.
 ///
 /// # Errors
-/// What the system reports; [`io::ErrorKind::AlreadyExists`] where every name is taken.
+/// - the error that the system reports
+/// - [`io::ErrorKind::AlreadyExists`] if no name is free
 pub fn create_file(
     folder: &Path,
     names: impl IntoIterator<Item = String>,
@@ -60,8 +63,8 @@ pub fn create_file(
     Err(ErrorKind::AlreadyExists.into())
 }
 
-/// A file under a temporary name. Dropping it removes it, unless it was placed. One that a killed process leaves behind
-/// is never read.
+/// A file under a temporary name. Dropping it removes the file, unless it was placed. A file left behind by a killed
+/// process is never read.
 pub(super) struct NewFile {
     folder: PathBuf,
     path: PathBuf,
@@ -70,7 +73,7 @@ pub(super) struct NewFile {
 }
 
 impl NewFile {
-    /// In the folder of `target`, to replace a file with the metadata `old`.
+    /// Creates a file in the folder of `target`, to replace a file with the metadata `old`.
     pub fn beside(target: &Path, old: Option<&Metadata>) -> io::Result<Self> {
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -80,8 +83,8 @@ impl NewFile {
     }
 
     fn inside(folder: &Path, old: Option<&Metadata>) -> io::Result<Self> {
-        // Until it has the owner of the old file, nobody else may read what may be secret. Otherwise the umask decides,
-        // as usual.
+        // The old file may be secret, so nobody else may read the new one until it has the owner of the old one.
+        // Without an old file the umask decides, as usual.
         let mode = if old.is_some() { 0o600 } else { 0o666 };
         let (path, file) = create_unpredictable(folder, mode)?;
         let new = Self { folder: folder.into(), path, output: BufWriter::new(file), placed: false };
@@ -91,27 +94,27 @@ impl NewFile {
         Ok(new)
     }
 
-    /// Takes the place of the file at `path`, or of none.
+    /// Moves the file to `path`, and replaces the file there if it exists.
     pub fn replace(mut self, path: &Path) -> io::Result<()> {
         fs::rename(&self.path, path)?;
         self.placed = true;
         flush_folder(&self.folder)
     }
 
-    /// Everything written is on the disk.
+    /// Writes everything to the disk.
     pub fn flush(&mut self) -> io::Result<()> {
         self.output.flush()?;
         self.output.get_ref().sync_all()
     }
 
-    /// Gives the file its name, if no file has it.
+    /// Gives the file its final name, if the name is free.
     fn place_at_free(&mut self, path: &Path) -> io::Result<()> {
         match fs::hard_link(&self.path, path) {
-            // The temporary name goes when this value does.
+            // Dropping this value removes the temporary name.
             Ok(()) => Ok(()),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(error),
-            // A file system without hard links, such as FAT. Between the two steps a file of another process can be
-            // lost there.
+            // The file system has no hard links (FAT, for example). Here a file that another process creates between
+            // the two steps is lost.
             Err(_) if fs::symlink_metadata(path).is_err() => {
                 fs::rename(&self.path, path)?;
                 self.placed = true;
@@ -125,19 +128,19 @@ impl NewFile {
 impl Drop for NewFile {
     fn drop(&mut self) {
         if !self.placed {
-            // Nothing more can be done about a file that cannot be removed.
+            // A file that cannot be removed stays behind, because there is no other remedy.
             let _ = fs::remove_file(&self.path);
         }
     }
 }
 
-/// A new file under a name that nobody can prepare a trap for.
+/// Creates a file under a name that an attacker cannot predict.
 fn create_unpredictable(folder: &Path, mode: u32) -> io::Result<(PathBuf, File)> {
     let mut last = io::Error::from(ErrorKind::AlreadyExists);
     for _ in 0..ATTEMPTS {
         // The keys of a RandomState come from the system's random numbers.
         let path = folder.join(format!(".sun2xp-{:016x}.new", RandomState::new().build_hasher().finish()));
-        // O_EXCL, so that neither a file nor a link under this name is opened.
+        // create_new sets O_EXCL, so that neither an existing file nor a link under this name is opened.
         let opened =
             OpenOptions::new().write(true).create_new(true).mode(mode).custom_flags(libc::O_NOFOLLOW).open(&path);
         match opened {
@@ -149,32 +152,32 @@ fn create_unpredictable(folder: &Path, mode: u32) -> io::Result<(PathBuf, File)>
     Err(last)
 }
 
-/// Owner, group and permissions of the old file, as far as this process may set them.
+/// Sets owner, group and permissions to those of the old file, as far as this process may.
 fn inherit(file: &File, old: &Metadata) -> io::Result<()> {
     let new = file.metadata()?;
     let mut mode = old.mode() & PERMISSIONS;
     if new.uid() != old.uid() {
-        // Only root may give a file away. Somebody else's file that this user may replace becomes this user's.
+        // Only root may change the owner of a file. When this user replaces another user's file, the new file is this
+        // user's.
         let _ = fchown(file, Some(old.uid()), None);
     }
     if new.gid() != old.gid() && fchown(file, None, Some(old.gid())).is_err() {
-        // The group is another one: it gets no more than everybody.
+        // The group differs from the old one, so it gets at most the permissions of others.
         mode &= 0o707 | (mode & 0o007) << 3;
     }
-    // A file system without permissions of its own refuses to set any.
+    // A file system without permissions refuses to set any.
     if file.metadata()?.mode() & PERMISSIONS == mode {
         return Ok(());
     }
     file.set_permissions(Permissions::from_mode(mode))
 }
 
-/// A name is on the disk when its folder is.
+/// Writes the folder to the disk. Without this, a power cut can undo the change of name.
 fn flush_folder(folder: &Path) -> io::Result<()> {
-    // The file has its place already: a folder that cannot be opened for reading only means that a power cut may undo
-    // that.
+    // The file is already at its place. If the folder cannot be opened for reading, a power cut may undo the change.
     let Ok(folder) = File::open(folder) else { return Ok(()) };
     match folder.sync_all() {
-        // A file system that does not flush folders.
+        // This file system cannot flush folders.
         Err(error) if error.kind() == ErrorKind::InvalidInput => Ok(()),
         flushed => flushed,
     }

@@ -1,4 +1,4 @@
-//! Changes a file that other processes change too: read, changed and replaced under a lock.
+//! Changes a file that other processes change too: reads, changes and replaces it under a lock.
 
 use super::regular::{open, read_text};
 use super::replace::NewFile;
@@ -9,16 +9,16 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// How long an update waits for others. Each of them takes some milliseconds.
+/// How long an update waits for other updates. Each of them takes some milliseconds.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// How often it looks whether the lock is free. The system has no wait for this lock that ends in time.
+/// Interval at which the lock is tried. The system offers no wait with a time-out for this lock.
 const LOOKING: Duration = Duration::from_millis(5);
 
-/// Why a file was not updated. It is as it was.
+/// Why a file was not updated. The file is unchanged.
 #[derive(Debug)]
 pub enum UpdateError<E> {
-    /// The system refuses something, or another process does not let go of the file.
+    /// The system reported an error, or another process did not release the file.
     File(io::Error),
     /// The change was refused.
     Change(E),
@@ -30,18 +30,21 @@ impl<E> From<io::Error> for UpdateError<E> {
     }
 }
 
-/// Puts what `change` makes of the text of the file at `path` in its place; nothing happens where it makes none.
+/// Replaces the text of the file at `path` by the result of `change`. If `change` returns `None`, the file stays
+/// unchanged.
 ///
-/// No other update of the file, by any thread or process, happens between reading and replacing it: they wait for each
-/// other, for 30 seconds at most. A program that changes the file without the lock, such as an editor, is noticed
-/// unless it does so in the last moment, and then `change` is called again with the new text. The file is replaced as
-/// by [`replace_file`](super::replace_file); a symbolic link stays one, and the file behind it is replaced. The lock
-/// belongs to the open file, so it ends with its process.
+/// Updates of a file by several threads and processes exclude each other: each waits for the others, at most 30
+/// seconds. If a program without the lock, such as an editor, changes the file meanwhile, `change` is called again with
+/// the new text. Only a change in the last moment before the replacement is not detected. The file is replaced as by
+/// [`replace_file`](super::replace_file). A symbolic link is kept, and its target is replaced. The lock belongs to the
+/// open file, so it ends with its process.
 ///
 /// # Errors
-/// What the system reports; [`io::ErrorKind::InvalidInput`] where the path leads to something other than a regular
-/// file; [`io::ErrorKind::FileTooLarge`] where the file has more than `largest` bytes; [`io::ErrorKind::ResourceBusy`]
-/// where others do not let go of the file in time; what `change` refuses.
+/// - the error that the system reports
+/// - [`io::ErrorKind::InvalidInput`] if the path does not lead to a regular file
+/// - [`io::ErrorKind::FileTooLarge`] if the file has more than `largest` bytes
+/// - [`io::ErrorKind::ResourceBusy`] if others do not release the file in time
+/// - the error of `change`
 pub fn update_file<E>(
     path: &Path,
     largest: u64,
@@ -50,11 +53,11 @@ pub fn update_file<E>(
     let path = &path.canonicalize()?;
     let deadline = Instant::now() + PATIENCE;
     loop {
-        // For writing, although it is replaced and not written: who may not write a file shall not replace it, and over
-        // a network only such a file can be locked.
+        // The file is opened for writing although it is replaced and not written. A user without write permission must
+        // not replace it, and a network file system locks only a file that is open for writing.
         let file = Locked::new(open(path, OpenOptions::new().read(true).write(true), largest)?, deadline)?;
         let old = file.0.metadata()?;
-        // Else another process has replaced it while this one waited for the lock of the old one.
+        // If the versions differ, another process replaced the file while this one waited for the lock of the old file.
         if version(&metadata(path)?) == version(&old) {
             let text = read_text(&mut &file.0, largest)?;
             let Some(changed) = change(&text).map_err(UpdateError::Change)? else { return Ok(()) };
@@ -71,7 +74,7 @@ pub fn update_file<E>(
     }
 }
 
-/// A file that is locked until it is dropped.
+/// A file that is locked until this value is dropped.
 struct Locked(File);
 
 impl Locked {
@@ -92,7 +95,7 @@ impl Locked {
 
 impl Drop for Locked {
     fn drop(&mut self) {
-        // A child that was forked meanwhile has the file open too, and would keep the lock.
+        // A child forked meanwhile also has the file open, and would otherwise keep the lock.
         let _ = self.0.unlock();
     }
 }
@@ -101,7 +104,7 @@ fn busy(reason: &str) -> io::Error {
     io::Error::new(ErrorKind::ResourceBusy, reason)
 }
 
-/// Some file systems have no locks. Without one the findings of others could get lost.
+/// Refuses a file system without locks, because without a lock the changes of others could be lost.
 fn unlockable(error: io::Error) -> io::Error {
     match error.raw_os_error() {
         Some(libc::ENOLCK | libc::ENOSYS | libc::EOPNOTSUPP) => {
@@ -112,7 +115,7 @@ fn unlockable(error: io::Error) -> io::Error {
     }
 }
 
-/// What differs between a file and the one that takes its place, or that it becomes by being written.
+/// Returns a value that changes when a file is replaced or written.
 fn version(file: &Metadata) -> [u64; 5] {
     [file.dev(), file.ino(), file.size(), file.mtime() as u64, file.mtime_nsec() as u64]
 }
@@ -208,7 +211,7 @@ mod tests {
         assert!(matches!(large, Err(UpdateError::File(error)) if error.kind() == ErrorKind::FileTooLarge));
         assert!(matches!(update_file(Path::new("/dev/null"), 2, append("new")), Err(UpdateError::File(_))));
         assert_eq!(version(&metadata(&file).expect("there")), before);
-        // The lock is free again.
+        // The lock has been released.
         File::open(&file).expect("open").try_lock().expect("free");
     }
 }

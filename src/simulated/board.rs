@@ -1,6 +1,6 @@
-//! A board without hardware: bytes in, bytes out, and the physics of its fingers in between. It has no clock and no
-//! thread; [`SimulatedPort`](crate::simulated::SimulatedPort) puts it behind a serial port,
-//! [`SimulatedCable`](crate::simulated::SimulatedCable) runs it on simulated time.
+//! A board without hardware: the board protocol over the physics of its fingers. It has no clock and no thread.
+//! [`SimulatedPort`](crate::simulated::SimulatedPort) connects it to a serial port, and
+//! [`SimulatedCable`](crate::simulated::SimulatedCable) runs it in simulated time.
 
 use crate::board::protocol::{
     ANY_ADDRESS, Decoder, Frame, HIGHEST_ADDRESS, Kind, Malformed, Message, Packet, Reason, Refused, WireFrame,
@@ -14,37 +14,37 @@ use thiserror::Error;
 /// Why a simulated board cannot be built.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SimulatedBoardError {
-    /// Addresses are 1 to 15, each once.
+    /// The address is not between 1 and 15, or two fingers have it.
     #[error("finger address {0} is not between 1 and {HIGHEST_ADDRESS}, or two fingers of one port have it")]
     Address(u8),
-    /// A finger's tendons.
+    /// The tendons of a finger are unusable.
     #[error("finger address {address}: {source}")]
     Tendons {
-        /// Which finger.
+        /// The finger's address.
         address: u8,
-        /// What is wrong.
+        /// What is wrong with the tendons.
         source: TendonsError,
     },
 }
 
-/// A board with its fingers, as far as its port can tell. A command takes effect when its last byte arrives, and its
-/// reply says what was measured at that instant.
+/// A board with its fingers. A command takes effect when its last byte arrives, and its reply contains the measurements
+/// of that instant.
 #[derive(Debug)]
 pub struct SimulatedBoard {
     decoder: Decoder,
-    /// In the order of their addresses.
+    /// The fingers in the order of their addresses.
     fingers: Vec<SimulatedFinger>,
-    /// Where the physics has got to, ns; none before the first call.
+    /// Time up to which the physics has been computed, ns. `None` before the first call.
     time: Option<u64>,
 }
 
-/// One step of the physics, ns.
+/// Duration of one step of the physics, ns.
 const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
 const _: () = assert!(STEP == 100_000, "the conversion to whole nanoseconds lost something");
 
 impl SimulatedBoard {
-    /// A board with these `fingers` (0 to 2) of a hand at their configured addresses, braked at their start poses.
-    /// Every finger has noise of its own.
+    /// Creates a board with these `fingers` (0 to 2) of a hand at their configured addresses. The fingers are braked at
+    /// their start poses. Each finger has its own noise.
     pub fn new(hand: &Configuration, fingers: &[usize]) -> Result<Self, SimulatedBoardError> {
         let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), time: None };
         for &index in fingers {
@@ -62,24 +62,24 @@ impl SimulatedBoard {
         Ok(board)
     }
 
-    /// The same board with its own number in the unique numbers of its fingers: no two boards of one hand may have the
-    /// same fingers and the same number.
+    /// Puts `number` into the unique numbers of the board's fingers. Two boards of one hand with the same fingers must
+    /// have different numbers.
     pub fn numbered(mut self, number: u32) -> Self {
         self.fingers.iter_mut().for_each(|finger| finger.set_board_number(number));
         self
     }
 
-    /// The finger at this address.
+    /// Returns the finger at this address.
     pub fn finger(&mut self, address: u8) -> Option<&mut SimulatedFinger> {
         self.fingers.iter_mut().find(|finger| finger.address() == address)
     }
 
-    /// All fingers, in the order of their addresses.
+    /// Returns all fingers, in the order of their addresses.
     pub fn fingers(&mut self) -> &mut [SimulatedFinger] {
         &mut self.fingers
     }
 
-    /// Lets time pass until `now`, ns. The first call sets the board's clock; time does not run backward.
+    /// Advances the physics to `now`, ns. The first call sets the board's clock. Time does not run backward.
     pub fn advance(&mut self, now: u64) {
         let time = self.time.get_or_insert(now);
         while *time + STEP <= now {
@@ -90,10 +90,10 @@ impl SimulatedBoard {
         }
     }
 
-    /// Takes bytes that arrive at `now`, ns, and gives each answer to `send`, whole.
+    /// Receives bytes at `now`, ns, and passes each complete answer to `send`.
     pub fn receive(&mut self, now: u64, mut bytes: &[u8], send: &mut dyn FnMut(&[u8])) {
         self.advance(now);
-        // A fraction of a step may be left; the physics has not got further than this.
+        // The physics advances in whole steps, so its time may be a fraction of a step behind.
         let now = self.time.unwrap_or(now);
         loop {
             let damaged = self.decoder.counters().damaged;
@@ -105,7 +105,7 @@ impl SimulatedBoard {
     }
 }
 
-/// None: not meant for this board, or no request.
+/// Returns the answer to a frame, or `None` if the frame is not a request or not for this board.
 fn answer(fingers: &mut [SimulatedFinger], now: u64, packet: &Packet, damaged: u64) -> Option<Message> {
     const ANSWER: u8 = 0x8;
     if packet.kind() & ANSWER != 0 {
@@ -124,9 +124,9 @@ fn answer(fingers: &mut [SimulatedFinger], now: u64, packet: &Packet, damaged: u
         Ok(Message { frame: Frame::Configure(terms), .. }) => finger.configure(&terms),
         Ok(Message { frame: Frame::Command(command), .. }) => finger.command(now, &command, damaged),
         Ok(Message { frame: Frame::Stop(_), .. }) => finger.stop(now),
-        // It has no tactile sensors, and does not name the capability.
+        // The board has no tactile sensors, and does not announce the capability.
         Ok(Message { frame: Frame::TactileRequest(_), .. }) => refuse(Reason::UnknownFrame, packet.body().len() as u16),
-        // Answers were sorted out above.
+        // Answers were rejected above.
         Ok(_) => return None,
         Err(Malformed::Value { offset, .. }) => {
             finger.refuses_any_terms().unwrap_or_else(|| refuse(Reason::Value, u16::from(offset)))

@@ -1,54 +1,55 @@
-//! A simulated board on simulated time, in memory: for experiments and tests that need no port and wait for nothing.
+//! Connects a simulated board in memory and in simulated time, for experiments and tests without a port and without
+//! waiting.
 
 use crate::board::{PortError, Transport};
 use crate::simulated::board::SimulatedBoard;
 use crate::simulated::line::{LineFault, SimulatedLine};
 use std::collections::VecDeque;
 
-/// A cable without length and bit rate, and the clock of the world at both its ends.
+/// A cable without delay, with the clock that both its ends use.
 #[derive(Debug)]
 pub struct SimulatedCable {
     board: SimulatedBoard,
     now: u64,
-    /// From the board to the host.
+    /// The direction from the board to the host.
     line: SimulatedLine,
-    /// From the host to the board.
+    /// The direction from the host to the board.
     line_to_board: SimulatedLine,
     to_host: VecDeque<u8>,
     plugged: bool,
 }
 
 impl SimulatedCable {
-    /// With the clock at 0.
+    /// Creates a cable with the clock at 0.
     pub fn new(board: SimulatedBoard) -> Self {
         let [line, line_to_board] = [(); 2].map(|()| SimulatedLine::new());
         Self { board, now: 0, line, line_to_board, to_host: VecDeque::new(), plugged: true }
     }
 
-    /// What is at the other end.
+    /// Returns the board at the other end.
     pub fn board(&mut self) -> &mut SimulatedBoard {
         &mut self.board
     }
 
-    /// The line becomes bad: this happens to each frame from the board with this probability, until `until`, ns. A
-    /// stall always happens. Chance begins anew with this seed.
+    /// Applies `fault` to each frame from the board with this probability, until `until`, ns. A stall ignores the
+    /// probability. `seed` restarts the random numbers.
     pub fn inject(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
         self.line.inject(fault, probability, until, seed);
     }
 
-    /// The same with frames to the board.
+    /// Does the same to frames to the board.
     pub fn inject_to_board(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
         self.line_to_board.inject(fault, probability, until, seed);
     }
 
-    /// The line is good again, both ways.
+    /// Removes all faults of the line in both directions.
     pub fn clear(&mut self) {
         self.line.clear();
         self.line_to_board.clear();
     }
 
-    /// Pulls the cable out, or puts it in again: reads and writes meet a port that has vanished, and what was on its
-    /// way is lost.
+    /// Unplugs the cable or plugs it in again. While it is unplugged, reads and writes report a vanished port. Bytes on
+    /// their way are lost.
     pub fn set_plugged(&mut self, plugged: bool) {
         self.plugged = plugged;
         if !plugged {
@@ -58,7 +59,7 @@ impl SimulatedCable {
         }
     }
 
-    /// Lets time pass until `time`, ns.
+    /// Advances the time to `time`, ns.
     pub fn advance_to(&mut self, time: u64) {
         while let Some(arrival) = self.line_to_board.next_arrival().filter(|&arrival| arrival <= time) {
             self.now = self.now.max(arrival);
@@ -86,7 +87,7 @@ impl Transport for SimulatedCable {
         Ok(bytes.len())
     }
 
-    /// Time passes only while there is nothing to read.
+    /// Time advances only while there is nothing to read.
     fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
         if !self.plugged {
             return Err(PortError::Vanished);

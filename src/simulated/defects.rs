@@ -1,47 +1,47 @@
-//! What can be broken about a simulated finger, while it runs.
+//! Defects of a simulated finger, which can occur while it runs.
 
 use crate::board::protocol::Status;
 use crate::simulated::finger::SimulatedFinger;
 
-/// A defect of one finger. Tendons, motors, gauges and encoders are counted from 1 to 4, as in the texts of faults.
+/// A defect of one finger. Tendons, motors, gauges and encoders have the numbers 1 to 4, as in the texts of faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Defect {
     /// A tendon is torn.
     CutTendon(u8),
-    /// A tendon slips where it is clamped, and bears no more than so much.
+    /// A tendon slips in its clamp above a certain tension.
     SlackTendon {
-        /// Which.
+        /// The tendon's number.
         tendon: u8,
-        /// What it bears, N.
+        /// The largest tension that the clamp holds, N.
         grip: f64,
     },
     /// A motor is blocked.
     JammedMotor(u8),
-    /// A motor is so hot that its driver switches off: all motors lose their torque, as with any fault that the board
-    /// finds.
+    /// A motor is too hot, and its driver switches off. All motors lose their torque, as with any fault that the board
+    /// detects.
     HotMotor(u8),
-    /// A gauge shows the same for ever.
+    /// The reading of a gauge no longer changes.
     DeadGauge {
-        /// Which.
+        /// The gauge's number.
         gauge: u8,
-        /// What it shows; none: what it shows now.
+        /// The constant reading. `None`: the current reading.
         count: Option<u16>,
     },
-    /// A gauge drifts.
+    /// The reading of a gauge drifts.
     DriftingGauge {
-        /// Which.
+        /// The gauge's number.
         gauge: u8,
-        /// N/s.
+        /// Rate of the drift, N/s.
         speed: f64,
     },
     /// An encoder gains or loses counts.
     EncoderJump {
-        /// Which.
+        /// The encoder's number.
         encoder: u8,
-        /// How many.
+        /// Number of counts.
         counts: i32,
     },
-    /// The board no longer vouches for its encoder counts.
+    /// The board reports that its encoder counts are no longer valid.
     ZeroLost,
     /// The emergency stop input is active.
     EmergencyStop,
@@ -54,7 +54,7 @@ pub enum Defect {
 }
 
 impl SimulatedFinger {
-    /// From now on the finger has this defect too. False where there is no such part: nothing happens.
+    /// Adds this defect to the finger. Returns false, and does nothing, if the finger has no such part.
     pub fn suffer(&mut self, defect: &Defect) -> bool {
         let part = match *defect {
             Defect::CutTendon(part) | Defect::JammedMotor(part) | Defect::HotMotor(part) => part,
@@ -80,7 +80,7 @@ impl SimulatedFinger {
         true
     }
 
-    /// No defects any more. What the board remembers of a fault it remembers until the next Configure.
+    /// Removes all defects. Faults that the board has stored stay stored until the next Configure.
     pub fn mend(&mut self) {
         self.plant().mend();
         self.sensors().mend();

@@ -1,4 +1,4 @@
-//! One finger of a simulated board: the board's side of the protocol over the physics of a finger.
+//! One finger of a simulated board: the board's end of the protocol over the physics of a finger.
 
 mod greeting;
 mod identity;
@@ -12,18 +12,18 @@ use nalgebra::{Vector3, Vector4};
 
 const MILLISECOND: u64 = 1_000_000;
 
-/// The state diagram of `docs/board-protocol.md`.
+/// The states of `docs/board-protocol.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// As after power-up.
+    /// The state after power-up.
     Idle,
-    /// Terms are agreed, motors off.
+    /// Terms are agreed; the motors are off.
     Ready,
-    /// The motors follow.
+    /// The motors follow the Commands.
     Enabled,
-    /// Until the next Configure.
+    /// The end state has been entered. Only a Configure leaves it.
     Ended {
-        /// When *hold* lets go, ns; none: the motors are off.
+        /// When *hold* ends, ns. `None`: the motors are off.
         holds_until: Option<u64>,
     },
 }
@@ -36,29 +36,29 @@ pub struct SimulatedFinger {
     plant: Plant,
     sensors: Sensors,
     state: State,
-    /// Where its physics has got to, ns.
+    /// Time up to which the physics has been computed, ns.
     clock: u64,
-    /// When the last Command that was obeyed came, and when silence or a Stop last ended that, ns; none: not since the
-    /// last Configure.
+    /// When the last obeyed Command arrived, and when silence or a Stop last ended the motion, ns. `None`: not since
+    /// the last Configure.
     commanded_at: Option<u64>,
     ended_at: Option<u64>,
     terms: Configure,
-    /// What the motors give, torque units.
+    /// Torques of the motors, torque units.
     torques: [i16; 4],
-    /// Faults that are there now.
+    /// Faults that are present now.
     present: Status,
-    /// What is remembered until the next Configure.
+    /// Status bits that stay set until the next Configure.
     latched: Status,
     torque_unit: u32,
     torque_limit: u16,
     counts_per_revolution: u32,
-    /// Damaged frames on the port when this finger last replied.
+    /// Number of damaged frames on the port at the last Reply of this finger.
     damaged_before: u64,
     zero_valid: bool,
 }
 
 impl SimulatedFinger {
-    /// `index`: 0 to 2, of the finger in its hand. Gravity in the finger's frame, m/s^2.
+    /// `index`: the finger in its hand, 0 to 2. `gravity`: in the finger's frame, m/s^2.
     pub(super) fn new(
         index: usize,
         address: u8,
@@ -66,8 +66,8 @@ impl SimulatedFinger {
         gravity: Vector3<f64>,
     ) -> Result<Self, TendonsError> {
         let strongest = finger.motor.torque_limit.into_iter().fold(0.0, f64::max);
-        // The finest unit, in whole nN m, in which the strongest motor's limit is 30 000 units at most. 1 N cm = 1e7 nN
-        // m.
+        // The finest unit, in whole nN m, in which the limit of the strongest motor is at most 30 000 units. 1 N cm is
+        // 1e7 nN m.
         let torque_unit = (strongest * 1e7 / 30_000.0).ceil().max(1.0);
         let counts = finger.encoder.counts_per_revolution;
         Ok(Self {
@@ -91,42 +91,43 @@ impl SimulatedFinger {
         })
     }
 
-    /// Its address.
+    /// Returns the finger's address.
     pub fn address(&self) -> u8 {
         self.address
     }
 
-    /// The truth behind the sensors, and the place to push and to put things in the way.
+    /// Returns the physics of the finger: its true state, and external forces and obstacles.
     pub fn plant(&mut self) -> &mut Plant {
         &mut self.plant
     }
 
-    /// Whether the motors follow Commands.
+    /// Returns whether the motors follow Commands.
     pub fn enabled(&self) -> bool {
         self.state == State::Enabled
     }
 
-    /// The board's clock, ns.
+    /// Returns the board's clock, ns.
     pub fn clock(&self) -> u64 {
         self.clock
     }
 
-    /// When the last Command that was obeyed came, by the board's clock, ns; none: not since the last Configure.
+    /// Returns when the last obeyed Command arrived, ns on the board's clock. `None`: not since the last Configure.
     pub fn commanded_at(&self) -> Option<u64> {
         self.commanded_at
     }
 
-    /// When silence or a Stop led to the end state, by the board's clock, ns; none: not since the last Configure.
+    /// Returns when silence or a Stop led to the end state, ns on the board's clock. `None`: not since the last
+    /// Configure.
     pub fn ended_at(&self) -> Option<u64> {
         self.ended_at
     }
 
-    /// What the motors are told right now, N cm.
+    /// Returns the current torques of the motors, N cm.
     pub fn motor_torques(&self) -> Vector4<f64> {
         Vector4::from(self.torques.map(f64::from)) * (f64::from(self.torque_unit) * 1e-7)
     }
 
-    /// What a Reply would say now.
+    /// Returns the status that a Reply would contain now.
     pub fn status(&self) -> Status {
         let state = match self.state {
             State::Idle => Status::default(),
@@ -139,7 +140,7 @@ impl SimulatedFinger {
         state | zero | self.latched
     }
 
-    /// Faults that are present from now on: bits of [`Status::FAULTS`]. They take the torque off at once.
+    /// Sets the faults that are present: bits of [`Status::FAULTS`]. A fault takes the torque off at once.
     pub fn set_faults(&mut self, faults: Status) {
         self.present = Status(faults.0 & Status::FAULTS.0);
         self.latched |= self.present;
@@ -151,7 +152,7 @@ impl SimulatedFinger {
         }
     }
 
-    /// Faults beside those that are present already.
+    /// Adds faults to those that are present.
     pub(super) fn add_faults(&mut self, faults: Status) {
         self.set_faults(self.present | faults);
     }
@@ -164,14 +165,15 @@ impl SimulatedFinger {
         &mut self.sensors
     }
 
-    /// As after the loss of power: nothing is remembered, the motors are off. The encoders are absolute.
+    /// Resets the finger as a loss of power does: it forgets its terms and stored faults, and the motors are off. The
+    /// encoders are absolute.
     pub fn reset(&mut self) {
         self.state = State::Idle;
         self.torques = [0; 4];
         self.latched = self.present;
     }
 
-    /// One step of the physics, which ends at `now`, ns.
+    /// Computes one step of the physics, which ends at `now`, ns.
     pub(super) fn step(&mut self, now: u64) {
         self.clock = now;
         match self.state {
@@ -216,7 +218,7 @@ impl SimulatedFinger {
         Frame::Configured(Configured { terms: *terms, encoders, gauges, status: self.status() })
     }
 
-    /// What goes before a look at the terms, also at those that the codec cannot read.
+    /// Returns the refusal that precedes any check of the terms, even of terms that cannot be decoded.
     pub(super) fn refuses_any_terms(&self) -> Option<Frame> {
         let refuse = |reason, detail| Some(Frame::Refused(Refused { request: 0x2, reason, detail }));
         if self.enabled() {
@@ -228,7 +230,7 @@ impl SimulatedFinger {
         None
     }
 
-    /// `damaged`: damaged frames on the port so far.
+    /// `damaged`: number of damaged frames on the port so far.
     pub(super) fn command(&mut self, now: u64, command: &Command, damaged: u64) -> Frame {
         let mut clipped = false;
         match (self.state, command.enable) {
@@ -268,7 +270,7 @@ impl SimulatedFinger {
         match self.state {
             State::Enabled => self.end(now),
             State::Ready => self.state = State::Ended { holds_until: None },
-            // Holding goes on for its time: a Stop sent twice does not prolong it.
+            // A repeated Stop does not prolong the hold.
             State::Idle | State::Ended { .. } => {}
         }
         Frame::Stopped(Stopped { status: self.status() })
@@ -289,7 +291,7 @@ impl SimulatedFinger {
     }
 }
 
-/// Each torque clipped to plus or minus its limit.
+/// Clips each torque to plus or minus its limit.
 fn within(torques: [i16; 4], limits: [u16; 4]) -> [i16; 4] {
     std::array::from_fn(|motor| {
         let limit = limits[motor].min(i16::MAX as u16) as i16;

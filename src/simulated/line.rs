@@ -1,37 +1,37 @@
-//! One direction of a simulated cable: whole frames go in, and what a bad line makes of them comes out. The same seed
-//! makes the same.
+//! One direction of a simulated cable. It receives frames, and delivers them as its faults permit. The same seed gives
+//! the same result.
 
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::collections::VecDeque;
 
-/// What a line does to frames.
+/// A fault of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineFault {
     /// A frame is lost.
     Drop,
-    /// One bit of a frame is turned over.
+    /// One bit of a frame is inverted.
     Corrupt,
-    /// A frame comes so much later, ns; frames that follow may overtake it.
+    /// A frame arrives later by this time, ns. Frames that follow may overtake it.
     Delay(u64),
-    /// A frame comes twice.
+    /// A frame arrives twice.
     Duplicate,
-    /// A frame comes after the one that follows it.
+    /// A frame arrives after the one that follows it.
     Reorder,
-    /// Nothing comes; when it ends, all comes at once.
+    /// No frame arrives until the fault ends. Then all of them arrive at once.
     Stall,
 }
 
-/// Ends every frame.
+/// The last byte of every frame.
 const DELIMITER: u8 = 0;
 
-/// A fault that happens by chance, for a while.
+/// A fault that occurs at random for a limited time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Injected {
     fault: LineFault,
-    /// Of each frame, 0 to 1.
+    /// Probability for each frame, 0 to 1.
     probability: f64,
-    /// ns.
+    /// End of the fault, ns.
     until: u64,
 }
 
@@ -48,9 +48,9 @@ pub(super) struct SimulatedLine {
     injected: Vec<Injected>,
     random: Pcg64,
     waiting: VecDeque<Waiting>,
-    /// Comes after the next frame.
+    /// The frame that arrives after the next one.
     held: Option<Vec<u8>>,
-    /// Bytes of a frame that has only begun.
+    /// The bytes of an incomplete frame.
     begun: Vec<u8>,
 }
 
@@ -65,27 +65,28 @@ impl SimulatedLine {
         }
     }
 
-    /// From now on a fault happens to each frame with this probability, until `until`, ns. A stall always happens.
-    /// Chance begins anew with this seed.
+    /// Applies a fault to each frame with this probability, until `until`, ns. A stall ignores the probability. `seed`
+    /// restarts the random numbers.
     pub fn inject(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
         self.random = Pcg64::seed_from_u64(seed);
         self.injected.push(Injected { fault, probability, until });
     }
 
-    /// A good line again; what waits comes next.
+    /// Removes all faults. Delayed frames arrive next.
     pub fn clear(&mut self) {
         self.injected.clear();
         self.waiting.iter_mut().for_each(|waiting| waiting.due = 0);
     }
 
-    /// Nothing is on its way any more.
+    /// Discards everything that is on its way.
     pub fn cut(&mut self) {
         self.waiting.clear();
         self.begun.clear();
         self.held = None;
     }
 
-    /// Takes bytes at `now`, ns, that are frames back to back, cut anywhere: otherwise as [`SimulatedLine::carry`].
+    /// Transports the bytes of consecutive frames, in pieces of any size, at `now`, ns. Otherwise like
+    /// [`SimulatedLine::carry`].
     pub fn carry_bytes(&mut self, now: u64, bytes: &[u8], deliver: &mut dyn FnMut(&[u8])) {
         if self.begun.is_empty() && self.is_good(now) {
             return deliver(bytes);
@@ -104,7 +105,7 @@ impl SimulatedLine {
         self.injected.is_empty() && self.held.is_none() && self.waiting.is_empty()
     }
 
-    /// Takes a frame at `now`, ns, and gives `deliver` what comes out at once.
+    /// Transports a frame at `now`, ns, and passes everything that arrives at once to `deliver`.
     pub fn carry(&mut self, now: u64, frame: &[u8], deliver: &mut dyn FnMut(&[u8])) {
         if self.is_good(now) {
             return deliver(frame);
@@ -140,7 +141,7 @@ impl SimulatedLine {
         self.arrive(now, deliver);
     }
 
-    /// Gives `deliver` what has arrived by `now`, ns, in the order of arrival.
+    /// Passes everything that has arrived by `now`, ns, to `deliver`, in the order of arrival.
     pub fn arrive(&mut self, now: u64, deliver: &mut dyn FnMut(&[u8])) {
         while let Some(index) = self.next().filter(|&index| self.waiting[index].due <= now) {
             if let Some(frame) = self.waiting.remove(index) {
@@ -149,12 +150,12 @@ impl SimulatedLine {
         }
     }
 
-    /// When the next frame arrives, ns.
+    /// Returns when the next frame arrives, ns.
     pub fn next_arrival(&self) -> Option<u64> {
         self.next().map(|index| self.waiting[index].due)
     }
 
-    /// The frame that arrives next: of those due at the same time, the first.
+    /// Returns the index of the frame that arrives next. Of frames due at the same time, it is the first.
     fn next(&self) -> Option<usize> {
         (0..self.waiting.len()).min_by_key(|&index| self.waiting[index].due)
     }
@@ -164,7 +165,7 @@ impl SimulatedLine {
 mod tests {
     use super::*;
 
-    /// What comes out of a line into which one byte goes each microsecond, with its time.
+    /// Sends one byte per microsecond through a line, and returns what arrives with its time.
     fn out(line: &mut SimulatedLine, bytes: u8) -> Vec<(u64, u8)> {
         let mut came = Vec::new();
         for byte in 0..bytes {
@@ -209,7 +210,7 @@ mod tests {
         let mut put = |line: &mut SimulatedLine, now: u64, bytes: &[u8]| {
             line.carry_bytes(now, bytes, &mut |piece| came.push(piece.to_vec()));
         };
-        // A good line keeps nothing back.
+        // A line without faults delivers incomplete frames too.
         put(&mut line, 0, &[1, 0, 2]);
         line.inject(LineFault::Duplicate, 1.0, 3000, 1);
         for (now, bytes) in [(1000, &[0, 3, 4, 0, 5][..]), (2000, &[6]), (4000, &[0, 7, 0])] {

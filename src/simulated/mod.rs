@@ -1,5 +1,5 @@
-//! Boards made of physics: a simulated board answers the board protocol for fingers that are computed, behind a
-//! pseudo-terminal in real time or in memory on simulated time.
+//! Simulated boards: they answer the board protocol for simulated fingers, either at a pseudo-terminal in real time, or
+//! in memory in simulated time.
 
 mod board;
 mod cable;

@@ -1,35 +1,36 @@
-//! How the time of a simulated board passes beside that of the wall. No clock and no thread: both are told.
+//! Relates the time of a simulated board to real time. It has no clock and no thread; the caller passes both times.
 
-/// The most that one wake-up of the board's thread counts, ns.
+/// The most by which one wake-up of the board's thread advances the board's time, ns.
 const LONGEST_STEP: u64 = 2_000_000;
 
-/// For so long, ns, a [`Pace::Patient`] board takes silence for a pause of the machine. Cycles of a host that is not
-/// real-time can be some 10 ms apart on a busy machine, and an answer that was thrown away is missed for a hundred of
-/// them.
+/// The longest silence that a [`Pace::Patient`] board attributes to a pause of the machine, ns. On a busy machine, the
+/// cycles of a host that is not real-time can be some 10 ms apart. At 1000 Hz, such a host sends a command again when
+/// its answer has not arrived for a hundred cycles, which takes about 1 s.
 const PATIENCE: u64 = 2_000_000_000;
 
-/// How the time of a simulated board passes.
+/// The rate at which the time of a simulated board passes.
 ///
-/// Either way it does not pass while the machine does not let the board's thread run: a wake-up counts 2 ms at most.
+/// In both cases, time does not pass while the machine does not run the board's thread: a wake-up counts as at most 2
+/// ms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// As on the wall: a host that falls silent meets the watchdog in time.
+    /// The rate of real time. The watchdog trips in time when the host falls silent.
     RealTime,
-    /// It also stands still, for up to two seconds, while commands stay away. Bytes in a pseudo-terminal are carried by
-    /// an ordinary kernel thread, which a busy machine keeps waiting for tens of ms, and so it does a servo: no reason
-    /// to stop a simulated hand.
+    /// The board's time also stops, for up to two seconds, while no commands arrive. An ordinary kernel thread carries
+    /// the bytes of a pseudo-terminal. A busy machine can delay that thread, and a servo, by tens of ms. This must not
+    /// stop a simulated hand.
     Patient {
-        /// How far the board goes on after the last bytes, ns. No longer than a finger can do without its controller:
-        /// with 10 ms of an old torque, again and again, joints turned by radians, and with 1.5 ms at 1000 Hz they
-        /// shook.
-        ahead: u64,
+        /// How far the board's time continues after the last bytes, ns. It must not exceed the time for which a finger
+        /// can do without its controller. With 10 ms of an old torque, again and again, joints turned by radians. With
+        /// 1.5 ms at 1000 Hz they shook.
+        grace: u64,
     },
 }
 
 impl Pace {
-    /// Patient with a host of so many cycles a second: a command is for one period.
+    /// Creates a patient pace for a host with `rate` cycles per second. A command is valid for one period.
     pub fn patient(rate: f64) -> Self {
-        Self::Patient { ahead: (1e9 / rate) as u64 }
+        Self::Patient { grace: (1e9 / rate) as u64 }
     }
 }
 
@@ -38,37 +39,37 @@ impl Pace {
 pub struct PacedTime {
     pace: Pace,
     board: u64,
-    /// The last wake-up, on the wall.
+    /// Real time of the last wake-up.
     woken: u64,
-    /// The last bytes, on the board's clock.
-    heard: u64,
+    /// Time of the last bytes on the board's clock.
+    received_at: u64,
     silence: u64,
 }
 
 impl PacedTime {
-    /// At 0 when it is `now` on the wall, ns.
+    /// Creates a board's time that is 0 when the real time is `now`, ns.
     pub fn new(pace: Pace, now: u64) -> Self {
-        Self { pace, board: 0, woken: now, heard: 0, silence: 0 }
+        Self { pace, board: 0, woken: now, received_at: 0, silence: 0 }
     }
 
-    /// The board's thread wakes up at `now` on the wall, ns, and finds that bytes have come, or none: the time on the
-    /// board, ns.
+    /// Advances the time at a wake-up of the board's thread. `now` is the real time, ns, and `bytes` says whether bytes
+    /// have arrived. Returns the board's time, ns.
     pub fn wake(&mut self, now: u64, bytes: bool) -> u64 {
         let passed = (now - self.woken).min(LONGEST_STEP);
         self.woken = now;
         self.silence += passed;
         let next = self.board + passed;
         self.board = match self.pace {
-            Pace::Patient { ahead } if self.silence < PATIENCE => next.min(self.board.max(self.heard + ahead)),
+            Pace::Patient { grace } if self.silence < PATIENCE => next.min(self.board.max(self.received_at + grace)),
             Pace::Patient { .. } | Pace::RealTime => next,
         };
         if bytes {
-            (self.heard, self.silence) = (self.board, 0);
+            (self.received_at, self.silence) = (self.board, 0);
         }
         self.board
     }
 
-    /// For how long nothing has come, ns; as the board's thread sees it, which the machine may not let run.
+    /// Returns how long no bytes have arrived, ns, without the time in which the board's thread did not run.
     pub fn silence(&self) -> u64 {
         self.silence
     }

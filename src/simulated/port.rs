@@ -1,8 +1,8 @@
-//! A simulated board behind a real serial port, as far as its user can tell: a pseudo-terminal and a thread.
+//! A simulated board at a serial port: a pseudo-terminal and a thread.
 //!
-//! The time of the simulated board does not pass while the machine does not let its thread run: each wake-up counts as
-//! 2 ms at most. Otherwise a virtual machine that is paused for 50 ms, which stops the host's servo just the same,
-//! would trip a watchdog that no real board would trip, and the finger would fall on for 50 ms without its controller.
+//! The time of the simulated board does not pass while the machine does not run its thread: each wake-up counts as at
+//! most 2 ms. Otherwise a pause of a virtual machine for 50 ms, which also stops the host's servo, would trip a
+//! watchdog that no real board would trip. The finger would also move for 50 ms without its controller.
 
 use crate::realtime::{self, Priority, spawn};
 use crate::simulated::board::SimulatedBoard;
@@ -18,14 +18,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, sleep};
 use std::time::Duration;
 
-/// How often the physics moves on while no bytes come.
+/// Interval at which the physics advances while no bytes arrive.
 const TICK: Duration = Duration::from_millis(1);
 
-/// After such a silence nobody is taken to be at the other end, ns. A host that is there all the same loses its mark of
+/// After this silence the port is prepared for a new host, ns. A silent host that is still there loses its mark of
 /// exclusive use, but not its lock.
 const SILENCE: u64 = 100_000_000;
 
-/// A simulated board with a port of its own and a thread that runs it. Dropping it ends both.
+/// A simulated board with its own port and a thread that runs it. Dropping it ends both.
 #[derive(Debug)]
 pub struct SimulatedPort {
     shared: Arc<Mutex<Shared>>,
@@ -35,22 +35,22 @@ pub struct SimulatedPort {
     process: u32,
 }
 
-/// What the board's thread and its owner both use.
+/// The data that the board's thread and its owner share.
 #[derive(Debug)]
 struct Shared {
     board: SimulatedBoard,
-    /// From the board to the host.
+    /// The direction from the board to the host.
     line: SimulatedLine,
-    /// From the host to the board.
+    /// The direction from the host to the board.
     line_to_board: SimulatedLine,
-    /// None while the cable is out, and after another part of the program has closed its descriptors.
+    /// `None` while the cable is unplugged, and after another part of the program has closed its descriptors.
     terminal: Option<Arc<PseudoTerminal>>,
     /// The board's clock, ns.
     time: u64,
 }
 
 impl SimulatedPort {
-    /// Starts the board. Its thread asks for this priority, and goes on without where that is not permitted.
+    /// Starts the board. Its thread requests this priority, and continues without it if the system does not permit it.
     pub fn start(board: SimulatedBoard, pace: Pace, priority: Priority) -> io::Result<Self> {
         let terminal = Some(Arc::new(PseudoTerminal::open()?));
         let [line, line_to_board] = [(); 2].map(|()| SimulatedLine::new());
@@ -58,18 +58,18 @@ impl SimulatedPort {
         let ended = Arc::new(AtomicBool::new(false));
         let thread = {
             let (shared, ended) = (shared.clone(), ended.clone());
-            // Not real-time is good enough for a simulation.
+            // A simulation does not need real-time priority.
             spawn("sun2xp board", priority, move |_| run(&shared, pace, &ended))?
         };
         Ok(Self { shared, ended, thread: Some(thread), process: std::process::id() })
     }
 
-    /// The port to open; empty while the cable is out. Another one after it was out.
+    /// Returns the port to open, or an empty path while the cable is unplugged. After plugging in, the path differs.
     pub fn path(&self) -> PathBuf {
         self.shared.lock().terminal.as_deref().map(PseudoTerminal::path).map(Path::to_owned).unwrap_or_default()
     }
 
-    /// Pulls the cable out: for the host the port vanishes, and what was on its way is lost. The board goes on.
+    /// Unplugs the cable. For the host the port vanishes, and bytes on their way are lost. The board continues to run.
     pub fn unplug(&self) {
         let mut shared = self.shared.lock();
         shared.terminal = None;
@@ -77,41 +77,41 @@ impl SimulatedPort {
         shared.line_to_board.cut();
     }
 
-    /// Puts the cable in again: a new port, for which see [`SimulatedPort::path`].
+    /// Plugs the cable in again. The port is a new one, see [`SimulatedPort::path`].
     pub fn plug_in(&self) -> io::Result<()> {
         let terminal = PseudoTerminal::open()?;
         self.shared.lock().terminal.get_or_insert(Arc::new(terminal));
         Ok(())
     }
 
-    /// The line becomes bad: this happens to each frame from the board with this probability, for so long, ns. A stall
-    /// always happens. Chance begins anew with this seed.
+    /// Applies `fault` to each frame from the board with this probability, for `time`, ns. A stall ignores the
+    /// probability. `seed` restarts the random numbers.
     pub fn inject(&self, fault: LineFault, probability: f64, time: u64, seed: u64) {
         let mut shared = self.shared.lock();
         let until = shared.time.saturating_add(time);
         shared.line.inject(fault, probability, until, seed);
     }
 
-    /// The same with frames to the board.
+    /// Does the same to frames to the board.
     pub fn inject_to_board(&self, fault: LineFault, probability: f64, time: u64, seed: u64) {
         let mut shared = self.shared.lock();
         let until = shared.time.saturating_add(time);
         shared.line_to_board.inject(fault, probability, until, seed);
     }
 
-    /// The line is good again, both ways.
+    /// Removes all faults of the line in both directions.
     pub fn clear(&self) {
         let mut shared = self.shared.lock();
         shared.line.clear();
         shared.line_to_board.clear();
     }
 
-    /// Looks at the board or changes it. The board stands still meanwhile, so be brief.
+    /// Calls `look` with the board. The board's thread waits meanwhile, so `look` must be short.
     pub fn with_board<R>(&self, look: impl FnOnce(&mut SimulatedBoard) -> R) -> R {
         look(&mut self.shared.lock().board)
     }
 
-    /// The same with one finger; none where the board has no such address.
+    /// Calls `look` with one finger. Returns `None` if the board has no such address.
     pub fn with_finger<R>(&self, address: u8, look: impl FnOnce(&mut SimulatedFinger) -> R) -> Option<R> {
         self.with_board(|board| board.finger(address).map(look))
     }
@@ -122,7 +122,7 @@ impl Drop for SimulatedPort {
         self.ended.store(true, Ordering::Relaxed);
         let thread = self.thread.take().filter(|_| self.process == std::process::id());
         if let Some(thread) = thread {
-            // A panic in the board's thread ended it; there is nothing left to end.
+            // If the board's thread panicked, it has already ended.
             let _ = thread.join();
         }
     }
@@ -131,30 +131,30 @@ impl Drop for SimulatedPort {
 fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
     let mut input = [0; 512];
     let mut clock = PacedTime::new(pace, realtime::now());
-    let mut forgotten = false;
+    let mut host_forgotten = false;
     while !ended.load(Ordering::Relaxed) {
         let terminal = shared.lock().terminal.clone();
-        let heard = match &terminal {
+        let received = match &terminal {
             Some(terminal) => terminal.read(&mut input, TICK),
             None => {
                 sleep(TICK);
                 Ok(0)
             }
         };
-        let taken = heard.unwrap_or(0);
+        let taken = received.unwrap_or(0);
         let board_time = clock.wake(realtime::now(), taken > 0);
 
         let mut shared = shared.lock();
         let Shared { board, line, line_to_board, terminal: current, time } = &mut *shared;
         *time = board_time;
         if taken > 0 {
-            forgotten = false;
+            host_forgotten = false;
         }
         let Some(terminal) = terminal else {
             board.advance(board_time);
             continue;
         };
-        if heard == Err(Closed) {
+        if received == Err(Closed) {
             current.take_if(|current| Arc::ptr_eq(current, &terminal));
             continue;
         }
@@ -170,8 +170,8 @@ fn run(shared: &Mutex<Shared>, pace: Pace, ended: &AtomicBool) {
         }
         drop(shared);
 
-        if !forgotten && clock.silence() > SILENCE {
-            forgotten = true;
+        if !host_forgotten && clock.silence() > SILENCE {
+            host_forgotten = true;
             terminal.forget_last_host();
         }
     }

@@ -1,4 +1,4 @@
-//! A pseudo-terminal: the port of a simulated board.
+//! A pseudo-terminal, which is the port of a simulated board.
 #![allow(unsafe_code, reason = "raw descriptors")]
 
 use crate::board::descriptor::{Descriptor, check};
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// Both ends of a pseudo-terminal. The host's end stays open here too: with it closed, every hang-up of a host would
-/// end in read errors at the board's end.
+/// Both ends of a pseudo-terminal. The host's end is also open here. If it were closed, every hang-up of a host would
+/// cause read errors at the board's end.
 #[derive(Debug)]
 pub(super) struct PseudoTerminal {
     board_end: Descriptor,
@@ -24,14 +24,14 @@ pub(super) struct Closed;
 impl PseudoTerminal {
     pub fn open() -> io::Result<Self> {
         const FLAGS: libc::c_int = libc::O_RDWR | libc::O_NOCTTY | libc::O_CLOEXEC;
-        // SAFETY: only an integer is passed.
+        // SAFETY: the call takes only an integer.
         let board_end = Descriptor::opened(unsafe { libc::posix_openpt(FLAGS) })?;
-        // SAFETY: both calls take nothing but the descriptor.
+        // SAFETY: both calls take only the descriptor.
         check(unsafe { libc::grantpt(board_end.number()) })?;
         // SAFETY: as above.
         check(unsafe { libc::unlockpt(board_end.number()) })?;
         let mut name = [0u8; 64];
-        // SAFETY: `name` is writable for the length that is passed.
+        // SAFETY: `name` is writable for the given length.
         match unsafe { libc::ptsname_r(board_end.number(), name.as_mut_ptr().cast(), name.len()) } {
             0 => {}
             error => return Err(io::Error::from_raw_os_error(error)),
@@ -39,7 +39,7 @@ impl PseudoTerminal {
         let name = CStr::from_bytes_until_nul(&name).map_err(io::Error::other)?;
         // SAFETY: `name` is a C string.
         let host_end = Descriptor::opened(unsafe { libc::open(name.as_ptr(), FLAGS) })?;
-        // Raw before anyone learns the path: until then the terminal echoes, and eats some byte values.
+        // The terminal must be raw before its path is known. Until then it echoes, and removes some byte values.
         make_raw(&host_end)?;
         // SAFETY: the command takes an integer.
         check(unsafe { libc::fcntl(board_end.number(), libc::F_SETFL, libc::O_RDWR | libc::O_NONBLOCK) })?;
@@ -47,19 +47,19 @@ impl PseudoTerminal {
         Ok(Self { board_end, host_end, path })
     }
 
-    /// The host's end, to be opened.
+    /// Returns the path of the host's end.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Waits for bytes, so long at most, and takes what is there. Whatever goes wrong, it does not return without
-    /// having waited.
+    /// Waits for bytes, at most for `timeout`, and reads what has arrived. Returns 0 only after waiting, even after a
+    /// failed read.
     ///
     /// # Errors
     /// The pseudo-terminal is lost.
     pub fn read(&self, buffer: &mut [u8], timeout: Duration) -> Result<usize, Closed> {
         let mut poll = libc::pollfd { fd: self.board_end.number(), events: libc::POLLIN, revents: 0 };
-        // SAFETY: one pollfd, alive during the call.
+        // SAFETY: the pollfd lives during the call.
         let ready = unsafe { libc::poll(&mut poll, 1, timeout.as_millis() as libc::c_int) };
         if !self.board_end.is_own() {
             return Err(Closed);
@@ -72,7 +72,7 @@ impl PseudoTerminal {
         if taken > 0 {
             return Ok(taken as usize);
         }
-        // Without the host's end the system reports a hang-up at once, again and again.
+        // Without the host's end the system reports a hang-up at once, at every call.
         if !self.host_end.is_own() {
             return Err(Closed);
         }
@@ -80,7 +80,7 @@ impl PseudoTerminal {
         Ok(0)
     }
 
-    /// As a UART does, this does not wait: bytes that nobody fetches are lost.
+    /// Sends bytes without waiting, as a UART does. Bytes that nobody reads are lost.
     pub fn write(&self, bytes: &[u8]) {
         if self.board_end.is_own() {
             // SAFETY: `bytes` is readable for its length.
@@ -88,8 +88,8 @@ impl PseudoTerminal {
         }
     }
 
-    /// A host that died leaves the port marked as exclusive, and answers that it did not fetch: both outlive it,
-    /// because the host's end is open here too.
+    /// Removes what a dead host has left: the mark of exclusive use, and answers that it did not read. Both outlive the
+    /// host, because the host's end is also open here.
     pub fn forget_last_host(&self) {
         if self.host_end.is_own() {
             // SAFETY: neither request takes a pointer.

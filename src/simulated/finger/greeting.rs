@@ -1,17 +1,17 @@
-//! Who a simulated finger says that it is.
+//! The Identity of a simulated finger.
 
 use super::SimulatedFinger;
 use super::identity::{BOARD_NUMBER, SHORTEST_WATCHDOG_MS};
 use crate::board::protocol::{Capabilities, FirmwareVersion, Frame, Hello, Identity, Reason, Refused, VERSION};
 
-/// In [`Identity::board_kind`].
+/// The value of [`Identity::board_kind`].
 const SIMULATED_BOARD: u16 = 1;
 
-/// As of the 12-bit converter in [`Sensors`](crate::plant::Sensors).
+/// The resolution of the converter in [`Sensors`](crate::plant::Sensors), bits.
 const GAUGE_BITS: u8 = 12;
 
 impl SimulatedFinger {
-    /// Makes the unique number another one than that of the same finger on other simulated boards.
+    /// Makes the unique number differ from that of the same finger on other simulated boards.
     pub(in crate::simulated) fn set_board_number(&mut self, number: u32) {
         self.unique_number[BOARD_NUMBER].copy_from_slice(&number.to_be_bytes());
     }

@@ -1,11 +1,12 @@
-//! What a simulated finger is known by.
+//! Constants and the unique number of a simulated finger.
 
 pub(super) const SHORTEST_WATCHDOG_MS: u16 = 2;
 
-/// Where the number of the board is in the unique number.
+/// Position of the board's number in the unique number.
 pub(super) const BOARD_NUMBER: std::ops::Range<usize> = 6..10;
 
-/// Of a finger, 0 to 2, with this address. Two built-in boards may have one address, so it has both.
+/// Returns the unique number of a finger, 0 to 2, with this address. Fingers of two built-in boards may have the same
+/// address, so the number contains both.
 pub(super) fn unique_number(index: usize, address: u8) -> [u8; 12] {
     let mut number = *b"sun2xp\0\0\0\0\0\0";
     // The index is at most 2.
