@@ -1,27 +1,28 @@
-//! What a fingertip may exchange with an object, section 4.2: D x D springs of every contact type as one spatial
-//! stiffness.
+//! The contact between a fingertip and an object, section 4.2. The D x D stiffness of every contact type becomes one 6
+//! x 6 stiffness.
 
 use crate::model::direction;
 use nalgebra::allocator::Allocator;
 use nalgebra::{Const, DefaultAllocator, DimDiff, DimSub, Matrix3, Matrix4, Matrix6, SMatrix, U1, Vector3};
 use thiserror::Error;
 
-/// K may be asymmetric, or have a negative eigenvalue, by so much of its largest entry or eigenvalue: the rounding of a
-/// planner that works in `float`.
+/// Tolerance for an asymmetry or a negative eigenvalue of K, as a fraction of its largest entry or eigenvalue. It
+/// covers the rounding of a planner that works in `float`.
 const ROUNDING: f64 = 1e-3;
 
-/// The spring of a contact, as a symmetric, positive semi-definite 6 x 6 stiffness at the tip, in the axes of the
-/// finger's frame: rows and columns 0 to 2 translation (N/cm), 3 to 5 rotation (N cm/rad), between them N/rad.
+/// The spring of a contact as a symmetric, positive semi-definite 6 x 6 stiffness at the tip, in the axes of the
+/// finger's frame. Rows and columns 0 to 2 are translation (N/cm), 3 to 5 are rotation (N cm/rad), and the blocks
+/// between them are in N/rad.
 ///
-/// A contact of D dimensions is a D x D stiffness K and the D x 6 selection S of the tip's motion that it feels:
-/// S^T K S. So the D x 3 Jacobian of eq. 6 is S J with the 6 x 3 J of [`Links::spatial_jacobian`], and
-/// K_theta = (S J)^T K (S J).
+/// A contact with D dimensions has a D x D stiffness K and a D x 6 selection S of the tip's motion. The 6 x 6 stiffness
+/// is S^T K S. The D x 3 Jacobian of eq. 6 is S J with the 6 x 3 J of [`Links::spatial_jacobian`], and K_theta = (S
+/// J)^T K (S J).
 ///
 /// [`Links::spatial_jacobian`]: crate::model::Links::spatial_jacobian
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact(Matrix6<f64>);
 
-/// A stiffness that is no spring, or a contact without a direction.
+/// The reason why a stiffness is not a spring, or why a contact has no direction.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ContactError {
     /// NaN or infinity.
@@ -37,7 +38,7 @@ pub enum ContactError {
         row: usize,
         /// Column of the first such pair.
         column: usize,
-        /// Their difference, in the unit of the entries.
+        /// Difference of the two entries, in their unit.
         difference: f64,
     },
     /// A negative eigenvalue.
@@ -52,19 +53,19 @@ pub enum ContactError {
 }
 
 impl Contact {
-    /// Hard finger with friction: three forces. `stiffness`: Kx, N/cm.
+    /// Constructs a hard finger with friction, which transmits three forces. `stiffness` is Kx, N/cm.
     ///
     /// # Errors
-    /// Kx is no spring.
+    /// Kx is not a spring.
     pub fn hard_finger(stiffness: Matrix3<f64>) -> Result<Self, ContactError> {
         Self::general(&stiffness, &translation())
     }
 
-    /// Soft finger: three forces and a moment about the contact's normal. Row and column 3 of `stiffness` belong to the
-    /// rotation about `normal`: N cm/rad on the diagonal, N/rad beside it. `normal` need not have unit length.
+    /// Constructs a soft finger, which transmits three forces and a moment about `normal`, a vector of any length. Row
+    /// and column 3 of `stiffness` belong to the rotation about `normal`: N cm/rad on the diagonal, otherwise N/rad.
     ///
     /// # Errors
-    /// K is no spring, or the normal is zero.
+    /// K is not a spring, or the normal is zero.
     pub fn soft_finger(stiffness: Matrix4<f64>, normal: Vector3<f64>) -> Result<Self, ContactError> {
         let (stiffness, normal) = directed(&stiffness, normal)?;
         let mut selection = SMatrix::<f64, 4, 6>::zeros();
@@ -73,10 +74,11 @@ impl Contact {
         Self::felt(&stiffness, &selection)
     }
 
-    /// Frictionless point: a force along the contact's normal. `stiffness`: N/cm. `normal` need not have unit length.
+    /// Constructs a frictionless point, which transmits a force along `normal`, a vector of any length. `stiffness` is
+    /// in N/cm.
     ///
     /// # Errors
-    /// A negative stiffness, or the normal is zero.
+    /// The stiffness is negative, or the normal is zero.
     pub fn frictionless_point(stiffness: f64, normal: Vector3<f64>) -> Result<Self, ContactError> {
         let (stiffness, normal) = directed(&SMatrix::<f64, 1, 1>::new(stiffness), normal)?;
         let mut selection = SMatrix::<f64, 1, 6>::zeros();
@@ -84,11 +86,11 @@ impl Contact {
         Self::felt(&stiffness, &selection)
     }
 
-    /// Any contact: `stiffness` K of D dimensions, `selection` S the part of the tip's translation (cm) and rotation
-    /// (rad) that each of them is.
+    /// Constructs any contact from its stiffness K with D dimensions and its selection S. Row i of S converts the tip's
+    /// translation (cm) and rotation (rad) to deflection i.
     ///
     /// # Errors
-    /// K is no spring, or an entry of S is not finite.
+    /// K is not a spring, or an entry of S is not finite.
     pub fn general<const D: usize>(
         stiffness: &SMatrix<f64, D, D>,
         selection: &SMatrix<f64, D, 6>,
@@ -102,33 +104,33 @@ impl Contact {
         Self::felt(&checked, selection)
     }
 
-    /// S^T K S for a K that is a spring.
+    /// Returns S^T K S for a K that is a spring.
     fn felt<const D: usize>(
         stiffness: &SMatrix<f64, D, D>,
         selection: &SMatrix<f64, D, 6>,
     ) -> Result<Self, ContactError> {
         let spatial = selection.transpose() * stiffness * selection;
-        // Finite factors may have an infinite product.
+        // The product of finite factors may be infinite.
         finite(spatial.as_slice())?;
-        // Symmetric but for rounding; the servo takes symmetry for granted.
+        // Rounding makes it slightly asymmetric, and the servo relies on its symmetry.
         Ok(Self(symmetrised(&spatial)))
     }
 
-    /// The 6 x 6 stiffness.
+    /// Returns the 6 x 6 stiffness.
     pub fn stiffness(&self) -> &Matrix6<f64> {
         &self.0
     }
 
-    /// The largest eigenvalue of the stiffness, N/cm, with a rotation measured by the way it moves a point at `lever`
-    /// (cm, 1e-3 or more) from the tip. With the length of the last link it is comparable with that of a Kx: turning
-    /// joint 2 does both. The largest finite number, where it is beyond that.
+    /// Returns the largest eigenvalue of the stiffness, N/cm, at most the largest finite number. A rotation is measured
+    /// by the motion of a point at the distance `lever` (cm, 1e-3 or more) from the tip. With the length of the last
+    /// link as `lever` the result is comparable with an eigenvalue of Kx, because joint 2 moves the tip and rotates it.
     pub fn largest_eigenvalue(&self, lever: f64) -> f64 {
         let (size, measured) = self.measured(lever);
         (measured.symmetric_eigenvalues().max() * size).min(f64::MAX)
     }
 
-    /// The nearest contact without an eigenvalue, in the sense of [`Contact::largest_eigenvalue`], above `bound` or
-    /// below zero: it keeps its principal directions.
+    /// Returns the nearest contact whose eigenvalues, as in [`Contact::largest_eigenvalue`], are between zero and
+    /// `bound`. It has the same principal directions.
     pub fn clamped(&self, bound: f64, lever: f64) -> Self {
         let (size, measured) = self.measured(lever);
         let mut eigen = measured.symmetric_eigen();
@@ -137,26 +139,26 @@ impl Contact {
         Self(symmetrised(&recomposed))
     }
 
-    /// A size, N/cm, and the stiffness over it, with rotations measured by `lever`. Taken out before they are: where
-    /// the lever is short the product may be beyond all finite numbers, and the eigenvalues of such a matrix NaN.
+    /// Returns the largest entry, N/cm, and the stiffness divided by it, with rotations measured by `lever`. The
+    /// division comes first: with a short lever the product could be infinite, and the eigenvalues of such a matrix
+    /// NaN.
     fn measured(&self, lever: f64) -> (f64, Matrix6<f64>) {
         let size = self.0.amax().max(f64::MIN_POSITIVE);
         (size, symmetrised(&scaled(&(self.0 / size), 1.0 / lever)))
     }
 }
 
-/// The rows and columns of the rotation times a factor.
+/// Scales the rows and columns of the rotation by `factor`.
 fn scaled(stiffness: &Matrix6<f64>, factor: f64) -> Matrix6<f64> {
     let scale = |index: usize| if index < 3 { 1.0 } else { factor };
     Matrix6::from_fn(|row, column| stiffness[(row, column)] * scale(row) * scale(column))
 }
 
-/// A symmetric stiffness with its rounding averaged away, and its smallest and largest eigenvalue; refused where it is
-/// no spring. Of any rank.
+/// Returns a stiffness of any rank, made exactly symmetric, and its smallest and largest eigenvalue.
 ///
 /// # Errors
-/// NaN or infinity; not symmetric by more than a thousandth of the largest entry; an eigenvalue below minus a
-/// thousandth of the largest.
+/// An entry is NaN or infinite, the asymmetry exceeds a thousandth of the largest entry, or an eigenvalue is below
+/// minus a thousandth of the largest.
 pub fn spring<const D: usize>(asked: &SMatrix<f64, D, D>) -> Result<(SMatrix<f64, D, D>, (f64, f64)), ContactError>
 where
     Const<D>: DimSub<U1>,
@@ -175,17 +177,17 @@ where
     let symmetric = symmetrised(asked);
     let eigenvalues = symmetric.symmetric_eigenvalues();
     let (smallest, largest) = (eigenvalues.min(), eigenvalues.max());
-    // An eigenvalue may be infinite where no entry is.
+    // An eigenvalue may be infinite although every entry is finite.
     if smallest < -ROUNDING * largest.abs().max(smallest.abs()).min(f64::MAX) {
         return Err(ContactError::Negative { smallest });
     }
     Ok((symmetric, (smallest, largest)))
 }
 
-/// A matrix that is symmetric but for rounding, averaged so that its eigenvalues can be computed whatever its finite
-/// entries are. Halved before they are added, because a sum may be infinite. Entries that are rounding errors of the
-/// largest become zeros, because the squares of much smaller ones underflow in the iteration. Either would make
-/// eigenvalues NaN, which pass every comparison with a bound.
+/// Makes a matrix that is symmetric except for rounding exactly symmetric, so that its eigenvalues can be computed for
+/// any finite entries. The halves are added, because the sum of two entries may be infinite. Entries below the rounding
+/// error of the largest entry become zero, because the squares of much smaller ones underflow in the iteration. Either
+/// case would give NaN eigenvalues, which pass every comparison with a bound.
 fn symmetrised<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
     let negligible = f64::EPSILON * matrix.amax();
     (matrix * 0.5 + matrix.transpose() * 0.5).map(|entry| if entry.abs() < negligible { 0.0 } else { entry })
@@ -195,8 +197,8 @@ fn finite(values: &[f64]) -> Result<(), ContactError> {
     values.iter().find(|value| !value.is_finite()).map_or(Ok(()), |&value| Err(ContactError::NotFinite(value)))
 }
 
-/// The spring and the unit normal of a contact that has a direction. Where several things are wrong, the first of this
-/// order is reported: a normal that is not finite, a K that is no spring, a normal that is zero.
+/// Returns the spring and the unit normal of a contact with a direction. If several inputs are invalid, the error is
+/// the first of these: a normal that is not finite, a K that is not a spring, a normal that is zero.
 fn directed<const D: usize>(
     stiffness: &SMatrix<f64, D, D>,
     normal: Vector3<f64>,
@@ -220,7 +222,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// From the smallest number of a double to the largest: only the direction of a normal counts.
+        /// Lengths from almost the smallest to almost the largest double are tried.
         #[test]
         fn the_length_of_a_normal_does_not_matter(
             mantissa in 1.0..1.7f64, exponent in -300..=308i32,
@@ -265,7 +267,7 @@ mod tests {
         let soft = Contact::soft_finger(k, normal).expect("a spring");
         let turned = nalgebra::Vector6::new(0.0, 0.0, 0.0, 0.1, 0.6, 0.8);
         let wrench = soft.stiffness() * turned;
-        // Turned by 1 rad about the normal, and by 0.1 rad about x, which a soft finger does not feel.
+        // Rotated by 1 rad about the normal, and by 0.1 rad about x, which a soft finger does not transmit.
         let expected = nalgebra::Vector6::new(0.5, 0.0, 0.0, 0.0, 12.0, 16.0);
         assert!((wrench - expected).amax() < 1e-12, "{wrench}");
         assert!((soft.largest_eigenvalue(1.0) - 20.0147).abs() < 1e-3);
@@ -289,7 +291,7 @@ mod tests {
         assert!(matches!(refused, Err(ContactError::NotFinite(_))));
         let huge = Contact::hard_finger(Matrix3::from_diagonal_element(f64::MAX)).expect("a spring");
         assert!(huge.stiffness().iter().all(|entry| entry.is_finite()));
-        // A torsion of the wrong sign hides behind no translation.
+        // A rotation with a negative stiffness is found although all translations are positive.
         let k = Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, -1.0));
         assert!(matches!(Contact::soft_finger(k, Vector3::x()), Err(ContactError::Negative { .. })));
     }

@@ -1,14 +1,14 @@
-//! The direction of a vector, whatever its length.
+//! The direction of a vector of any length.
 
 use nalgebra::Vector3;
 
-/// The unit vector along a vector of finite components; none for the zero vector.
+/// Returns the unit vector along a vector with finite components, or None for the zero vector.
 ///
 /// Every length from the smallest positive number to the largest has a direction. The squares of such components may be
 /// infinite or zero, so the vector is divided by its largest component first.
 pub fn direction(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
     let largest = vector.amax();
-    // A subnormal number has no finite reciprocal, so each component is divided.
+    // Each component is divided, because a subnormal number has no finite reciprocal.
     (largest > 0.0).then(|| vector.map(|component| component / largest).normalize())
 }
 

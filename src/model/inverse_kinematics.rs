@@ -1,18 +1,19 @@
-//! The box A^-1, which the report left out: joint angles for a fingertip position, in closed form.
+//! The box A^-1, which the report omits: joint angles for a fingertip position, in closed form.
 
 use crate::model::Links;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 use thiserror::Error;
 
-/// So far beyond a joint limit, rad, a solution is at the limit: the rounding of a tip kept as `float`. Its tip is less
-/// than a hundredth of a millimetre away.
+/// Distance beyond a joint limit, rad, at which a solution still counts as being at the limit. It covers the rounding
+/// of a tip position stored as `float`, and moves the tip by less than a hundredth of a millimetre.
 const LIMIT_ROUNDING: f64 = 1e-5;
 
-/// A tip so near to the axis of joint 0, cm, leaves its angle open: the present one is kept.
+/// Distance of the tip from the axis of joint 0, cm, below which the angle of joint 0 is undetermined. The present
+/// angle is then kept.
 const ON_THE_AXIS: f64 = 1e-9;
 
-/// Part of the links' lengths by which rounding may put a tip outside of what they reach.
+/// Fraction of the links' lengths by which rounding may put a tip outside of their reach.
 const REACH_ROUNDING: f64 = 1e-9;
 
 /// A^-1 of Figure 9 for one finger within its joint limits.
@@ -23,27 +24,27 @@ pub struct InverseKinematics {
     high: Vector3<f64>,
 }
 
-/// A tip position that the finger does not reach.
+/// The reason why the finger cannot reach a tip position.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum OutOfReach {
-    /// Beyond the outstretched finger.
+    /// The point is beyond the stretched finger.
     #[error(
         "this point is {distance:.3} cm from the axis of joint 1, and the outstretched finger reaches {reach:.3} cm. \
          Send a point that is nearer"
     )]
     TooFar {
-        /// From the axis of joint 1 to the tip, cm.
+        /// Distance from the axis of joint 1 to the tip, cm.
         distance: f64,
         /// l1 + l2, cm.
         reach: f64,
     },
-    /// Inside of what the folded finger reaches.
+    /// The point is nearer than the folded finger can reach.
     #[error(
         "this point is {distance:.3} cm from the axis of joint 1, and the folded finger comes no nearer than \
          {least:.3} cm. Send a point that is farther away"
     )]
     TooNear {
-        /// From the axis of joint 1 to the tip, cm.
+        /// Distance from the axis of joint 1 to the tip, cm.
         distance: f64,
         /// |l1 - l2|, cm.
         least: f64,
@@ -54,7 +55,7 @@ pub enum OutOfReach {
          other solution is farther outside. Send another point, or change `finger.joints`"
     )]
     BeyondLimits {
-        /// The joint that is farthest outside, 0 to 2, of the solution that is least so.
+        /// The joint that is farthest outside its limits, 0 to 2, in the solution that is least outside.
         joint: usize,
         /// Its angle, rad.
         value: f64,
@@ -66,16 +67,17 @@ pub enum OutOfReach {
 }
 
 impl InverseKinematics {
-    /// `limits`: lower and upper joint limits, rad, within half a turn of zero.
+    /// Constructs the box. `limits` are the lower and upper joint limits, rad, within -pi to pi.
     pub fn new(links: Links, limits: (Vector3<f64>, Vector3<f64>)) -> Self {
         Self { links, low: limits.0, high: limits.1 }
     }
 
-    /// The joint angles, rad, within the limits, that put the tip at `tip` (cm, in the finger's frame): of several
-    /// solutions the one whose farthest joint is nearest to `present`, so the one that the finger is at first.
+    /// Returns the joint angles within the limits, rad, with the tip at `tip` (cm, in the finger's frame). Of several
+    /// solutions it is the one with the least largest distance of a joint from `present`, so that the finger keeps its
+    /// branch.
     ///
     /// # Errors
-    /// No solution at all, or none within the limits.
+    /// There is no solution, or none within the limits.
     pub fn joints(&self, tip: &Vector3<f64>, present: &Vector3<f64>) -> Result<Vector3<f64>, OutOfReach> {
         let way = |joints: &Vector3<f64>| (joints - present).amax();
         let nearer = |one: Vector3<f64>, other: Vector3<f64>| if way(&other) < way(&one) { other } else { one };
@@ -88,17 +90,19 @@ impl InverseKinematics {
         }
     }
 
-    /// Every solution, rad, in -pi to pi, whatever the limits: joint 0 toward the tip or away from it (the finger then
-    /// bends over its own base), each with both elbows. `open`: the angle of joint 0 for a tip on its axis.
+    /// Returns every solution within -pi to pi, rad, regardless of the joint limits. Joint 0 points toward the tip or
+    /// away from it. If it points away, the finger bends over its own base. Each of these has two solutions for joints
+    /// 1 and 2. `open` is the angle of joint 0 for a tip on its axis.
     ///
     /// # Errors
-    /// There is none.
+    /// There is no solution.
     pub fn solutions(&self, tip: &Vector3<f64>, open: f64) -> Result<[Option<Vector3<f64>>; 4], OutOfReach> {
         let across = tip.x.hypot(tip.z);
         let toward = if across < ON_THE_AXIS { open } else { tip.x.atan2(tip.z) };
         let away = half_turn(toward + PI);
         let [one, other] = match (self.elbows(across, tip.y), self.elbows(-across, tip.y)) {
-            // The way over the base is the farther one: it may serve where the tip is too near.
+            // A finger that bends over its base spans a larger distance. It may reach a tip that is too near for the
+            // direct solution.
             (Err(refusal), Err(_)) => return Err(refusal),
             (one, other) => [one.ok(), other.ok()],
         };
@@ -111,7 +115,8 @@ impl InverseKinematics {
         Ok([part(&near, 0), part(&near, 1), part(&far, 0), part(&far, 1)])
     }
 
-    /// Joints 1 and 2 in the plane that joint 0 has turned: `reach` and `y` as the tip has them. The law of cosines.
+    /// Returns the two solutions for joints 1 and 2 in the plane of joint 0, by the law of cosines. `reach` and `y` are
+    /// those of the tip, cm.
     fn elbows(&self, reach: f64, y: f64) -> Result<[(f64, f64); 2], OutOfReach> {
         let [l0, l1, l2] = self.links.0;
         let (along, down) = (reach - l0, -y);
@@ -133,27 +138,28 @@ impl InverseKinematics {
         Ok([elbow(bent), elbow(-bent)])
     }
 
-    /// Which joint is farthest outside its limits, and by how much, rad; negative inside.
+    /// Returns the joint that is farthest outside its limits, and the distance, rad, which is negative inside.
     fn beyond(&self, joints: &Vector3<f64>) -> (usize, f64) {
         let outside = (self.low - joints).sup(&(joints - self.high));
         outside.argmax()
     }
 
     fn refuse(&self, tip: &Vector3<f64>, solutions: &[Option<Vector3<f64>>; 4]) -> OutOfReach {
-        // Where only the way over the base is left and closed, what closes the direct one tells more.
+        // If only the solution over the base is left and is outside the limits, the reason against the direct one is
+        // more useful.
         if let Err(refusal) = self.elbows(tip.x.hypot(tip.z), tip.y) {
             return refusal;
         }
         let beyond = |joints: &Vector3<f64>| self.beyond(joints).1;
         let least = |one: Vector3<f64>, other: Vector3<f64>| if beyond(&other) < beyond(&one) { other } else { one };
-        // There is a solution: without one the refusal has been another.
+        // There is a solution, because otherwise `solutions` has already returned an error.
         let joints = solutions.iter().flatten().copied().reduce(least).unwrap_or_default();
         let joint = self.beyond(&joints).0;
         OutOfReach::BeyondLimits { joint, value: joints[joint], low: self.low[joint], high: self.high[joint] }
     }
 }
 
-/// The same angle in -pi to pi.
+/// Returns the same angle within -pi to pi.
 fn half_turn(angle: f64) -> f64 {
     angle - 2.0 * PI * (angle / (2.0 * PI)).round()
 }

@@ -7,9 +7,10 @@ use nalgebra::{Matrix3, Matrix6x3, UnitQuaternion, Vector3};
 pub struct Links(pub [f64; 3]);
 
 impl Links {
-    /// Tip position in the finger's frame (Figure 8), cm, at joint angles `theta`, rad.
+    /// Returns the tip position in the finger's frame (Figure 8), cm, at joint angles `theta`, rad.
     ///
-    /// x = (l0 + l1 C1 + l2 C12) S0, y = -l1 S1 - l2 S12, z = (l0 + l1 C1 + l2 C12) C0, whose derivative is eq. 8.
+    /// x = (l0 + l1 C1 + l2 C12) S0, y = -l1 S1 - l2 S12, z = (l0 + l1 C1 + l2 C12) C0. The derivative of this is eq.
+    /// 8.
     pub fn tip(&self, theta: &Vector3<f64>) -> Vector3<f64> {
         let [_, l1, l2] = self.0;
         let (s0, c0) = theta[0].sin_cos();
@@ -19,12 +20,12 @@ impl Links {
         Vector3::new(reach * s0, -l1 * s1 - l2 * s12, reach * c0)
     }
 
-    /// Jacobian of [`Links::tip`], eq. 8, cm/rad: row = x, y, z; column = joint.
+    /// Returns the Jacobian of [`Links::tip`], eq. 8, cm/rad. Rows are x, y, z, and columns are joints.
     pub fn jacobian(&self, theta: &Vector3<f64>) -> Matrix3<f64> {
         self.jacobian_turned(theta[0].sin_cos(), theta)
     }
 
-    /// [`Links::jacobian`] with the sine and cosine of joint 0, which are wanted elsewhere too.
+    /// Returns [`Links::jacobian`] from the sine and cosine of joint 0, which the caller needs too.
     fn jacobian_turned(&self, (s0, c0): (f64, f64), theta: &Vector3<f64>) -> Matrix3<f64> {
         let [l0, l1, l2] = self.0;
         let (s1, c1) = theta[1].sin_cos();
@@ -46,16 +47,17 @@ impl Links {
         )
     }
 
-    /// Rotation of the last link in the finger's frame: its own z axis points from joint 2 to the tip. Joint 0 turns
-    /// about y, joints 1 and 2 about the x axis that joint 0 has turned. A quaternion, because the angle of a small
-    /// rotation is lost in the trace of a matrix.
+    /// Returns the rotation of the last link in the finger's frame. The link's own z axis points from joint 2 to the
+    /// tip. Joint 0 turns about y. Joints 1 and 2 turn about the x axis after its rotation by joint 0. The result is a
+    /// quaternion, because the angle of a small rotation is lost in the trace of a matrix.
     pub fn tip_rotation(&self, theta: &Vector3<f64>) -> UnitQuaternion<f64> {
         UnitQuaternion::from_axis_angle(&Vector3::y_axis(), theta[0])
             * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), theta[1] + theta[2])
     }
 
-    /// Jacobian of the tip's whole motion in the finger's frame: rows 0 to 2 as [`Links::jacobian`], cm/rad; rows 3 to
-    /// 5 the rotation of [`Links::tip_rotation`], rad/rad, whose columns are the axes of the joints.
+    /// Returns the Jacobian of the tip's complete motion in the finger's frame. Rows 0 to 2 are those of
+    /// [`Links::jacobian`], cm/rad. Rows 3 to 5 belong to the rotation of [`Links::tip_rotation`], rad/rad, and their
+    /// columns are the axes of the joints.
     pub fn spatial_jacobian(&self, theta: &Vector3<f64>) -> Matrix6x3<f64> {
         let (s0, c0) = theta[0].sin_cos();
         let mut jacobian = Matrix6x3::zeros();
@@ -70,7 +72,8 @@ impl Links {
         jacobian
     }
 
-    /// Distance of the tip from the axis of joint 0, cm: l0 + l1 C1 + l2 C12. Zero is a singular pose.
+    /// Returns the distance of the tip from the axis of joint 0, cm: l0 + l1 C1 + l2 C12. A pose with distance zero is
+    /// singular.
     pub fn reach(&self, theta: &Vector3<f64>) -> f64 {
         let [l0, l1, l2] = self.0;
         l0 + l1 * theta[1].cos() + l2 * (theta[1] + theta[2]).cos()

@@ -1,8 +1,9 @@
-//! Inertia, Coriolis and gravity torques of the three links, uniform cylinders, and of the tip, a point.
+//! Inertia, Coriolis and gravity torques of the three links, which are uniform cylinders, and of the tip, which is a
+//! point mass.
 //!
 //! The angular velocity of links 1 and 2 is the rate of joint 0 about the vertical plus a rate about the normal of the
-//! finger's plane. The two directions are principal for every link, so joint 0 has no inertia in common with the
-//! others.
+//! finger's plane. Both directions are principal axes of every link, so the inertia matrix does not couple joint 0 with
+//! the other joints.
 
 use crate::model::Links;
 use nalgebra::{Matrix3, Vector3};
@@ -12,9 +13,9 @@ use nalgebra::{Matrix3, Vector3};
 struct Cylinder {
     /// kg.
     mass: f64,
-    /// About the axis, kg m^2.
+    /// Moment of inertia about the axis, kg m^2.
     axial: f64,
-    /// About a transverse axis through the centre, kg m^2.
+    /// Moment of inertia about a transverse axis through the centre, kg m^2.
     transverse: f64,
 }
 
@@ -31,14 +32,15 @@ pub struct LinkDynamics {
     length: [f64; 3],
     link: [Cylinder; 3],
     tip_mass: f64,
-    /// m/s^2, finger frame.
+    /// Gravity in the finger's frame, m/s^2.
     gravity: Vector3<f64>,
-    /// The four centres of mass as chains of their own: mass, kg, and lengths, m.
+    /// The four centres of mass, each as the tip of its own chain: mass, kg, and link lengths, m.
     centres: [(f64, Links); 4],
 }
 
 impl LinkDynamics {
-    /// Masses of the links and of the tip, kg; radii, m; gravity in the finger's frame, m/s^2.
+    /// Constructs the dynamics from the masses of the links and of the tip, kg, the radii of the links, m, and gravity
+    /// in the finger's frame, m/s^2.
     pub fn new(links: Links, mass: [f64; 4], radii: [f64; 3], gravity: Vector3<f64>) -> Self {
         let length = links.0.map(|cm| cm * 0.01);
         let [l0, l1, l2] = length;
@@ -52,7 +54,7 @@ impl LinkDynamics {
         Self { length, link, tip_mass: mass[3], gravity, centres }
     }
 
-    /// H(theta), kg m^2.
+    /// Returns H(theta), kg m^2.
     pub fn inertia(&self, theta: &Vector3<f64>) -> Matrix3<f64> {
         let pose = Pose::new(self, theta);
         let [_, l1, l2] = self.length;
@@ -64,7 +66,7 @@ impl LinkDynamics {
         Matrix3::new(self.about_joint_0(&pose), 0.0, 0.0, 0.0, h11, h12, 0.0, h12, distal)
     }
 
-    /// c(theta, theta_dot): Coriolis and centrifugal torques, N m, on the side of H theta_dd.
+    /// Returns c(theta, theta_dot), the Coriolis and centrifugal torques, N m, on the side of H theta_dd.
     pub fn coriolis(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
         let pose = Pose::new(self, theta);
         let (by_1, by_2) = self.about_joint_0_derivatives(&pose);
@@ -76,7 +78,7 @@ impl LinkDynamics {
         )
     }
 
-    /// Joint torques of gravity, N m.
+    /// Returns the joint torques that gravity exerts, N m.
     pub fn gravity_torque(&self, theta: &Vector3<f64>) -> Vector3<f64> {
         if self.gravity == Vector3::zeros() {
             return Vector3::zeros();
@@ -84,24 +86,24 @@ impl LinkDynamics {
         self.centres.iter().map(|(mass, chain)| chain.jacobian(theta).transpose() * self.gravity * *mass).sum()
     }
 
-    /// Kinetic energy of the links plus their potential energy in gravity, J.
+    /// Returns the kinetic energy of the links plus their potential energy in gravity, J.
     pub fn energy(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> f64 {
         let potential: f64 = self.centres.iter().map(|(mass, chain)| -mass * self.gravity.dot(&chain.tip(theta))).sum();
         self.kinetic_energy(theta, rate) + potential
     }
 
-    /// Energy of motion, J.
+    /// Returns the kinetic energy of the links, J.
     pub fn kinetic_energy(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> f64 {
         0.5 * rate.dot(&(self.inertia(theta) * rate))
     }
 
-    /// The coefficient of cos(theta_2) in the inertia of the finger's plane, kg m^2.
+    /// Returns the coefficient of cos(theta_2) in the inertia of the finger's plane, kg m^2.
     fn coupling(&self) -> f64 {
         let [_, l1, l2] = self.length;
         (self.link[2].mass / 2.0 + self.tip_mass) * l1 * l2
     }
 
-    /// Inertia about the axis of joint 0, kg m^2.
+    /// Returns the inertia about the axis of joint 0, kg m^2.
     fn about_joint_0(&self, pose: &Pose) -> f64 {
         let [link0, link1, link2] = self.link;
         let [centre0, centre1, centre2, tip] = pose.reach;
@@ -115,7 +117,7 @@ impl LinkDynamics {
             + self.tip_mass * tip * tip
     }
 
-    /// Derivatives of [`Self::about_joint_0`] with respect to theta_1 and theta_2.
+    /// Returns the derivatives of [`Self::about_joint_0`] with respect to theta_1 and theta_2.
     fn about_joint_0_derivatives(&self, pose: &Pose) -> (f64, f64) {
         let [_, l1, l2] = self.length;
         let [_, link1, link2] = self.link;
@@ -129,7 +131,8 @@ impl LinkDynamics {
     }
 }
 
-/// Sines, cosines and distances from the axis of joint 0, m, of the centres of links 0, 1, 2 and of the tip.
+/// Sines and cosines of a pose, and the distances of the centres of links 0, 1, 2 and of the tip from the axis of joint
+/// 0, m.
 struct Pose {
     s1: f64,
     c1: f64,

@@ -1,5 +1,5 @@
-//! What a finger is: geometry, kinematics, tendons and the types of its configuration. Lengths in cm, forces in N,
-//! torques in N cm, angles in rad, as in the report, unless a name says otherwise.
+//! The model of a finger: geometry, kinematics, tendons and the types of its configuration. Lengths are in cm, forces
+//! in N, torques in N cm and angles in rad, as in the report, unless a name says otherwise.
 
 pub mod configuration;
 mod contact;

@@ -1,11 +1,11 @@
-//! The parts of a finger that a fault or a refusal names.
+//! The parts of a finger that faults and refusals name.
 
 use std::fmt;
 
 /// A part of a finger. The numbers are those that planners see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The whole finger, or a part that is not known.
+    /// The whole finger, or an unknown part.
     Finger,
     /// A joint, 0 to 2.
     Joint(u8),
@@ -20,32 +20,32 @@ pub enum Part {
 }
 
 impl Part {
-    /// The joint with this index, 0 to 2.
+    /// Returns the joint with this index, 0 to 2.
     pub fn joint(index: usize) -> Self {
         Self::Joint(index as u8)
     }
 
-    /// The tendon with this index, 0 to 3.
+    /// Returns the tendon with this index, 0 to 3.
     pub fn tendon(index: usize) -> Self {
         Self::Tendon(index as u8 + 1)
     }
 
-    /// The motor with this index, 0 to 3.
+    /// Returns the motor with this index, 0 to 3.
     pub fn motor(index: usize) -> Self {
         Self::Motor(index as u8 + 1)
     }
 
-    /// The strain gauge with this index, 0 to 3.
+    /// Returns the strain gauge with this index, 0 to 3.
     pub fn gauge(index: usize) -> Self {
         Self::Gauge(index as u8 + 1)
     }
 
-    /// The motor encoder with this index, 0 to 3.
+    /// Returns the motor encoder with this index, 0 to 3.
     pub fn encoder(index: usize) -> Self {
         Self::Encoder(index as u8 + 1)
     }
 
-    /// The number that the C interface gives: 0 to 2 for joints, 1 to 4 for the others, 0 for the whole finger.
+    /// Returns the number in the C interface: 0 to 2 for joints, 1 to 4 for the other parts, 0 for the whole finger.
     pub fn number(self) -> u8 {
         match self {
             Part::Finger => 0,
@@ -58,7 +58,7 @@ impl Part {
     }
 }
 
-/// As in a sentence: `joint 0`, `tendon 3`.
+/// Writes a part as it appears in a sentence: `joint 0`, `tendon 3`.
 impl fmt::Display for Part {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         match self {

@@ -1,18 +1,19 @@
-//! Text from a file in a message for a person: short, and without characters that change what a terminal shows.
+//! Displays external text in messages: short, and without characters that change the state of a terminal.
 
 use std::fmt::{Display, Formatter, Result, Write};
 use std::path::Path;
 
-/// How many characters of a text are shown.
+/// Largest number of characters of a text that are shown.
 const MOST: usize = 60;
 
-/// How many characters of a path are shown whole; of a longer one the beginning and the end are.
+/// Largest number of characters of a path that are shown completely. Of a longer path, the beginning and the end are
+/// shown.
 const MOST_OF_PATH: usize = 240;
 const BEGINNING_OF_PATH: usize = 120;
 const END_OF_PATH: usize = 60;
 
-/// Shows a text that somebody else has written: control characters and other characters that cannot be seen are
-/// escaped, and what goes beyond 60 characters is left out.
+/// Displays a text from an external source. Control characters and other invisible characters are escaped. At most 60
+/// characters are shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown<'a>(pub &'a str);
 
@@ -28,7 +29,8 @@ impl Display for Shown<'_> {
     }
 }
 
-/// Shows a path in the same way, with its beginning and its end where it is long: cause and remedy follow it.
+/// Displays a path in the same way. Of a long path the beginning and the end are shown, because a message must leave
+/// room for cause and remedy.
 #[derive(Clone, Copy, Debug)]
 pub struct ShownPath<'a>(pub &'a Path);
 
@@ -52,15 +54,15 @@ impl Display for ShownPath<'_> {
     }
 }
 
-/// A message on one line and without characters that cannot be seen, whatever it is made of. Else it stays as it is.
+/// Returns a message on one line, with invisible characters escaped. All other characters are unchanged.
 pub fn one_line(message: &str) -> String {
     let mut line = String::with_capacity(message.len());
-    // A string takes everything.
+    // Writing to a string cannot fail.
     let _ = OneLine(&mut line).write_str(message);
     line
 }
 
-/// Writes on what [`one_line`] makes of a message, without a copy of it.
+/// Writes a message as [`one_line`] returns it, without a copy.
 pub struct OneLine<'a, W>(pub &'a mut W);
 
 impl<W: Write> Write for OneLine<'_, W> {
@@ -74,7 +76,7 @@ impl<W: Write> Write for OneLine<'_, W> {
 
 fn write_visible(character: char, to: &mut impl Write) -> Result {
     match character {
-        // Of these, escape_debug would also escape what is plain to see.
+        // `escape_debug` would also escape these visible characters.
         '\'' | '"' => to.write_char(character),
         _ => write!(to, "{}", character.escape_debug()),
     }

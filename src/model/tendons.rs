@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3x4, Matrix4, RowVector4, Vector4};
 use thiserror::Error;
 
-/// Why a matrix R cannot carry a finger.
+/// The reason why a matrix R cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TendonsError {
     /// R with its ghost row has no inverse.
@@ -12,7 +12,7 @@ pub enum TendonsError {
          inverse Q (eq. 17). Check its signs: the report misprints row 2, column 4, where -1.09 is right"
     )]
     Singular(f64),
-    /// The fourth column of Q has an entry that is not positive: tendons that all pull cannot hold the finger.
+    /// An entry of the fourth column of Q is not positive: tendons that can only pull cannot hold the finger.
     #[error(
         "the ghost column of Q must be all positive (eq. 20) but is {0:.3?}: the tendons cannot all pull while the \
          joints are at rest. Check the signs of R: the report misprints row 2, column 4, where -1.09 is right"
@@ -20,20 +20,21 @@ pub enum TendonsError {
     GhostColumn([f64; 4]),
 }
 
-/// R with its ghost row, its inverse and the motor radii: everything that is fixed about four tendons.
+/// The constant properties of the four tendons: R, its inverse with the ghost row, and the motor radii.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tendons {
-    /// R of eq. 14, cm: tau = R t. Row = joint, column = tendon.
+    /// R of eq. 14, cm: tau = R t. Rows are joints, and columns are tendons.
     pub r: Matrix3x4<f64>,
-    /// Q = R^-1 of eq. 17, with the ghost row in R: row = tendon, column = joint torque (1/cm), last column ghost.
+    /// Q = R^-1 of eq. 17, for R with its ghost row. Rows are tendons. The first three columns belong to joint torques
+    /// (1/cm), and the last to the ghost joint.
     pub q: Matrix4<f64>,
     /// Equivalent shaft radius of each motor, cm: t = m_tau / radius, so that M = diag(1 / radius) (eq. 21).
     pub radius: Vector4<f64>,
 }
 
 impl Tendons {
-    /// Adds the ghost row to R and inverts. Without a `ghost` row R's own null vector is used, so that a common stretch
-    /// of the tendons does not leak into the joint angles (eq. 29); eq. 20 gives the same tensions with either.
+    /// Adds the ghost row to R and inverts it. Without `ghost` the null vector of R is used, so that a common stretch
+    /// of the tendons does not change the joint angles (eq. 29). Eq. 20 gives the same tensions with any ghost row.
     pub fn new(r: Matrix3x4<f64>, radius: Vector4<f64>, ghost: Option<RowVector4<f64>>) -> Result<Self, TendonsError> {
         let ghost = ghost.or_else(|| null_vector(&r)).ok_or(TendonsError::Singular(0.0))?;
         let mut with_ghost = Matrix4::zeros();
@@ -49,20 +50,20 @@ impl Tendons {
         Ok(Self { r, q, radius })
     }
 
-    /// The three rows of R^-T that turn tendon travel (cm) into joint angles (rad), eq. 27: row = joint.
+    /// Returns the three rows of R^-T that convert tendon travel (cm) to joint angles (rad), eq. 27. Rows are joints.
     pub fn joints_from_travel(&self) -> Matrix3x4<f64> {
         self.q.fixed_columns::<3>(0).transpose()
     }
 
-    /// The tensions that leave every joint at rest with the least pulled tendon at `minimum`, N: eq. 20 at tau = 0.
+    /// Returns the tensions without joint torque whose least one is `minimum`, N: eq. 20 at tau = 0.
     pub fn pretension(&self, minimum: f64) -> Vector4<f64> {
         let column: Vector4<f64> = self.q.column(3).into_owned();
         column * (minimum / column.min())
     }
 }
 
-/// The direction in tendon space that R sends to zero, of length 1, with a positive sum; none where R has a rank below
-/// 3.
+/// Returns the unit vector in tendon space that R maps to zero, with a positive sum. Returns None if the rank of R is
+/// below 3.
 fn null_vector(r: &Matrix3x4<f64>) -> Option<RowVector4<f64>> {
     let minor = |skip: usize| r.remove_column(skip).determinant();
     let cofactors = RowVector4::new(minor(0), -minor(1), minor(2), -minor(3));

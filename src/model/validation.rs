@@ -1,4 +1,4 @@
-//! What a configuration must satisfy before a motor may move.
+//! Checks of a configuration before a motor may move.
 
 mod ranges;
 mod sharing;
@@ -10,10 +10,10 @@ use crate::model::configuration::{
 };
 use ranges::{each, path, unusable, within};
 
-/// A configuration that cannot be used: which finger's, or the hand's, and why.
+/// A configuration that cannot be used: the finger or the hand, the key and the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnusableConfiguration {
-    /// 0 to 2, or none for `[hand]`.
+    /// Index of the finger, 0 to 2, or None for `[hand]`.
     pub finger: Option<usize>,
     /// The key and the reason.
     pub unusable: Unusable,

@@ -1,4 +1,4 @@
-//! From the joints to the counts on the wire: geometry, motors, sensors, tendons, joint limits.
+//! Configuration from the joints to the counts on the wire: geometry, motors, sensors, tendons, joint limits.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredGeometry {
-    /// l0, l1, l2, cm.
+    /// Link lengths l0, l1, l2, cm.
     pub links: [f64; 3],
-    /// R of eq. 14, cm: three rows (joints) of four entries (tendons).
+    /// R of eq. 14, cm: three rows (joints) with four entries (tendons).
     pub r: [[f64; 4]; 3],
-    /// The ghost row of eq. 15; none: the null vector of R.
+    /// The ghost row of eq. 15. Without it the null vector of R is used.
     pub ghost_row: Option<[f64; 4]>,
     /// Equivalent shaft radius of each motor, cm: tension = torque / radius.
     pub motor_radius: [f64; 4],
@@ -20,7 +20,7 @@ impl Default for ConfiguredGeometry {
     fn default() -> Self {
         Self {
             links: [3.556, 5.080, 4.000],
-            // Entry (2, 4) is -1.09: the report prints +1.09, with which R is singular; eq. 14 has -r24.
+            // Entry (2, 4) is -1.09. The report prints +1.09, with which R is singular, but eq. 14 has -r24.
             r: [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, -1.09], [0.0, 0.62, -0.62, 0.0]],
             ghost_row: None,
             motor_radius: [0.0475; 4],
@@ -32,17 +32,17 @@ impl Default for ConfiguredGeometry {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredMotor {
-    /// +1 where a positive command pulls the tendon, else -1.
+    /// +1 if a positive command pulls the tendon, otherwise -1.
     pub sign: [i8; 4],
     /// Largest torque of each motor, N cm.
     pub torque_limit: [f64; 4],
-    /// Torque constant, N cm/A. The board is told, so that it can turn torque into current.
+    /// Torque constant, N cm/A. The host sends it to the board, which converts torque to current.
     pub torque_constant: [f64; 4],
-    /// Inertia of each rotor, gear included, kg m^2.
+    /// Inertia of each rotor including its gear, kg m^2.
     pub inertia: [f64; 4],
     /// Viscous friction of each motor, N m s/rad.
     pub viscous_friction: [f64; 4],
-    /// Torque that each motor can give for ever, N cm.
+    /// Torque that each motor can give permanently, N cm.
     pub continuous_torque: [f64; 4],
     /// Thermal time constant of the motors, s.
     pub thermal_time: f64,
@@ -66,9 +66,9 @@ impl Default for ConfiguredMotor {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredEncoder {
-    /// Counts a revolution of the motor.
+    /// Counts per revolution of the motor.
     pub counts_per_revolution: [u32; 4],
-    /// +1 where the count rises as the tendon is pulled in, else -1.
+    /// +1 if the count rises as the tendon is pulled in, otherwise -1.
     pub sign: [i8; 4],
     /// m_0 of eq. 28: the count at theta = 0 with the homing pretension.
     pub zero: [i32; 4],
@@ -86,20 +86,20 @@ impl Default for ConfiguredEncoder {
 pub struct ConfiguredGauge {
     /// Tension of one count, N.
     pub newton_per_count: [f64; 4],
-    /// Count without tension.
+    /// Count at zero tension.
     pub zero: [f64; 4],
-    /// What identification takes the common scale of the four gauges from.
+    /// The reference from which identification takes the common scale of the four gauges.
     pub reference: GaugeReference,
 }
 
-/// What is believed of the scale of all tensions, which no experiment on a free finger shows.
+/// The reference for the common scale of all tensions, which no experiment on a free finger can determine.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GaugeReference {
-    /// The gauges: the mean of their configured gains stays.
+    /// The gauges: identification keeps the mean of their configured gains.
     #[default]
     Gauges,
-    /// The motors: on the average of the four, a motor pulls with the torque that it is commanded, less its friction.
+    /// The motors: on average over the four, a motor pulls with its commanded torque minus its friction.
     Motors,
 }
 
@@ -113,14 +113,14 @@ impl Default for ConfiguredGauge {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredTendon {
-    /// t_min of eq. 19, N. Also the homing pretension.
+    /// t_min of eq. 19, N. It is also the homing pretension.
     pub minimum: f64,
     /// t_max, N.
     pub maximum: f64,
-    /// Stiffness between motor pulley and joint, N/cm, for the stretch that the encoders do not see.
+    /// Stiffness between motor pulley and joint, N/cm. It corrects for the stretch, which the encoders do not measure.
     pub stiffness: [f64; 4],
-    /// How well `stiffness` is known, as a part of it: what it explains when gauges and encoders disagree.
-    /// Identification sets it.
+    /// Relative uncertainty of `stiffness`. It limits the disagreement of gauges and encoders that is attributed to
+    /// `stiffness`. Identification sets it.
     pub stiffness_tolerance: f64,
 }
 

@@ -1,5 +1,5 @@
-//! What the controller believes of the bodies and the friction of a finger. The defaults are those of a simulated
-//! finger, whose truth is its own table, `[finger.simulation]`: the two differ where an experiment wants them to.
+//! The controller's model of the bodies and the friction of a finger. The defaults equal those of the simulated finger,
+//! whose true values are in `[finger.simulation]`. Experiments with a wrong model set the two to different values.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,13 +13,13 @@ pub struct ConfiguredLinks {
     pub radii: [f64; 3],
 }
 
-/// `[finger.friction]`: what the controller compensates.
+/// `[finger.friction]`: friction that the controller compensates.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredFriction {
     /// Coulomb friction of each motor, N cm of commanded torque.
     pub motor_coulomb: [f64; 4],
-    /// Conduit friction: this part of the tension torque adds to `motor_coulomb`.
+    /// Conduit friction: the fraction of the tension torque that is added to `motor_coulomb`.
     pub conduit: [f64; 4],
     /// Coulomb friction of each joint, N cm.
     pub joint_coulomb: [f64; 3],

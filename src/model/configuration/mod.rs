@@ -1,5 +1,5 @@
-//! The types of a hand's configuration, with defaults for everything: the finger of the report and plausible values for
-//! what the report leaves out. Reading them from a file is the business of the hand; checking them is done here.
+//! The types of a hand's configuration, with a default for every value: the finger of the report, and plausible values
+//! for what the report omits. The layer `hand` reads them from a file. This layer checks them.
 
 mod controller;
 mod drive;
@@ -24,21 +24,22 @@ use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// How many fingers a hand has.
+/// Number of fingers of a hand.
 pub const FINGERS: usize = 3;
 
-/// The rates that a hand may have, Hz. The gains of 500 Hz are stable down to 470, and swing at 450.
+/// Admissible rates of a hand, Hz. The gains for 500 Hz are stable down to 470 Hz, and the finger oscillates at 450 Hz.
 pub const RATES: RangeInclusive<f64> = 500.0..=5000.0;
 
-/// How far beyond the soft limits a mechanical stop is where none is configured, degrees.
+/// Distance of a mechanical stop beyond the soft limit if no stop is configured, degrees.
 const STOP_MARGIN: f64 = 3.0;
 
-/// A key whose value cannot be used, and why. The key is relative to the finger's table, with dots: `tendon.maximum`.
+/// A key whose value cannot be used, and the reason. The key is relative to the finger's table, with dots:
+/// `tendon.maximum`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unusable {
     /// Dotted path of the key.
     pub key: &'static str,
-    /// Why, with the numbers, and what would be usable.
+    /// The reason, with the numbers and with usable values.
     pub reason: String,
 }
 
@@ -48,22 +49,23 @@ pub struct Unusable {
 pub struct ConfiguredFinger {
     /// Path of the serial port, or `simulated`.
     pub port: String,
-    /// Bits a second on the port.
+    /// Bit rate of the port, bit/s.
     pub baud: u32,
-    /// Whether a port that has failed is looked for and opened again. The finger goes on only when it is told to
-    /// recover.
+    /// Whether the library searches for a port that has failed, and opens it again. The finger continues only after it
+    /// is told to recover.
     pub reconnect: bool,
-    /// Address of the finger on its board, 1 to 15; 0: the finger's number.
+    /// Address of the finger on its board, 1 to 15. With 0 it is the finger's number.
     pub address: u8,
-    /// Servo thread that runs the finger, 1 to 3; 0: the finger's number. Fingers on one port share a thread.
+    /// Servo thread that runs the finger, 1 to 3. With 0 it is the finger's number. Fingers on one port share a thread.
     pub thread: u8,
-    /// Core the thread is bound to; none: the kernel chooses.
+    /// Core to which the thread is bound. Without it the kernel selects the core.
     pub core: Option<usize>,
-    /// SCHED_FIFO priority of the thread, 1 to 99; 0: not real-time.
+    /// SCHED_FIFO priority of the thread, 1 to 99. With 0 the thread is not real-time.
     pub priority: u8,
-    /// Where the base of the finger is in the palm, cm; none: where the finger with this number is.
+    /// Position of the finger's base in the palm, cm. Without it the default of the finger with this number is used.
     pub base: Option<[f64; 3]>,
-    /// Turn of the finger's frame about the palm's z axis, degrees; none: that of the finger with this number.
+    /// Rotation of the finger's frame about the palm's z axis, degrees. Without it the default of the finger with this
+    /// number is used.
     pub turn_degrees: Option<f64>,
     /// `[finger.geometry]`
     pub geometry: ConfiguredGeometry,
@@ -95,33 +97,34 @@ pub struct ConfiguredFinger {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredStiffness {
-    /// Kx that the finger holds its pose with after OpenHand, N/cm, row-major.
+    /// Kx with which the finger holds its pose after OpenHand, N/cm, row-major.
     pub initial: [[f64; 3]; 3],
-    /// Bound on the largest eigenvalue of Kx, N/cm; none: 6 from 1000 Hz up, 5 below.
+    /// Bound of the largest eigenvalue of Kx, N/cm. Without it the bound is 6 from 1000 Hz up, and 5 below.
     pub bound: Option<f64>,
 }
 
-/// A whole hand.
+/// The configuration of a complete hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Configuration {
-    /// What all fingers share.
+    /// Values that all fingers share.
     pub hand: ConfiguredHand,
     /// Fingers 1, 2 and 3.
     pub fingers: [ConfiguredFinger; FINGERS],
 }
 
 impl Configuration {
-    /// The servo thread of a finger, 1 to 3.
+    /// Returns the servo thread of a finger, 1 to 3.
     pub fn thread(&self, finger: usize) -> u8 {
         own_or(self.fingers[finger].thread, finger)
     }
 
-    /// The address of a finger on its board, 1 to 15.
+    /// Returns the address of a finger on its board, 1 to 15.
     pub fn address(&self, finger: usize) -> u8 {
         own_or(self.fingers[finger].address, finger)
     }
 
-    /// From the finger's frame (Figure 8), cm, to the palm's. Two fingers stand side by side, the thumb faces them.
+    /// Returns the transformation from the finger's frame (Figure 8), cm, to the palm's. By default two fingers are
+    /// side by side, and the thumb faces them.
     pub fn finger_to_palm(&self, finger: usize) -> Isometry3<f64> {
         let (base, turn) = match finger {
             0 => ([3.0, 3.5, 0.0], 0.0),
@@ -134,14 +137,14 @@ impl Configuration {
         Isometry3::new(base, Vector3::z() * turn)
     }
 
-    /// Gravity in the finger's frame, m/s^2.
+    /// Returns gravity in the finger's frame, m/s^2.
     pub fn gravity(&self, finger: usize) -> Vector3<f64> {
         self.finger_to_palm(finger).rotation.inverse() * Vector3::from(self.hand.gravity)
     }
 }
 
 fn own_or(configured: u8, finger: usize) -> u8 {
-    // At most three fingers: the conversion cannot fail.
+    // The conversion cannot fail, because a hand has three fingers.
     if configured == 0 { finger as u8 + 1 } else { configured }
 }
 
@@ -180,57 +183,58 @@ impl Default for ConfiguredStiffness {
 }
 
 impl ConfiguredStiffness {
-    /// The bound that holds for the default finger under every controller at `rate` Hz, N/cm: less than what `sun2xp
-    /// bound` finds for any of them (`docs/stiffness.md`).
+    /// Returns the bound that is valid for the default finger with every controller at `rate` Hz, N/cm. It is less than
+    /// the result of `sun2xp bound` for any of them (`docs/stiffness.md`).
     pub fn default_bound(rate: f64) -> f64 {
         if rate >= 1000.0 { 6.0 } else { 5.0 }
     }
 }
 
 impl ConfiguredFinger {
-    /// Whether the finger has a simulated board instead of a port.
+    /// Returns whether the finger has a simulated board instead of a port.
     pub fn simulated(&self) -> bool {
         self.port == "simulated"
     }
 
-    /// The links.
+    /// Returns the link lengths.
     pub fn links(&self) -> Links {
         Links(self.geometry.links)
     }
 
-    /// R of eq. 14, cm.
+    /// Returns R of eq. 14, cm.
     pub fn r(&self) -> Matrix3x4<f64> {
         Matrix3x4::from_fn(|joint, tendon| self.geometry.r[joint][tendon])
     }
 
-    /// R of eq. 14, Q of eq. 23 and M of eq. 22.
+    /// Returns R of eq. 14, Q of eq. 17 and M of eq. 21.
     ///
     /// # Errors
-    /// Geometry without an arrangement of tendons: `geometry.r` or `geometry.ghost_row` is not of full rank.
+    /// The tendons cannot hold the finger: R with its ghost row is singular, or the ghost column of Q is not all
+    /// positive.
     pub fn tendons(&self) -> Result<Tendons, TendonsError> {
         let ghost = self.geometry.ghost_row.map(RowVector4::from);
         Tendons::new(self.r(), Vector4::from(self.geometry.motor_radius), ghost)
     }
 
-    /// The initial Kx, N/cm.
+    /// Returns the initial Kx, N/cm.
     pub fn initial_stiffness(&self) -> Matrix3<f64> {
         Matrix3::from_fn(|row, column| self.stiffness.initial[row][column])
     }
 
-    /// The bound on the largest eigenvalue of Kx, N/cm, at `rate` Hz.
+    /// Returns the bound of the largest eigenvalue of Kx, N/cm, at `rate` Hz.
     pub fn stiffness_bound(&self, rate: f64) -> f64 {
         self.stiffness.bound.unwrap_or_else(|| ConfiguredStiffness::default_bound(rate))
     }
 
-    /// Soft joint limits, rad: lower, upper.
+    /// Returns the soft joint limits, rad: lower, upper.
     pub fn joint_limits(&self) -> (Vector3<f64>, Vector3<f64>) {
         let radians = |degrees: [f64; 3]| Vector3::from(degrees.map(f64::to_radians));
         (radians(self.joints.minimum_degrees), radians(self.joints.maximum_degrees))
     }
 
-    /// How the zero of the encoders is found: as configured. Where nothing is configured, by the mechanical stops if it
-    /// is known where they are: both `zeroing.lower_stop_degrees` and `zeroing.upper_stop_degrees` are given, or the
-    /// finger is simulated. Else by the pose.
+    /// Returns the configured zeroing method. If none is configured, it is `Stops` if the angles of the mechanical
+    /// stops are known: both `zeroing.lower_stop_degrees` and `zeroing.upper_stop_degrees` are configured, or the
+    /// finger is simulated. Otherwise it is `Pose`.
     pub fn zeroing_method(&self) -> ZeroingMethod {
         let stops = self.zeroing.lower_stop_degrees.is_some() && self.zeroing.upper_stop_degrees.is_some();
         self.zeroing.method.unwrap_or(match stops || self.simulated() {
@@ -239,7 +243,7 @@ impl ConfiguredFinger {
         })
     }
 
-    /// Angles of the mechanical stops, rad: lower, upper.
+    /// Returns the angles of the mechanical stops, rad: lower, upper.
     pub fn stops(&self) -> (Vector3<f64>, Vector3<f64>) {
         let beyond = |limits: [f64; 3], margin: f64| limits.map(|limit| limit + margin);
         let lower = self.zeroing.lower_stop_degrees.unwrap_or(beyond(self.joints.minimum_degrees, -STOP_MARGIN));

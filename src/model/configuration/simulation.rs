@@ -1,23 +1,23 @@
-//! What the physics of a simulated finger needs to know and a real finger brings along.
+//! Parameters for the physics of a simulated finger.
 
 use serde::{Deserialize, Serialize};
 
-/// The parameters of a simulated finger: `[finger.simulation]`. Defaults: chosen to be plausible for a finger of this
-/// size driven by small geared motors; nothing was compared with the real hand. SI units, but cm where lengths are
-/// geometry.
+/// The parameters of a simulated finger: `[finger.simulation]`. The defaults are plausible for a finger of this size
+/// with small geared motors. Nothing was compared with the real hand. Units are SI, except that geometric lengths are
+/// in cm.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredSimulation {
     /// Masses of links 0, 1, 2 and of the tip, kg.
     pub masses: [f64; 4],
-    /// Radii of the links, uniform cylinders, m.
+    /// Radii of the links, m. The links are uniform cylinders.
     pub link_radii: [f64; 3],
     /// Viscous friction of each joint, N m s/rad.
     pub joint_viscous_friction: [f64; 3],
-    /// Coulomb friction of each joint, N m. Harsh: 2e-3.
+    /// Coulomb friction of each joint, N m. A harsh joint has 2e-3.
     pub joint_coulomb_friction: [f64; 3],
-    /// Stiffness of each tendon between motor pulley and joint, N/cm: what the simulated tendon has. The controller's
-    /// belief is `tendon.stiffness`; they differ where an experiment wants them to.
+    /// True stiffness of each simulated tendon between motor pulley and joint, N/cm. The controller uses
+    /// `tendon.stiffness` instead. Experiments with a wrong stiffness set the two to different values.
     pub tendon_stiffness: [f64; 4],
     /// Inertia of each rotor, kg m^2.
     pub rotor_inertia: [f64; 4],
@@ -25,42 +25,43 @@ pub struct ConfiguredSimulation {
     pub motor_viscous_friction: [f64; 4],
     /// Coulomb friction of each motor, N m.
     pub motor_coulomb_friction: [f64; 4],
-    /// Conduit friction: this part of the tension torque adds to the motor's Coulomb friction.
+    /// Conduit friction: the fraction of the tension torque that is added to the motor's Coulomb friction.
     pub conduit_friction: f64,
-    /// True motor torque over commanded torque; 1 is a motor with the constant of its data sheet.
+    /// True motor torque divided by the commanded torque. It is 1 for a motor with the torque constant of its data
+    /// sheet.
     pub motor_constant_ratio: [f64; 4],
     /// Noise of the strain gauges, N rms.
     pub gauge_noise: f64,
-    /// How far beyond the soft limits the mechanical stops are, degrees.
+    /// Distance of the mechanical stops beyond the soft limits, degrees.
     pub stop_margin_degrees: f64,
-    /// Pose at start, degrees.
+    /// Joint angles at the start, degrees.
     pub start_degrees: [f64; 3],
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Something to touch, if any.
+    /// Surface that the fingertip can touch, if any.
     pub surface: Option<Surface>,
 }
 
-/// Something that a simulated fingertip can touch: frictionless and elastic. In the finger's frame, cm and N/cm.
+/// An elastic surface without friction that a simulated fingertip can touch, in the finger's frame.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Surface {
-    /// A flat wall through `point`; `normal` points to the finger's side.
+    /// A flat wall through `point`. `normal` points to the side of the finger.
     Wall {
         /// A point of the wall, cm.
         point: [f64; 3],
-        /// Outward normal, of any length but zero.
+        /// Outward normal. Its length must not be zero.
         normal: [f64; 3],
-        /// N/cm.
+        /// Stiffness, N/cm.
         stiffness: f64,
     },
-    /// A ball that does not move.
+    /// A fixed ball.
     Ball {
         /// Centre, cm.
         centre: [f64; 3],
         /// Radius, cm.
         radius: f64,
-        /// N/cm.
+        /// Stiffness, N/cm.
         stiffness: f64,
     },
 }

@@ -1,16 +1,16 @@
-//! How the encoders of a finger are zeroed.
+//! Configuration of the zeroing of encoders.
 
 use serde::{Deserialize, Serialize};
 
-/// How the zero of the encoders is found.
+/// The method that finds the zero of the encoders.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum ZeroingMethod {
-    /// The finger is held in `zeroing.pose_degrees`, by its own spring or by something else.
+    /// The finger is held in `zeroing.pose_degrees`, by its own spring or from outside.
     Pose,
-    /// Every joint is led against both of its mechanical stops.
+    /// Every joint is moved to both of its mechanical stops.
     Stops,
-    /// The configured zero stays, if the board says that its counts are still good.
+    /// The configured zero is kept, if the board reports that its counts are still valid.
     Kept,
 }
 
@@ -18,19 +18,19 @@ pub enum ZeroingMethod {
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredZeroing {
-    /// Which way; none: see `ConfiguredFinger::zeroing_method`.
+    /// The method. Without it `ConfiguredFinger::zeroing_method` selects one.
     pub method: Option<ZeroingMethod>,
     /// Joint angles of the pose, degrees.
     pub pose_degrees: [f64; 3],
-    /// Where the lower stops are, degrees; none: 3 degrees beyond the soft limits.
+    /// Angles of the lower stops, degrees. Without them the stops are 3 degrees beyond the soft limits.
     pub lower_stop_degrees: Option<[f64; 3]>,
-    /// Where the upper stops are, degrees; none: 3 degrees beyond the soft limits.
+    /// Angles of the upper stops, degrees. Without them the stops are 3 degrees beyond the soft limits.
     pub upper_stop_degrees: Option<[f64; 3]>,
-    /// Largest torque that leads a joint to its stop, N cm: several times its friction.
+    /// Largest torque that moves a joint to its stop, N cm. It must be several times the friction of the joint.
     pub torque: f64,
-    /// Speed at which a joint is led, rad/s.
+    /// Speed at which a joint is moved, rad/s.
     pub speed: f64,
-    /// After so many seconds a routine gives up.
+    /// Time after which a routine fails, s.
     pub time_limit_s: f64,
 }
 

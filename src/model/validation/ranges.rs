@@ -1,9 +1,9 @@
-//! The checks of a single value: a key, what it may be, and in which unit.
+//! Checks of a single value: key, range and unit.
 
 use crate::model::Shown;
 use crate::model::configuration::Unusable;
 
-/// The longest path of a port or a folder, bytes. Those below /dev have less than a hundred.
+/// The longest path of a port or a folder, bytes. Paths below /dev have less than a hundred.
 const LONGEST_PATH: usize = 1000;
 
 pub(super) fn unusable<T>(key: &'static str, reason: String) -> Result<T, Unusable> {
@@ -21,7 +21,7 @@ pub(super) fn path(key: &'static str, path: &str) -> Result<(), Unusable> {
 }
 
 pub(super) fn within(key: &'static str, value: f64, low: f64, high: f64, unit: &str) -> Result<(), Unusable> {
-    // Written so that NaN is outside.
+    // This form of the comparison rejects NaN.
     if value >= low && value <= high {
         return Ok(());
     }

@@ -1,11 +1,11 @@
-//! What fingers that share a thread or a port must have in common.
+//! Conditions for fingers that share a thread or a port.
 
 use super::ranges::unusable;
 use crate::model::Shown;
 use crate::model::configuration::{Configuration, Unusable};
 
 impl Configuration {
-    /// Whether two fingers, 0 to 2, can have the threads and ports that they have.
+    /// Checks the threads and ports of two fingers, 0 to 2, against each other.
     pub(super) fn check_sharing(&self, first: usize, second: usize) -> Result<(), Unusable> {
         let (one, other) = (&self.fingers[first], &self.fingers[second]);
         let (first_number, second_number) = (first + 1, second + 1);
