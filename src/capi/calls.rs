@@ -7,7 +7,7 @@
 
 use crate::capi::boundary::{MEMORY_OF_HAND, delegated, delegated_or_done_here, guarded, uncancelled};
 use crate::capi::default_hand;
-use crate::capi::memory::{load, non_null};
+use crate::capi::memory::{load, load_rows, non_null};
 use crate::capi::refusal::{self, Wanted};
 use std::ffi::{c_char, c_int};
 
@@ -148,8 +148,8 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
     guarded("SendKx", || {
         // SAFETY: the manual's contract: null, or the array of the synopsis.
-        let entries = unsafe { load::<f32, 9>(Kx, "Kx") }?;
-        default_hand::command(|hand| hand.send_stiffness(i, rows(entries.map(f64::from))))
+        let rows = unsafe { load_rows(Kx, "Kx") }?;
+        default_hand::command(|hand| hand.send_stiffness(i, rows.map(|row| row.map(f64::from))))
     })
 }
 
@@ -161,8 +161,8 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
     // Named as the planner has written it: the header or a flag of the compiler has added the D.
     guarded("SendKx", || {
         // SAFETY: the manual's contract: null, or the array of the synopsis.
-        let entries = unsafe { load::<f64, 9>(Kx, "Kx") }?;
-        default_hand::command(|hand| hand.send_stiffness(i, rows(entries)))
+        let rows = unsafe { load_rows(Kx, "Kx") }?;
+        default_hand::command(|hand| hand.send_stiffness(i, rows))
     })
 }
 
@@ -230,9 +230,4 @@ pub unsafe extern "C" fn GetPosD(i: c_int, Pos: *mut f64) -> c_int {
 #[unsafe(no_mangle)]
 pub extern "C" fn HandError() -> *const c_char {
     uncancelled(refusal::text)
-}
-
-fn rows(entries: [f64; 9]) -> [[f64; 3]; 3] {
-    let [a, b, c, d, e, f, g, h, i] = entries;
-    [[a, b, c], [d, e, f], [g, h, i]]
 }

@@ -21,6 +21,16 @@ pub(super) unsafe fn load<T, const N: usize>(array: *const T, name: &'static str
     Ok(unsafe { array.cast::<[T; N]>().read_unaligned() })
 }
 
+/// Copies a matrix of the caller's, row by row, as [`load`] copies an array.
+///
+/// # Safety
+/// `matrix` is null or points to three rows of three entries.
+pub(super) unsafe fn load_rows<T>(matrix: *const T, name: &'static str) -> Result<[[T; 3]; 3], Refusal> {
+    non_null(matrix, name, Wanted::Array(9))?;
+    // SAFETY: not null, and nine entries by the contract of this function.
+    Ok(unsafe { matrix.cast::<[[T; 3]; 3]>().read_unaligned() })
+}
+
 /// The size of a struct up to and with a member: the smallest that a program can have been compiled with, where that
 /// member was the last of the first version.
 macro_rules! size_up_to {

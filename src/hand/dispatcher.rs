@@ -4,13 +4,12 @@
 mod collected;
 mod collecting;
 
-use crate::control::{SetPoint, spatial};
 use crate::finger::{self, Adjustable, BlackBox, FingerReport, KeptRecord, Losses, Mailbox, Recording};
 use crate::hand::admission::Admission;
 use crate::hand::dispatcher::collected::Collected;
 use crate::hand::dispatcher::collecting::collect;
 use crate::hand::opening::Reached;
-use crate::hand::{Fingers, HandError, SetPointError};
+use crate::hand::{Fingers, HandError};
 use crate::model::configuration::{Configuration, ConfiguredFinger};
 use crate::realtime::{CycleStage, Distribution, Histograms, Priority, spawn};
 use crossbeam_channel::{Sender, bounded};
@@ -74,40 +73,6 @@ impl Dispatcher {
     /// In a forked child, which has no such thread.
     pub fn forget_collector(&mut self) {
         std::mem::forget(self.collector.take());
-    }
-
-    /// theta_d, rad.
-    pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
-        let member = self.member(finger)?;
-        let admission = member.admission.read();
-        let (joints, law) = (admission.joints(joints)?, admission.law);
-        let sent = member.mailbox.send(|set_point| (set_point.joints, set_point.law) = (joints, law));
-        sent.map_err(|fault| HandError::Faulted { finger, fault })
-    }
-
-    /// Kx, N/cm, row by row.
-    pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
-        self.send(finger, |admission| {
-            let (stiffness, damping) = (spatial(&admission.stiffness(rows)?), admission.damping);
-            Ok(move |set_point: &mut SetPoint| {
-                set_point.stiffness = stiffness;
-                damping.admit(set_point)
-            })
-        })
-    }
-
-    /// Sends the change that `admit` lets through. Both are one step: limits do not change between them. The change
-    /// itself may still refuse the set point that it starts from.
-    pub fn send<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
-        &self,
-        finger: i32,
-        admit: impl FnOnce(&Admission) -> Result<C, SetPointError>,
-    ) -> Result<(), HandError> {
-        let member = self.member(finger)?;
-        let admission = member.admission.read();
-        let change = admit(&admission)?;
-        member.mailbox.try_send(change).map_err(|fault| HandError::Faulted { finger, fault })??;
-        Ok(())
     }
 
     /// Joints 0, 1, 2 of a finger that is not faulted, rad.

@@ -1,10 +1,8 @@
-//! The calls that speak of the fingertip instead of the joints.
+//! What is known of a fingertip: where it is, what it presses and how its tendons pull.
 
-use crate::control::{Law, SetPoint};
 use crate::finger::FingerReport;
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError};
-use crate::model::Contact;
 use nalgebra::{Matrix3, Vector3};
 
 /// A direction of the fingertip that moves by less than this, cm for a turn of the joints by 1 rad, is not felt in
@@ -28,58 +26,6 @@ pub struct FingerTip {
 }
 
 impl Hand {
-    /// Where the tip of finger 1, 2 or 3 shall be, cm, in the finger's frame. The fingertip is the exact spring there,
-    /// tau = J^T Kx (x_d - x), with the stiffness sent last; of several joint solutions within the limits it takes the
-    /// one that is nearest to the present pose. Takes effect within a cycle; the way there is straight in the joints,
-    /// at their bounded speed.
-    ///
-    /// # Errors
-    /// No such finger, NaN or infinity, out of reach or of the joint limits (also where commands are clamped), finger
-    /// faulted.
-    pub fn send_tip(&self, finger: i32, tip: [f64; 3]) -> Result<(), HandError> {
-        let present = self.dispatcher.last_report(finger)?.cycle.joints;
-        self.dispatcher.send(finger, |admission| {
-            let joints = admission.tip(tip, &present)?;
-            Ok(move |set_point: &mut SetPoint| {
-                (set_point.joints, set_point.law) = (joints, Law::Exact);
-                Ok(())
-            })
-        })
-    }
-
-    /// What finger 1, 2 or 3 may exchange with an object: its tip becomes the spring of that contact, without a jump in
-    /// torque. Takes the place of the Kx sent last, as a Kx takes its.
-    ///
-    /// # Errors
-    /// No such finger, stiffer than the bound, too stiff for the damping sent last, finger faulted. A rotation counts
-    /// for the bound by how far it moves the last joint: k N cm/rad as k / l2^2 N/cm.
-    pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
-        self.dispatcher.send(finger, |admission| {
-            let (stiffness, damping) = (admission.contact(&contact)?, admission.damping);
-            Ok(move |set_point: &mut SetPoint| {
-                set_point.stiffness = stiffness;
-                damping.admit(set_point)
-            })
-        })
-    }
-
-    /// Damping of finger 1, 2 or 3 relative to what the controller chooses from the stiffness: 1 is that, and is in
-    /// force after open. The range depends on controller, rate and stiffness
-    /// ([`AdmissibleDamping`](crate::control::AdmissibleDamping)).
-    ///
-    /// # Errors
-    /// No such finger, NaN or infinity, outside the range of the stiffness sent last, finger faulted.
-    pub fn send_damping(&self, finger: i32, ratio: f64) -> Result<(), HandError> {
-        self.dispatcher.send(finger, |admission| {
-            admission.finite("Ratio", &[ratio])?;
-            let damping = admission.damping;
-            Ok(move |set_point: &mut SetPoint| {
-                set_point.damping = ratio;
-                damping.admit(set_point)
-            })
-        })
-    }
-
     /// Where the tip of finger 1, 2 or 3 is, what it presses and how its tendons pull, not older than a cycle.
     ///
     /// # Errors

@@ -8,7 +8,6 @@ mod black_box_file;
 mod calibrating;
 mod calibration_file;
 mod configuration_file;
-mod damping_admission;
 mod dispatcher;
 mod error;
 mod faults;
@@ -23,6 +22,7 @@ mod reconnection;
 mod recovery;
 mod root;
 mod servo_threads;
+mod set_points;
 mod status;
 mod workshop;
 

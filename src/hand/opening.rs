@@ -4,8 +4,7 @@ use crate::board::protocol::Status;
 use crate::board::{Link, Port, Terms, capacity};
 use crate::control::AdmissibleDamping;
 use crate::finger::{BlackBox, FingerServo, Mailbox, ServedPort, StopSignal, link_handover, stop_calls};
-use crate::hand::admission::Admission;
-use crate::hand::damping_admission::DampingAdmission;
+use crate::hand::admission::{Admission, DampingAdmission};
 use crate::hand::fingers::Fingers;
 use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
@@ -247,7 +246,7 @@ pub(super) fn admission(configuration: &Configuration, index: usize) -> Admissio
 
 fn initial_stiffness(configuration: &Configuration, index: usize) -> Result<Matrix3<f64>, Unusable> {
     let refused = |error: SetPointError| Unusable { key: "stiffness.initial", reason: error.to_string() };
-    admission(configuration, index).stiffness(configuration.fingers[index].stiffness.initial).map_err(refused)
+    admission(configuration, index).kx(configuration.fingers[index].stiffness.initial).map_err(refused)
 }
 
 /// Whether the line of a finger carries the rate, with everything that shares it.

@@ -117,24 +117,6 @@ impl Hand {
         Ok(hand)
     }
 
-    /// theta_d of finger 1, 2 or 3: joints 0, 1, 2, rad. Takes effect within a cycle.
-    ///
-    /// # Errors
-    /// No such finger, NaN or infinity, beyond a joint limit, finger faulted.
-    pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
-        self.dispatcher.send_position(finger, joints)
-    }
-
-    /// Kx of finger 1, 2 or 3 in the finger's frame, N/cm: `rows[row][column]`. Taken over whole, without a
-    /// jump in torque: 95 % of the change is there after 50 ms.
-    ///
-    /// # Errors
-    /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, too stiff for the
-    /// damping sent last, finger faulted.
-    pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
-        self.dispatcher.send_stiffness(finger, rows)
-    }
-
     /// Measured joint angles of finger 1, 2 or 3, rad, not older than a cycle.
     ///
     /// # Errors

@@ -1,0 +1,220 @@
+//! The checks of joints, stiffnesses, contacts and damping.
+
+use super::*;
+use crate::model::configuration::ConfiguredFinger;
+use proptest::prelude::*;
+
+fn admission(out_of_range: OutOfRange) -> Admission {
+    let joint_limits = (Vector3::new(-1.0, -0.5, 0.1), Vector3::new(1.0, 1.7, 2.0));
+    let links = Links([3.556, 5.080, 4.000]);
+    Admission {
+        finger: 2,
+        joint_limits,
+        inverse_kinematics: InverseKinematics::new(links, joint_limits),
+        links,
+        r: Matrix3x4::zeros(),
+        stiffness_bound: 6.0,
+        damping: DampingAdmission {
+            finger: 2,
+            admissible: AdmissibleDamping::new(&ConfiguredFinger::default(), 1000.0),
+            lever: 4.0,
+            out_of_range,
+        },
+        law: Law::Report,
+        out_of_range,
+    }
+}
+
+#[test]
+fn kx_is_taken_row_by_row() {
+    let rows = [[3.0, 0.5, 0.001], [0.5, 2.0, 0.25], [0.0, 0.25, 1.0]];
+    let kx = admission(OutOfRange::Refuse).kx(rows).expect("admissible");
+    assert_eq!(kx[(0, 1)], 0.5);
+    assert_eq!(kx[(1, 2)], 0.25);
+    // Less than a thousandth of the largest entry: symmetrised.
+    assert_eq!(kx[(0, 2)], 0.0005);
+    assert_eq!(kx, kx.transpose());
+    let skewed = [[3.0, 0.5, 0.004], [0.5, 2.0, 0.25], [0.0, 0.25, 1.0]];
+    let refused = admission(OutOfRange::Refuse).kx(skewed);
+    assert!(matches!(refused, Err(SetPointError::NotSymmetric { row: 0, column: 2, .. })), "{refused:?}");
+}
+
+#[test]
+fn springs_of_any_rank_are_admitted_and_others_refused() {
+    let diagonal = |a, b, c| [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]];
+    let refuse = admission(OutOfRange::Refuse);
+    for rows in [diagonal(0.0, 0.0, 0.0), diagonal(6.0, 0.0, 1.0), diagonal(6.0, 6.0, 6.0)] {
+        assert!(refuse.kx(rows).is_ok(), "{rows:?}");
+    }
+    assert!(matches!(refuse.kx(diagonal(6.1, 0.0, 0.0)), Err(SetPointError::TooStiff { .. })));
+    assert!(matches!(refuse.kx(diagonal(1.0, -0.1, 0.0)), Err(SetPointError::Negative { .. })));
+    assert!(matches!(refuse.kx(diagonal(-1.0, 0.0, 0.0)), Err(SetPointError::Negative { .. })));
+    assert!(matches!(refuse.kx(diagonal(f64::NAN, 0.0, 0.0)), Err(SetPointError::NotFinite { .. })));
+    // Within rounding of zero: taken as zero.
+    let kx = refuse.kx(diagonal(1.0, -0.0005, 0.0)).expect("admissible");
+    assert!(kx.symmetric_eigenvalues().min() > -1e-12);
+}
+
+#[test]
+fn no_finite_kx_becomes_nan() {
+    let (huge, tiny) = (f64::MAX, f64::MIN_POSITIVE / 1024.0);
+    for value in [huge, 0.9 * huge, 1e200, tiny] {
+        for rows in [[[value; 3]; 3], [[value, 0.0, 0.0], [0.0, value, 0.0], [0.0, 0.0, 0.0]]] {
+            let clamped = admission(OutOfRange::Clamp).kx(rows).expect("clamped");
+            assert!(clamped.iter().all(|entry| entry.is_finite()), "{value:e}: {clamped}");
+            let refused = admission(OutOfRange::Refuse).kx(rows);
+            assert_eq!(refused.is_err(), value > 1.0, "{value:e}: {refused:?}");
+            let negative = admission(OutOfRange::Clamp).kx(rows.map(|row| row.map(|entry| -entry)));
+            assert!(matches!(negative, Err(SetPointError::Negative { .. })), "-{value:e}: {negative:?}");
+        }
+    }
+}
+
+#[test]
+fn clamping_takes_the_nearest_admissible_value() {
+    let clamp = admission(OutOfRange::Clamp);
+    assert_eq!(clamp.joints([2.0, -3.0, 1.0]).expect("clamped"), Vector3::new(1.0, -0.5, 1.0));
+    let kx = clamp.kx([[5.0, 4.0, 0.0], [4.0, 5.0, 0.0], [0.0, 0.0, 2.0]]).expect("clamped");
+    // Eigenvalues 9 and 1 along the diagonals become 6 and 1.
+    let expected = Matrix3::new(3.5, 2.5, 0.0, 2.5, 3.5, 0.0, 0.0, 0.0, 2.0);
+    assert!((kx - expected).amax() < 1e-12, "{kx}");
+    assert!(matches!(clamp.joints([f64::INFINITY, 0.0, 1.0]), Err(SetPointError::NotFinite { .. })));
+}
+
+#[test]
+fn a_torsion_counts_by_the_lever_of_the_last_link() {
+    let contact = |torsion| {
+        let k = nalgebra::Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, torsion));
+        Contact::soft_finger(k, Vector3::z()).expect("a spring")
+    };
+    // 6 N/cm at 4 cm.
+    let (refuse, clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
+    assert_eq!(refuse.contact(&contact(96.0)).expect("admissible"), *contact(96.0).stiffness());
+    assert!(matches!(refuse.contact(&contact(97.0)), Err(SetPointError::TooStiff { .. })));
+    let clamped = clamp.contact(&contact(970.0)).expect("clamped");
+    assert!((clamped - contact(96.0).stiffness()).amax() < 1e-10, "{clamped}");
+}
+
+#[test]
+fn a_limit_rounded_to_float_is_within_the_limit() {
+    let mut refuse = admission(OutOfRange::Refuse);
+    refuse.joint_limits.1[2] = 120f64.to_radians();
+    let sent = f64::from(120f32.to_radians());
+    assert!(sent > refuse.joint_limits.1[2], "the case must be one of rounding up");
+    assert_eq!(refuse.joints([0.0, 0.0, sent]).expect("admitted")[2], refuse.joint_limits.1[2]);
+    assert!(matches!(refuse.joints([0.0, 0.0, sent + 1e-3]), Err(SetPointError::BeyondJointLimit { joint: 2, .. })));
+}
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: ProptestConfig::default().cases.max(20_000),
+        failure_persistence: None,
+        ..Default::default()
+    })]
+
+    #[test]
+    fn whatever_is_asked_what_is_admitted_is_a_spring_within_the_bound(
+        mantissas in prop::array::uniform6(-1.0f64..1.0), exponents in prop::array::uniform6(-320i32..308),
+    ) {
+        let [a, b, c, d, e, f] = std::array::from_fn(|i| mantissas[i] * 10f64.powi(exponents[i]));
+        for out_of_range in [OutOfRange::Clamp, OutOfRange::Refuse] {
+            let Ok(kx) = admission(out_of_range).kx([[a, b, c], [b, d, e], [c, e, f]]) else { continue };
+            prop_assert_eq!(kx, kx.transpose());
+            let eigenvalues = kx.symmetric_eigenvalues();
+            let within = |&value: &f64| (-1e-9..=6.0 * (1.0 + 1e-6)).contains(&value);
+            prop_assert!(eigenvalues.iter().all(within), "{kx}{eigenvalues}");
+        }
+    }
+
+    #[test]
+    fn whatever_contact_is_asked_what_is_admitted_is_within_the_bound(
+        mantissas in prop::array::uniform32(-1.0f64..1.0), exponents in prop::array::uniform6(-160i32..155),
+        diagonal in prop::bool::ANY, lever in -1.0f64..2.0,
+    ) {
+        // A A^T of rank 5: a spring, but for rounding, of any size in each of its directions.
+        let root = nalgebra::SMatrix::<f64, 6, 5>::from_fn(|row, column| match diagonal && row != column {
+            true => 0.0,
+            false => mantissas[5 * row + column] * 10f64.powi(exponents[row]),
+        });
+        let lever = 10f64.powf(lever);
+        for out_of_range in [OutOfRange::Clamp, OutOfRange::Refuse] {
+            let mut admission = admission(out_of_range);
+            admission.links.0[2] = lever;
+            let Ok(contact) = Contact::general(&(root * root.transpose()), &Matrix6::identity()) else { continue };
+            let Ok(admitted) = admission.contact(&contact) else { continue };
+            let admitted = Contact::general(&admitted, &Matrix6::identity());
+            prop_assert!(admitted.is_ok(), "{admitted:?}");
+            let largest = admitted.unwrap().largest_eigenvalue(lever);
+            prop_assert!(largest <= 6.0 * (1.0 + 1e-6), "{largest} with a lever of {lever} cm");
+        }
+    }
+}
+
+#[test]
+fn a_torsion_at_a_short_link_is_too_stiff_however_large() {
+    for torsion in [1e3, 1e306, f64::MAX] {
+        let k = nalgebra::Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, torsion));
+        let contact = Contact::soft_finger(k, Vector3::new(0.3, -0.5, 0.8)).expect("a spring");
+        let (mut refuse, mut clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
+        (refuse.links.0[2], clamp.links.0[2]) = (0.1, 0.1);
+        match refuse.contact(&contact) {
+            Err(SetPointError::TooStiff { largest, bound: 6.0, .. }) => {
+                assert!(largest > 9e4 && largest.is_finite())
+            }
+            other => panic!("{torsion:e}: {other:?}"),
+        }
+        let clamped = clamp.contact(&contact).expect("clamped");
+        let admitted = Contact::general(&clamped, &Matrix6::identity()).expect("a spring").largest_eigenvalue(0.1);
+        assert!((admitted - 6.0).abs() < 1e-9, "{torsion:e}: {admitted} N/cm in {clamped}");
+    }
+}
+
+mod damping {
+    use super::*;
+
+    fn set_point(stiffness: f64, damping: f64) -> SetPoint {
+        SetPoint { damping, ..SetPoint::hard_finger(Vector3::zeros(), Matrix3::identity() * stiffness) }
+    }
+
+    fn admission(out_of_range: OutOfRange) -> DampingAdmission {
+        let admissible = AdmissibleDamping::new(&ConfiguredFinger::default(), 1000.0);
+        DampingAdmission { finger: 2, admissible, lever: 4.0, out_of_range }
+    }
+
+    #[test]
+    fn what_would_swing_or_break_a_tendon_is_refused_with_the_range() {
+        let refuse = admission(OutOfRange::Refuse);
+        for (stiffness, damping) in
+            [(3.0, 3.0), (6.0, 2.0), (6.0, 0.5), (3.0, 0.2), (6.0, 0.2), (3.0, 0.66), (6.0, 1.19)]
+        {
+            let refused = refuse.admit(&mut set_point(stiffness, damping)).expect_err("refused");
+            let (least, most) = refuse.admissible.range(stiffness);
+            let text = refused.to_string();
+            assert!(text.contains(&format!("{least:.2} to {most:.2}")), "{text}");
+        }
+        for (stiffness, damping) in [(3.0, 0.67), (3.0, 1.84), (6.0, 0.94), (6.0, 1.18), (0.0, 0.4), (11.0, 1.0)] {
+            let mut admitted = set_point(stiffness, damping);
+            refuse.admit(&mut admitted).expect("admitted");
+            assert_eq!(admitted, set_point(stiffness, damping));
+        }
+    }
+
+    #[test]
+    fn clamping_changes_the_damping_only() {
+        for (stiffness, damping, clamped) in [(3.0, 0.0, 0.67), (6.0, 9.0, 1.18), (6.0, 1.0, 1.0)] {
+            let mut admitted = set_point(stiffness, damping);
+            admission(OutOfRange::Clamp).admit(&mut admitted).expect("clamped");
+            assert_eq!(admitted, set_point(stiffness, clamped));
+        }
+    }
+
+    #[test]
+    fn a_torsion_counts_by_the_lever_of_the_last_link() {
+        let mut torsion = set_point(0.0, 1.5);
+        torsion.stiffness[(3, 3)] = 96.0; // 6 N/cm at 4 cm
+        let refused = admission(OutOfRange::Refuse).admit(&mut torsion);
+        assert!(
+            matches!(refused, Err(SetPointError::Damping { stiffness, .. }) if (stiffness - 6.0).abs() < 1e-9),
+            "{refused:?}"
+        );
+    }
+}
