@@ -1,4 +1,4 @@
-//! A servo may not allocate: neither may the link that it talks through.
+//! A servo thread must not allocate. This test checks the link that it uses.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -10,7 +10,7 @@ use sun2xp::simulated::*;
 
 const MS: u64 = 1_000_000;
 
-/// The system's allocator, which counts the requests of each thread.
+/// The system's allocator with a count of requests for each thread.
 struct Counting;
 
 thread_local! {
@@ -18,15 +18,15 @@ thread_local! {
 }
 
 fn count() {
-    // Fails while a thread ends; nobody counts there.
+    // The access fails while a thread ends. Nothing is counted then.
     let _ = REQUESTS.try_with(|requests| requests.set(requests.get() + 1));
 }
 
-// SAFETY: every call is passed on to the system's allocator as it came.
+// SAFETY: every call is passed to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
-        // SAFETY: the caller keeps the contract of this same function.
+        // SAFETY: the caller satisfies the contract of this same function.
         unsafe { System.alloc(layout) }
     }
 
@@ -54,13 +54,13 @@ fn a_cycle_allocates_nothing_whether_answered_or_not() {
         let command = Command { toggle: true, enable: true, torques: [100; 4] };
         link.send(&[OutgoingCommand { address: 1, sequence, command }]).unwrap();
         answered += usize::from(link.receive(now() + 1000 * MS).unwrap().is_some());
-        // Nothing comes any more.
+        // There is nothing left to receive.
         assert!(link.receive(now() + MS).unwrap().is_none());
     }
     assert_eq!(REQUESTS.get() - before, 0);
     assert_eq!(answered, 20);
 
-    // The count counts.
+    // Proves that the counter works.
     drop(std::hint::black_box(Box::new(1)));
     assert_eq!(REQUESTS.get() - before, 2);
 }

@@ -1,4 +1,4 @@
-//! The decoder against anything that a cable can deliver.
+//! Tests the decoder against anything that a cable can deliver.
 
 #[path = "board_vectors/stuffing.rs"]
 mod stuffing;
@@ -7,7 +7,8 @@ use proptest::prelude::*;
 use stuffing::stuffed;
 use sun2xp::board::protocol::*;
 
-/// A frame as the page describes it, by other means than the library's: bitwise check, stuffing by splitting at zeros.
+/// Encodes a frame as the page describes it, independently of the library: a bitwise checksum, and stuffing by
+/// splitting at zeros.
 fn sealed(content: &[u8]) -> Vec<u8> {
     let mut register = u32::MAX;
     for &byte in content {
@@ -19,7 +20,7 @@ fn sealed(content: &[u8]) -> Vec<u8> {
     stuffed(&[content, &(!register).to_le_bytes()].concat())
 }
 
-/// Header, sequence number and body of every frame found, feeding `chunk` bytes at a time.
+/// Header, sequence number and body of every frame found when the stream arrives `chunk` bytes at a time.
 fn decoded(decoder: &mut Decoder, stream: &[u8], chunk: usize) -> Vec<Vec<u8>> {
     let mut found = Vec::new();
     for mut bytes in stream.chunks(chunk.max(1)) {
@@ -32,7 +33,7 @@ fn decoded(decoder: &mut Decoder, stream: &[u8], chunk: usize) -> Vec<Vec<u8>> {
 }
 
 fn content() -> impl Strategy<Value = Vec<u8>> {
-    // Many zeros, as in real frames, so that stuffing has something to do.
+    // Many zeros, as in real frames, so that the stuffing is exercised.
     prop::collection::vec(prop_oneof![1 => Just(0u8), 2 => any::<u8>()], 2..=MAX_FRAME - 4)
 }
 
@@ -54,9 +55,9 @@ proptest! {
         rubbish in prop::collection::vec(any::<u8>(), 0..600), content in content(), chunk in 1usize..40
     ) {
         let mut decoder = Decoder::default();
-        // What random bytes pass is one in four thousand million; none does here.
+        // One in four thousand million random frames passes the checksum. None does here.
         prop_assert!(decoded(&mut decoder, &rubbish, chunk).is_empty());
-        // One frame may be swallowed: the rubbish did not end with a delimiter.
+        // One frame may be lost, because the rubbish did not end with a delimiter.
         let stream = [sealed(&content), sealed(&content)].concat();
         let found = decoded(&mut decoder, &stream, chunk);
         prop_assert_eq!(found.last(), Some(&content));
@@ -76,7 +77,7 @@ proptest! {
         prop_assume!(bad != good);
         let mut decoder = Decoder::default();
         prop_assert!(decoded(&mut decoder, &bad, 64).is_empty());
-        // Whatever was left open ends here, and the next frame is whole.
+        // The delimiter ends any open frame, so the next one is complete.
         bad = [&[0], &good[..]].concat();
         prop_assert_eq!(decoded(&mut decoder, &bad, 64), vec![content]);
         prop_assert!(decoder.counters().damaged >= 1);
@@ -85,7 +86,7 @@ proptest! {
     #[test]
     fn a_byte_lost_or_doubled_is_found(content in content(), place in any::<prop::sample::Index>(), doubled: bool) {
         let mut stream = sealed(&content);
-        // The delimiter itself may be doubled harmlessly, and is not lost here.
+        // A doubled delimiter is harmless. It is the last byte, which is never lost here.
         let place = place.index(stream.len() - 1);
         if doubled {
             stream.insert(place, stream[place]);
@@ -109,12 +110,12 @@ proptest! {
             prop_assert_eq!((message.address, message.sequence, message.frame.kind()), (address, sequence, kind));
             let again = WireFrame::new(&message);
             prop_assert_eq!(again.as_bytes().len(), wire.len());
-            // Reserved bits of the flags are dropped; everything else comes back.
+            // Reserved bits of the flags are dropped. Every other bit must be restored.
             if kind != Kind::Command {
                 prop_assert_eq!(again.as_bytes(), &wire[..]);
             }
         } else {
-            // Only the end state can be a number without meaning.
+            // Only the end state can hold a number without meaning.
             prop_assert!(matches!(kind, Kind::Configure | Kind::Configured) && body[3] > 1);
         }
     }

@@ -1,4 +1,4 @@
-//! A board that sends valid frames without end: every deadline of the link holds all the same.
+//! A board that sends valid frames without end. Every deadline of the link must still hold.
 
 use sun2xp::board::protocol::*;
 use sun2xp::board::{Link, LinkError, PortError, Terms, Transport};
@@ -7,29 +7,29 @@ use sun2xp::simulated::SimulatedBoard;
 
 const MS: u64 = 1_000_000;
 
-/// What one read takes, ns.
+/// Duration of one read, ns.
 const READ: u64 = 10_000;
 
-/// More reads than any call may need; without this bound a test that fails would never end.
+/// More reads than any call may need. Without this bound a failing test would never end.
 const MOST_READS: u32 = 100_000;
 
-/// How late a call may return, ns: it may take one read after its deadline.
+/// Largest overrun of a call, ns: one read may begin before the deadline and end after it.
 const LATE: u64 = 2 * READ;
 
-/// A simulated board that at some time begins to send one frame without end, and nothing else.
+/// A simulated board that at some point begins to send one frame without end, and nothing else.
 struct Flood {
     board: SimulatedBoard,
     frame: Frame,
-    /// The sequence number of that frame.
+    /// Sequence number of that frame.
     sequence: u8,
-    /// The type of the host's frame that begins the flood.
+    /// Type of the request that triggers the flood.
     begins_with: Option<Kind>,
-    /// The flood repeats the sequence number of each such frame, as an answer does.
+    /// Whether the flood takes over the sequence number of each such request, as an answer does.
     answers_all: bool,
     begun: bool,
     answers: Vec<u8>,
     now: u64,
-    /// What a read takes, ns.
+    /// Duration of a read, ns.
     read_time: u64,
     reads: u32,
 }
@@ -50,7 +50,7 @@ impl Flood {
         }
     }
 
-    /// The flood begins when the host has sent such a frame, which gets no answer.
+    /// The flood begins when the host sends a frame of this type, which is not answered.
     fn beginning_with(self, kind: Kind) -> Self {
         Self { begins_with: Some(kind), begun: false, ..self }
     }
@@ -103,7 +103,7 @@ impl Transport for Flood {
     }
 }
 
-/// Frames that nobody waits for, one of each kind that a board sends.
+/// Frames that nothing waits for, one of each type that a board sends.
 fn unasked() -> [Frame; 6] {
     let identity = Identity {
         version: VERSION,
@@ -140,7 +140,7 @@ fn a_receive_ends_at_its_deadline() {
             let deadline = link.transport().now + MS;
             assert_eq!(link.receive(deadline).expect("the port is there"), None, "{frame:?}");
             assert!(link.transport().now <= deadline + LATE, "{frame:?}");
-            // A deadline in the past leaves one read.
+            // A deadline in the past still allows one read.
             let before = link.transport().reads;
             assert_eq!(link.receive(0).expect("the port is there"), None, "{frame:?}");
             assert!(link.transport().reads <= before + 1, "{frame:?}");
@@ -148,7 +148,7 @@ fn a_receive_ends_at_its_deadline() {
     }
 }
 
-/// The clock of a paused virtual machine may stand still for a while.
+/// The clock of a paused virtual machine may stand still for some time.
 #[test]
 fn a_receive_ends_though_its_clock_stands_still() {
     let mut flood = Flood::of(Frame::Stopped(Stopped::default()));
@@ -172,7 +172,7 @@ fn a_handshake_ends_at_its_deadline_and_says_what_was_not_answered() {
     }
 }
 
-/// A board whose motors follow commands refuses a Configure; the host tries again until the watchdog has ended that.
+/// A board whose motors are enabled refuses a Configure. The host retries until the watchdog has disabled them.
 #[test]
 fn a_handshake_with_a_board_that_refuses_without_end_ends_at_its_deadline() {
     let deadline = 300 * MS;
@@ -188,7 +188,7 @@ fn a_handshake_with_a_board_that_refuses_without_end_ends_at_its_deadline() {
 fn a_stop_is_sent_and_ends_at_its_deadline() {
     for frame in unasked() {
         let mut link = Link::new(Flood::of(frame));
-        // A servo does not wait for the confirmation.
+        // The servo does not wait for the confirmation.
         assert!(!link.stop(1, 0).expect("the port is there"), "{frame:?}");
         assert!(link.transport().reads <= 1, "{frame:?}");
         let deadline = link.transport().now + 100 * MS;

@@ -12,9 +12,9 @@ const MS: u64 = 1_000_000;
 struct NoisyCable {
     cable: SimulatedCable,
     random: Pcg64,
-    /// One byte in so many is hit, in each direction; 0: practically none.
+    /// One byte in this many is disturbed, in each direction. 0 means practically none.
     one_in: u64,
-    /// Something was hit since this was last cleared.
+    /// Whether a byte was disturbed since this was last cleared.
     hit: bool,
 }
 
@@ -48,7 +48,7 @@ impl Transport for NoisyCable {
     }
 
     fn read_until(&mut self, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
-        // Room for the bytes that noise adds.
+        // Leaves room for the bytes that the noise adds.
         let room = buffer.len() / 2;
         let taken = self.cable.read_until(&mut buffer[..room], deadline)?;
         let arriving = self.after_noise(&buffer[..taken]);
@@ -75,7 +75,7 @@ fn noise_costs_the_periods_that_it_hits_and_no_wrong_value_passes() {
     let terms = Terms::new(&ConfiguredHand { watchdog_ms: 1000, ..Default::default() }, &finger);
     let (_, configured) = link.shake_hands(1, &terms, 500 * MS).unwrap();
 
-    // Of 45 bytes a cycle one in 450: about every tenth cycle is hit.
+    // A cycle has 45 bytes and one byte in 450 is disturbed, so about every tenth cycle is.
     link.transport().one_in = 450;
     let (mut hit_before, mut unanswered, mut hit_cycles) = (false, 0, 0);
     for cycle in 0..50_000u64 {
@@ -86,7 +86,7 @@ fn noise_costs_the_periods_that_it_hits_and_no_wrong_value_passes() {
         let deadline = link.transport().now() + MS;
         while let Some(received) = link.receive(deadline).unwrap() {
             assert_eq!((received.address, received.sequence), (1, sequence));
-            // Never enabled: what passes must be what the board says, and it says the same all the time.
+            // The motors are never enabled, so every reply that passes must equal the board's constant answer.
             assert_eq!(
                 Status(received.reply.status.0 & !Status::DAMAGED_INPUT.0),
                 Status::CONFIGURED | Status::ZERO_VALID
@@ -100,7 +100,7 @@ fn noise_costs_the_periods_that_it_hits_and_no_wrong_value_passes() {
         hit_cycles += u32::from(hit);
         hit_before = hit;
     }
-    // A hit delimiter takes the next frame with it; everything else costs its own period.
+    // A disturbed delimiter also costs the next frame. Every other disturbance costs its own period only.
     assert!((4000..6000).contains(&hit_cycles), "{hit_cycles}");
     assert!(unanswered > 4000 && f64::from(unanswered) < 1.1 * f64::from(hit_cycles), "{unanswered} of {hit_cycles}");
     assert!(link.counters().damaged > 1000);

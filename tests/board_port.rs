@@ -18,7 +18,7 @@ fn board() -> SimulatedPort {
 }
 
 fn terms() -> Terms {
-    // Long, because this machine may be busy; the watchdog itself is tested on simulated time.
+    // Long, because the test machine may be busy. The watchdog itself is tested on simulated time.
     let hand = ConfiguredHand { watchdog_ms: 500, ..Default::default() };
     Terms::new(&hand, &ConfiguredFinger::default())
 }
@@ -51,16 +51,16 @@ fn cycles_over_a_pseudo_terminal() {
     assert_eq!(board.with_finger(4, |finger| finger.enabled()), None);
 }
 
-/// A child that lives has the same open file, and with it the lock of the port.
+/// A living child process shares the open file and with it the lock of the port.
 #[test]
 fn a_port_that_was_closed_opens_again_while_a_forked_child_lives() {
     let board = board();
     let port = Port::open(&board.path(), 1_000_000).unwrap();
-    // SAFETY: the child only waits for its end.
+    // SAFETY: the child does nothing but wait for its end.
     let child = unsafe { libc::fork() };
     if child == 0 {
         loop {
-            // SAFETY: no arguments.
+            // SAFETY: takes no arguments.
             unsafe { libc::pause() };
         }
     }
@@ -71,7 +71,7 @@ fn a_port_that_was_closed_opens_again_while_a_forked_child_lives() {
     );
     drop(port);
     let opened = Port::open(&board.path(), 1_000_000);
-    // SAFETY: a child of this process, which has not been waited for.
+    // SAFETY: a child of this process that has not been waited for.
     unsafe {
         libc::kill(child, libc::SIGKILL);
         libc::waitpid(child, std::ptr::null_mut(), 0);
@@ -104,7 +104,7 @@ fn a_port_has_one_user_at_a_time_also_after_one_that_left_no_word() {
 fn a_host_that_configures_nothing_gets_every_byte() {
     let board = board();
     let mut host = std::fs::OpenOptions::new().read(true).write(true).open(board.path()).unwrap();
-    // A Hello with a sequence number that a terminal would take for an interrupt, and one for a line end.
+    // Two Hellos whose sequence numbers a terminal would take for an interrupt and a line end.
     for sequence in [0x03, 0x0D] {
         let frame = Frame::Hello(Hello { lowest_version: 1, highest_version: 1 });
         let hello = WireFrame::new(&Message { address: 1, sequence, frame });
@@ -116,7 +116,7 @@ fn a_host_that_configures_nothing_gets_every_byte() {
     }
 }
 
-/// Whether the port is marked for exclusive use, which keeps out everyone but root.
+/// Returns whether the port is marked for exclusive use, which locks out everyone except root.
 fn exclusive(path: &Path) -> bool {
     let Ok(file) = std::fs::OpenOptions::new().read(true).write(true).open(path) else { return true };
     let mut exclusive: libc::c_int = -1;
@@ -157,7 +157,7 @@ fn answers_that_the_last_host_did_not_fetch_do_not_reach_the_next() {
     }
     drop(link);
     let mut link = Link::open(&board.path(), 1_000_000).unwrap();
-    // The first host's motors still follow; the handshake waits for the watchdog.
+    // The first host's motors are still enabled. The handshake waits for the watchdog.
     link.shake_hands(1, &terms(), realtime::now() + 5000 * MS).unwrap();
     link.send(&[OutgoingCommand { address: 1, sequence: 99, command: pull() }]).unwrap();
     let received = link.receive(realtime::now() + 1000 * MS).unwrap().expect("a reply");
@@ -182,7 +182,7 @@ fn opening_what_cannot_be_opened_says_why() {
     let file = tempfile::NamedTempFile::new().unwrap();
     assert_eq!(errno(&file.path().to_string_lossy()), libc::ENOTTY);
     assert_eq!(errno(&std::env::temp_dir().to_string_lossy()), libc::ENOTTY);
-    // The system's own errno: no device is behind it.
+    // The system's own errno: there is no device behind the file.
     let folder = tempfile::tempdir().unwrap();
     let socket = folder.path().join("socket");
     let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();

@@ -1,4 +1,4 @@
-//! docs/board-protocol.md is what strangers build boards from: its numbers and its hex must be those of the codec.
+//! Others build boards from docs/board-protocol.md: its numbers and hex examples must agree with the codec.
 
 #[path = "board_vectors/example_board.rs"]
 mod example_board;
@@ -11,7 +11,7 @@ use sun2xp::model::configuration::EndState;
 
 const PAGE: &str = include_str!("../docs/board-protocol.md");
 
-/// The examples as the page describes them in words.
+/// The examples as the page describes them in prose.
 fn described() -> Vec<Message> {
     let message = |sequence, frame| Message { address: 1, sequence, frame };
     let terms = Configure {
@@ -79,7 +79,7 @@ fn blocks() -> BTreeMap<&'static str, &'static str> {
         .collect()
 }
 
-/// Cells of the rows of the table whose head begins with `head`.
+/// The cells of each row of the table whose heading begins with `head`.
 fn table(head: &str) -> Vec<Vec<&'static str>> {
     PAGE.lines()
         .skip_while(|line| !line.starts_with(head))
@@ -151,7 +151,7 @@ fn times_at_the_usual_rates() {
     assert!(rows.len() >= 6);
     for row in rows {
         let baud: u32 = row[0].parse().unwrap();
-        // Far too fast, so that the refusal tells all its numbers.
+        // A rate far too high, so that the error names all its numbers.
         let [one, three] = [1, 3].map(|fingers| capacity(baud, fingers, 1e5).unwrap_err());
         let expected = [
             baud.to_string(),

@@ -1,7 +1,7 @@
-//! Random and mutated byte streams into the decoder: no panic, nothing accepted that was not sent whole, and the next
-//! frame found.
+//! Random and mutated byte streams for the decoder: it must not panic, must accept nothing that was not sent
+//! completely, and must find the next frame.
 //!
-//! `SUN2XP_STREAMS=10000000 cargo test --test board_streams -- --nocapture` for ten million of them.
+//! `SUN2XP_STREAMS=10000000 cargo test --test board_streams -- --nocapture` runs ten million of them.
 
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
@@ -26,7 +26,7 @@ impl Dice {
         WireFrame::new(&message).as_bytes().to_vec()
     }
 
-    /// Rubbish, or frames with a few bytes changed, lost, doubled, added, or exchanged piece by piece.
+    /// Random bytes, or frames with a few bytes changed, lost, doubled, inserted, or exchanged block by block.
     fn stream(&mut self) -> Vec<u8> {
         if self.throw(3) == 0 {
             let length = self.throw(80);
@@ -67,13 +67,13 @@ fn nothing_is_accepted_that_was_not_sent_and_the_next_frame_is_found() {
             let Some(packet) = decoder.next(&mut left) else { continue };
             accepted += 1;
             if let Ok(message) = Message::read(&packet) {
-                // Its check held: so it stands in the stream as it would be sent, byte for byte.
+                // A frame whose checksum holds must occur in the stream exactly as it would be sent.
                 let wire = WireFrame::new(&message);
                 assert!(contains(&stream, wire.as_bytes()), "{message:?} from {stream:02x?}");
             }
         }
         bytes += stream.len() as u64;
-        // Whatever was left open may take one frame with it, and no more.
+        // An open frame may cost the next frame, but no more.
         let frame = dice.frame();
         let after = [&frame[..], &frame[..]].concat();
         let mut found = 0;

@@ -1,4 +1,4 @@
-//! What a board is told in its own units: no limit is ever exceeded by rounding.
+//! Terms that a board receives in its own units. Rounding must never exceed a limit.
 
 use nalgebra::Vector4;
 use proptest::prelude::*;
@@ -32,14 +32,14 @@ fn terms(torque_limit: f64, hold_torque_limit: f64, torque_constant: f64) -> Ter
     }
 }
 
-/// N cm. Done in whole nN m, so that it says what the board does and not how the library computes it.
+/// Converts to N cm by whole nN m, independently of the library: this is the torque that the board will give.
 fn newton_centimetres(count: i64, unit: u32) -> f64 {
     (count * i64::from(unit)) as f64 / 1e7
 }
 
 #[test]
 fn a_unit_of_which_the_limit_is_half_is_refused() {
-    // 0.54 units would be one unit if they were rounded to the nearest: 1.85 times the limit.
+    // 0.54 units would round to one unit, which is 1.85 times the limit.
     let unit = (4.75e7f64 / 0.54) as u32;
     let error = terms(4.75, 1.0, 2.34).configure(&board(unit)).expect_err("too coarse");
     assert!(matches!(error, TermsError::CoarseUnit { motor: 1, .. }), "{error}");
@@ -58,7 +58,7 @@ fn the_coarsest_unit_that_is_taken_is_a_hundredth_of_the_smallest_limit() {
     assert!(matches!(error, TermsError::CoarseUnit { motor: 3, .. }), "{error}");
 }
 
-/// What is a whole number of units is not rounded at all.
+/// A limit of a whole number of units is not rounded at all.
 #[test]
 fn whole_numbers_of_units_are_kept() {
     let told = terms(4.75, 0.5, 2.34).configure(&board(2000)).expect("good terms");
@@ -75,16 +75,16 @@ fn a_limit_beyond_the_boards_is_refused() {
     let weak = Identity { torque_limit: 23_749, ..board(2000) };
     let error = terms(4.75, 1.0, 2.34).configure(&weak).expect_err("too strong");
     assert!(matches!(error, TermsError::TorqueLimit { motor: 1, .. }), "{error}");
-    // Far beyond, where counts saturate.
+    // Far beyond the range, where counts saturate.
     let error = terms(5000.0, 1.0, 2.34).configure(&board(2000)).expect_err("too strong");
     assert!(matches!(error, TermsError::TorqueLimit { motor: 1, .. }), "{error}");
-    // Less than one unit beyond: the board is told what it can.
+    // Less than one unit beyond the range: the board receives the largest torque that it can give.
     let told = terms(4.7501, 1.0, 2.34).configure(&Identity { torque_limit: 23_750, ..board(2000) });
     assert_eq!(told.expect("good terms").torque_limits, [23_750; 4]);
 }
 
-/// The page lets a board need up to 20 ms. Such a board works with the default, and no board is given more than that
-/// unasked.
+/// The page allows a shortest watchdog of up to 20 ms. Such a board works with the default, but no board gets more than
+/// the default unasked.
 #[test]
 fn a_board_gets_the_shortest_watchdog_that_it_can_keep() {
     let terms = terms(4.75, 1.0, 2.34);
@@ -118,7 +118,7 @@ proptest! {
     fn no_limit_is_exceeded(
         limit in 0.001..6000.0f64, hold in 0.0..1000.0f64, constant in 0.001..10_000.0f64, parts in 100.0..30_000.0f64,
     ) {
-        // At least 1 nN m; and a limit of up to so many units.
+        // A unit of at least 1 nN m. The limit is at most `parts` units.
         let unit = ((limit * 1e7 / parts) as u32).max(1);
         match terms(limit, hold, constant).configure(&board(unit)) {
             Ok(configure) => {
@@ -127,7 +127,7 @@ proptest! {
                 let told = newton_centimetres(told.into(), unit);
                 prop_assert!(told <= limit && told >= 0.99 * limit, "{limit} N cm became {told}");
                 prop_assert!(newton_centimetres(hold_torque_limit.into(), unit) <= hold);
-                // The board divides by it to get a current: a larger one makes the torque smaller.
+                // The board divides by the constant to get a current, so a larger constant makes the torque smaller.
                 let constant_told = f64::from(constant_told) / 1e4;
                 prop_assert!(constant_told >= constant && constant_told < constant + 1.001e-4);
             }

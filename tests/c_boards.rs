@@ -1,6 +1,6 @@
-//! Boards in C: a second board, written from the page of the protocol alone, and the reference firmware. If the library
-//! settles the fingers of the one, then the page says all that a board has to know; the other is what a lab begins
-//! with.
+//! Two boards in C: a second board, written from the protocol's page alone, and the reference firmware. If the library
+//! settles the fingers of the second board, the page contains everything that a board needs. Laboratories start from
+//! the reference firmware.
 
 #[path = "common/attempts.rs"]
 mod attempts;
@@ -28,9 +28,9 @@ const SOURCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/c/second_board
 const FIRMWARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/firmware");
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/board-protocol.md");
 
-/// The finger is this close to its target, rad.
+/// Largest distance of a finger from its target, rad.
 const CLOSE: f64 = 0.02;
-/// A busy machine moves the finger more slowly than time passes.
+/// On a busy machine the finger moves more slowly than real time.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 fn succeeds(command: &mut Command) {
@@ -39,7 +39,7 @@ fn succeeds(command: &mut Command) {
     assert!(output.status.success(), "{command:?}:\n{said}");
 }
 
-/// Compiles the board into the folder, and refuses any warning.
+/// Compiles the board into the folder. Every warning is an error.
 fn compile(folder: &Path) -> PathBuf {
     let program = folder.join("second_board");
     let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_string());
@@ -56,7 +56,7 @@ fn compile(folder: &Path) -> PathBuf {
     program
 }
 
-/// A running board. It ends with the test, also with one that fails.
+/// A running board. It is ended with the test, even with one that fails.
 struct Board {
     process: Child,
     output: BufReader<ChildStdout>,
@@ -85,7 +85,7 @@ impl Board {
         line.trim_end().to_string()
     }
 
-    /// Where the joints truly are, which the library only knows from encoders and gauges.
+    /// The true joint angles. The library infers them from encoders and gauges.
     fn joints(&mut self) -> Vec<f64> {
         let input = self.process.stdin.as_mut().expect("the board's input is a pipe");
         input.write_all(b"\n").expect("the board reads its input");
@@ -104,14 +104,14 @@ impl Drop for Board {
     }
 }
 
-/// What an attempt has come to. Texts, because a fault and a finger in a wrong place are alike here.
+/// The result of an attempt. Errors are texts, because a fault and a finger in a wrong place count alike here.
 type Attempt = Result<(), String>;
 
 fn told(error: HandError) -> String {
     error.to_string()
 }
 
-/// Sends all fingers to their targets and waits until each is there and stays.
+/// Sends all fingers to their targets and waits until all have stayed there for a while.
 fn settle(hand: &Hand, targets: [[f64; 3]; 3]) -> Attempt {
     for (finger, target) in (1..).zip(targets) {
         hand.send_position(finger, target).map_err(told)?;
@@ -129,7 +129,7 @@ fn settle(hand: &Hand, targets: [[f64; 3]; 3]) -> Attempt {
             .zip(targets.iter().flatten())
             .map(|(is, wanted)| (is - wanted).abs())
             .fold(0.0, f64::max);
-        // Passing by is not arriving.
+        // A finger that merely passes its target has not arrived.
         let arrived = if worst < CLOSE { Some(*since.get_or_insert_with(Instant::now)) } else { None };
         since = arrived;
         if arrived.is_some_and(|instant| instant.elapsed() > Duration::from_millis(200)) {
@@ -158,7 +158,7 @@ fn the_reference_firmware_settles_three_fingers() {
 #[test]
 fn the_reference_firmware_holds_the_vectors_and_survives_noise() {
     let folder = tempfile::tempdir().expect("a scratch folder");
-    // Of the two compilers, gcc brings the sanitizers along on Debian.
+    // On Debian only gcc has the sanitizers installed with it.
     if tools::available("gcc", "under gcc, with sanitizers") {
         let sanitize = "SANITIZE=-fsanitize=address,undefined -fno-sanitize-recover=all";
         make(folder.path(), &["check", "CC=gcc", sanitize]);
@@ -168,7 +168,7 @@ fn the_reference_firmware_holds_the_vectors_and_survives_noise() {
     }
 }
 
-/// In firmware/, with its products in `folder`.
+/// Runs make in firmware/ and places the products in `folder`.
 fn make(folder: &Path, arguments: &[&str]) {
     succeeds(Command::new("make").args(["-C", FIRMWARE]).arg(format!("BUILD={}", folder.display())).args(arguments));
 }
@@ -188,13 +188,13 @@ fn settles_three_fingers_and_notices_a_dead_board(program: &Path, folder: &Path)
     });
 }
 
-/// A servo that hears nothing for 10 ms lets its motors go and begins anew (docs/architecture.md). A hand survives
-/// that, but the frictionless fingers of these boards may not survive five times as long.
+/// A servo that receives nothing for 10 ms lets the motors go and starts again (docs/architecture.md). A hand survives
+/// that, but the frictionless fingers of these boards may not survive a pause of five times that length.
 const BEARS: Duration = Duration::from_millis(50);
 
 fn configuration(boards: &[Board; 3], folder: &Path) -> Configuration {
-    // The boards let a finger move for 2 ms after a Command, so a late Command does no harm at this rate. A busy
-    // machine may keep servo or board from running for longer than the usual watchdog.
+    // The boards let a finger move for at most 2 ms after a Command, so a late Command is harmless at this rate. A busy
+    // machine may delay servo or board by more than the default watchdog.
     let mut text = "[hand]\nrate = 500.0\nwatchdog_ms = 1000\n[finger.controller]\nset_point_speed = 1.0\n".to_string();
     for (finger, board) in (1..).zip(boards) {
         text += &format!("[finger.{finger}]\nport = \"{}\"\n", board.port);
@@ -242,7 +242,7 @@ fn notices_a_dead_board(hand: &Hand, board: &mut Board) -> Attempt {
     if !(text.contains("finger 2 is faulted") && text.contains("port")) {
         return Err(text);
     }
-    // The others are on boards of their own.
+    // The other fingers are on boards of their own.
     [1, 3].into_iter().try_for_each(|finger| hand.position(finger).map(drop).map_err(told))
 }
 

@@ -1,12 +1,12 @@
-//! The header in every dialect of C and C++ that planners are written in: no warning, and only arrays of float or
-//! double.
+//! The header in every dialect of C and C++ that planners use: it must cause no warning, and must accept only arrays of
+//! float or double.
 
 #[allow(dead_code)]
 mod c;
 
 use c::{Bench, C_STANDARDS as C, CPP_STANDARDS as CPP, STRICT, c_compiler, c_compilers, cpp_compiler, cpp_compilers};
 
-/// Every way of telling the header what the arrays are.
+/// Every way to tell the header the type of the arrays.
 const CHOICES: &[&[&str]] = &[
     &["-DREAL=float"],
     &["-DREAL=double"],
@@ -75,7 +75,7 @@ fn own_declarations_compile_with_the_type_named() {
                 let flags = with(&[STRICT, &[named, arrays, standard]]);
                 bench.check(compiler, &flags, "own.c").unwrap_or_else(|e| panic!("{e}"));
             }
-            // In C23 `int SendPos();` says that there is no argument.
+            // In C23 `int SendPos();` declares a function without arguments.
             let flags = with(&[STRICT, &[named, arrays, "-std=c2x", "-DNO_DECLARATIONS"]]);
             bench.check(compiler, &flags, "own.c").unwrap_or_else(|e| panic!("{e}"));
         }
@@ -86,8 +86,8 @@ fn own_declarations_compile_with_the_type_named() {
     }
 }
 
-/// Statements in C89 whose last one must not compile: the argument is no array of float or double, or its rows have
-/// another length. A C++ compiler complains only once about a template and a type, so none comes twice.
+/// Statements in C89 that must not compile: the argument is not an array of float or double, or its rows have another
+/// length. A C++ compiler reports each pair of template and type only once, so no pair occurs twice.
 const WRONG: &[&str] = &[
     "static int Wrong[3]; SendPos(1, Wrong);",
     "static void *Wrong; SendPos(1, Wrong);",
@@ -110,7 +110,7 @@ const WRONG: &[&str] = &[
     "GetPos(1, -1);",
 ];
 
-/// Those that the size of an element gives away, where the compiler has no `_Generic`.
+/// Statements that fail by the size of an element, for compilers without `_Generic`.
 const WRONG_BY_SIZE: &[&str] = &[
     "SendPos(1, (void *)5);",
     "static void *Wrong; GetPos(1, Wrong);",
@@ -129,7 +129,7 @@ fn other_arguments_do_not_compile() {
         for (compilers, standards, name) in [(c_compilers(), C, "wrong.c"), (cpp_compilers(), CPP, "wrong.cpp")] {
             let source = bench.write(name, &planner);
             for compiler in compilers {
-                // Else it stops at the twentieth error.
+                // Otherwise clang stops at the twentieth error.
                 let all: &[&str] = if compiler.starts_with("clang") { &["-ferror-limit=0"] } else { &[] };
                 for standard in standards {
                     let flags = with(&[mode, all, &[standard, "-w", "-fsyntax-only"]]);

@@ -1,5 +1,4 @@
-//! A planner that knows only the calls of 1990, and has functions, types and constants of its own under all later
-//! names.
+//! A planner that knows only the calls of 1990 and has functions, types and constants of its own under all later names.
 
 #[allow(dead_code)]
 mod c;
@@ -8,11 +7,11 @@ use c::{Bench, C_STANDARDS, STRICT, c_compiler, c_compilers, library, root, said
 use std::fs;
 use std::process::Command;
 
-/// The symbols of the library that such a planner knows.
+/// The symbols of the library that such a planner uses.
 const KNOWN: &[&str] =
     &["CloseHand", "GetPos", "GetPosD", "HandError", "OpenHand", "SendKx", "SendKxD", "SendPos", "SendPosD"];
 
-/// The library's symbols that such a planner may have itself.
+/// The symbols of the library that such a planner may define itself.
 fn later_symbols() -> Vec<String> {
     let run = Command::new("nm").args(["-D", "--defined-only"]).arg(library()).output().expect("nm can be started");
     let listing = said(&run);
@@ -47,7 +46,7 @@ fn its_own_names_compile_in_every_dialect() {
 #[test]
 fn the_shared_library_does_not_take_them_for_its_own() {
     Bench::new().succeed(STRICT, &["five_calls.c"]);
-    // What the library called by an exported name, the dynamic linker would bind to the planner's.
+    // The dynamic linker would bind a call of the library to an exported name to the planner's function.
     let run = Command::new("readelf").args(["-r", "-W"]).arg(library()).output().expect("readelf can be started");
     let relocations = said(&run);
     assert!(run.status.success() && uses(&relocations, "pthread_create"), "{relocations}");
@@ -56,7 +55,7 @@ fn the_shared_library_does_not_take_them_for_its_own() {
     }
 }
 
-/// As the manual says in chapter 5.
+/// As chapter 5 of the manual describes.
 #[test]
 fn the_static_library_gives_way_to_them() {
     let bench = Bench::new();

@@ -1,5 +1,4 @@
-//! The header in a planner that has macros of its own: it compiles whatever they are named, and they are left as they
-//! were.
+//! The header in a planner that has macros of its own: it compiles whatever their names are, and leaves them unchanged.
 
 #[allow(dead_code)]
 mod c;
@@ -9,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 
-/// Words of C and C++. A test of their own makes macros of them.
+/// Words of C and C++. A separate test makes macros of them.
 const WORDS: &[&str] = &[
     "auto",
     "case",
@@ -54,8 +53,8 @@ const WORDS: &[&str] = &[
     "__inline",
 ];
 
-/// Macros of the header itself, and the calls that these use. A planner that defines one too sees a compiler's
-/// complaint, or makes the call another one.
+/// Macros of the header itself and the calls that they use. A planner that defines one of them gets a compiler message,
+/// or replaces the call.
 const MACROS_OF_THE_HEADER: &[&str] = &["SendPos", "SendKx", "GetPos", "SendPosD", "SendKxD", "GetPosD"];
 
 fn words(text: &str) -> impl Iterator<Item = &str> {
@@ -63,7 +62,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(move |letter| !within(letter)).filter(|word| word.starts_with(|letter: char| letter.is_alphabetic()))
 }
 
-/// Every name that stands in a declaration of the header, or in the declaration that heads an entry of its manual.
+/// Every name in a declaration of the header, or in the declaration at the head of an entry of its manual.
 fn names() -> BTreeSet<String> {
     let header = fs::read_to_string(root().join("include/Sun2Xp.h")).expect("the header");
     let mut names = BTreeSet::new();
@@ -105,7 +104,7 @@ fn every_name_of_the_header_may_be_a_macro() {
 
 #[test]
 fn every_word_of_c_may_be_a_macro() {
-    // In C++ clang warns of every such macro, wherever it stands.
+    // In C++ clang warns about every such macro, wherever it is defined.
     let allowed = "-Wno-keyword-macro";
     may_be_macros(
         WORDS.iter().copied(),
@@ -113,8 +112,8 @@ fn every_word_of_c_may_be_a_macro() {
     );
 }
 
-/// Macros that stay while the planner calls: those of planners for compilers that do not know a word, and those that
-/// make every `float` a `double`.
+/// Macros that stay defined during the planner's calls: those of planners for compilers that lack a word, and those
+/// that turn every `float` into `double`.
 #[test]
 fn calls_compile_where_words_of_c_are_macros() {
     let bench = Bench::new();
@@ -143,7 +142,7 @@ int planner(int finger)
 }
 ";
 
-/// The header compiles where all of these are macros that fit nowhere, and leaves each as it was.
+/// The header must compile while all of these are macros with useless definitions, and must restore each of them.
 fn may_be_macros<'a>(names: impl Iterator<Item = &'a str> + Clone, modes: &[&[&str]]) {
     let mut planner = String::new();
     for name in names.clone() {
@@ -174,7 +173,7 @@ fn a_planner_with_a_window_compiles() {
     in_every_dialect(&bench, &[&folder, "-DWINDOW_LAST"], &sources);
 }
 
-/// `sources`: the same in C and in C++.
+/// `sources` holds the same program in C and in C++.
 fn in_every_dialect(bench: &Bench, flags: &[&str], sources: &[String; 2]) {
     let languages = [(c_compilers(), C_STANDARDS), (cpp_compilers(), CPP_STANDARDS)];
     for ((compilers, standards), source) in languages.into_iter().zip(sources) {

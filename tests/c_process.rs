@@ -1,4 +1,4 @@
-//! What the library does to the process of a planner, and what a planner may do to it: signals, cancellation,
+//! Effects of the library on the process of a planner, and things that a planner may do to it: signals, cancellation,
 //! floating-point environments, stacks, locked memory and the end of the process.
 
 #[allow(dead_code)]
@@ -8,8 +8,8 @@ use c::{Bench, STRICT, c_compiler, said};
 use std::fs;
 use std::process::Command;
 
-/// A scratch folder whose configuration has ZeroFinger read the pose that the finger is in, which takes a second: a
-/// search for the stops takes most of a minute, and these tests are about the call and not about what it finds.
+/// A scratch folder whose configuration makes ZeroFinger take the pose of the finger as known, which takes a second. A
+/// search for the stops takes most of a minute, and these tests are about the call, not about its result.
 fn bench() -> Bench {
     let bench = Bench::new();
     let configuration = "[finger]\nport = \"simulated\"\n[finger.zeroing]\nmethod = \"pose\"\n";
@@ -52,7 +52,7 @@ fn a_planner_may_have_much_thread_local_data() {
 
 #[test]
 fn a_process_out_of_memory_keeps_its_hand_and_is_told() {
-    // glibc has its allocator under a second name, for a planner that takes over the first.
+    // glibc offers its allocator under a second name, for a planner that replaces the first.
     if cfg!(target_env = "gnu") {
         succeed(&["no_memory.c"]);
     }
@@ -63,8 +63,8 @@ fn a_cancelled_thread_ends_after_its_call() {
     succeed(&["cancelled.c"]);
 }
 
-/// Rounding, flushed denormals and trapping exceptions of a planner are its own: they reach neither the servos, whose
-/// cycles are computed again to the last bit by the replay, nor what the calls compute.
+/// Rounding mode, flushed denormals and trapping exceptions of a planner affect neither the servos, whose cycles the
+/// replay recomputes to the last bit, nor the results of the calls.
 #[test]
 fn the_floating_point_environment_of_a_planner_is_its_own() {
     let bench = bench();
@@ -82,7 +82,7 @@ fn the_floating_point_environment_of_a_planner_is_its_own() {
 
 #[test]
 fn a_small_stack_is_enough_for_every_call() {
-    // The finger is pushed meanwhile, so that ZeroFinger would refuse its pose.
+    // The finger is being pushed, so ZeroFinger would refuse its pose.
     Bench::new().succeed(STRICT, &["small_stack.c"]);
 }
 
@@ -90,7 +90,7 @@ fn a_small_stack_is_enough_for_every_call() {
 fn a_call_that_was_jumped_out_of_goes_on_to_its_end() {
     let bench = bench();
     let program = bench.build(c_compiler(), STRICT, &["jumped.c"]);
-    // What can go wrong is a call that waits for ever.
+    // A call that never returns would hang the test.
     let mut command = Command::new("timeout");
     command.args(["--signal=KILL", "120"]).arg(&program);
     let run = bench.run(command);

@@ -1,5 +1,5 @@
-//! Planners in hostile surroundings: descriptors that are closed behind the library's back, limits of the system,
-//! names that steer terminals.
+//! Planners in hostile surroundings: descriptors that the planner closes without the library's knowledge, limits of the
+//! system, and names with control sequences for terminals.
 
 #[allow(dead_code)]
 mod c;
@@ -10,7 +10,7 @@ use std::fs;
 use std::os::unix::ffi::OsStrExt;
 use std::process::{Command, Output};
 
-/// What a program exits with where the system does not permit what it shows.
+/// Exit status of a program if the system does not permit what it tests.
 const NOT_PERMITTED: i32 = 77;
 
 fn strict<'a>(flags: &[&'a str]) -> Vec<&'a str> {
@@ -19,7 +19,7 @@ fn strict<'a>(flags: &[&'a str]) -> Vec<&'a str> {
 
 #[test]
 fn a_planner_that_closes_the_descriptors_up_to_255_keeps_its_hand() {
-    // The library has higher ones.
+    // The library's descriptors have higher numbers.
     closes_descriptors("1024", "255");
 }
 
@@ -30,13 +30,13 @@ fn a_planner_that_closes_every_descriptor_is_told_and_keeps_its_files_to_itself(
 
 #[test]
 fn a_planner_that_may_have_few_descriptors_and_closes_all_is_told_and_keeps_its_files_to_itself() {
-    // None is far from the first that the planner gets.
+    // No descriptor of the library is far from the planner's first ones.
     closes_descriptors("60", "255");
 }
 
 fn closes_descriptors(limit: &str, highest: &str) {
     let bench = Bench::new();
-    // Nor are pseudo-terminals of the planner's taken for ports that have come back.
+    // With reconnection, the planner's new pseudo-terminals must not be taken for the lost ports.
     fs::write(bench.path().join("named.toml"), "[finger]\nreconnect = true\n").expect("a configuration file");
     let program = bench.build(c_compiler(), &strict(&["-D_XOPEN_SOURCE=600"]), &["closes_descriptors.c"]);
     let mut command = Command::new(&program);
@@ -61,7 +61,7 @@ fn a_planner_under_sched_deadline_is_told_what_its_threads_need() {
     assert!(run.status.success(), "{}\n{}", run.status, said(&run));
 }
 
-/// Names that break lines, clear the screen, turn the direction of writing around, are no text, or are long.
+/// Names that break lines, clear the screen, reverse the direction of writing, are not UTF-8, or are long.
 fn hostile_names() -> [Vec<u8>; 4] {
     [
         b"two\nlines".to_vec(),
@@ -71,7 +71,7 @@ fn hostile_names() -> [Vec<u8>; 4] {
     ]
 }
 
-/// One line that a terminal shows as it is, and that is not too long to be read, begins with `beginning`.
+/// Asserts that one line begins with `beginning`, is shown unchanged by a terminal, and has a readable length.
 fn assert_one_line(text: &str, beginning: &str) {
     let line = text.strip_suffix('\n').unwrap_or(text);
     assert!(line.len() < 900, "{} bytes: {:?}", line.len(), line.chars().take(200).collect::<String>());

@@ -1,9 +1,9 @@
-//! Files that import each other in a circle.
+//! Finds files that import each other in a circle.
 
 use crate::imports::Import;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// One text for each set of files that all reach each other, with the imports that tie them.
+/// Returns one text for each set of files that all reach each other, listing the imports between them.
 pub fn find(imports: &BTreeSet<Import>) -> Vec<String> {
     let mut next: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for import in imports {
@@ -28,7 +28,7 @@ pub fn find(imports: &BTreeSet<Import>) -> Vec<String> {
     found
 }
 
-/// All files that an import leads to, directly or through others.
+/// All files that an import leads to, directly or through other files.
 fn reach<'a>(from: &'a str, next: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> BTreeSet<&'a str> {
     let mut reached = BTreeSet::new();
     let mut open = vec![from];

@@ -1,4 +1,4 @@
-//! The files of a crate with their modules, what each defines, and what it re-exports.
+//! The files of a crate: the module of each, the items it defines, and the names it re-exports.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,21 +7,21 @@ use syn::{Attribute, Item, UseTree, Visibility};
 
 /// One source file.
 pub struct SourceFile {
-    /// The path of its module below the crate.
+    /// Path of the file's module, from the root of the crate.
     pub module: Vec<String>,
-    /// Its syntax, without what is compiled for tests only.
+    /// The items, without those that are compiled for tests only.
     pub items: Vec<Item>,
-    /// Names of the items that it defines.
+    /// Names of the defined items.
     defined: Vec<String>,
-    /// Names that it re-exports, with the paths that they stand for.
+    /// Names of the re-exported items, with the paths that they stand for.
     exported: BTreeMap<String, Vec<String>>,
 }
 
-/// All source files of a crate by their modules.
+/// All source files of a crate, by module.
 pub struct CrateTree(BTreeMap<Vec<String>, SourceFile>);
 
 impl CrateTree {
-    /// Reads the files below the folder of a crate's root.
+    /// Reads every file below the folder of the crate's root.
     pub fn read(root: &Path) -> Self {
         let modules = rust_files(root).into_iter().map(|path| {
             let module = module_of(path.strip_prefix(root).expect("it is below the root"));
@@ -30,13 +30,13 @@ impl CrateTree {
         Self(modules.collect())
     }
 
-    /// The files, in the order of their modules.
+    /// The files in the order of their modules.
     pub fn files(&self) -> impl Iterator<Item = &SourceFile> {
         self.0.values()
     }
 
-    /// The module that defines what a path from the crate's root names, with re-exports resolved. None for a path that
-    /// leads out of the crate.
+    /// Resolves re-exports and returns the module that defines the item at a path from the crate's root. Returns `None`
+    /// for a path that leads out of the crate.
     pub fn resolve(&self, path: &[String]) -> Option<Vec<String>> {
         let depth = (0..=path.len()).rev().find(|&depth| self.0.contains_key(&path[..depth]))?;
         let file = &self.0[&path[..depth]];
@@ -71,7 +71,7 @@ impl SourceFile {
     }
 }
 
-/// The names that a `use` brings in, with their paths from the crate's root. Paths out of the crate begin with a name
+/// The names that a `use` imports, with their paths from the crate's root. A path out of the crate begins with a name
 /// that no module has.
 pub fn paths(tree: &UseTree, module: &[String]) -> Vec<(String, Vec<String>)> {
     fn walk(tree: &UseTree, before: &[String], found: &mut Vec<(String, Vec<String>)>) {
@@ -92,8 +92,8 @@ pub fn paths(tree: &UseTree, module: &[String]) -> Vec<(String, Vec<String>)> {
     found.into_iter().map(|(name, path)| (name, from_root(&path, module))).collect()
 }
 
-/// A path as a file writes it, from the crate's root. A path that begins with neither `crate`, `super` nor `self` may
-/// name a module below this one.
+/// Converts a path as a file writes it into a path from the crate's root. A path that begins with neither `crate`,
+/// `super` nor `self` may name a module below this one.
 pub fn from_root(path: &[String], module: &[String]) -> Vec<String> {
     let mut at = module.to_vec();
     for (place, name) in path.iter().enumerate() {
@@ -107,7 +107,7 @@ pub fn from_root(path: &[String], module: &[String]) -> Vec<String> {
     at
 }
 
-/// The Rust files below a folder, without what a build has made.
+/// The Rust files below a folder, without build products.
 pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).expect("a folder") {
@@ -122,7 +122,7 @@ pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Whether an item is compiled for tests only.
+/// Returns whether an item is compiled for tests only.
 pub fn for_tests(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         attribute.path().is_ident("cfg")

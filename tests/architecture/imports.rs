@@ -1,4 +1,4 @@
-//! Which file imports from which.
+//! Finds the imports of each file.
 
 use crate::crate_tree::{CrateTree, SourceFile, for_tests, from_root, paths};
 use std::collections::{BTreeMap, BTreeSet};
@@ -6,14 +6,14 @@ use std::fmt;
 use syn::visit::{self, Visit};
 use syn::{Attribute, Item, ItemFn, ItemMod, ItemUse, Visibility};
 
-/// One file takes a name from another.
+/// An import of one file from another.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Import {
     /// The module of the file that imports.
     pub from: String,
     /// The module of the file that defines the name.
     pub to: String,
-    /// The path as it resolves before re-exports.
+    /// The path before re-exports are resolved.
     pub path: String,
 }
 
@@ -23,14 +23,15 @@ impl fmt::Display for Import {
     }
 }
 
-/// Every import between files of the library. A re-export alone is none: it belongs to whoever uses the name.
+/// Every import between files of the library. A re-export alone is no import: the import belongs to the file that uses
+/// the name.
 pub fn all(tree: &CrateTree) -> BTreeSet<Import> {
     tree.files().flat_map(|file| of(file, tree)).collect()
 }
 
 fn of(file: &SourceFile, tree: &CrateTree) -> Vec<Import> {
     let mut reader = Reader { module: &file.module, brought: BTreeMap::new(), found: BTreeSet::new() };
-    // Names first: a path in the code may begin with one of them.
+    // The names come first, because a path in the code may begin with one of them.
     for item in &file.items {
         if let Item::Use(import) = item {
             reader.brought.extend(paths(&import.tree, &file.module));
@@ -46,7 +47,7 @@ fn of(file: &SourceFile, tree: &CrateTree) -> Vec<Import> {
 
 struct Reader<'a> {
     module: &'a [String],
-    /// What the file's `use` lines bring in.
+    /// Names that the file's `use` lines import.
     brought: BTreeMap<String, Vec<String>>,
     found: BTreeSet<Vec<String>>,
 }
@@ -54,7 +55,7 @@ struct Reader<'a> {
 impl<'a> Visit<'a> for Reader<'_> {
     fn visit_item_use(&mut self, import: &'a ItemUse) {
         if matches!(import.vis, Visibility::Inherited) {
-            // A module that is brought in counts where a path takes a name from it.
+            // An imported module counts as used only where a path takes a name from it.
             self.found.extend(paths(&import.tree, self.module).into_iter().map(|(_, path)| path));
         }
     }
@@ -74,7 +75,7 @@ impl<'a> Visit<'a> for Reader<'_> {
 
     fn visit_attribute(&mut self, _: &'a Attribute) {}
 
-    // `pub(in ...)` names a module and takes nothing from it.
+    // `pub(in ...)` names a module but imports nothing from it.
     fn visit_visibility(&mut self, _: &'a Visibility) {}
 
     fn visit_item_mod(&mut self, module: &'a ItemMod) {

@@ -9,7 +9,7 @@ use crate_tree::CrateTree;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// The folders of the library from the top down. A file imports from its own folder and from those below it.
+/// The folders of the library from the top down. A file imports from its own folder and from lower ones.
 const FLOORS: [&[&str]; 9] = [
     &["capi"],
     &["hand"],

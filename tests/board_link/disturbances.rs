@@ -1,4 +1,4 @@
-//! Disturbances of the line: bytes that do not fit, that come late, and that come without end.
+//! Disturbances of the line: bytes that are no frame, that are late, or that never end.
 
 use crate::other_end::OtherEnd;
 use crate::rig::{MS, board, pull, terms};
@@ -9,7 +9,7 @@ use sun2xp::simulated::*;
 
 #[test]
 fn a_frame_that_did_not_fit_costs_itself_only() {
-    /// Takes 5 bytes of the second write.
+    /// Accepts only 5 bytes of the second write.
     struct Narrow(SimulatedCable, u32);
     impl Transport for Narrow {
         fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
@@ -34,7 +34,7 @@ fn a_frame_that_did_not_fit_costs_itself_only() {
         let deadline = link.transport().now() + MS;
         answered.extend(link.receive(deadline).unwrap().map(|received| received.sequence));
     }
-    // Writes: Hello, Configure, three whole commands and one cut short, the second.
+    // The writes are Hello, Configure and four Commands. The second Command is cut short.
     assert_eq!(answered, [0, 2, 3]);
     assert_eq!(link.counters().unsent, 1);
 }
@@ -54,7 +54,7 @@ fn a_refused_handshake_frame_that_comes_late_is_no_fault() {
 
 #[test]
 fn endless_rubbish_holds_up_nobody() {
-    /// Always has bytes; each read takes 10 us.
+    /// Always has bytes to read. Each read takes 10 us.
     struct Babbler(u64);
     impl Transport for Babbler {
         fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {

@@ -1,4 +1,4 @@
-//! The handshake: what both sides agree on, and what the link reports when they do not.
+//! The handshake: the terms that both sides agree on, and the errors that the link reports when they do not.
 
 use crate::other_end::OtherEnd;
 use crate::rig::{MS, board, cycle, in_time, link, pull, read, terms};
@@ -19,7 +19,7 @@ fn handshake_agrees_on_terms_and_tells_whole_counts() {
     assert_eq!(identity.counts_per_revolution, 2000);
     assert!(configured.encoders[0].abs_diff(1_000_000) < 20_000 && configured.encoders[3].abs_diff(70_000) < 20_000);
     assert_eq!(configured.terms.watchdog_ms, 18);
-    // The limits of the configuration, in whole units of the board and not above them.
+    // The limits of the configuration, rounded down to whole torque units of the board.
     for limit in configured.terms.torque_limits {
         let limit = identity.torque(limit as i16);
         assert!(limit <= 4.75 && limit > 4.75 - identity.torque(1));
@@ -35,7 +35,7 @@ fn failure(answer: impl FnMut(Message) -> Vec<u8>) -> (LinkError, u64) {
     (error, link.transport().now())
 }
 
-/// A board that is good but for what `change` does to its answers.
+/// A good board, except that `change` alters its answers.
 fn good_but(change: impl Fn(&mut Message)) -> impl FnMut(Message) -> Vec<u8> {
     let mut good = board(&[1]);
     move |request| {
@@ -121,7 +121,7 @@ fn handshake_waits_for_the_watchdog_to_end_a_dead_host() {
     let mut link = link(&[1]);
     link.shake_hands(1, &terms(EndState::Release), 500 * MS).unwrap();
     cycle(&mut link, 0, pull(3000));
-    // A new host at once: refused as running until the watchdog has tripped.
+    // A new host that starts at once is refused as running until the watchdog has tripped.
     let began = link.transport().now();
     link.shake_hands(1, &terms(EndState::Release), began + 500 * MS).unwrap();
     assert!(link.transport().now() - began >= 19 * MS);

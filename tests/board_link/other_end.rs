@@ -1,19 +1,19 @@
-//! Something other than the simulated board at the other end of the line.
+//! Something other than the simulated board at the far end of the line.
 
 use sun2xp::board::protocol::*;
 use sun2xp::board::*;
 
-/// An end that answers each frame with what a function makes of it.
+/// A far end that answers each frame with the result of a function.
 pub struct OtherEnd<F> {
     answer: F,
-    /// Bytes that the host has not read yet.
+    /// Bytes that the host has not yet read.
     sent: Vec<u8>,
     /// Simulated time, ns.
     now: u64,
 }
 
 impl<F: FnMut(Message) -> Vec<u8>> OtherEnd<F> {
-    /// The bytes `sent` wait for the host from the beginning.
+    /// The bytes in `sent` wait for the host from the beginning.
     pub fn new(answer: F, sent: Vec<u8>) -> Self {
         Self { answer, sent, now: 0 }
     }

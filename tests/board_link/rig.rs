@@ -45,12 +45,12 @@ pub fn pull(count: i16) -> Command {
     Command { toggle: false, enable: true, torques: [count; 4] }
 }
 
-/// What the motors are told, N cm.
+/// Torques that the motors are commanded to give, N cm.
 pub fn torques(link: &mut Link<SimulatedCable>) -> Vector4<f64> {
     link.transport().board().finger(1).unwrap().motor_torques()
 }
 
-/// Within a torque unit, 1.6e-4 N cm.
+/// Compares to within one torque unit, 1.6e-4 N cm.
 pub fn assert_all(torques: Vector4<f64>, expected: f64) {
     assert!((torques.add_scalar(-expected)).amax() < 1.6e-4, "{torques} is not {expected} N cm");
 }

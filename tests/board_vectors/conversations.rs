@@ -1,4 +1,4 @@
-//! Every conversation as lines of the file, and as a test of the simulated board: both follow the state diagram of a
+//! Every conversation as lines of the file and as a test of the simulated board. Both follow the state diagram of a
 //! board.
 
 use super::json::{hex, list, object, text};
@@ -43,7 +43,7 @@ pub fn listed() -> Vec<String> {
         .collect()
 }
 
-/// Whether this is the answer, to a request with this sequence number.
+/// Checks that this is the answer to a request with this sequence number.
 fn check_answer(place: &str, answer: &Answer, sequence: u8, message: &Message) {
     assert_eq!((message.address, message.sequence), (1, sequence), "{place}");
     let known = |status: Status| Status(status.0 & !Status::ZERO_VALID.0);
@@ -102,7 +102,7 @@ fn the_simulated_board_holds_every_conversation() {
     }
 }
 
-/// A Hello changes nothing, so it can be asked between any two steps.
+/// A Hello changes nothing, so it can be sent between any two steps.
 fn identity(address: u8, board: &mut SimulatedBoard) -> Frame {
     let mut answers = Vec::new();
     let hello = Frame::Hello(Hello { lowest_version: 1, highest_version: 1 });

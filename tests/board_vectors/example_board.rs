@@ -1,4 +1,4 @@
-//! The board of the examples, in docs/board-protocol.md and in the vectors.
+//! The example board of docs/board-protocol.md and of the vectors.
 
 use sun2xp::board::protocol::{Capabilities, FirmwareVersion, Identity};
 

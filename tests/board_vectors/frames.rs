@@ -1,4 +1,4 @@
-//! Good frames of every type, with edge values.
+//! Valid frames of every type, with edge values.
 
 use super::example_board::IDENTITY;
 use super::json::{hex, list, object, text};
@@ -6,7 +6,7 @@ use super::stuffing::stuffed;
 use sun2xp::board::protocol::*;
 use sun2xp::model::configuration::EndState;
 
-/// Header, sequence number, body and check as they go on the wire.
+/// Header, sequence number, body and checksum, encoded for the line.
 pub fn sealed(content: &[u8]) -> Vec<u8> {
     stuffed(&with_check(content))
 }
@@ -63,7 +63,7 @@ fn requests() -> Vec<Named> {
     ]
 }
 
-/// The largest number of each field.
+/// The largest value of each field.
 const MOST: Identity = Identity {
     version: 255,
     addresses: 0xFFFE,
@@ -150,7 +150,7 @@ fn terms_fields(terms: &Configure) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Names as in the tables of the page.
+/// Field names as in the tables of the page.
 fn fields(frame: &Frame) -> Vec<(&'static str, String)> {
     match frame {
         Frame::Hello(hello) => {

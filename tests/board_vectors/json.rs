@@ -1,12 +1,12 @@
-//! One object a line: JSON for any language, and lines for a C program that has no JSON.
+//! Writes one object a line: JSON for any language, and single lines for a C program without a JSON parser.
 
-/// An object of `"name": value` pairs, the values being JSON already.
+/// Writes an object of `"name": value` pairs. The values must already be JSON.
 pub fn object(pairs: &[(&str, String)]) -> String {
     let pairs: Vec<String> = pairs.iter().map(|(name, value)| format!("\"{name}\": {value}")).collect();
     format!("{{{}}}", pairs.join(", "))
 }
 
-/// Texts here need no escapes.
+/// Quotes a text, which must not need escapes.
 pub fn text(text: &str) -> String {
     assert!(!text.contains(['"', '\\']));
     format!("\"{text}\"")

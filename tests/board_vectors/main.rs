@@ -1,5 +1,5 @@
-//! protocol/vectors.json: what any board and any host can be tested against. The codec makes the file, and it must
-//! agree with it ever after; the simulated board must hold every conversation in it, and so must the reference firmware
+//! protocol/vectors.json: test vectors for any board and any host. The codec generated the file and must keep agreeing
+//! with it. The simulated board must pass every conversation in it, and so must the reference firmware
 //! (tests/c_boards.rs).
 
 mod conversations;

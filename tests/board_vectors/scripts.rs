@@ -1,4 +1,4 @@
-//! The conversations themselves: requests and answers in a row, from power-up.
+//! The conversations: sequences of requests and answers from power-up.
 
 use super::frames::sealed;
 use super::steps::*;
@@ -14,7 +14,7 @@ pub fn conversations() -> Vec<Conversation> {
 
 const COMMAND_FRAME: Frame = Frame::Command(Command { toggle: false, enable: true, torques: [1; 4] });
 
-/// Terms that the board agrees to.
+/// The board accepts these terms.
 fn configured(terms: Configure) -> Step {
     configure(terms, Answer::Configured(READY))
 }
@@ -71,7 +71,7 @@ fn orderly_use() -> Vec<Conversation> {
     ]
 }
 
-/// The host falls silent, or sends nothing that counts.
+/// The host falls silent, or sends nothing that restarts the watchdog.
 fn watchdog() -> Vec<Conversation> {
     let tripped = ENDED | Status::WATCHDOG_TRIPPED;
     vec![
@@ -159,9 +159,9 @@ fn holds() -> Vec<Conversation> {
     ]
 }
 
-/// The board cannot do, or does not understand, what it is asked.
+/// The board cannot carry out a request, or does not understand it.
 fn refusals() -> Vec<Conversation> {
-    // A Configure whose end state means nothing: no codec of ours writes one.
+    // A Configure with an undefined end state, which the codec cannot write.
     let mut end_state_2 = vec![0x21, 9, 1, 20, 0, 2];
     end_state_2.resize(34, 0);
     vec![
@@ -185,7 +185,7 @@ fn refusals() -> Vec<Conversation> {
             "types and lengths that it does not know",
             vec![
                 raw(&[0x71, 1], 6, 0),
-                // For a board without tactile sensors.
+                // A request that needs tactile sensors, which the board lacks.
                 raw(&[0x61, 1, 0], 6, 1),
                 raw(&[0x01, 1, 2], 6, 1),
                 raw(&[0x51, 1, 2, 3], 6, 2),
@@ -210,11 +210,11 @@ fn damage() -> Vec<Conversation> {
             configured(TERMS),
             disabled([0; 4], READY | Status::DAMAGED_INPUT),
             disabled([0; 4], READY),
-            // A Command in two pieces, with a delimiter between them.
+            // A Command in two pieces with a delimiter between them.
             Step::Send(vec![8, 0x31, 7, 3, 0, 0xA4, 4, 0x52, 0], None),
             stop(ENDED),
             command([0; 4], ENDED | Status::DAMAGED_INPUT),
-            // Not damaged: for another finger, an answer, delimiters.
+            // Undamaged frames that the board ignores: for another finger, an answer, delimiters.
             Step::Send(sealed(&[0x42, 1]), None),
             Step::Send(sealed(&[0xC1, 1, 0, 0]), None),
             Step::Send(vec![0, 0], None),
@@ -223,7 +223,7 @@ fn damage() -> Vec<Conversation> {
     )]
 }
 
-/// The board finds a fault of its own.
+/// The board detects a fault of its own.
 fn faults() -> Vec<Conversation> {
     let stopped = ENDED | Status::EMERGENCY_STOP;
     vec![

@@ -1,26 +1,26 @@
-//! The steps that the conversations consist of: what happens to the board, and what must follow.
+//! The steps of a conversation: an action on the board and the result that must follow.
 
 use super::frames::sealed;
 use sun2xp::board::protocol::*;
 use sun2xp::model::configuration::EndState;
 
-/// What is done to the board, and what must follow.
+/// An action on the board and the result that must follow.
 #[derive(Clone)]
 pub enum Step {
-    /// Bytes, and the answer; none where the board must be silent.
+    /// Sends bytes and compares the answer. `None` means that the board must stay silent.
     Send(Vec<u8>, Option<Answer>),
-    /// Nothing for so long, ms.
+    /// Lets this much time pass, ms.
     Wait(u64),
     /// Faults that are present from now on.
     Faults(Status),
-    /// What the motors give now, torque units.
+    /// The present torques of the motors, torque units.
     Torques([i16; 4]),
 }
 
 #[derive(Clone)]
 pub enum Answer {
     Identity,
-    /// In these three, the status: *zero valid* depends on the board and is left out.
+    /// The status in this answer and the next two. *zero valid* depends on the board and is left out.
     Configured(Status),
     Reply(Status),
     Stopped(Status),
@@ -35,7 +35,7 @@ pub const ENDED: Status = Status(Status::CONFIGURED.0 | Status::ENDED.0);
 pub const ENABLED: Status = Status(Status::CONFIGURED.0 | Status::ENABLED.0);
 pub const NO_TORQUE: Step = Step::Torques([0; 4]);
 
-/// All boards under test must be able to keep these.
+/// Terms that every board under test must be able to carry out.
 pub const TERMS: Configure = Configure {
     version: 1,
     watchdog_ms: 20,
@@ -48,7 +48,7 @@ pub const TERMS: Configure = Configure {
 pub const HOLD: Configure = Configure { end_state: EndState::Hold, ..TERMS };
 
 pub fn sent(frame: Frame, answer: Answer) -> Step {
-    // The sequence number is any; it comes back.
+    // The sequence number is arbitrary. The answer repeats it.
     let wire = WireFrame::new(&Message { address: 1, sequence: 0xA5, frame });
     Step::Send(wire.as_bytes().to_vec(), Some(answer))
 }

@@ -1,8 +1,8 @@
-//! Stuffing by other means than the library's: by splitting at zeros.
+//! Stuffing that is independent of the library's: it splits the frame at zeros.
 
-/// As it goes on the wire. No run without a zero may be longer than 253 bytes: it would need more than one code.
+/// Encodes for the line. A run without a zero may not exceed 253 bytes, because it would need more than one code.
 pub fn stuffed(frame: &[u8]) -> Vec<u8> {
-    // One run for each zero of the frame, and one for its end.
+    // One run for each zero of the frame and one for its end.
     let mut wire = Vec::new();
     for run in frame.split(|&byte| byte == 0) {
         wire.push(run.len() as u8 + 1);

@@ -1,11 +1,11 @@
-//! Frames that a board must not obey: damaged ones, and good ones that are not for this board.
+//! Frames that a board must ignore: damaged ones, and good ones that are not addressed to it.
 
 use super::frames::{all_found, sealed, with_check};
 use super::json::{hex, object, text};
 use super::stuffing::stuffed;
 use sun2xp::board::protocol::*;
 
-/// A Command to finger 1, and what can happen to it.
+/// A Command to finger 1 and the ways to damage it.
 fn damaged() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     let content = [0x31, 7, 3, 0xA4, 4, 0x52, 2, 0, 0, 0xFF, 0xFF];
     let good = sealed(&content);
@@ -19,7 +19,7 @@ fn damaged() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     wrong_check[content.len()] ^= 0x80;
     let swapped: Vec<u8> = content.iter().copied().chain(check(&content).to_be_bytes()).collect();
     let unfinished = |initial: u32| {
-        // As a CRC without its final exclusive-or would be.
+        // The checksum of a CRC without the final exclusive-or.
         let frame: Vec<u8> = content.iter().copied().chain((check(&content) ^ initial).to_le_bytes()).collect();
         stuffed(&frame)
     };
@@ -56,7 +56,7 @@ pub fn bad() -> Vec<String> {
     damaged().into_iter().map(line).collect()
 }
 
-/// For a board with the one finger 1.
+/// For a board that has finger 1 only.
 fn not_for_finger_1() -> Vec<(&'static str, Vec<u8>)> {
     vec![
         ("a Stop for finger 2", sealed(&[0x42, 1])),

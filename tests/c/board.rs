@@ -1,11 +1,11 @@
-//! A board in a process of its own.
+//! A simulated board in a process of its own.
 
 use super::Bench;
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-/// The `sun2xp board` program behind a port of its own, ended when dropped.
+/// The program `sun2xp board` behind a port of its own. Dropping it ends the program.
 pub struct Board {
     process: Child,
     orders: ChildStdin,
@@ -13,7 +13,7 @@ pub struct Board {
 }
 
 impl Board {
-    /// Starts a board that carries finger 1, and configures the bench for it. Both sides forgive a busy machine.
+    /// Starts a board with finger 1 and configures the bench for it. Both sides tolerate a busy machine.
     pub fn start(bench: &Bench) -> Self {
         let mut command = Command::new(super::tool());
         command
@@ -29,7 +29,7 @@ impl Board {
         board
     }
 
-    /// The number of its process.
+    /// The process number.
     pub fn id(&self) -> u32 {
         self.process.id()
     }
@@ -51,7 +51,7 @@ impl Board {
 
 impl Drop for Board {
     fn drop(&mut self) {
-        // It may have been ended by the test.
+        // The test may already have ended the process.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

@@ -1,5 +1,5 @@
-//! Compiles the C programs of this folder against the header and the library that the same `cargo test` has built, and
-//! runs them where no configuration of the machine can be found.
+//! Compiles the C programs of this folder against the header and the library of the same build, and runs them in an
+//! environment where no configuration of the machine can be found.
 
 pub mod board;
 #[allow(dead_code)]
@@ -26,38 +26,38 @@ use tempfile::TempDir;
 /// Flags that every C program must pass without a warning.
 pub const STRICT: &[&str] = &["-pedantic", "-Wall", "-Wextra", "-Werror"];
 
-/// The dialects of C that planners are written in.
+/// The dialects of C that planners use.
 pub const C_STANDARDS: &[&str] =
     &["-ansi", "-std=c89", "-std=gnu89", "-std=c99", "-std=gnu99", "-std=c11", "-std=c17", "-std=c2x", "-std=gnu2x"];
 
-/// The dialects of C++ that planners are written in.
+/// The dialects of C++ that planners use.
 pub const CPP_STANDARDS: &[&str] =
     &["-std=c++98", "-std=c++11", "-std=c++14", "-std=c++17", "-std=c++20", "-std=c++2b", "-std=gnu++2b"];
 
-/// The compiler of C programs where one is enough: gcc, or else the one that Rust links with.
+/// The C compiler for tests that need only one: gcc, or else the compiler with which Rust links.
 pub fn c_compiler() -> &'static str {
     if tools::available("gcc", "under gcc") { "gcc" } else { "cc" }
 }
 
-/// All C compilers that the tests know. What is left out without clang is noted.
+/// All C compilers that the tests know. If clang is missing, the report lists what was left out.
 pub fn c_compilers() -> Vec<&'static str> {
     let clang = tools::available("clang", "under clang").then_some("clang");
     [c_compiler()].into_iter().chain(clang).collect()
 }
 
-/// The compiler of C++ programs where one is enough. Without it the test is left out.
+/// The C++ compiler for tests that need only one. Without it the test is left out.
 pub fn cpp_compiler() -> Option<&'static str> {
     tools::available("g++", "C++").then_some("g++")
 }
 
-/// All C++ compilers that the tests know. What is left out without one of them is noted.
+/// All C++ compilers that the tests know. If one is missing, the report lists what was left out.
 pub fn cpp_compilers() -> Vec<&'static str> {
     let clang = tools::available("clang++", "C++ under clang++").then_some("clang++");
     cpp_compiler().into_iter().chain(clang).collect()
 }
 
-/// A scratch folder with the library under the names that programs look for. There is one at a time: three servo
-/// threads and their boards want the machine, and no compiler beside them.
+/// A scratch folder that holds the library under the names that programs look for. Only one exists at a time: three
+/// servo threads and their boards need the machine to themselves.
 pub struct Bench {
     folder: TempDir,
     _turn: MutexGuard<'static, ()>,
@@ -79,20 +79,20 @@ impl Bench {
         self.folder.path()
     }
 
-    /// Writes a source file into the scratch folder. The path serves as a source of the functions below.
+    /// Writes a source file into the scratch folder and returns its path, which the functions below accept as a source.
     pub fn write(&self, name: &str, text: &str) -> String {
         let path = self.path().join(name);
         fs::write(&path, text).expect("a source file");
         path.to_str().expect("the path is text").to_string()
     }
 
-    /// Compiles without linking; the compiler's messages where it refuses.
+    /// Compiles without linking. Returns the compiler's messages if it fails.
     pub fn check(&self, compiler: &str, flags: &[&str], source: &str) -> Result<(), String> {
         let mut command = self.compiler(compiler, flags);
         outcome(command.arg("-c").args(["-o", "/dev/null"]).arg(source_file(source)))
     }
 
-    /// Compiles and links; the path of the program.
+    /// Compiles and links. Returns the path of the program.
     pub fn build(&self, compiler: &str, flags: &[&str], sources: &[&str]) -> PathBuf {
         let name = source_file(sources[0]).file_name().expect("a file").to_string_lossy().replace('.', "_");
         let program = self.path().join(name);
@@ -106,13 +106,13 @@ impl Bench {
 
     fn compiler(&self, compiler: &str, flags: &[&str]) -> Command {
         let mut command = Command::new(compiler);
-        // POSIX names stay visible under -ansi.
+        // Keeps POSIX names visible under -ansi.
         command.args(flags).args(["-O1", "-g", "-D_DEFAULT_SOURCE", "-I"]).arg(root().join("include"));
         command
     }
 
-    /// Compiles, links and runs one program that must exit with 0. Without a compiler of C++ a program in C++ is left
-    /// out.
+    /// Compiles, links and runs one program that must exit with 0. A C++ program is left out if there is no C++
+    /// compiler.
     pub fn succeed(&self, flags: &[&str], sources: &[&str]) {
         let compiler = if sources[0].ends_with("cpp") { cpp_compiler() } else { Some(c_compiler()) };
         let Some(compiler) = compiler else { return };
@@ -121,7 +121,7 @@ impl Bench {
         assert!(run.status.success(), "{sources:?} {flags:?}: {}\n{}", run.status, said(&run));
     }
 
-    /// Runs a program in the scratch folder, with the configuration `named.toml` if that is there.
+    /// Runs a program in the scratch folder, with the configuration `named.toml` if it exists.
     pub fn run(&self, mut command: Command) -> Output {
         let nowhere = self.path().join("nowhere");
         command.current_dir(self.path()).env_remove("SUN2XP_CONFIG");
@@ -137,12 +137,12 @@ impl Bench {
     }
 }
 
-/// What a program printed.
+/// The output and error texts of a program.
 pub fn said(run: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&run.stdout), String::from_utf8_lossy(&run.stderr))
 }
 
-/// The shared library of this very build, beside the test's executable.
+/// The shared library of this build, which lies beside the test's executable.
 pub fn library() -> PathBuf {
     let executable = env::current_exe().expect("the test has a path");
     let library = executable.with_file_name("libsun2xp.so");
@@ -154,7 +154,7 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A path of its own stays what it is.
+/// An absolute path is used as it is.
 fn source_file(source: &str) -> PathBuf {
     root().join("tests/c").join(source)
 }

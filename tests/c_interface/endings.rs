@@ -1,4 +1,4 @@
-//! The hand loses a board, or its planner.
+//! The hand loses a board or its planner.
 
 use crate::c::board::Board;
 use crate::c::{Bench, STRICT, c_compiler, said};
@@ -26,7 +26,7 @@ fn succeed_while_the_board_dies(source: &str) {
     assert!(run.status.success(), "{}", said(&run));
 }
 
-/// `release`: however the planner ends, the tendons go slack but for the friction of the motors.
+/// With `release`, the tendons go slack however the planner ends, except for the friction of the motors.
 #[test]
 fn a_planner_that_leaves_without_closing_lets_the_tendons_go() {
     let bench = Bench::new();

@@ -1,5 +1,5 @@
-//! The C interface as C programs see it: they are compiled, linked against the shared library, and move the simulated
-//! hand.
+//! The C interface as C programs see it: the programs are compiled, linked against the shared library, and move the
+//! simulated hand.
 
 #[allow(dead_code)]
 #[path = "../c/mod.rs"]

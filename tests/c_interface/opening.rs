@@ -1,4 +1,4 @@
-//! OpenHand with configuration files, good and bad, and what the library prints.
+//! OpenHand with good and bad configuration files, and the messages that the library prints.
 
 use crate::c::{Bench, STRICT, c_compiler, said};
 use std::fs;
@@ -19,7 +19,7 @@ fn the_first_refusal_of_each_kind_prints_one_line() {
     let (status, _, printed) = opened_with("");
     assert_eq!(status, Some(0), "{printed}");
     let refusals: Vec<_> = printed.lines().filter(|line| line.contains("SendPos")).collect();
-    // Out of limits, no such finger, no hand: each was refused several times.
+    // Beyond the limits, no such finger, and no hand: each of the three was refused several times and printed once.
     assert_eq!(refusals.len(), 3, "{printed}");
     assert!(refusals.iter().all(|line| line.starts_with("sun2xp: SendPos: ")), "{printed}");
 }
@@ -63,8 +63,8 @@ fn a_configuration_that_cannot_be_used_is_told_with_its_line() {
     }
 }
 
-/// The working directory's before the user's, the user's before the system's. None of them can be used, so the refusal
-/// names it.
+/// The working directory comes before the user's folder, and the user's before the system's. None of the files is
+/// usable, so the error names the file that was chosen.
 #[test]
 fn the_nearest_configuration_file_counts() {
     let bench = Bench::new();
@@ -75,7 +75,7 @@ fn the_nearest_configuration_file_counts() {
         fs::create_dir_all(folder).expect("a folder");
         fs::write(folder.join("sun2xp.toml"), "[hand]\nrat = 1\n").expect("a configuration file");
     }
-    // A relative folder of the system's is to be ignored.
+    // A relative path to the system's folder must be ignored.
     fs::create_dir_all(bench.path().join("relative/sun2xp")).expect("a folder");
     fs::write(bench.path().join("relative/sun2xp/sun2xp.toml"), "[hand]\nrat = 1\n").expect("a configuration file");
     for (folder, named) in

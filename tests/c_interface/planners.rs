@@ -1,5 +1,4 @@
-//! Planners in every dialect of C, and in C++: they compile without a warning, move the hand, and see the right
-//! results.
+//! Planners in every dialect of C and in C++: they compile without a warning, move the hand, and get correct results.
 
 use crate::c::{Bench, STRICT, c_compiler, said, tool};
 use crate::{strict, succeed};

@@ -1,4 +1,4 @@
-//! The keys that AdjustFinger refuses to change are those that its entry names.
+//! AdjustFinger must refuse to change exactly the keys that its entry in the manual lists.
 
 use super::c::root;
 use super::manual::{Manual, in_one_line, listed};
@@ -6,15 +6,15 @@ use std::fs;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 
-/// Every key of a finger in docs/sun2xp.toml, with the value that it has there. Optional keys and tables are behind
-/// a number sign.
+/// Every key of a finger in docs/sun2xp.toml, with its value there. Optional keys and tables stand behind a number
+/// sign.
 fn keys_of_a_finger() -> Vec<String> {
     let page = fs::read_to_string(root().join("docs/sun2xp.toml")).expect("the page");
     let mut table = None;
     let mut keys = Vec::new();
     for line in page.lines().map(|line| line.strip_prefix('#').unwrap_or(line)) {
         if let Some(name) = line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
-            // Tables of one finger have the same keys as those of all fingers.
+            // The tables of one finger have the same keys as those of all fingers.
             let below = |name: &str| {
                 name.trim_start_matches(|letter: char| letter == '.' || letter.is_ascii_digit()).to_string()
             };

@@ -1,15 +1,15 @@
-//! Every example of the manual is compiled and run as it stands.
+//! Compiles and runs every example of the manual as it stands.
 
 use super::c::{Bench, C_STANDARDS, CPP_STANDARDS, STRICT, c_compiler, c_compilers, cpp_compilers, root, said};
 use super::manual::{Example, Manual};
 use std::os::unix::fs::symlink;
 use std::process::Command;
 
-/// What chapter 9 promises to examples that are statements.
+/// The headers that chapter 9 names for examples that consist of statements.
 const INCLUDED: &[&str] = &["errno.h", "signal.h", "stdio.h", "stdlib.h", "unistd.h"];
 
-/// What is done before an example, or shows afterwards that it has worked. The call whose example it is, and two
-/// statements.
+/// Statements before and after an example, which prepare it or check that it worked: the call that the example belongs
+/// to, and two statements.
 const AROUND: &[(&str, &str, &str)] = &[
     (
         "StopHand",
@@ -41,8 +41,8 @@ impl Example {
         self.text.starts_with("cc ")
     }
 
-    /// A whole program around statements. It fails if one of them is refused. The static functions
-    /// that it begins with stand before main.
+    /// Makes a whole program of statements. The program fails if one of them is refused. Static functions at the start
+    /// of the example are placed before main.
     fn program(&self) -> String {
         if self.is_program() {
             return self.text.clone();
@@ -112,7 +112,7 @@ fn every_example_runs() {
     }
 }
 
-/// The command, in a folder with `planner.c`, `include` and `lib`. The finger arrives.
+/// Runs the command in a folder with `planner.c`, `include` and `lib`. The finger must arrive.
 #[test]
 fn the_quick_start_is_compiled_and_run_by_its_command() {
     let bench = Bench::new();
@@ -129,7 +129,7 @@ fn the_quick_start_is_compiled_and_run_by_its_command() {
     assert!(arrived.len() == 3 && near, "{}", said(&run));
 }
 
-/// The port is the reader's own: the file is refused for nothing but that.
+/// The port belongs to the reader's machine, so the file may be refused for the port only.
 #[test]
 fn the_configuration_is_refused_only_for_its_port() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! The C manual, which is the header, says the same in its chapters, in its entries and by what the library does.
+//! The C manual is the header. Its chapters, its entries and the library's behaviour must agree.
 
 mod adjusting;
 #[allow(dead_code)]

@@ -1,30 +1,30 @@
-//! The manual, taken apart.
+//! Splits the manual into chapters and entries.
 
 use super::c::root;
 use std::fs;
 
 /// The comments of the header.
 pub struct Manual {
-    /// The opening comment.
+    /// The comment at the top of the header.
     chapters: String,
-    /// What is said of each call.
+    /// The entry of each call.
     pub entries: Vec<Entry>,
     header: String,
 }
 
-/// What stands below a line such as "Example, softer along z:", indented by four blanks.
+/// A block below a line such as "Example, softer along z:", indented by four blanks.
 pub struct Example {
-    /// The number of the chapter, or the call.
+    /// The number of the chapter, or the name of the call.
     pub place: String,
     pub text: String,
 }
 
-/// What is said of a call.
+/// The manual's entry of a call.
 pub struct Entry {
     pub call: String,
-    /// The declaration below it.
+    /// The declaration below the entry.
     pub declaration: String,
-    /// Without the blank that every line of a comment begins with.
+    /// The text without the blank at the beginning of each line.
     pub text: String,
 }
 
@@ -44,7 +44,7 @@ impl Manual {
         Self { chapters: opening.to_string(), entries, header }
     }
 
-    /// A chapter in one line.
+    /// The text of a chapter in one line.
     pub fn chapter(&self, number: usize) -> String {
         let heading = |number: usize| format!("\n\n\n   {number}. ");
         let (_, text) = self.chapters.split_once(&heading(number)).expect("the manual has the chapter");
@@ -60,7 +60,7 @@ impl Manual {
         chapters.chain(self.entries.iter().flat_map(|entry| examples(&entry.call, &entry.text))).collect()
     }
 
-    /// Every line that looks like a part of a program and is in no example and no synopsis.
+    /// Every line that looks like part of a program but is in no example and no synopsis.
     pub fn stray_code(&self) -> Vec<String> {
         let mut stray = Vec::new();
         for text in [&self.chapters].into_iter().chain(self.entries.iter().map(|entry| &entry.text)) {
@@ -83,7 +83,7 @@ impl Manual {
 }
 
 impl Entry {
-    /// Kinds of refusals in the order in which they are reported. A line of the list begins with one or several.
+    /// The errnos of an entry in the order in which they are reported. A line of the list begins with one or several.
     pub fn errnos(&self) -> Vec<&str> {
         let Some((_, list)) = self.text.split_once("or -1 with\n") else { return Vec::new() };
         // Other lines of the list are indented further.
@@ -100,7 +100,7 @@ impl Entry {
     }
 }
 
-/// C, a command or TOML, but no synopsis.
+/// Returns whether a line is C, a command or TOML, but no synopsis.
 fn looks_like_code(line: &str) -> bool {
     let calls = line.match_indices('(').any(|(at, _)| line[..at].ends_with(|letter: char| letter.is_alphanumeric()));
     let code = (calls && line.contains(");")) || line.ends_with(['{', '}']);
@@ -131,7 +131,7 @@ pub fn in_one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Names of calls in a list such as "A, B and C".
+/// The names of calls in a list such as "A, B and C".
 pub fn listed(text: &str) -> Vec<&str> {
     text.split([' ', ',']).filter(|word| !word.is_empty() && *word != "and" && *word != "or").collect()
 }

@@ -1,4 +1,4 @@
-//! Where several things are wrong with a call, it reports the first in the order of its entry.
+//! If several things are wrong with a call, the call must report the first in the order of its entry.
 
 use super::c::board::Board;
 use super::c::{Bench, STRICT, c_compiler, said};
@@ -6,8 +6,8 @@ use super::manual::Manual;
 use std::collections::BTreeMap;
 use std::process::Command;
 
-/// Refusals that tests/c/order.c does not try, because they exclude the others: those of boards, of calibrations and
-/// recoveries under way, and some of the system's.
+/// Errnos that tests/c/order.c cannot try, because they exclude the others: those of boards, of calibrations and
+/// recoveries in progress, and some of the system's.
 const NOT_TRIED: &[(&str, &[&str])] = &[
     ("OpenHand", &["EACCES", "EIO", "ETIMEDOUT", "EPERM", "ENOMEM"]),
     ("ZeroFinger", &["EBUSY", "ECANCELED", "ETIMEDOUT", "EACCES", "ENOSPC"]),
@@ -33,7 +33,7 @@ fn calls_report_the_first_refusal_of_their_entries() {
         assert_eq!(listed.next(), Some("EPERM"), "{}: a forked child is told that first", entry.call);
         let reported = reported.remove(entry.call.as_str()).unwrap_or_default();
         for (index, errno) in reported.iter().enumerate() {
-            // Several wrong things may share a line of the list.
+            // Several reasons may share a line of the list.
             let again = index > 0 && reported[index - 1] == *errno;
             let next = again || listed.any(|listed| listed == *errno);
             assert!(next, "{} reported {reported:?}, against its entry:\n{}", entry.call, entry.text);

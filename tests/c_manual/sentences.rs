@@ -1,4 +1,4 @@
-//! What the chapters say of all calls, against what their entries say.
+//! Compares the chapters' statements about all calls with the entries of the calls.
 
 use super::manual::{Manual, listed};
 
@@ -31,7 +31,7 @@ fn the_calls_that_signal_handlers_may_make_are_named() {
     assert_eq!(sorted(between(&chapter, "A signal handler may call ", ", and no other")), sorted(safe));
 }
 
-/// The entries of calls for double leave the list to the entries above them; that of IdentifyFinger refers to
+/// The entries of the calls for double refer to the entries above them for the list. That of IdentifyFinger refers to
 /// ZeroFinger's.
 #[test]
 fn the_calls_that_a_forked_child_may_make_are_named() {
@@ -50,8 +50,8 @@ fn the_member_for_locked_memory_says_what_munlockall_does() {
     assert!(text.contains("munlockall later, this memory is unlocked too, and this member stays 1"), "{text}");
 }
 
-/// Members that count the same say the same. The status counts skipped periods up to now, and the timing up to the
-/// last cycle.
+/// Members that count the same events must have the same description. The status counts skipped periods up to now, and
+/// the timing counts them up to the last cycle.
 #[test]
 fn counts_of_the_status_are_those_of_the_timing() {
     let manual = Manual::read();
