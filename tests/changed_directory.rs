@@ -1,5 +1,5 @@
-//! A planner that goes to another working directory, as a daemon does, still has its calibrations and black boxes
-//! written where its configuration said. Alone in its process, whose directory it changes.
+//! A planner may change its working directory, as a daemon does. Calibrations and black boxes must still be written
+//! where the configuration says. The test has a process of its own, because it changes the working directory.
 
 use std::env::set_current_dir;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Equations 8, 18-20 and the upper bound against definitions and against search.
+//! Tests equations 8, 18-20 and the upper bound against their definitions and against a search.
 
 use nalgebra::{Matrix3x4, RowVector4, Vector3, Vector4};
 use proptest::prelude::*;
@@ -15,7 +15,7 @@ fn tendons(ghost: Option<[f64; 4]>) -> Tendons {
     finger.tendons().unwrap()
 }
 
-/// Eq. 20 with the definition's own words, no upper bound.
+/// Eq. 20 written directly from its definition, without an upper bound.
 fn least(tendons: &Tendons, torque: Vector3<f64>) -> Vector4<f64> {
     let q = tendons.q;
     let pulled = q.fixed_columns::<3>(0) * torque;
@@ -40,14 +40,14 @@ proptest! {
         let torque = Vector3::from(direction) * size;
         let distribution = TensionDistribution::new(&tendons, MINIMUM, Vector4::repeat(MAXIMUM)).unwrap();
         let found = distribution.below(&limits.into()).distribute(&torque);
-        // A motor that is too weak for the pretension lets no torque through that needs more of it.
+        // A motor that is too weak for the pretension transmits no torque that needs more of it.
         let bounds = Vector4::from(limits).inf(&Vector4::repeat(MAXIMUM)).sup(&tendons.pretension(MINIMUM));
         let within = |tensions: &Vector4<f64>, tolerance: f64| (tensions - bounds).max() <= tolerance;
         prop_assert!((tendons.r * found.tensions - torque * found.scale).amax() < 1e-9 * (1.0 + size));
         prop_assert!(found.tensions.min() >= MINIMUM);
         prop_assert!(within(&found.tensions, 1e-9), "{} beyond {bounds}", found.tensions);
         prop_assert!((0.0..=1.0).contains(&found.scale));
-        // The largest scale by bisection: least tensions grow with the scale.
+        // Finds the largest scale by bisection, because the least tensions grow with the scale.
         let largest = |tolerance: f64| {
             let fits = |scale: f64| within(&least(&tendons, torque * scale), tolerance);
             let (mut low, mut high) = (0.0, 1.0);
@@ -60,8 +60,8 @@ proptest! {
             }
             low
         };
-        // A tension is a sum of four products of at most 300 N, each rounded to some 1e-16 of itself. Where a tension
-        // hardly changes with the scale, that rounding decides over much of the scale: so the tolerance is one of
+        // A tension is a sum of four products of at most 300 N, each rounded by a relative 1e-16. Where a tension
+        // hardly changes with the scale, this rounding shifts the scale by much. The tolerance is therefore one of
         // tension, and bounds the scale from both sides.
         let rounding = 1e-14 * (100.0 + size);
         let (lowest, highest) = (largest(-rounding), largest(rounding));
@@ -70,8 +70,8 @@ proptest! {
         prop_assert!((lowest - 1e-15..=highest + 1e-15).contains(&scale), "{scale}, not {lowest} to {highest}");
     }
 
-    /// Whatever else gives the same torque is larger, in the 1-, 2- and infinity-norm: R's null vector is all positive,
-    /// so every other choice above t_min adds a positive multiple of it.
+    /// Every other solution with the same torque is larger in the 1-, 2- and infinity-norm: R's null vector is all
+    /// positive, so any other choice above t_min adds a positive multiple of it.
     #[test]
     fn tensions_are_the_least(direction in prop::array::uniform3(-1.0..1.0f64), more in 1e-6..10.0f64) {
         let tendons = tendons(None);
@@ -112,8 +112,8 @@ proptest! {
         }
     }
 
-    /// Work of the joint torques is work of a tip spring, eq. 5, also for a Kx that mixes directions; at rest no
-    /// damping.
+    /// The work of the joint torques equals the work of a tip spring, eq. 5, also for a Kx that couples directions.
+    /// There is no damping at rest.
     #[test]
     fn joint_torques_are_those_of_the_tip_spring(
         theta in prop::array::uniform3(-1.0..1.0f64), away in prop::array::uniform3(-0.2..0.2f64),
@@ -142,8 +142,8 @@ fn without_stiffness_only_damping_is_left() {
     assert!(law.torques(&set_point.into(), &Vector3::zeros(), &rates).angle(&-rates) < 1e-6);
 }
 
-/// Section 5.5 prints +1.09 for entry (2, 4): with the printed ghost row singular, with any other a hand that cannot
-/// hold.
+/// Section 5.5 prints +1.09 for entry (2, 4). With this value and the printed ghost row the matrix is singular, and
+/// with any other ghost row the hand cannot hold.
 #[test]
 fn printed_r_is_refused() {
     for ghost in [None, Some([1.0; 4])] {
@@ -160,7 +160,7 @@ fn printed_r_is_refused() {
 
 #[test]
 fn bounds_without_a_pretension_between_them_are_refused() {
-    // R's null vector is (0.62, 1.09, 1.09, 0.62): t_max must exceed 1.758 t_min.
+    // R's null vector is (0.62, 1.09, 1.09, 0.62), so t_max must exceed 1.758 t_min.
     let tendons = tendons(None);
     assert!(TensionDistribution::new(&tendons, 5.0, Vector4::repeat(8.8)).is_ok());
     let refusal = TensionDistribution::new(&tendons, 5.0, Vector4::repeat(8.7)).unwrap_err();

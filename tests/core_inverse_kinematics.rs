@@ -1,4 +1,4 @@
-//! A^-1 against the tip formula, over the workspace, its borders and what is outside.
+//! Tests A^-1 against the tip formula: over the workspace, at its borders and outside.
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -17,7 +17,7 @@ fn configured() -> InverseKinematics {
     InverseKinematics::new(LINKS, ConfiguredFinger::default().joint_limits())
 }
 
-/// Within the limits of the default finger, which are a part of one elbow's solutions.
+/// Within the limits of the default finger, which include only part of the solutions for one elbow.
 fn admissible() -> impl Strategy<Value = Vector3<f64>> {
     let degrees = (-60.0..60.0f64, -30.0..100.0f64, 5.0..120.0f64);
     degrees.prop_map(|(a, b, c)| Vector3::new(a, b, c).map(f64::to_radians))
@@ -34,7 +34,8 @@ proptest! {
         prop_assert!((found - theta).amax() < 1e-9, "{found} {theta}");
     }
 
-    /// Every pose is found again, both elbows, both ways of joint 0; and every solution has its tip where it shall be.
+    /// Every pose is found again, with both elbows and both directions of joint 0, and every solution has its tip at
+    /// the target.
     #[test]
     fn every_pose_is_among_the_solutions(theta in anywhere()) {
         prop_assume!(LINKS.reach(&theta).abs() > 1e-3 && theta[2].sin().abs() > 1e-3);
@@ -49,7 +50,7 @@ proptest! {
         prop_assert!(elbows.contains(&true) && elbows.contains(&false));
     }
 
-    /// The nearest of what is there.
+    /// Of several solutions the nearest is chosen.
     #[test]
     fn no_solution_is_nearer(theta in anywhere(), present in anywhere()) {
         let tip = LINKS.tip(&theta);
@@ -59,7 +60,7 @@ proptest! {
         }
     }
 
-    /// Solution within the limits or refusal with true numbers: never neither.
+    /// The result is either a solution within the limits or a refusal with correct numbers.
     #[test]
     fn any_point_is_reached_or_refused_with_the_numbers(tip in prop::array::uniform3(-16.0..16.0f64)) {
         let tip = Vector3::from(tip);
@@ -89,7 +90,7 @@ proptest! {
 
 #[test]
 fn borders_of_the_workspace_belong_to_it() {
-    // Outstretched and folded: one solution twice.
+    // The outstretched and the folded finger are double solutions.
     for (theta, tolerance) in [(Vector3::new(0.3, 0.4, 0.0), 1e-7), (Vector3::new(0.3, 0.4, PI), 1e-7)] {
         let tip = LINKS.tip(&theta);
         let found = unlimited().joints(&tip, &theta).expect("on the border");
@@ -119,7 +120,7 @@ fn a_tip_on_the_axis_of_joint_0_leaves_it_where_it_is() {
 fn refusals_name_cause_and_numbers() {
     let refusal = |tip: Vector3<f64>| configured().joints(&tip, &Vector3::zeros()).unwrap_err().to_string();
     assert!(refusal(Vector3::new(0.0, 0.0, 14.0)).contains("10.444 cm"), "too far");
-    // 0.5 cm beyond the axis of joint 1; over the base it is too far to fold.
+    // 0.5 cm beyond the axis of joint 1. The finger cannot fold closer than 1.08 cm.
     let near = refusal(Vector3::new(0.0, 0.0, 4.056));
     assert!(near.contains("0.500 cm") && near.contains("1.080 cm"), "{near}");
     let behind = refusal(Vector3::new(9.0, -2.0, -6.0));

@@ -1,4 +1,4 @@
-//! The physics of the simulated finger against what is known about it without its code.
+//! Tests the physics of the simulated finger against results that do not depend on its code.
 
 mod core_lagrange;
 
@@ -58,7 +58,7 @@ fn tendons_pull_and_never_push() {
     let mut plant = Plant::new(&frictionless(), Vector3::zeros()).unwrap();
     plant.turn_motor(1, -1.0);
     assert_eq!(plant.tensions()[1], 0.0);
-    // Tension is stiffness times radius times angle: 3 N over 300 N/cm are 0.01 cm.
+    // Tension is stiffness times radius times angle: 3 N over 300 N/cm is 0.01 cm.
     plant.turn_motor(0, 0.01 / 0.0475);
     let home = ConfiguredFinger::default().tendons().unwrap().pretension(5.0);
     assert!((plant.tensions()[0] - home[0] - 3.0).abs() < 1e-9);
@@ -66,7 +66,7 @@ fn tendons_pull_and_never_push() {
 
 #[test]
 fn inertia_of_the_straight_finger_is_that_of_rods() {
-    // With links as thin as needles, straight, turning about joint 0: textbook rods end to end.
+    // Straight links as thin as needles that turn about joint 0 have the inertia of textbook rods end to end.
     let mut finger = frictionless();
     finger.simulation.link_radii = [0.0; 3];
     finger.simulation.start_degrees = [0.0, 0.0, 0.0];
@@ -113,7 +113,7 @@ proptest! {
         ..Default::default()
     })]
 
-    /// Motors without torque, the finger let go from a strained state between tendons, stops, a wall and gravity.
+    /// Motors without torque. The finger is released from a strained state between tendons, stops, a wall and gravity.
     #[test]
     fn passive_parts_never_create_energy(
         joint_0 in -50.0..50.0f64, joint_1 in -25.0..95.0f64, joint_2 in 8.0..118.0f64,
@@ -149,15 +149,15 @@ proptest! {
             fastest = fastest.max(plant.kinetic_energy());
             plant.energy()
         }).collect();
-        // What went from springs into motion, or was lost to friction.
+        // The energy that moved from springs into motion or was lost to friction.
         let swing = fastest.max(start - energies.iter().copied().fold(start, f64::min));
         let highest = energies.iter().copied().fold(start, f64::max);
-        // Semi-implicit Euler keeps H - h/2 dq/dt dV/dq and not H. A mode of w rad/s therefore shows an energy that is
-        // off by up to w h/2 of what swings. The stiffest mode is that of the last link, 2.1e-5 kg m^2 with the tip,
-        // between the wall (16 N m/rad at 4 cm), the tendons and a stop: 1100 rad/s with the other links fixed. Free
-        // links let it swing faster, but not with 2000 rad/s, which is 0.1.
+        // Semi-implicit Euler conserves H - h/2 dq/dt dV/dq, not H. A mode of w rad/s therefore shows an energy error
+        // of up to w h/2 of the swinging energy. The stiffest mode is that of the last link, 2.1e-5 kg m^2 with the
+        // tip, between the wall (16 N m/rad at 4 cm), the tendons and a stop: 1100 rad/s with the other links fixed.
+        // With free links it is faster, but below 2000 rad/s, which gives 0.1.
         prop_assert!(highest - start <= 0.1 * swing + 1e-7, "from {start} J to {highest} J; {swing} J swing");
-        // Over 100 ms that evens out, and the mean only falls.
+        // Over 100 ms the error averages out, and the mean energy only falls.
         let mean: Vec<f64> = energies.chunks(1000).map(|part| part.iter().sum::<f64>() / 1000.0).collect();
         for pair in mean.windows(2) {
             prop_assert!(pair[1] <= pair[0] + 0.005 * swing + 1e-7, "{mean:?}");
@@ -190,7 +190,7 @@ fn stops_hold_a_motor_at_its_limit() {
     }
     let (_, upper) = ConfiguredFinger::default().joint_limits();
     let over = (plant.joints() - upper).map(f64::to_degrees);
-    // Tendon 2 pulls all three joints up; the stops are 3 degrees beyond the soft limits.
+    // Tendon 2 pulls all three joints up. The stops are 3 degrees beyond the soft limits.
     assert!(over.iter().all(|&degrees| (3.0..4.0).contains(&degrees)), "{over}");
     assert!(plant.joint_rates().amax() < 1e-3);
 }
@@ -200,7 +200,7 @@ fn friction_holds_a_small_force_and_yields_to_a_large_one() {
     let run = |newton: f64| {
         let mut plant = Plant::new(&ConfiguredFinger::default(), Vector3::zeros()).unwrap();
         let start = plant.tip();
-        // Across the finger's plane: 0.5 mN m over a lever of 0.08 m hold about 6 mN.
+        // Across the finger's plane, 0.5 mN m at a lever of 0.08 m holds about 6 mN.
         plant.set_external_force(Vector3::new(newton, 0.0, 0.0));
         for _ in 0..2000 {
             plant.step([0.0; 4]);

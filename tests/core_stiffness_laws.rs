@@ -1,4 +1,4 @@
-//! Both stiffness laws and every contact type, against the definitions of section 4.2.
+//! Tests both stiffness laws and every contact type against the definitions of section 4.2.
 
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector6};
 use proptest::prelude::*;
@@ -23,15 +23,15 @@ fn soft_finger(root: [f64; 16], normal: [f64; 3]) -> (Matrix4<f64>, Vector3<f64>
     (k, normal, Contact::soft_finger(k, normal).expect("a spring"))
 }
 
-/// Off the axis of joint 0, where the tip alone does not hold that joint.
+/// Away from the axis of joint 0, where the tip alone does not hold that joint.
 fn theta() -> impl Strategy<Value = Vector3<f64>> {
     (-1.0..1.0f64, -0.5..1.7f64, 0.1..2.0f64)
         .prop_map(|(a, b, c)| Vector3::new(a, b, c))
         .prop_filter("5 mm off the axis", |theta| LINKS.reach(theta).abs() > 0.5)
 }
 
-/// With a lever of 5 mm and less joint 0 is held as a lever of 5 mm would, by both laws; a spring without stiffness
-/// there does not hold it, and at 5 mm the torque has no jump.
+/// Within 5 mm of its axis, joint 0 is held as at a lever of 5 mm, by both laws. A spring without stiffness in that
+/// direction does not hold it, and the torque has no jump at 5 mm.
 #[test]
 fn near_its_axis_joint_0_is_held() {
     // Joint 1 at 90 degrees; l0 = -l2 C12 puts the tip on the axis.
@@ -64,7 +64,7 @@ fn normal() -> impl Strategy<Value = [f64; 3]> {
 }
 
 proptest! {
-    /// The rotational Jacobian is the derivative of the last link's rotation, and that link ends in the tip.
+    /// The rotational Jacobian is the derivative of the last link's rotation. The last link ends at the tip.
     #[test]
     fn rotational_jacobian_is_the_derivative_of_the_tip_frame(theta in theta()) {
         let jacobian = LINKS.spatial_jacobian(&theta);
@@ -81,7 +81,7 @@ proptest! {
         prop_assert!((LINKS.tip_rotation(&theta) * Vector3::new(0.0, 0.0, 4.0) - link).amax() < 1e-12);
     }
 
-    /// Eq. 6 for D = 4: K_theta = J_c^T K J_c with the 4 x 3 Jacobian of tip and rotation about the normal.
+    /// Eq. 6 for D = 4: K_theta = J_c^T K J_c with the 4 x 3 Jacobian of the tip and the rotation about the normal.
     #[test]
     fn soft_finger_is_eq_6_with_its_4_by_3_jacobian(
         theta in theta(), root in prop::array::uniform16(-1.5..1.5f64), n in normal(),
@@ -99,7 +99,7 @@ proptest! {
         prop_assert!((law().spring(&point.into(), &theta) - expected * away).amax() < 1e-9);
     }
 
-    /// tau = J^T f with the force of the definition, at any deflection; a tip in place has no torque.
+    /// tau = J^T f with the force of the definition, at any deflection. A tip at its anchor has no torque.
     #[test]
     fn exact_law_is_the_spring_at_any_deflection(
         theta in theta(), desired in theta(), root in prop::array::uniform9(-1.5..1.5f64),
@@ -113,7 +113,7 @@ proptest! {
         prop_assert_eq!(law().spring(&point.into(), &desired), Vector3::zeros());
     }
 
-    /// Both laws are one for a small deflection, rotation included: their difference is of second order.
+    /// Both laws agree for a small deflection, rotation included: their difference is of second order.
     #[test]
     fn both_laws_agree_to_first_order(
         theta in theta(), root in prop::array::uniform16(-1.5..1.5f64), n in normal(),
@@ -129,7 +129,7 @@ proptest! {
         prop_assert!(apart(1e-4) <= apart(1e-3) * 0.02 + 1e-9);
     }
 
-    /// The damper takes energy out, in proportion to the planner's ratio, and leaves the spring alone.
+    /// The damper removes energy in proportion to the planner's ratio, and does not change the spring.
     #[test]
     fn damping_is_in_proportion_to_its_ratio(
         theta in theta(), rates in prop::array::uniform3(-3.0..3.0f64), ratio in 0.2..3.0f64,
@@ -145,7 +145,8 @@ proptest! {
     }
 }
 
-/// A finger turned about the normal alone is turned back: a soft finger's torsion, without translation to hide behind.
+/// A finger that is turned about the normal alone is turned back, which tests the torsion of a soft finger without
+/// translation.
 #[test]
 fn torsion_alone_turns_the_tip_back_about_the_normal() {
     let k = Matrix4::from_diagonal(&nalgebra::Vector4::new(0.0, 0.0, 0.0, 10.0));
@@ -159,7 +160,7 @@ fn torsion_alone_turns_the_tip_back_about_the_normal() {
     assert!((exact - report).amax() < 1e-12, "{exact}");
 }
 
-/// A frictionless point feels nothing across its normal.
+/// A frictionless point exerts no force across its normal.
 #[test]
 fn a_frictionless_point_slides() {
     let theta = Vector3::new(0.2, 0.5, 1.0);

@@ -1,4 +1,4 @@
-//! A finger and a controller that believes something else of it, with a calibration in charge.
+//! A finger and a controller whose parameters differ from it, under the control of a calibration.
 
 use nalgebra::{Vector3, Vector4};
 use sun2xp::calibration::{Calibration, Findings, Obstacle, Sample, Task, Verdict};
@@ -15,15 +15,15 @@ pub struct Bench {
     controller: Controller,
     state: State,
     command: MotorCommand,
-    /// What the finger does where no routine decides it.
+    /// What the finger does while no routine runs.
     activity: Activity,
     pub report: Report,
-    /// A gauge that shows always the same count.
+    /// A gauge that always shows the same count.
     pub dead_gauge: Option<(usize, u16)>,
-    /// Which gauge's and which motor's cable is at each number, 0 to 3.
+    /// The gauge and the motor whose cables are plugged in at each number, 0 to 3.
     pub gauge_at: [usize; 4],
     pub motor_at: [usize; 4],
-    /// What the board says of its counts.
+    /// What the board reports about its counts: whether their zero is valid.
     pub zero_valid: bool,
     /// Largest true tension, N.
     pub largest_tension: f64,
@@ -34,7 +34,7 @@ impl Bench {
         Self::in_gravity(truth, belief, Vector3::zeros(), rate)
     }
 
-    /// The same in gravity, m/s^2 in the finger's frame.
+    /// The same with gravity, m/s^2 in the finger's frame.
     pub fn in_gravity(truth: &ConfiguredFinger, belief: &ConfiguredFinger, gravity: Vector3<f64>, rate: f64) -> Self {
         let mut plant = Plant::new(truth, gravity).unwrap();
         let mut sensors = Sensors::new(truth);
@@ -69,7 +69,7 @@ impl Bench {
         feedback
     }
 
-    /// `previous`: the controller before, where another one takes over in this cycle.
+    /// `previous` is the controller that another one replaces in this cycle.
     fn advance(&mut self, feedback: &Feedback, previous: Option<&Controller>) {
         let steps = (1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize;
         for _ in 0..steps {
@@ -91,13 +91,13 @@ impl Bench {
         }
     }
 
-    /// The finger goes on with what it does.
+    /// The finger continues its activity.
     pub fn go_on(&mut self, seconds: f64) {
         let activity = self.activity;
         self.run(seconds, &activity);
     }
 
-    /// Slack is taken up and the pose held, as after OpenHand.
+    /// Takes up slack and holds the pose, as after OpenHand.
     pub fn open(mut self) -> Self {
         self.run(0.3, &Activity::TakeUpSlack);
         let stiffness = nalgebra::Matrix3::identity() * 3.0;
@@ -106,12 +106,12 @@ impl Bench {
         self
     }
 
-    /// Runs a routine to its verdict; its controller stays until [`Bench::adopt`].
+    /// Runs a routine to its end. The present controller stays in use until [`Bench::adopt`].
     pub fn calibrate(&mut self, task: Task) -> Result<Findings, Obstacle> {
         self.calibrate_with(task, |_, _| {})
     }
 
-    /// The same, with something happening every cycle: seconds since the beginning, the plant.
+    /// The same with a function that is called every cycle with the seconds since the beginning and the plant.
     pub fn calibrate_with(
         &mut self,
         task: Task,
@@ -147,7 +147,8 @@ impl Bench {
                     return Ok(findings);
                 }
                 Verdict::Refused(obstacle) => {
-                    // A finger that the routine has taken over is limp now, another one is left to itself.
+                    // A limp finger stays limp after the routine. Any other finger is left to the routine's last
+                    // command.
                     let motors_off = Some(Activity::Turn(Vector4::zeros()));
                     assert_eq!(activity, if own.is_none() { motors_off } else { None });
                     return Err(obstacle);
@@ -163,7 +164,7 @@ impl Bench {
         unreachable!("a routine ends by its time limit at the latest")
     }
 
-    /// A new controller with what has been found, and the finger a spring again.
+    /// Replaces the controller by one with the new findings, and makes the finger a spring again.
     pub fn adopt(mut self) -> Self {
         self.controller = Controller::in_gravity(&self.belief, &self.gravity, self.rate).unwrap();
         let feedback = self.feedback();

@@ -1,4 +1,4 @@
-//! Friction and stiffness.
+//! Identification of friction and stiffness.
 
 use crate::bench::Bench;
 use sun2xp::calibration::{Findings, Identified, Task};
@@ -58,7 +58,8 @@ fn harsh_joint_friction_is_found() {
     }
 }
 
-/// A finger whose gauges show so much of what they should, and whose motors give so much of what they are told.
+/// A finger whose gauges show these fractions of the true tension, and whose motors give these fractions of the
+/// commanded torque.
 fn with_gains(gauges: [f64; 4], motors: [f64; 4], reference: GaugeReference) -> (ConfiguredFinger, Identified) {
     let mut truth = ConfiguredFinger::default();
     for (scale, gain) in truth.gauge.newton_per_count.iter_mut().zip(gauges) {
@@ -78,7 +79,7 @@ fn gauges_are_compared_with_each_other() {
     let (_, found) = with_gains(gauges, [1.0; 4], GaugeReference::Gauges);
     println!("{found:.4?}");
     for (tendon, gauge) in gauges.into_iter().enumerate() {
-        // Their mean stays, so all tensions are off by the mean of what they were off by.
+        // The mean is kept, so every tension is off by the mean of the gauge errors.
         let expected = 1.0 / gauge / mean;
         assert!((found.gauge_gain[tendon] / expected - 1.0).abs() < 0.01, "gauge {tendon}: {found:?}");
         assert!((found.tendon_stiffness[tendon] * mean / 300.0 - 1.0).abs() < 0.01, "tendon {tendon}: {found:?}");

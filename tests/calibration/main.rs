@@ -1,4 +1,4 @@
-//! Zeroing and identification in closed loop with the simulated finger: what is found, and what is refused.
+//! Zeroing and identification in closed loop with the simulated finger: their findings and their refusals.
 
 mod bench;
 mod identifying;

@@ -1,4 +1,4 @@
-//! Zeroing at a pose, over many poses, seeds, zeros and disturbances: what is accepted is right.
+//! Zeroing at a pose, over many poses, seeds, zeros and disturbances: every accepted result must be correct.
 
 use crate::bench::Bench;
 use nalgebra::{Vector3, Vector4};
@@ -9,12 +9,12 @@ use sun2xp::control::{Activity, SetPoint};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme, ZeroingMethod};
 use sun2xp::plant::Plant;
 
-/// So far, rad, the joint angles may be off after a zeroing that was accepted.
+/// Largest joint angle error after an accepted zeroing, rad.
 const ACCEPTED: f64 = 0.005;
 
 const SCHEMES: [Scheme; 2] = [Scheme::StateFeedback, Scheme::Figure10];
 
-/// What a test draws of one seed.
+/// The random values of one seed.
 struct Chance(Pcg64);
 
 impl Chance {
@@ -32,7 +32,7 @@ impl Chance {
     }
 }
 
-/// A finger somewhere within its limits, whose controller has wrong zeros.
+/// A finger at a random pose within its limits, whose controller has wrong zeros.
 struct Trial {
     chance: Chance,
     truth: ConfiguredFinger,
@@ -54,7 +54,7 @@ impl Trial {
         }
         let mut belief = truth.clone();
         for tendon in 0..4 {
-            // Some hundredths of a radian at a joint, and a newton.
+            // Corresponds to some hundredths of a radian at a joint and one newton.
             belief.encoder.zero[tendon] += chance.between(-300.0, 300.0) as i32;
             truth.gauge.zero[tendon] = 220.0;
             belief.gauge.zero[tendon] = 220.0 + chance.between(-40.0, 40.0);
@@ -63,7 +63,7 @@ impl Trial {
         Self { chance, truth, belief, gravity }
     }
 
-    /// Motors off, and a hand that holds the finger.
+    /// Motors off, with a hand that holds the finger.
     fn limp(&self) -> Bench {
         let mut bench = Bench::in_gravity(&self.truth, &self.belief, self.gravity, 1000.0);
         bench.plant.hold(bench.plant.joints());
@@ -71,15 +71,15 @@ impl Trial {
         bench
     }
 
-    /// A spring that holds its pose.
+    /// A spring that holds the finger's pose.
     fn spring(&self) -> Bench {
         let mut bench = Bench::in_gravity(&self.truth, &self.belief, self.gravity, 1000.0).open();
-        // Wrong gauges pull it away, and it is slow where it is soft.
+        // Wrong gauges pull the finger away, and a soft finger moves slowly.
         bench.go_on(2.0);
         bench
     }
 
-    /// Zeroes the finger, told the pose that it is in by now.
+    /// Zeroes the finger. The routine is given the pose that the finger has by then.
     fn zero(&self, bench: &mut Bench, happen: impl FnMut(f64, &mut Plant)) -> Result<f64, Obstacle> {
         bench.belief.zeroing.pose_degrees = bench.plant.joints().map(f64::to_degrees).into();
         let found = bench.calibrate_with(Task::Zero, happen)?;
@@ -95,7 +95,7 @@ impl Trial {
     }
 }
 
-/// What came of many trials. Everything that was accepted is right.
+/// Results of many trials. Every accepted result must be correct.
 struct Tally {
     accepted: usize,
     refused: Vec<(u64, Obstacle)>,
@@ -137,7 +137,7 @@ fn moved(obstacle: &Obstacle) -> bool {
     matches!(obstacle, Obstacle::Moved { .. })
 }
 
-/// The finger falls when its tendons are let out.
+/// The finger falls when its tendons are slackened.
 fn restless(obstacle: &Obstacle) -> bool {
     matches!(obstacle, Obstacle::Restless { .. })
 }
@@ -225,7 +225,7 @@ fn a_limp_finger_that_nothing_holds() {
             trial.truth.simulation.joint_coulomb_friction = [friction; 3];
             trial.zero(&mut trial.limp(), |_, plant| plant.let_go())
         });
-        // Others fall, or onto their stops, before they can be pushed.
+        // Other fingers fall, or reach their stops, before they can be pushed.
         let pushed = tally.refused.iter().filter(|(_, obstacle)| matches!(obstacle, Obstacle::NotHeld { .. }));
         assert!(tally.accepted == 0 && pushed.count() > 25, "{:?}", tally.refused);
     }

@@ -1,4 +1,4 @@
-//! What stands in the way is named.
+//! Each refusal names its cause.
 
 use crate::bench::Bench;
 use sun2xp::calibration::{Obstacle, Task};
@@ -16,7 +16,7 @@ fn a_cut_tendon() {
     for task in [Task::Zero, Task::Identify] {
         let finger = with_stops();
         let mut bench = Bench::new(&finger, &finger, 1000.0);
-        // So slack that it never comes taut.
+        // So slack that the tendon never becomes taut.
         bench.plant.turn_motor(2, -1e3);
         let refused = bench.calibrate(task);
         assert!(matches!(refused, Err(Obstacle::Slack { tendon: 3, .. })), "{task:?}: {refused:?}");
@@ -25,7 +25,7 @@ fn a_cut_tendon() {
 
 #[test]
 fn a_tendon_that_breaks_on_the_way() {
-    // While slack is taken up, and while a stop is looked for.
+    // While slack is taken up, and while a stop is searched for.
     for breaks_at in [3.0, 8.0] {
         let finger = with_stops();
         let mut bench = Bench::new(&finger, &finger, 1000.0).open();
@@ -61,7 +61,7 @@ fn a_dead_gauge() {
 #[test]
 fn a_joint_that_something_blocks() {
     let mut finger = with_stops();
-    // Across the way of joint 0.
+    // An obstacle in the path of joint 0.
     finger.simulation.surface =
         Some(Surface::Wall { point: [3.0, 0.0, 0.0], normal: [-1.0, 0.0, 0.0], stiffness: 300.0 });
     let mut bench = Bench::new(&finger, &finger, 1000.0).open();
@@ -110,7 +110,7 @@ fn a_routine_that_takes_too_long() {
     assert_eq!(refused, Err(Obstacle::TimeLimit { seconds: 2.0 }));
 }
 
-/// From tight and from slack, at every rate, every pair.
+/// Starts with tight and with slack tendons, at every rate, with every pair.
 #[test]
 fn cables_of_two_gauges_or_two_motors_that_are_swapped() {
     let finger = ConfiguredFinger::default();

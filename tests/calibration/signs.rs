@@ -1,4 +1,4 @@
-//! Which way things count.
+//! Tests of the directions in which encoders and gauges count.
 
 use crate::bench::Bench;
 use sun2xp::calibration::{Findings, Task};

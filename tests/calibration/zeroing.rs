@@ -1,4 +1,4 @@
-//! Zeros of encoders and gauges.
+//! Tests of the zeros of encoders and gauges.
 
 use crate::bench::Bench;
 use crate::identifying::identified;
@@ -14,7 +14,7 @@ pub fn zeroed(bench: &mut Bench) -> Zeros {
     }
 }
 
-/// Zeros that are nowhere near the ones a controller starts with.
+/// Zeros far from those with which a controller starts.
 fn truth() -> ConfiguredFinger {
     let mut truth = ConfiguredFinger::default();
     truth.encoder.zero = [1200, -800, 40_000, -3];
@@ -22,7 +22,7 @@ fn truth() -> ConfiguredFinger {
     truth
 }
 
-/// The true angles less what the controller believes, rad, after it has adopted what was found.
+/// True joint angles minus the controller's, rad, after the controller has adopted the findings.
 fn joint_error(bench: Bench) -> f64 {
     let bench = bench.adopt();
     (bench.plant.joints() - bench.report.joints).amax()
@@ -56,7 +56,7 @@ fn at_the_configured_pose() {
     let truth = truth();
     let mut belief = ConfiguredFinger::default();
     belief.tendon.stiffness = [330.0; 4];
-    // Gauges as good as at last year's zeroing: a finger that nothing holds in its pose stays there.
+    // The gauges are as good as after the last zeroing, so a finger that nothing holds keeps its pose.
     belief.gauge.zero = truth.gauge.zero;
     let mut bench = Bench::new(&truth, &belief, 1000.0);
     bench.run(1.0, &Activity::TakeUpSlack);
@@ -85,8 +85,7 @@ fn a_board_that_kept_its_counts_keeps_the_zero_but_not_that_of_the_gauges() {
     }
 }
 
-/// The goal that all this is for: a finger whose tendons are 10 % stiffer than configured is the spring it is told to
-/// be.
+/// The purpose of identification: a finger whose tendons are 10 % stiffer than configured becomes the commanded spring.
 #[test]
 fn a_calibrated_finger_is_the_spring_it_is_told_to_be() {
     let mut truth = truth();
@@ -100,7 +99,7 @@ fn a_calibrated_finger_is_the_spring_it_is_told_to_be() {
     let mut bench = bench.adopt();
     identified(&mut bench);
 
-    // Measured without joint friction, which is another matter; before and after.
+    // Measured without joint friction, which is a separate effect, before and after.
     truth.simulation.joint_coulomb_friction = [0.0; 3];
     let mut uncalibrated = bench.belief.clone();
     uncalibrated.tendon.stiffness = [300.0; 4];

@@ -1,13 +1,13 @@
-//! Attempts at something in real time that a pause of the machine can spoil.
+//! Repeats real-time tests that a pause of the machine can spoil.
 
 use crate::pauses::PauseWatch;
 use std::io::Write;
 use std::time::Duration;
 
-/// More failures than this are not excused, whatever the machine did.
+/// Largest number of failures that are excused.
 const EXCUSED_AT_MOST: u32 = 3;
 
-/// How attempts have ended so far.
+/// The results of the attempts so far.
 #[derive(Default)]
 pub struct Tally {
     pub passed: u32,
@@ -17,19 +17,19 @@ pub struct Tally {
 /// What follows from an attempt.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Passed attempts outnumber those that failed.
+    /// More attempts passed than failed.
     Passed,
     Again,
     /// No pause explains the failure.
     Failed,
-    /// The pauses do, but there were too many.
+    /// Pauses explain the failures, but there were too many.
     Hopeless,
 }
 
 impl Tally {
-    /// Judges an attempt during which the machine paused for so long, and which fails by itself only if nothing is
-    /// paused for as long as it `bears`. Every excused failure has to be made up for by a passed attempt, so that a
-    /// defect that shows in some attempts only does not hide behind a machine that always pauses.
+    /// Judges an attempt. `paused` is the longest pause of the machine, and `bears` is the longest pause that the
+    /// tested system must survive. For every excused failure another attempt has to pass, so that an intermittent
+    /// defect cannot hide behind a machine that always pauses.
     pub fn judge(&mut self, passed: bool, paused: Duration, bears: Duration) -> Verdict {
         match passed {
             true => self.passed += 1,
@@ -46,12 +46,12 @@ impl Tally {
     }
 }
 
-/// Makes attempts until more have passed than failed, and returns what the passed ones found. An attempt may fail only
-/// if the machine was measured to pause the hand and its boards for as long as the attempt `bears`, or longer. The
-/// attempt gets the watch so that it can name the processes of its boards.
+/// Makes attempts until more have passed than failed, and returns the results of those that passed. An attempt may fail
+/// only if the machine was measured to pause the hand or its boards for at least `bears`. The attempt gets the watch,
+/// so that it can name the processes of its boards.
 ///
 /// # Panics
-/// If an attempt fails without such a pause, or if more than three fail.
+/// Panics if an attempt fails without such a pause, or if more than three fail.
 pub fn attempts<T>(what: &str, bears: Duration, mut attempt: impl FnMut(&PauseWatch) -> Result<T, String>) -> Vec<T> {
     let (mut tally, mut found) = (Tally::default(), Vec::new());
     loop {
@@ -66,7 +66,8 @@ pub fn attempts<T>(what: &str, bears: Duration, mut attempt: impl FnMut(&PauseWa
                 panic!("{count}; {failure}. No pause of the machine explains it: {told}")
             }
             (Err(failure), Verdict::Hopeless) => panic!("{count}; {failure}. The machine pauses too often: {told}"),
-            // Not captured: who reads the result of the tests is to see what was excused.
+            // Written to the stream itself, which is not captured, so that the excused failures show in the test
+            // report.
             (Err(failure), _) => drop(writeln!(std::io::stderr(), "{count}: {told}; {failure}")),
             (Ok(value), verdict) => {
                 println!("{count}: {told}");

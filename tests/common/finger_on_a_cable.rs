@@ -1,4 +1,4 @@
-//! A finger with its servo, its link and its board in memory, on simulated time: what happens is the same in every run.
+//! A finger with its servo, its link and its board in memory, on simulated time: every run is identical.
 
 use std::cell::{RefCell, RefMut};
 use std::rc::Rc;
@@ -9,7 +9,7 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, Consumer, CycleTiming, Schedule, ring};
 use sun2xp::simulated::{SimulatedBoard, SimulatedCable};
 
-/// What happens between a servo and the cable to its board. By default nothing does.
+/// Interventions between a servo and the cable to its board. The default is none.
 pub trait Hooks {
     fn write(&mut self, cable: &mut SimulatedCable, bytes: &[u8]) -> Result<usize, PortError> {
         cable.write(bytes)
@@ -33,13 +33,13 @@ pub trait Hooks {
     }
 }
 
-/// A cable, and what happens to it.
+/// A cable and its interventions.
 pub struct Place<H> {
     pub cable: SimulatedCable,
     pub hooks: H,
 }
 
-/// The host's end of a cable, and the host's clock. Clones share the cable.
+/// The host's end of a cable and the host's clock. Clones share the cable.
 pub struct World<H>(Rc<RefCell<Place<H>>>);
 
 impl<H> Clone for World<H> {
@@ -93,7 +93,7 @@ impl<H: Hooks> Clock for World<H> {
     }
 }
 
-/// Finger 1 with all that its planner and its servo need.
+/// Finger 1 with everything that its planner and its servo need.
 pub struct ServedFinger<W> {
     pub servo: Servo<W, W>,
     pub mailbox: Mailbox,
@@ -104,12 +104,12 @@ pub struct ServedFinger<W> {
 }
 
 impl<W: Transport + Clock + Clone> ServedFinger<W> {
-    /// Shakes hands with the board. The finger begins to open with the first cycle of the servo.
+    /// Shakes hands with the board. The finger begins to open in the first cycle of the servo.
     pub fn new(world: &W, configuration: &Configuration) -> Self {
         Self::believing(world, configuration, configuration)
     }
 
-    /// The same with a servo that computes with another configuration than the board's.
+    /// The same with a servo whose configuration differs from the board's.
     pub fn believing(world: &W, configuration: &Configuration, belief: &Configuration) -> Self {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
         let period = (1e9 / hand.rate) as u64;

@@ -1,9 +1,9 @@
-//! How long the machine kept threads from running, by the kernel's account.
+//! Measures how long the machine kept threads from running, from the kernel's accounting.
 //!
-//! A test in real time can fail because the machine paused it. Such a failure is excused only where the pause was
-//! measured. The kernel counts for every thread how long it was ready to run and had no core
-//! (`/proc/PID/task/TID/schedstat`). A thread that sleeps, waits for bytes or was stopped by a signal is not ready, so
-//! a defect of that kind is no pause.
+//! A real-time test can fail because the machine paused it. Such a failure is excused only if the pause was measured.
+//! The kernel counts for every thread how long it was ready to run but had no core (`/proc/PID/task/TID/schedstat`). A
+//! thread that sleeps, waits for bytes or was stopped by a signal is not ready, so a defect of that kind does not count
+//! as a pause.
 
 #[path = "waits.rs"]
 mod waits;
@@ -17,26 +17,26 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 pub use waits::{Part, Waits};
 
-/// How often the kernel's account is read.
+/// Period of reading the accounts.
 const INTERVAL: Duration = Duration::from_millis(5);
 
-/// After so many readings new threads are looked for.
+/// New threads are searched for after this many readings.
 const READINGS_A_LOOK: u32 = 10;
 
-/// A watch over the threads of a hand and its boards.
+/// Watches the threads of a hand and its boards.
 pub struct PauseWatch {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// Between the watch and whoever asks it.
+/// State that the watch shares with its users.
 #[derive(Default)]
 struct Shared {
-    /// Other processes that are watched.
+    /// Other watched processes.
     processes: Mutex<Vec<(u32, Part)>>,
     waits: Mutex<Waits>,
     ended: AtomicBool,
-    /// Asked for and done.
+    /// Whether a rest is requested, and whether it has begun.
     rests: [AtomicBool; 2],
 }
 
@@ -51,20 +51,20 @@ impl Shared {
 }
 
 impl PauseWatch {
-    /// Watches the servo and board threads of this process, and the kernel's workers.
+    /// Watches the servo and board threads of this process and the kernel's workers.
     pub fn start() -> Self {
         let shared = Arc::new(Shared::default());
         let watching = shared.clone();
         Self { shared, thread: Some(std::thread::spawn(move || watch(&watching))) }
     }
 
-    /// Watches another process too: of a planner the servo and board threads, else all threads.
+    /// Watches another process too: the servo and board threads of a planner, or all threads of any other process.
     pub fn also(&self, process: u32, part: Part) {
         self.shared.processes().push((process, part));
     }
 
-    /// Closes all files and forgets what was measured, until the guard is dropped: for tests that count what the
-    /// process holds.
+    /// Closes all files and discards the measurements until the guard is dropped. For tests that count the resources of
+    /// the process.
     pub fn rest(&self) -> Rest<'_> {
         let [asked, done] = &self.shared.rests;
         asked.store(true, Relaxed);
@@ -74,7 +74,7 @@ impl PauseWatch {
         Rest(self)
     }
 
-    /// What has been measured.
+    /// Ends the watch and returns the measurements.
     pub fn end(mut self) -> Waits {
         self.shared.ended.store(true, Relaxed);
         self.thread.take().expect("it ends once").join().expect("the watch does not panic");
@@ -84,12 +84,12 @@ impl PauseWatch {
 
 impl Drop for PauseWatch {
     fn drop(&mut self) {
-        // A test that fails ends its watch.
+        // A failing test must end its watch too.
         self.shared.ended.store(true, Relaxed);
     }
 }
 
-/// The watch rests as long as this exists.
+/// The watch rests while this exists.
 pub struct Rest<'a>(&'a PauseWatch);
 
 impl Drop for Rest<'_> {
@@ -98,7 +98,7 @@ impl Drop for Rest<'_> {
     }
 }
 
-/// From now on every failure in this process names the longest pause of the machine in the seconds before it.
+/// Makes every later failure in this process name the longest pause of the machine in the seconds before it.
 pub fn name_pauses() -> &'static PauseWatch {
     static WATCH: OnceLock<PauseWatch> = OnceLock::new();
     WATCH.get_or_init(|| {
@@ -112,17 +112,17 @@ pub fn name_pauses() -> &'static PauseWatch {
     })
 }
 
-/// Which seconds before a failure are looked at.
+/// Time before a failure that is searched for pauses.
 const BEFORE_A_FAILURE: Duration = Duration::from_secs(30);
 
-/// Pauses of about this length are named at failures: a hand with the usual watchdog does not bear more.
+/// Failures name pauses of about this length: a hand with the default watchdog survives no longer ones.
 const LONG: Duration = Duration::from_millis(15);
 
-/// A thread's account.
+/// The account of a thread.
 struct Account {
     part: Part,
     file: File,
-    /// What was read last, ns.
+    /// The last reading, ns.
     waited: u64,
 }
 
@@ -133,11 +133,11 @@ impl Account {
         Some(account)
     }
 
-    /// For how long the thread has waited for a core since the last time. None where it has ended.
+    /// Returns how long the thread has waited for a core since the last reading, or `None` if it has ended.
     fn news(&mut self) -> Option<Duration> {
         let mut text = [0; 80];
         let length = self.file.read_at(&mut text, 0).ok()?;
-        // Time on a core, time waiting for one, number of time slices.
+        // The fields are the time on a core, the time waiting for one, and the number of time slices.
         let waited = std::str::from_utf8(&text[..length]).ok()?.split_whitespace().nth(1)?.parse().ok()?;
         Some(Duration::from_nanos(waited - std::mem::replace(&mut self.waited, waited)))
     }
@@ -168,7 +168,7 @@ fn watch(shared: &Shared) {
         let mut waits = shared.waits();
         waits.lasted = begun.elapsed();
         waits.note(0, Part::Carrier, waited);
-        // A thread that has a core and does not run is paused with the whole machine.
+        // A thread that has a core but does not run was paused together with the whole machine.
         waits.note(0, Part::Machine, late.saturating_sub(waited));
         threads.accounts.retain(|&thread, account| {
             let news = account.news();
@@ -178,11 +178,11 @@ fn watch(shared: &Shared) {
     }
 }
 
-/// The threads that are watched, by number.
+/// The watched threads by number.
 #[derive(Default)]
 struct Threads {
     accounts: BTreeMap<u32, Account>,
-    /// Processes of the machine that are no carriers.
+    /// Processes of the machine that do not carry bytes.
     others: BTreeSet<u32>,
 }
 
@@ -205,7 +205,7 @@ impl Threads {
                 };
             }
         }
-        // Workers that may carry the bytes of terminals are bound to no core: "kworker/u8:3-events_unbound".
+        // Only workers that are bound to no core may carry the bytes of terminals: "kworker/u8:3-events_unbound".
         let carrier = |name: &str| name.starts_with("kworker/u").then_some(Part::Carrier);
         for process in numbers("/proc") {
             if !self.others.contains(&process) && !self.add(process, &format!("/proc/{process}"), carrier) {
@@ -214,7 +214,7 @@ impl Threads {
         }
     }
 
-    /// Whether the thread is watched: if its name says which part it takes.
+    /// Adds a thread if its name says which part it has. Returns whether it was added.
     fn add(&mut self, thread: u32, folder: &str, part: impl Fn(&str) -> Option<Part>) -> bool {
         if self.accounts.contains_key(&thread) {
             return true;

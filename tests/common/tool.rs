@@ -1,11 +1,11 @@
-//! The tool `sun2xp`, which is a package of its own: tests of the library build it once, as cargo builds it for its own
+//! The tool `sun2xp` is a package of its own. Tests of the library build it once, as cargo builds it for the tool's own
 //! tests.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-/// The tool, up to date.
+/// Builds the tool if it is out of date, and returns its path.
 pub fn tool() -> &'static Path {
     static TOOL: OnceLock<PathBuf> = OnceLock::new();
     TOOL.get_or_init(|| {

@@ -1,6 +1,6 @@
-//! What the tests need besides Rust, and what was left out because it is missing. `tests/tools.txt` names the tools and
-//! their Debian packages. Without a tool the tests that need it pass, and tests/zz_left_out.rs lists them at the end of
-//! `cargo test`. With CI=true they fail.
+//! The tools that tests need besides Rust, and the list of tests that were left out because one is missing.
+//! `tests/tools.txt` names the tools and their Debian packages. Without a tool, the tests that need it pass, and
+//! tests/zz_left_out.rs lists them at the end of `cargo test`. With CI=true they fail.
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -15,7 +15,7 @@ const TOOLS: &str = include_str!("../tools.txt");
 struct Tool {
     name: &'static str,
     packages: &'static str,
-    /// A shell command that succeeds where the tool can be used.
+    /// A shell command that succeeds if the tool is usable.
     probe: &'static str,
 }
 
@@ -26,8 +26,8 @@ fn tools() -> impl Iterator<Item = Tool> {
     })
 }
 
-/// Whether the tests can use a tool of `tests/tools.txt`. If not, `part` of the current test is noted as left out; with
-/// CI=true the test fails.
+/// Returns whether the tests can use a tool of `tests/tools.txt`. If not, `part` of the current test is listed as left
+/// out. With CI=true the test fails instead.
 pub fn available(name: &str, part: &str) -> bool {
     let tool = tools().find(|tool| tool.name == name).expect("tests/tools.txt has a line for the tool");
     let mut probe = Command::new("sh");
@@ -44,7 +44,7 @@ pub fn available(name: &str, part: &str) -> bool {
     false
 }
 
-/// Notes that `part` of the current test is left out, and why. With CI=true the test fails.
+/// Lists `part` of the current test as left out, with the reason. With CI=true the test fails instead.
 pub fn leave_out(part: &str, reason: &str) {
     assert!(env::var("CI").as_deref() != Ok("true"), "{part}: {reason}. Nothing may be left out with CI=true");
     let thread = std::thread::current();
@@ -52,18 +52,18 @@ pub fn leave_out(part: &str, reason: &str) {
     note(&format!("{}, {test}, {part}: {reason}", env!("CARGO_CRATE_NAME")));
 }
 
-/// Prints a line, also where the test's output is captured, and keeps it for the list at the end. Once for each line.
+/// Prints a line even where the test's output is captured, and keeps it for the final list. Each line is printed once.
 fn note(line: &str) {
     static NOTED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
     if !NOTED.lock().unwrap_or_else(PoisonError::into_inner).insert(line.to_owned()) {
         return;
     }
-    // The streams' own functions are not captured; the printing macros are.
+    // Only the printing macros are captured, not the functions of the streams.
     let _ = writeln!(std::io::stderr(), "left out: {line}");
     let folder = folder_of_runs();
     let kept = fs::create_dir_all(&folder).and_then(|()| {
         let file = folder.join(run(std::os::unix::process::parent_id()).expect("the parent waits for this process"));
-        // One write a line: processes of one run may append at the same time.
+        // One write for each line, because processes of one run may append at the same time.
         fs::OpenOptions::new().create(true).append(true).open(file)?.write_all(format!("{line}\n").as_bytes())
     });
     if let Err(error) = kept {
@@ -71,8 +71,7 @@ fn note(line: &str) {
     }
 }
 
-/// Takes what the children of a process have left out, in the order of the alphabet, and forgets what earlier runs have
-/// left out.
+/// Returns what the children of a process have left out, in alphabetical order, and deletes the lists of earlier runs.
 pub fn take_left_out(parent: u32) -> Vec<String> {
     let folder = folder_of_runs();
     let this = run(parent);
@@ -95,12 +94,12 @@ fn folder_of_runs() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("left_out")
 }
 
-/// One run of the tests: its parent process by number and by when it started, because numbers are used again. None
-/// where there is no such process.
+/// Identifies one run of the tests by the number and the start time of its parent process, because numbers are reused.
+/// Returns `None` if there is no such process.
 fn run(parent: u32) -> Option<String> {
     let stat = fs::read_to_string(format!("/proc/{parent}/stat")).ok()?;
-    // The name of the program is in parentheses and may contain any character. The start is field 22, the state after
-    // the name field 3.
+    // The program's name is in parentheses and may contain any character. The state behind the name is field 3, and the
+    // start time is field 22.
     let start = stat.rsplit_once(')')?.1.split_whitespace().nth(22 - 3)?;
     Some(format!("{parent}-{start}"))
 }

@@ -1,18 +1,19 @@
-//! Waits of threads for a core: which of them add up, and the worst of them.
+//! Sums up the times that threads waited for a core, and finds the worst.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::time::Duration;
 
-/// Threads that take the same part in the way from servo to finger and back. One of them at a time can delay a byte.
+/// The role of a thread on the path from servo to finger and back. Only one thread of a role can delay a byte at a
+/// time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
     /// Servo threads of the library.
     Servo,
-    /// Whatever plays a board: threads of this process, other processes, an emulator.
+    /// Threads of a board: in this process, in another process, or of an emulator.
     Board,
-    /// Workers of the kernel, which carry the bytes of pseudo-terminals. The watch itself counts as one, because they
-    /// are not seen from a container, and it waits for a core as they do.
+    /// Workers of the kernel, which carry the bytes of pseudo-terminals. The watch itself counts as one: a container
+    /// hides the workers, and the watch waits for a core as they do.
     Carrier,
     /// The whole machine: a guest that its host did not run.
     Machine,
@@ -32,48 +33,48 @@ impl Display for Part {
 /// A wait for a core, read from the account of a thread.
 #[derive(Clone, Copy)]
 struct Wait {
-    /// When it was read, since the start.
+    /// Time of the reading, since the start.
     at: Duration,
     thread: u32,
     part: Part,
-    /// How long it was.
+    /// Length of the wait.
     time: Duration,
 }
 
-/// For how long threads waited for a core, and when.
+/// How long threads waited for a core, and when.
 #[derive(Default)]
 pub struct Waits {
     noted: Vec<Wait>,
-    /// How long it was watched.
+    /// Duration of the watch.
     pub lasted: Duration,
 }
 
 impl Waits {
-    /// Adds a wait that has just been read.
+    /// Adds a wait that was just read.
     pub fn note(&mut self, thread: u32, part: Part, time: Duration) {
         if !time.is_zero() {
             self.noted.push(Wait { at: self.lasted, thread, part, time });
         }
     }
 
-    /// What was measured in the last seconds.
+    /// The measurements of the last seconds.
     pub fn last(&self, seconds: Duration) -> Self {
         let recent = |wait: &Wait| wait.at + seconds >= self.lasted;
         Self { noted: self.noted.iter().copied().filter(recent).collect(), lasted: seconds.min(self.lasted) }
     }
 
     /// The longest time for which the machine kept one servo, one board and one carrier of bytes, one after the other,
-    /// from running within any `span`. A wait that began before the span counts whole.
+    /// from running within any `span`. A wait that began before the span counts in full.
     pub fn most_within(&self, span: Duration) -> Duration {
         self.worst(span).values().sum()
     }
 
-    /// The same of one part alone, within the worst `span` of all.
+    /// The same for one part alone, within the worst `span`.
     pub fn of(&self, part: Part, span: Duration) -> Duration {
         self.worst(span).get(&part).copied().unwrap_or_default()
     }
 
-    /// For each part the longest wait of one of its threads, within the worst `span`.
+    /// For each part, the longest wait of one of its threads within the worst `span`.
     fn worst(&self, span: Duration) -> BTreeMap<Part, Duration> {
         let mut threads = BTreeMap::<(Part, u32), Duration>::new();
         let mut worst = BTreeMap::new();
@@ -100,7 +101,7 @@ impl Waits {
         worst
     }
 
-    /// What was measured, for a person.
+    /// Describes the measurements for a person.
     pub fn told(&self, span: Duration) -> String {
         let milliseconds = |time: Duration| format!("{:.1} ms", 1e3 * time.as_secs_f64());
         let worst = self.worst(span);

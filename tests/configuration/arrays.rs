@@ -1,10 +1,10 @@
-//! An array has as many entries as its key has places: one more would be lost without a word, one less would be a
-//! default.
+//! An array must have as many entries as its key has places. An extra entry would be lost silently, and a missing one
+//! would become a default.
 
 use crate::reading::{keys, read, with_optional_keys};
 use toml_edit::{Array, Value};
 
-/// Every array in a value, itself included, by the places of its arrays from the outside in.
+/// Every array in a value, itself included, given by its path of indices from the outside in.
 fn arrays(value: &Value, place: &mut Vec<usize>, found: &mut Vec<Vec<usize>>) {
     let Value::Array(array) = value else { return };
     found.push(place.clone());

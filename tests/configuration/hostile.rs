@@ -1,16 +1,16 @@
-//! Files that nobody writes by hand, or only by mistake: each is used as it says, or refused in one short line.
+//! Files that nobody writes by hand, or only by mistake. Each is either used as written or refused in one short line.
 
 use crate::reading::{keys, read, usable, with_numbers, with_optional_keys};
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
-/// The longest reason: a list of the keys of the largest table is in it.
+/// The longest reason contains a list of the keys of the largest table.
 const LONGEST: usize = 400;
 
-/// As much as fits into a file that is read.
+/// About the largest file that is read.
 const LARGE: usize = (1 << 20) - 100;
 
-/// The line and the reason of a refusal that took no long time and is fit for a terminal.
+/// Returns the line and the reason of a refusal. Checks that it was quick and that the reason suits a terminal.
 fn refused(text: &str) -> (Option<usize>, String) {
     let start: String = text.chars().take(60).collect();
     let begun = Instant::now();
@@ -59,7 +59,7 @@ fn what_editors_add_does_not_matter() {
         assert_eq!(usable(text).hand.rate, 750.0, "{text:?}");
     }
     assert_eq!(refused("[hand]\r\n\r\nrat = 750\r\n").0, Some(3));
-    // Only at the beginning is it the mark of an encoding.
+    // A byte order mark is valid only at the beginning of the file.
     assert_eq!(refused("[hand]\n\u{feff}rate = 750\n").0, Some(2));
     assert_eq!(refused("[hand]\rrate = 750\r").0, Some(1));
 }
@@ -93,7 +93,7 @@ fn no_depth_exhausts_the_stack() {
         (format!("[finger{}]\n", ".a".repeat(78)), Some(1)),
         (format!("[finger{}]\nb = 1\n[finger.1{}]\nc = 1\n", ".a".repeat(78), ".a".repeat(77)), Some(3)),
     ] {
-        // The stack of an ordinary thread, an eighth of the main thread's.
+        // A stack of an eighth of the main thread's, smaller than that of an ordinary thread.
         let thread = std::thread::Builder::new().stack_size(1 << 20).spawn(move || refused(&text));
         assert_eq!(thread.expect("a thread").join().expect("no overflow").0, line);
     }

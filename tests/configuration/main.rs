@@ -1,4 +1,4 @@
-//! Configuration files: what they can say, and what is refused.
+//! Tests of configuration files: what they can express and what is refused.
 
 mod arrays;
 mod hostile;

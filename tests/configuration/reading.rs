@@ -1,4 +1,4 @@
-//! Reads configurations, and the reference with every key.
+//! Reads configurations and the reference with every key.
 
 use std::fs;
 use sun2xp::hand::{self, ConfigurationError};
@@ -20,7 +20,7 @@ pub fn usable(text: &str) -> Configuration {
     read(text).unwrap_or_else(|(line, reason)| panic!("line {line:?}: {reason}\n{text}"))
 }
 
-/// The reference with the optional keys in force: a # without a space behind it hides a key.
+/// The reference with its optional keys in force: a # without a space behind it disables a key.
 pub fn with_optional_keys() -> String {
     let shown = |line: &'static str| match line.strip_prefix('#') {
         Some(key) if key.starts_with(|first: char| first.is_ascii_lowercase() || first == '[') => key,
@@ -29,7 +29,7 @@ pub fn with_optional_keys() -> String {
     REFERENCE.lines().map(|line| shown(line).to_owned() + "\n").collect()
 }
 
-/// A key with its table, its value, the line it stands on (from 1), and the comment above it.
+/// A key with its table, its value, its line number (from 1), and the comment above it.
 #[derive(Debug)]
 pub struct Key {
     pub table: String,

@@ -1,4 +1,4 @@
-//! `docs/sun2xp.toml` against the configuration types: complete, true and never stale.
+//! Compares `docs/sun2xp.toml` with the configuration types: it must be complete, correct and current.
 
 use crate::reading::{REFERENCE, keys, read, usable, with_numbers, with_optional_keys};
 use std::collections::BTreeSet;
@@ -6,7 +6,7 @@ use sun2xp::control::Controller;
 use sun2xp::model::configuration::Configuration;
 use toml_edit::{DocumentMut, Item, Table};
 
-/// The keys that a table can have: what its type says it expected instead of another one.
+/// The keys that a table can have, taken from the error for an unknown key.
 fn expected_keys(table: &str) -> BTreeSet<String> {
     let (_, reason) = read(&format!("[{table}]\nno_such_key = 1\n")).expect_err("an unknown key");
     let (_, list) = reason.split_once("expected").unwrap_or_else(|| panic!("{reason}"));
@@ -32,7 +32,7 @@ fn every_key_of_every_table_is_in_it() {
     let in_file: BTreeSet<String> = document.iter().map(|(key, _)| key.to_owned()).collect();
     assert_eq!(in_file, ["finger", "hand"].map(String::from).into());
     assert_eq!(named("hand"), expected_keys("hand"));
-    // What differs between fingers by default stands in their own tables.
+    // Keys with different defaults for each finger are in the tables of the fingers.
     let of_fingers: BTreeSet<String> = &named("finger") | &named("finger.1");
     assert_eq!(&of_fingers - &fingers, expected_keys("finger"));
     assert_eq!(named("finger.1"), named("finger.2"));
@@ -60,7 +60,7 @@ fn the_optional_keys_say_what_counts_without_them() {
         assert!(finger.geometry.ghost_row.is_some());
         let (q, default_q) = (finger.tendons().expect("tendons").q, reference.tendons().expect("tendons").q);
         assert!((q - default_q).amax() < 1e-6, "{q}{default_q}");
-        // The controllers, number by number; rounding of the ghost row apart.
+        // Compares the controllers number by number, except for the rounding of the ghost row.
         let mut unshown = finger.clone();
         unshown.geometry.ghost_row = None;
         let gains = &finger.controller;
@@ -104,7 +104,7 @@ fn every_key_is_read_and_a_misspelt_one_is_refused_with_its_line() {
     }
 }
 
-/// Whether a range is there, and not as the part of another one.
+/// Returns whether a comment contains a range that is not part of another one.
 fn tells(comment: &str, range: &str) -> bool {
     let numeric = |c: char| c.is_ascii_alphanumeric() || c == '-';
     comment.match_indices(range).any(|(start, _)| {
@@ -115,11 +115,11 @@ fn tells(comment: &str, range: &str) -> bool {
 
 #[test]
 fn every_range_is_told() {
-    // Beyond every range, for the types of numbers that there are: floating, and whole ones of 8, 16 and 32 bits.
+    // Values beyond every range, for floating-point numbers and for integers of 8, 16 and 32 bits.
     let beyond = ["1e300", "-1e300", "255", "0", "65535", "4294967295"];
     let mut told = 0;
     for key in keys(&with_optional_keys()) {
-        // Texts, choices, a surface, whose ranges are told together, and what [finger.1] has told.
+        // Skips texts, choices, a surface, whose ranges are given together, and keys whose ranges [finger.1] gives.
         if key.value.starts_with(['"', '{', 't', 'f']) || matches!(key.table.as_str(), "finger.2" | "finger.3") {
             continue;
         }

@@ -1,4 +1,4 @@
-//! Fingers on one port: each refusal on the way there names the key and a value that works.
+//! Fingers on one port: each refusal names the key and a value that works.
 
 use crate::reading::{read, usable};
 

@@ -1,10 +1,10 @@
-//! What section 5 calls adjustable, adjusted while the finger runs.
+//! Adjusts the parameters that section 5 calls adjustable while the finger runs.
 
 use crate::rig::{Loop, SCHEMES, quiet, spring};
 use nalgebra::Vector3;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
-/// A change, and whether the commands would jump by it if nothing were done.
+/// A change, and whether the commands would jump if the controller were simply replaced.
 type Change = (&'static str, fn(&mut ConfiguredFinger), bool);
 
 const CHANGES: &[Change] = &[
@@ -28,8 +28,8 @@ const CHANGES: &[Change] = &[
     ("motor radius", |finger| finger.geometry.motor_radius = [0.0480; 4], true),
 ];
 
-/// Largest change of a command from one cycle to the next, N at the tendon, of a pushed finger: at rest, by the
-/// adjustment, and by the controller's replacement without ado.
+/// Largest change of a command from one cycle to the next, N at the tendon, of a pushed finger: at rest, during the
+/// adjustment, and when the controller is simply replaced.
 fn jumps(scheme: Scheme, change: fn(&mut ConfiguredFinger)) -> [f64; 3] {
     let mut finger = quiet(scheme);
     let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
@@ -67,7 +67,7 @@ fn an_adjustment_does_not_jump() {
     }
 }
 
-/// What the adjustment asks for is there soon after, smoothly all the way.
+/// The requested adjustment is complete soon afterwards, and the change is smooth.
 #[test]
 fn an_adjustment_takes_effect() {
     let activity = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
@@ -89,7 +89,7 @@ fn an_adjustment_takes_effect() {
     assert!((servo.plant.joints() - joints).amax() < 0.02);
 }
 
-/// A planner that adjusts in every cycle must not hold or delay the torque.
+/// A planner that adjusts in every cycle must neither freeze nor delay the torque.
 #[test]
 fn a_finger_that_is_adjusted_all_the_while_moves_and_settles() {
     let target = Vector3::new(0.2, 0.7, 1.2);

@@ -1,4 +1,4 @@
-//! What a finger does besides settling: takes up slack, lets go, keeps to its limits.
+//! Behaviour other than settling: taking up slack, letting go, and observing limits.
 
 use super::rig::{Loop, SETTLED, finger_with, spring};
 use nalgebra::{Matrix3, Vector3, Vector4};
@@ -38,7 +38,7 @@ fn slack_is_taken_up() {
             }
             assert!(servo.report.desired_tensions.min() >= 5.0);
             assert!(servo.plant.tensions().min() >= 4.0);
-            // From there the finger is a spring where it is, and goes where it is sent.
+            // From then on the finger is a spring at its pose, and follows set points.
             let pose = Vector3::new(0.1, 0.6, 1.0);
             servo.run(2.0, &spring(servo.report.joints, 3.0));
             servo.run(2.5, &spring(pose, 3.0));
@@ -71,7 +71,7 @@ fn a_lost_reply_repeats_the_command_but_lets_a_release_go_on() {
 
 #[test]
 fn changing_activity_is_bumpless() {
-    // State feedback feels the rate of tensions, so the noise of the gauges too.
+    // State feedback uses the rate of the tensions, so it amplifies the noise of the gauges.
     for (scheme, jump) in [(Scheme::Figure9, 6.0), (Scheme::Figure10, 6.0), (Scheme::StateFeedback, 70.0)] {
         is_bumpless(scheme, jump);
     }
@@ -94,11 +94,11 @@ fn is_bumpless(scheme: Scheme, jump: f64) {
     for (activity, seconds) in sequence {
         servo.forget();
         servo.cycle(&activity);
-        // At the switch itself state feedback must not do more than at rest; after it, in motion, it may.
+        // At the switch itself state feedback must not jump by more than at rest. Afterwards, in motion, it may.
         let switched = servo.largest_jump;
         servo.run(seconds, &activity);
         let largest = if scheme == Scheme::StateFeedback { switched } else { servo.largest_jump };
-        // From one cycle to the next: noise and flickering encoders amount to a few N in each.
+        // Noise and flickering encoders change each command by a few N from one cycle to the next.
         assert!(largest < jump, "{scheme:?}, {activity:?}: {largest} N");
     }
     assert_eq!(servo.report.motor_torques, Vector4::zeros());
@@ -123,7 +123,7 @@ fn release_is_a_straight_ramp_from_what_was_pulled() {
 
 #[test]
 fn over_limit_torque_keeps_its_direction() {
-    // Pushed against its stops by a stiff spring far away: more than 60 N would be needed.
+    // A stiff spring far away presses the finger against its stops, which would need more than 60 N.
     let mut finger = ConfiguredFinger::default();
     finger.simulation.joint_coulomb_friction = [0.0; 3];
     let mut servo = Loop::new(&finger, 1000.0);

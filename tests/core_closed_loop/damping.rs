@@ -1,4 +1,4 @@
-//! Damping other than the controller's own: all that is admitted comes to rest, and what is refused would not.
+//! Damping ratios other than the controller's own: every admitted ratio must come to rest, and a refused one must not.
 
 use super::rig::{Loop, finger_with, poses_of};
 use super::state_feedback::shifted;
@@ -6,10 +6,10 @@ use nalgebra::{Matrix3, Vector3};
 use sun2xp::control::{Activity, AdmissibleDamping, Law, SetPoint};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
-/// Not the seed of the experiments that the ranges were drawn from.
+/// Differs from the seed of the experiments that determined the ranges.
 const SEED: u64 = 4711;
 
-/// Root mean square of the tip's motion, cm, after a step of 5 mm and a tap at the fingertip: the worst over poses.
+/// Root mean square of the tip's motion, cm, after a step of 5 mm and a tap at the fingertip: the worst over the poses.
 fn restlessness(finger: &ConfiguredFinger, rate: f64, stiffness: f64, damping: f64) -> f64 {
     let spring = |joints: Vector3<f64>| {
         let hard_finger = SetPoint::hard_finger(joints, Matrix3::identity() * stiffness);
@@ -74,7 +74,7 @@ fn state_feedback_rests_at_both_ends_of_the_range() {
     }
 }
 
-/// With friction the figures of the report hunt by more than this at any damping, 1 included.
+/// With friction, the controllers of the report's figures hunt by more than this at any damping, 1 included.
 #[test]
 fn the_figures_rest_with_more_damping_where_nothing_rubs() {
     for scheme in [Scheme::Figure9, Scheme::Figure10] {
@@ -89,7 +89,7 @@ fn the_figures_rest_with_more_damping_where_nothing_rubs() {
     }
 }
 
-/// The pairs that were admitted and never came to rest, or broke a tendon.
+/// Pairs that were once admitted, although the finger never came to rest or broke a tendon.
 #[test]
 fn what_is_refused_would_not_rest() {
     let finger = finger(Scheme::StateFeedback, true);

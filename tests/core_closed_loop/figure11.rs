@@ -1,4 +1,4 @@
-//! Figure 11: what its motor model learns, where it rests, and that it must stay out of the kinematics.
+//! Figure 11: what its motor model learns, where the model stops learning, and why it must stay out of the kinematics.
 
 use super::rig::{Loop, finger_with, poses, spring};
 use nalgebra::{Vector3, Vector4};
@@ -21,7 +21,7 @@ fn frictionless(ratio: [f64; 4]) -> ConfiguredFinger {
     finger
 }
 
-/// The estimates of motors at rest: the tension asked for over the pull commanded for it.
+/// The estimates for motors at rest: the desired tension over the pull that is commanded for it.
 fn estimates(report: &Report) -> Vector4<f64> {
     report.desired_tensions.component_div(&(report.motor_torques / 0.0475))
 }
@@ -71,7 +71,7 @@ fn with_friction_the_tensions_are_right_at_rest_and_the_model_stays_within_its_b
     }
 }
 
-/// A finger that hangs in the board: these tensions, N, whatever is commanded.
+/// A finger that is stuck: its tensions, N, stay the same whatever is commanded.
 struct Stuck {
     controller: Controller,
     state: sun2xp::control::State,
@@ -87,7 +87,7 @@ impl Stuck {
         Self { controller, state, wanted: Activity::Tense(Vector4::repeat(WANTED)) }
     }
 
-    /// The estimate of the first motor after so many cycles with the gauges at `tension`.
+    /// The estimate of the first motor after the given number of cycles with the gauges at `tension`.
     fn estimate(&mut self, cycles: usize, tension: Option<f64>) -> f64 {
         let feedback = tension.map(showing);
         let cycle = |_| self.controller.cycle(&mut self.state, feedback.as_ref(), &self.wanted).0;
@@ -115,27 +115,27 @@ fn the_model_rests_where_tensions_say_nothing_about_the_motor() {
         assert!(learnt < 0.9, "{learnt}: nothing learnt that could be forgotten");
         (stuck, learnt)
     };
-    // A slack tendon, and replies that are lost.
+    // A slack tendon, and lost replies.
     let (mut stuck, before) = learnt(&finger());
     assert!((stuck.estimate(2000, Some(0.5)) - before).abs() < 1e-3);
     assert!((stuck.estimate(2000, None) - before).abs() < 1e-3);
     assert!(stuck.estimate(100, Some(9.0)) < before - 0.05, "it goes on afterwards");
 
-    // A motor at its limit: what it commands is the limit, and what it learnt shows when less is asked for.
+    // A motor at its limit is commanded to the limit, so its estimate shows only when less is wanted.
     let mut weak = finger();
     weak.motor.torque_limit = [0.0475 * 30.0; 4];
     let (mut stuck, before) = learnt(&weak);
     stuck.wanted = Activity::Tense(Vector4::repeat(40.0));
     stuck.estimate(2000, Some(9.0));
     stuck.wanted = Activity::Tense(Vector4::repeat(WANTED));
-    // One cycle, of which the pull is still the limit.
+    // After one cycle the pull is still at the limit.
     let after = stuck.estimate(1, Some(9.0));
     assert!((after - before).abs() < 0.03, "{before}, {after}");
 }
 
-/// A finger whose motors give 1.2 times what is commanded, led to a pose for 2 s, with exact sensors: where its joints
-/// are off in the end, and how fast they are, rad and rad/s. `geometry`: whether the adapted M also turns motor angles
-/// into joint angles.
+/// Moves a finger whose motors give 1.2 times the commanded torque to a pose for 2 s, with exact sensors. Returns the
+/// final error of the joints and their speed, rad and rad/s. `geometry` selects whether the adapted M also converts
+/// motor angles to joint angles.
 fn with_adapted_kinematics(pose: Vector3<f64>, geometry: bool) -> (f64, f64) {
     let finger = frictionless([1.2; 4]);
     let mut plant = Plant::new(&finger, Vector3::zeros()).unwrap();

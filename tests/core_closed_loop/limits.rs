@@ -1,4 +1,4 @@
-//! Gravity, what a pose can carry, soft joint limits, warm motors: the same for every scheme.
+//! Gravity, torque limits of a pose, soft joint limits and warm motors: the same for every scheme.
 
 use super::rig::{Loop, SCHEMES, finger_with, spring};
 use nalgebra::{Vector3, Vector4};
@@ -31,7 +31,7 @@ fn a_pose_that_cannot_carry_the_stiffness_gets_what_it_can() {
         let pose = servo.plant.joints();
         servo.run(0.5, &spring(pose, 3.0));
         assert_eq!(servo.report.stiffness_scale, 1.0);
-        // Four times the bound: nobody could send it, and here it must not make the finger swing.
+        // Four times the bound. No planner could send this stiffness, and even so the finger must not swing.
         servo.run(1.0, &spring(pose, 24.0));
         let scale = servo.report.stiffness_scale;
         assert!(scale > 0.2 && scale < 0.8, "{scheme:?}: {scale}");
@@ -52,11 +52,11 @@ fn a_joint_beyond_its_limit_is_pushed_back() {
         let finger = finger_with(scheme);
         let mut servo = Loop::new(&finger, 1000.0);
         let (_, high) = finger.joint_limits();
-        // A limp finger bent by a force: joint 2 would go to its stop.
+        // A limp finger bent by a force, which would push joint 2 to its stop.
         let limp = spring(Vector3::zeros(), 0.0);
         let beyond = |servo: &Loop| servo.plant.joints()[2] - high[2];
         servo.plant.set_external_force(Vector3::new(0.0, 0.0, -0.3));
-        // Without a gain on the tension error the friction of the motors holds it back on its way.
+        // Without a gain on the tension error, motor friction delays the finger's return.
         servo.run(if scheme == Scheme::Figure11 { 4.0 } else { 2.0 }, &limp);
         let pushed = beyond(&servo);
         println!("{scheme:?}: {:?} degrees", servo.plant.joints().map(f64::to_degrees).as_slice());
@@ -71,7 +71,7 @@ fn a_motor_that_is_warm_is_limited_to_what_it_can_give_for_ever() {
     finger.motor.continuous_torque = [1.0; 4];
     finger.motor.thermal_time = 0.5;
     let mut servo = Loop::new(&finger, 1000.0);
-    // Led to 172 degrees, where two tendons hang: in a servo that is an impossible pose.
+    // Sent to 172 degrees, where two tendons are slack. A servo would refuse this pose.
     servo.right_alarms = &[Symptom::OverheatedMotor, Symptom::BrokenTendon];
     let far = spring(Vector3::new(3.0, 0.3, 0.6), 6.0);
     let mut first = 0.0f64;
@@ -90,8 +90,9 @@ fn a_motor_that_is_warm_is_limited_to_what_it_can_give_for_ever() {
     assert!(squares.max() > 0.8, "{:?} N^2 cm^2: blind", squares.as_slice());
 }
 
-/// One motor that may give 21 N for ever, three that may give 53 N, and a torque against a stop that asks for more of
-/// all of them. Figure 11 has no gain on the tension error, and leaves the friction of the motors.
+/// One motor that can give 21 N continuously, three that can give 53 N, and a torque against a stop that needs more
+/// from all of them. Figure 11 is left out: it has no gain on the tension error and does not compensate the friction of
+/// the motors.
 #[test]
 fn a_warm_motor_does_not_turn_the_torque() {
     for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback] {
@@ -101,7 +102,7 @@ fn a_warm_motor_does_not_turn_the_torque() {
         finger.controller.set_point_speed = Some(1.0);
         let mut servo = Loop::new(&finger, 1000.0);
         servo.right_alarms = &[Symptom::OverheatedMotor];
-        // Bent about all joints, so that the torque has no symmetry which would keep its direction.
+        // Bent at all joints, so that the torque has no symmetry that would preserve its direction.
         let beyond = spring(Vector3::new(0.4, 3.5, 1.0), 5.0);
         servo.run(6.0, &beyond);
         let (mut asked, mut true_torque) = (Vector3::zeros(), Vector3::zeros());
@@ -121,7 +122,7 @@ fn a_warm_motor_does_not_turn_the_torque() {
 
 const FIGURES: [Scheme; 3] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11];
 
-/// A finger whose motors may give 21 N for ever, and are warm after half a second of more.
+/// A finger whose motors can give 21 N continuously and become warm after half a second of more.
 fn soon_warm(scheme: Scheme) -> ConfiguredFinger {
     let mut finger = finger_with(scheme);
     finger.motor.continuous_torque = [1.0; 4];
@@ -129,8 +130,9 @@ fn soon_warm(scheme: Scheme) -> ConfiguredFinger {
     finger
 }
 
-/// Warm motors that pull 21 N while 55 N are asked for, for long; then 10 N are asked for. What winds up holds the
-/// motors at their limit after that. Figure 11 has no integral; a gauge that does not move teaches it a weak motor.
+/// Warm motors pull 21 N for a long time while 55 N are wanted. Then 10 N are wanted. An integral that winds up would
+/// keep the motors at their limit. Figure 11 is left out: it has no integral, and a constant gauge makes it learn a
+/// weak motor.
 #[test]
 fn a_warm_motor_does_not_wind_up_the_integral() {
     for scheme in [Scheme::Figure9, Scheme::Figure10] {
@@ -155,13 +157,13 @@ fn a_warm_motor_does_not_wind_up_the_integral() {
     }
 }
 
-/// A finger pressed against a stop with all that its motors have, then called back: by how much the true tensions are
-/// over the desired ones at most, from 30 ms after the call on, N.
+/// Presses a finger against a stop with the full strength of its motors, then calls it back. Returns by how much the
+/// true tensions exceed the desired ones at most, from 30 ms after the call on, N.
 fn excess_after_a_stop(finger: &ConfiguredFinger, rate: f64) -> f64 {
     let mut finger = finger.clone();
     finger.controller.set_point_speed = Some(1e3);
     let mut servo = Loop::new(&finger, rate);
-    // Flung against a stop, where tendons hang, and warm for long.
+    // The finger hits a stop, where tendons become slack, and stays warm for a long time.
     servo.right_alarms = &[Symptom::OverTension, Symptom::OverheatedMotor, Symptom::BrokenTendon];
     servo.run(3.0, &spring(Vector3::new(0.0, 3.5, 1.0), 5.0));
     let back = spring(servo.plant.joints() - Vector3::new(0.0, 0.05, 0.0), 5.0);
@@ -181,7 +183,7 @@ fn a_warm_finger_that_leaves_a_stop_overshoots_no_more_than_a_cold_one() {
             let [warm, cold] =
                 [soon_warm(scheme), finger_with(scheme)].map(|finger| excess_after_a_stop(&finger, rate));
             println!("{scheme:?} at {rate} Hz: {warm:.2} N warm, {cold:.2} N cold");
-            // Of noise and friction; with an integral that winds up it is 10 N and more.
+            // The allowance is for noise and friction. An integral that winds up adds 10 N and more.
             assert!(warm < cold + 1.5, "{scheme:?} at {rate} Hz: {warm} N warm, {cold} N cold");
         }
     }

@@ -8,7 +8,7 @@ use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report, SetP
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
-/// A finger counts as settled this close to its target, rad.
+/// A finger counts as settled within this distance of its target, rad.
 pub const SETTLED: f64 = 0.02;
 
 pub struct Loop {
@@ -16,11 +16,11 @@ pub struct Loop {
     pub rate: f64,
     sensors: Sensors,
     controller: Controller,
-    /// Whom the controller takes over from in the next cycle.
+    /// The controller that is replaced in the next cycle.
     previous: Option<Controller>,
     state: State,
     command: MotorCommand,
-    /// Part of the replies that are lost, and their source of chance.
+    /// Fraction of the replies that are lost, and the random numbers that select them.
     loss: f64,
     random: Pcg64,
     /// Smallest commanded and true tensions since the last [`Loop::forget`], N.
@@ -29,12 +29,12 @@ pub struct Loop {
     /// Largest change of a motor's command from one cycle to the next, N at the tendon.
     pub largest_jump: f64,
     pub report: Report,
-    /// What the monitors make of it.
+    /// The state of the monitors.
     watch: Watch,
     unwatched: u32,
     /// Whether a false alarm fails the test.
     pub watched: bool,
-    /// What they may find, as the test makes it happen.
+    /// Alarms that the test provokes and the monitors may raise.
     pub right_alarms: &'static [Symptom],
 }
 
@@ -43,12 +43,12 @@ impl Loop {
         Self::with_belief(finger, finger, rate)
     }
 
-    /// A finger whose controller believes something else of it.
+    /// A finger whose controller has other parameters than the finger.
     pub fn with_belief(finger: &ConfiguredFinger, belief: &ConfiguredFinger, rate: f64) -> Self {
         Self::in_gravity(finger, belief, &Vector3::zeros(), rate)
     }
 
-    /// With gravity in the finger's frame, m/s^2, of which the controller knows.
+    /// The same with gravity in the finger's frame, m/s^2, which the controller knows.
     pub fn in_gravity(finger: &ConfiguredFinger, belief: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Self {
         let plant = Plant::new(finger, *gravity).unwrap();
         let mut sensors = Sensors::new(finger);
@@ -80,7 +80,7 @@ impl Loop {
         it
     }
 
-    /// The controller starts anew with the finger as it is now.
+    /// Restarts the controller with the finger in its present state.
     pub fn restart(mut self) -> Self {
         self.state = self.controller.start(&read(&mut self.sensors, &self.plant));
         self.command = MotorCommand { motor_torques: self.plant.tensions() * 0.0475 };
@@ -88,32 +88,32 @@ impl Loop {
         self
     }
 
-    /// Another controller goes on from here.
+    /// Replaces the controller and lets the new one take over smoothly.
     pub fn adjust(&mut self, belief: &ConfiguredFinger) {
         let controller = Controller::new(belief, self.rate).unwrap();
         self.previous = Some(std::mem::replace(&mut self.controller, controller));
         self.watch.adjusted();
     }
 
-    /// Another controller, without telling it so.
+    /// Replaces the controller without informing the new one.
     pub fn replace(&mut self, belief: &ConfiguredFinger) {
         self.controller = Controller::new(belief, self.rate).unwrap();
         self.watch.adjusted();
     }
 
-    /// From now on this part of the replies is lost.
+    /// Loses this fraction of the replies from now on.
     pub fn lose(&mut self, loss: f64) {
         self.loss = loss;
     }
 
-    /// Starts the minima and maxima anew.
+    /// Resets the minima and maxima.
     pub fn forget(&mut self) {
         (self.least_commanded, self.least_true, self.largest_jump) = (f64::INFINITY, f64::INFINITY, 0.0);
     }
 
     pub fn cycle(&mut self, activity: &Activity) {
         let feedback = read(&mut self.sensors, &self.plant);
-        // The command of the last cycle acts during this one.
+        // The command of the previous cycle acts during this one.
         let steps = (1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize;
         for _ in 0..steps {
             self.plant.step((self.command.motor_torques * 0.01).into());
@@ -153,7 +153,7 @@ impl Loop {
         }
     }
 
-    /// Mean joints over so many seconds.
+    /// Mean joint angles over the given time.
     pub fn mean_joints(&mut self, seconds: f64, activity: &Activity) -> Vector3<f64> {
         let cycles = (seconds * self.rate) as usize;
         let mut sum = Vector3::zeros();
@@ -196,7 +196,7 @@ pub fn finger_with(scheme: Scheme) -> ConfiguredFinger {
 
 pub const SCHEMES: [Scheme; 4] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback];
 
-/// Without noise or dither, so that what is left of a jump in torque is that of a switch.
+/// Without noise and dither, so that only the jump of a switch remains in the torque.
 pub fn quiet(scheme: Scheme) -> ConfiguredFinger {
     let mut finger = finger_with(scheme);
     finger.simulation.gauge_noise = 0.0;

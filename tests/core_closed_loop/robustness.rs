@@ -1,5 +1,4 @@
-//! The servo's core with a finger that is not what it believes, at the bound of Kx, and with feedback that makes no
-//! sense.
+//! The servo's core with a finger that differs from its model, at the bound of Kx, and with implausible feedback.
 
 use super::rig::{Loop, SCHEMES, finger_with, poses, spring};
 use nalgebra::{Matrix3, Vector3};
@@ -42,9 +41,9 @@ fn motor_constants_a_fifth_off_do_not_matter() {
 
 #[test]
 fn a_jammed_motor_does_not_wind_up_the_integral() {
-    // A tendon that is held at 5 N while 20 N are wanted, for long; then let go.
+    // A tendon is held at 5 N for a long time while 20 N are wanted, and is then released.
     let mut finger = ConfiguredFinger::default();
-    // A motor that never gets too warm.
+    // A motor that never becomes too warm.
     finger.motor.continuous_torque = finger.motor.torque_limit;
     let controller = Controller::new(&finger, 1000.0).unwrap();
     let count = |newton: f64| (newton * 4095.0 / 100.0).round() as u16;
@@ -58,7 +57,7 @@ fn a_jammed_motor_does_not_wind_up_the_integral() {
     let (command, report) = controller.cycle(&mut state, Some(&held), &there);
     let most = report.desired_tensions.imax();
     assert!((command.motor_torques[most] - limit).abs() < 1e-9);
-    // Tension beyond the desired one: at the limit for not a cycle longer than it takes to say so.
+    // With more than the desired tension, the command leaves the limit in the very cycle that shows it.
     let mut taut = held;
     taut.gauge_counts[most] = count(report.desired_tensions[most] + 20.0);
     let (command, _) = controller.cycle(&mut state, Some(&taut), &there);
@@ -70,7 +69,7 @@ proptest! {
         cases: ProptestConfig::default().cases.max(300), failure_persistence: None, ..Default::default()
     })]
 
-    /// Whatever the board says: finite torques within the limits, tensions within the bounds.
+    /// Whatever the board reports, torques are finite and within the limits, and tensions are within the bounds.
     #[test]
     fn commands_are_finite_and_bounded_for_any_feedback(
         replies in prop::collection::vec(

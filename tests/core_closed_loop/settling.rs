@@ -1,4 +1,4 @@
-//! A finger settles where it is sent, with every scheme and at every rate, and is the commanded spring there.
+//! A finger settles at its target with every scheme and at every rate, and is the commanded spring there.
 
 use super::rig::{Loop, SETTLED, finger_with, poses, spring};
 use nalgebra::Vector3;
@@ -21,7 +21,7 @@ fn settles_everywhere(scheme: Scheme, rate: f64) {
             worst = worst.max(error);
         }
         assert!(servo.plant.joint_rates().amax() < 0.1, "{scheme:?} at {rate} Hz does not rest at {pose}");
-        // The controller knows where the finger is, tendon stretch and all.
+        // The controller knows the finger's pose, including the stretch of the tendons.
         assert!((servo.report.joints - servo.plant.joints()).amax() < 1e-3);
         assert_eq!(servo.report.torque_scale, 1.0);
         least = least.min(servo.least_true);
@@ -75,7 +75,7 @@ fn figure_11_settles_at_2000_hz() {
     settles_everywhere(Scheme::Figure11, 2000.0);
 }
 
-/// Deflection under 0.3 N, tip, over what the spring of 3 N/cm should give: 1 is a perfect spring.
+/// Deflection of the tip under 0.3 N, divided by that of an ideal spring of 3 N/cm. 1 is a perfect spring.
 fn deflection_ratio(finger: &ConfiguredFinger, belief: &ConfiguredFinger) -> f64 {
     let mut servo = Loop::with_belief(finger, belief, 1000.0);
     if belief != finger {
@@ -99,7 +99,7 @@ fn tip_is_the_commanded_spring_and_is_not_without_stretch_compensation() {
     finger.simulation.joint_coulomb_friction = [0.0; 3];
     let ratio = deflection_ratio(&finger, &finger);
     assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
-    // A controller that takes the tendons for rigid feels a finger softer than it should be.
+    // A controller that assumes rigid tendons makes a finger that is too soft.
     let mut rigid = finger.clone();
     rigid.tendon.stiffness = [1e9; 4];
     let ratio = deflection_ratio(&finger, &rigid);
@@ -113,7 +113,7 @@ fn without_damping_the_finger_does_not_rest() {
         finger.controller.motor_damping = Some(0.0);
         finger.controller.rate_time = Some(0.0);
         let mut servo = Loop::new(&finger, 1000.0);
-        // It swings so that tendons are slack and overloaded in turn.
+        // The finger swings so that tendons become slack and overloaded in turn.
         servo.right_alarms = &[
             Symptom::BrokenTendon,
             Symptom::SlackTendon,

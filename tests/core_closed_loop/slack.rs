@@ -1,4 +1,4 @@
-//! Slack is taken up without the finger being pulled away.
+//! Slack is taken up without moving the finger away.
 
 use crate::rig::{Loop, SCHEMES, finger_with, poses};
 use nalgebra::{Matrix3, Vector4};
@@ -7,8 +7,7 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::control::{Activity, SetPoint};
 use sun2xp::model::configuration::ConfiguredFinger;
 
-/// How far the joints are from where they were when the finger has come under tension and holds its pose, rad, and how
-/// long it took, s.
+/// How far the joints have moved, rad, when the finger is under tension and holds its pose, and how long that took, s.
 fn drift(finger: &ConfiguredFinger, slack: &Vector4<f64>, rate: f64, take_up: &Activity) -> (f64, f64) {
     let mut servo =
         Loop::with_belief(finger, &ConfiguredFinger { simulation: Default::default(), ..finger.clone() }, rate);
@@ -45,7 +44,7 @@ fn worst(case: (f64, [f64; 4], f64), mut finger: ConfiguredFinger, rate: f64, ta
     finger.simulation.motor_constant_ratio = ratio;
     finger.simulation.joint_coulomb_friction = [friction; 3];
     let mut random = Pcg64::seed_from_u64(7);
-    let homing = 0.03; // cm that the pretension stretches the tendons
+    let homing = 0.03; // stretch of the tendons by the pretension, cm
     let mut found = [0.0f64; 3];
     for pose in poses() {
         finger.simulation.start_degrees = pose.map(f64::to_degrees).into();
@@ -68,7 +67,7 @@ fn the_joints_stay_where_they_are() {
     }
 }
 
-/// What the same fingers do if every tendon is pulled without regard to the others: the test above sees what it should.
+/// Pulling every tendon independently of the others makes the same fingers drift, so the test above can fail.
 #[test]
 fn without_regard_to_the_joints_they_do_not() {
     let finger = ConfiguredFinger::default();

@@ -1,4 +1,4 @@
-//! State feedback: what the loops of the report cannot do, and that its tests can fail.
+//! State feedback: what the loops of the report cannot do, and proof that the tests can fail.
 
 use super::rig::{Loop, finger_with, poses_of, spring};
 use nalgebra::{Matrix3, Vector3};
@@ -6,7 +6,7 @@ use sun2xp::control::{Activity, Law, SetPoint};
 use sun2xp::model::configuration::Surface;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
-/// Not the seed of anything that the controller was designed on.
+/// Differs from every seed that was used to design the controller.
 const SEED: u64 = 871;
 
 const RATES: [f64; 3] = [500.0, 1000.0, 2000.0];
@@ -21,14 +21,14 @@ fn finger_at(pose: &Vector3<f64>) -> ConfiguredFinger {
     finger
 }
 
-/// The spring of a fingertip at a place, N/cm.
+/// The spring of a fingertip at a pose, N/cm.
 fn exact(joints: Vector3<f64>, stiffness: f64) -> Activity {
     let set_point = SetPoint::hard_finger(joints, Matrix3::identity() * stiffness);
     Activity::Follow(SetPoint { law: Law::Exact, ..set_point })
 }
 
-/// Joint angles with the tip `way` (cm) from where it is at `joints`, by Newton; none beyond the joint limits or near
-/// to straight.
+/// Joint angles at which the tip is displaced by `way` (cm) from its place at `joints`, by Newton's method. `None`
+/// beyond the joint limits and near the straight finger.
 pub fn shifted(finger: &ConfiguredFinger, joints: &Vector3<f64>, way: &Vector3<f64>) -> Option<Vector3<f64>> {
     let (links, (low, high)) = (finger.links(), finger.joint_limits());
     let target = links.tip(joints) + way;
@@ -148,8 +148,8 @@ fn motor_constants_a_fifth_off_do_not_matter() {
     }
 }
 
-/// Deflection under a force over what it should be, less 1: the largest over poses and directions of a spring of 3
-/// N/cm, pushed `way` cm.
+/// Deflection under a force over the expected one, minus 1: the largest over poses and directions of a spring of 3 N/cm
+/// that is pushed by `way` cm.
 fn push_error(way: f64, change: impl Fn(&mut ConfiguredFinger)) -> f64 {
     let mut worst = 0.0f64;
     for pose in poses_of(SEED).into_iter().step_by(3) {
@@ -217,7 +217,7 @@ fn a_reply_that_never_comes_leaves_the_command_where_it_was() {
     let held = servo.report.motor_torques;
     servo.run(0.05, &target);
     assert_eq!(servo.report.motor_torques, held);
-    // And goes on when replies come again.
+    // The finger continues when replies arrive again.
     servo.lose(0.0);
     servo.run(1.0, &target);
     assert!((servo.plant.joints() - Vector3::new(0.2, 0.7, 1.2)).amax() < 0.01);
@@ -273,8 +273,8 @@ fn walls_are_stable() {
         }
         println!("{rate} Hz, {stiffness} N/cm: tip moves {worst:.4} cm rms against a wall");
         println!("{restless:.4?}");
-        // At the bound of Kx some contacts swing a little: there is no margin left, but nothing grows.
-        // At 500 Hz more of them do, by a tenth of a millimetre.
+        // At the bound of Kx no margin is left, and some contacts swing a little, but nothing grows. At 500 Hz more of
+        // them swing, by a tenth of a millimetre.
         let (most, few) = match (rate, stiffness) {
             (500.0, _) => (0.015, 10),
             (_, 3.0) => (0.005, 0),

@@ -1,4 +1,4 @@
-//! Every switch that a planner may make, on a finger that is pushed away from its anchor: no jump in torque.
+//! Every switch that a planner may make, on a finger that is pushed away from its anchor: the torque must not jump.
 
 use crate::rig::{Loop, SCHEMES, quiet};
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
@@ -39,7 +39,7 @@ fn switches() -> Vec<(&'static str, SetPoint, SetPoint, bool)> {
     steps.into_iter().flat_map(both).collect()
 }
 
-/// A pushed finger before a switch: at rest, or let go of 30 ms ago.
+/// A pushed finger before a switch: at rest, or released 30 ms ago.
 fn before(finger: &ConfiguredFinger, rate: f64, set_point: SetPoint, moving: bool) -> Loop {
     let mut servo = Loop::new(finger, rate);
     let follow = Activity::Follow(set_point);
@@ -53,7 +53,7 @@ fn before(finger: &ConfiguredFinger, rate: f64, set_point: SetPoint, moving: boo
     servo
 }
 
-/// What the desired tensions would change by if the switch were made at once, N.
+/// The change of the desired tensions if the switch were made at once, N.
 fn at_once(finger: &ConfiguredFinger, servo: &Loop, before: SetPoint, after: SetPoint) -> f64 {
     let law = JointStiffness::new(finger.links(), 0.015);
     let limit = Vector4::repeat(finger.tendon.maximum);
@@ -91,7 +91,7 @@ fn no_switch_of_the_spring_jumps() {
     assert!(seen > 10.0, "blind: at once would be {seen} N");
 }
 
-/// As a calibration does: it takes over with a push that lets the tendons out, and tightens them after a rest.
+/// A calibration takes over with a push that slackens the tendons, and tightens them after a rest.
 #[test]
 fn a_push_in_the_cycle_of_a_take_over_does_not_come_back() {
     let finger = quiet(Scheme::StateFeedback);

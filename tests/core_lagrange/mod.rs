@@ -1,6 +1,5 @@
-//! A frictionless finger derived a second time: its kinetic energy is summed over points with the mass and the second
-//! moments of the links, and Lagrange's equations come from it by numeric differentiation. It shares no code with the
-//! plant.
+//! A second derivation of a frictionless finger: its kinetic energy is summed over points with the mass and the second
+//! moments of the links, and Lagrange's equations follow by numeric differentiation. It shares no code with the plant.
 
 use nalgebra::{Matrix3, Rotation3, SVector, Vector3, Vector4};
 
@@ -24,9 +23,9 @@ pub struct IndependentFinger {
 }
 
 impl IndependentFinger {
-    /// At rest at the pose, degrees, with a least tension of 5 N and no joint torque.
+    /// A finger at rest at the pose, degrees, with a least tension of 5 N and no joint torque.
     pub fn new(pose: [f64; 3], gravity: Vector3<f64>, force: Vector3<f64>, torque: [f64; 4]) -> Self {
-        // Row 3 makes tendons 2 and 3 equal, rows 1 and 2 then tendons 1 and 4: 2 * 0.62 t2 = 2 * 1.09 t1.
+        // Row 3 makes tendons 2 and 3 equal. Then rows 1 and 2 make tendons 1 and 4 equal: 2 * 0.62 t2 = 2 * 1.09 t1.
         let home_tension = [5.0, 5.0 * 1.09 / 0.62, 5.0 * 1.09 / 0.62, 5.0];
         let theta = Vector3::from(pose.map(f64::to_radians));
         let mut state = State::zeros();
@@ -113,7 +112,7 @@ fn inertia(theta: &Vector3<f64>) -> Matrix3<f64> {
     h
 }
 
-/// Eight points a link: two along the axis at Gauss's places, four around it at radius / sqrt 2, have the mass, the
+/// Eight points a link: two on the axis at Gauss's places and four around it at radius / sqrt 2 have the mass, the
 /// centre and the second moments of a uniform cylinder. The tip is the last point.
 fn points(theta: &Vector3<f64>) -> Vec<(f64, Vector3<f64>)> {
     let mut turn = Rotation3::identity();
