@@ -19,8 +19,8 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 /// at the same time: each waits for the others, for at most 30 seconds.
 ///
 /// # Errors
-/// A file that cannot be read, used or written; [`ConfigurationError::Mismatch`] where the file has changed so that what was found
-/// does not fit. The file is as it was then, and nothing of what was found is written.
+/// A file that cannot be read, used or written; [`ConfigurationError::Mismatch`] where the file has changed so that
+/// what was found does not fit. The file is as it was then, and nothing of what was found is written.
 pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), ConfigurationError> {
     update_file(path, LARGEST, |text| change(path, text, found)).map_err(|error| match error {
         UpdateError::File(source) => ConfigurationError::Unwritable { path: path.to_path_buf(), source },

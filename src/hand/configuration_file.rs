@@ -50,8 +50,8 @@ pub fn find_configuration() -> Result<Configured, ConfigurationError> {
 /// Reads and checks one configuration file.
 ///
 /// # Errors
-/// [`ConfigurationError::Invalid`] with file, line and reason; [`ConfigurationError::Unreadable`] where it cannot be read,
-/// is no regular file or is larger than 1 MiB.
+/// [`ConfigurationError::Invalid`] with file, line and reason; [`ConfigurationError::Unreadable`] where it cannot be
+/// read, is no regular file or is larger than 1 MiB.
 pub fn read_configuration(path: &Path) -> Result<Configuration, ConfigurationError> {
     Configured::read(path).map(|configured| configured.configuration)
 }
