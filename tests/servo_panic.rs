@@ -52,7 +52,7 @@ fn a_panic_in_a_cycle_stops_the_board_and_faults_the_finger() {
         assert!(matches!(stage, Stage::Faulted(Fault { kind: FaultKind::ServoPanic, .. })), "{stage:?}");
         assert!(finger.mailbox.send(|_| {}).is_err(), "calls are refused");
         assert!(
-            finger.borrower.lent.is_abandoned() && finger.borrower.lent.pop().is_none(),
+            finger.repair_end.released.is_abandoned() && finger.repair_end.released.pop().is_none(),
             "whoever mends ports knows of it"
         );
         let mut place = world.place();

@@ -1,18 +1,18 @@
-//! What a servo computes with.
+//! The part of a servo's data that a planner can change while it runs.
 
 use crate::control::Controller;
 use nalgebra::Vector3;
 
-/// What a servo computes with, and what a planner may change while it runs.
+/// The data that a servo computes with and that a planner can change while it runs.
 #[derive(Clone, Debug)]
 pub struct Adjustable {
-    /// Of the controller, in the finger's black box.
+    /// Number of the controller in the finger's black box.
     pub number: u32,
     /// The boxes of Figure 9.
     pub controller: Controller,
-    /// Joint angles that a finger under tension can have, rad: lowest and highest.
+    /// Lowest and highest joint angles that a finger under tension can have, rad.
     pub pose: (Vector3<f64>, Vector3<f64>),
 }
 
-// A servo copies it out of a buffer: nothing may be allocated or freed then.
+// The servo copies this out of a buffer. The copy must neither allocate nor free.
 const _: () = assert!(!std::mem::needs_drop::<Adjustable>());

@@ -1,9 +1,10 @@
-//! The last two seconds of a finger, kept at all times: the servo leaves one record a cycle in a ring, whoever collects
-//! the reports keeps the newest.
+//! The recording of a finger's last two seconds, which runs all the time. The servo writes one record per cycle into a
+//! ring. The thread that collects the reports keeps the newest records.
 //!
-//! A replay needs the state of the controller where the records begin. The servo leaves a copy of it every few cycles,
-//! and the records that are kept begin at such a keyframe. Rejected: the state in every record, which takes three times
-//! the memory; a second controller that follows two seconds behind, which computes everything twice.
+//! A replay needs the state of the controller before the first record. The servo therefore writes a copy of the state,
+//! a keyframe, every few cycles, and the kept records begin at a keyframe. Two alternatives were rejected: the state in
+//! every record takes three times the memory, and a second controller that follows two seconds behind computes
+//! everything twice.
 
 use crate::control::State;
 use crate::finger::recording::{Origin, Recording};
@@ -13,22 +14,22 @@ use crate::realtime::{Consumer, LockedMemory, Producer, ring};
 use nalgebra::Vector3;
 use std::collections::{BTreeSet, VecDeque};
 
-/// How much is kept, s.
+/// Length of the recording, s.
 const KEPT: f64 = 2.0;
 
-/// How long nobody may collect before records are lost, s.
+/// Capacity of the rings, s: how long nobody may collect before records are lost.
 const UNCOLLECTED: f64 = 0.5;
 
-/// Keyframes in a second.
+/// Keyframes per second.
 const KEYFRAMES: f64 = 8.0;
 
-/// The state before a cycle.
+/// The controller's state before a cycle.
 struct Keyframe {
     cycle: u64,
     state: State,
 }
 
-/// The servo's end. Nothing here waits or allocates.
+/// The servo's end. It never waits or allocates.
 pub struct Recorder {
     records: Producer<CycleRecord>,
     keyframes: Producer<Keyframe>,
@@ -36,26 +37,26 @@ pub struct Recorder {
     apart: u64,
 }
 
-/// The collector's end: the last two seconds.
+/// The collector's end, which holds the last two seconds.
 pub struct BlackBox {
     arriving: Consumer<CycleRecord>,
     keyframes_arriving: Consumer<Keyframe>,
     records: VecDeque<CycleRecord>,
     keyframes: VecDeque<Keyframe>,
-    /// Cycles.
+    /// Length of the recording, cycles.
     length: u64,
     finger: i32,
     hand: ConfiguredHand,
     controllers: Vec<ControllerSource>,
-    /// Number of a controller that waits for its calibration to take over, and until then is named by no record.
+    /// The number of a controller that a calibration will compute with. It is kept although no record names it yet.
     awaited: Option<u32>,
-    /// A fault has come in that [`BlackBox::faulted`] has not told yet.
+    /// Whether a fault arrived that [`BlackBox::faulted`] has not reported yet.
     faulted: bool,
 }
 
 impl BlackBox {
-    /// An empty one for the finger with this index, 0 to 2, whose first controller is made from `configuration`; and
-    /// the servo's end of it.
+    /// Both ends of an empty black box for the finger with this index, 0 to 2. `configuration` describes its first
+    /// controller.
     pub fn new(configuration: &Configuration, index: usize) -> (Recorder, Self) {
         let (hand, finger) = (&configuration.hand, configuration.fingers[index].clone());
         let cycles = |seconds: f64| (seconds * hand.rate).ceil() as usize;
@@ -66,7 +67,7 @@ impl BlackBox {
         let black_box = Self {
             arriving,
             keyframes_arriving,
-            // With room for all that they ever hold: whoever collects allocates nothing.
+            // The capacity is never exceeded, so that the collector does not allocate.
             records: VecDeque::with_capacity(cycles(KEPT + UNCOLLECTED + 2.0 / KEYFRAMES)),
             keyframes: VecDeque::with_capacity(cycles(KEPT + UNCOLLECTED).div_ceil(apart) + 4),
             length: cycles(KEPT) as u64,
@@ -79,15 +80,15 @@ impl BlackBox {
         (recorder, black_box)
     }
 
-    /// The number of the next controller.
+    /// The number that the next announced controller gets.
     pub fn next_number(&self) -> u32 {
         self.controllers.last().map_or(0, |last| last.number + 1)
     }
 
-    /// Keeps what the next controller is made from, to be called before a record of the servo's that names it is
-    /// collected. `taken`: the number of the one that the servo had taken
-    /// ([`FingerReport::controller`](crate::finger::FingerReport::controller)) before the records were collected. What
-    /// is older, and named by no record, is forgotten: it was overtaken before it was used.
+    /// Stores what the next controller is made from. It must be called before a record that names this controller is
+    /// collected. `taken` is the number of the controller that the servo had taken
+    /// ([`FingerReport::controller`](crate::finger::FingerReport::controller)) before the records were collected. Older
+    /// controllers that no record names are removed, because a newer one replaced them before they were used.
     pub fn announce(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
         let controls = self.records.iter().filter_map(|record| record.control.as_ref());
         let named: BTreeSet<u32> = controls.flat_map(|control| [control.controller, control.previous]).collect();
@@ -98,20 +99,20 @@ impl BlackBox {
         self.controllers.push(ControllerSource { number, gravity, finger });
     }
 
-    /// The same for a controller that a calibration computes with once it takes over. Others may be announced before
-    /// that.
+    /// Like [`BlackBox::announce`], for a controller that a calibration will compute with when it takes over. Other
+    /// controllers may be announced before that.
     pub fn announce_calibration(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
         self.awaited = None;
         self.announce(finger, gravity, taken);
         self.awaited = self.controllers.last().map(|last| last.number);
     }
 
-    /// Takes in what the servo has left, and forgets what is too old.
+    /// Takes the servo's records and keyframes, and removes those that are too old.
     pub fn collect(&mut self) {
         while let Some(record) = self.arriving.pop() {
             self.faulted |= matches!(record.stage, Stage::Faulted(_));
-            // A gap: nobody collected for too long, or the finger was faulted. What was before cannot be replayed
-            // across it.
+            // There is a gap, because nobody collected for too long or the finger was faulted. A replay cannot cross
+            // it.
             if self.records.back().is_some_and(|last| last.cycle + 1 != record.cycle) {
                 self.records.clear();
             }
@@ -120,7 +121,7 @@ impl BlackBox {
             }
             self.records.push_back(record);
         }
-        // After the records: a keyframe is left before the record of its cycle.
+        // Keyframes are read after the records, because the servo writes a keyframe before the record of its cycle.
         while let Some(keyframe) = self.keyframes_arriving.pop() {
             self.keyframes.push_back(keyframe);
         }
@@ -130,7 +131,7 @@ impl BlackBox {
     fn forget(&mut self) {
         let (Some(first), Some(newest)) = (self.records.front(), self.records.back()) else { return };
         let (first, newest) = (first.cycle, newest.cycle);
-        // One that is old enough stays.
+        // The first keyframe is kept as long as the next one is less than two seconds old.
         while self.keyframes.get(1).is_some_and(|next| next.cycle + self.length <= newest + 1)
             || self.keyframes.front().is_some_and(|oldest| oldest.cycle < first)
         {
@@ -147,21 +148,21 @@ impl BlackBox {
         }
     }
 
-    /// Whether a fault has come in since the last such call.
+    /// Whether a fault has arrived since the last call.
     pub fn faulted(&mut self) -> bool {
         std::mem::take(&mut self.faulted)
     }
 
-    /// The record of a cycle, or the newest; none where it is not kept.
+    /// The record of a cycle, or the newest one; none if it is not kept.
     pub fn record(&self, cycle: Option<u64>) -> Option<KeptRecord> {
         let (oldest, newest) = (self.records.front()?.cycle, self.records.back()?.cycle);
-        // They are without a gap.
+        // The kept records have no gaps.
         let index = cycle.unwrap_or(newest).checked_sub(oldest)?;
         let record = *self.records.get(usize::try_from(index).ok()?)?;
         Some(KeptRecord { record, oldest, newest })
     }
 
-    /// A copy of what is kept; none before the first cycle.
+    /// A copy of the recording; none before the first keyframe.
     pub fn recording(&self) -> Option<Recording> {
         let state = self.keyframes.front()?.state;
         let origin =
@@ -171,15 +172,15 @@ impl BlackBox {
 }
 
 impl Recorder {
-    /// Leaves the state before a cycle, if its turn has come or the records `begin` with it.
+    /// Writes a keyframe if one is due, or if the records begin with this cycle.
     pub fn keyframe(&mut self, cycle: u64, state: &State, begin: bool) {
         if begin || cycle.is_multiple_of(self.apart) {
-            // Where nobody collects it is lost, like the records.
+            // If nobody collects, the keyframe is lost, like the records.
             let _ = self.keyframes.push(Keyframe { cycle, state: *state });
         }
     }
 
-    /// What its end of the rings touches.
+    /// The memory of the servo's end.
     pub fn memory(&self) -> LockedMemory {
         let mut memory = LockedMemory::default();
         self.records.add_to(&mut memory);
@@ -187,7 +188,7 @@ impl Recorder {
         memory
     }
 
-    /// Leaves a record.
+    /// Writes a record.
     pub fn record(&mut self, record: CycleRecord) {
         let _ = self.records.push(record);
     }

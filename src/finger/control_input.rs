@@ -1,26 +1,26 @@
-//! What decides a finger's command in one cycle, beside its controller and that one's state. The servo and a replay
-//! both go through [`ControlInput::run`].
+//! Everything that decides a finger's command in one cycle, besides the controller and its state. Both the servo and a
+//! replay compute with [`ControlInput::run`].
 
 use crate::control::{Activity, Controller, Feedback, MotorCommand, Report, State};
 use crate::finger::Fading;
 use serde::{Deserialize, Serialize};
 
-/// What a controller is told in a cycle, besides the reply.
+/// The input of a controller in one cycle, besides the reply.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct ControlInput {
-    /// The controller begins anew from this first: it was just adopted, or the finger was not seen for too long.
+    /// If present, the controller first restarts from this feedback: it was replaced, or too many replies were lost.
     pub anew_from: Option<Feedback>,
-    /// What the finger is doing, with its set point.
+    /// The activity of the finger, with its set point.
     pub activity: Activity,
-    /// Periods that will be skipped after this one, because the servo is late.
+    /// Periods that will be skipped after this cycle, because the servo is late.
     pub skipped: u64,
-    /// So many replies were lost in a row that the motors are led to rest.
+    /// Present if so many replies in a row were lost that the motor torques are faded to their rest value.
     pub fading: Option<Fading>,
 }
 
 impl ControlInput {
-    /// The command, and what the controller reports. `previous`: the controller before this one, where they change in
-    /// this cycle. `feedback`: none where the reply was lost.
+    /// Returns the command and the controller's report. `previous` is the controller that this one replaces in this
+    /// cycle. `feedback` is none if the reply was lost.
     pub fn run(
         &self,
         controller: &Controller,
@@ -35,9 +35,9 @@ impl ControlInput {
             None => controller.cycle(state, feedback, &self.activity),
             Some(previous) => controller.take_over(previous, state, feedback, &self.activity),
         };
-        // Periods that will be skipped are periods without a reply: what differentiates and predicts must know of them.
+        // A skipped period is a period without a reply. The differentiators and predictors must take it into account.
         for _ in 0..self.skipped {
-            // From numbers that are not finite no finite ones follow, and limits made of them are none.
+            // Numbers that are not finite yield no finite ones, and cannot serve as limits.
             if !command.is_finite() {
                 break;
             }

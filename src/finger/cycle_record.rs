@@ -1,4 +1,4 @@
-//! What a black box keeps of one cycle.
+//! The black box record of one cycle.
 
 use crate::control::{Feedback, MotorCommand, Report};
 use crate::finger::{ControlInput, Stage};
@@ -7,64 +7,64 @@ use crate::realtime::CycleTiming;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// One cycle of one finger. `S` is its [`Stage`], in a file the words for it.
+/// One cycle of one finger. `S` is its [`Stage`], or in a file the stage's name.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct CycleRecord<S = Stage> {
-    /// Counted from open, the first is 1.
+    /// Number of the cycle since open; the first is 1.
     pub cycle: u64,
-    /// When it began, ns of the monotonic clock.
+    /// Beginning of the cycle, ns of the monotonic clock.
     pub began: u64,
-    /// Where the finger was between open and close when it ended.
+    /// Stage of the finger at the end of the cycle.
     pub stage: S,
-    /// Where its time went, ns.
+    /// Durations of the cycle's stages, ns.
     pub timing: CycleTiming,
-    /// What the reply measured; none: it was lost.
+    /// Measurements of the reply; none if it was lost.
     pub feedback: Option<Feedback>,
     /// Status bits of the newest reply.
     pub status: u16,
-    /// What the controller did; none where the finger faulted before it could.
+    /// What the controller computed; none if the finger faulted before.
     pub control: Option<ControlRecord>,
 }
 
-/// What the controller was given, and what it made of it.
+/// The input and the output of the controller.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct ControlRecord {
     /// Number of the controller.
     pub controller: u32,
-    /// Number of the controller from which it took over in this cycle; else its own.
+    /// Number of the controller that this one replaced in this cycle; otherwise its own number.
     pub previous: u32,
-    /// What it was told.
+    /// Input of the controller.
     pub input: ControlInput,
-    /// What the motors were told in the next cycle.
+    /// The command that the motors get in the next cycle.
     pub command: MotorCommand,
-    /// What it found and decided.
+    /// The controller's report.
     pub report: Report,
 }
 
-/// One of the records that are kept.
+/// A record of a black box, and the range of cycles that the black box holds.
 #[derive(Clone, Copy, Debug)]
 pub struct KeptRecord {
-    /// It.
+    /// The record.
     pub record: CycleRecord,
-    /// The first cycle that is kept.
+    /// Number of the first cycle in the black box.
     pub oldest: u64,
-    /// The last one.
+    /// Number of the last cycle in the black box.
     pub newest: u64,
 }
 
-/// What a controller was made from.
+/// What a controller is made from.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct ControllerSource {
-    /// Counted from open, the first is 0.
+    /// Number of the controller since open; the first is 0.
     pub number: u32,
-    /// In the finger's frame, m/s^2.
+    /// Gravity in the finger's frame, m/s^2.
     pub gravity: Vector3<f64>,
-    /// Everything else.
+    /// The finger's configuration.
     pub finger: ConfiguredFinger,
 }
 
 impl CycleRecord {
-    /// The stage in words.
+    /// The record with the name of its stage.
     pub(super) fn in_words(&self) -> CycleRecord<String> {
         let Self { cycle, began, stage, timing, feedback, status, control } = *self;
         CycleRecord { cycle, began, stage: stage.to_string(), timing, feedback, status, control }

@@ -1,5 +1,5 @@
-//! A servo lends its link to whoever mends it: opening ports and shaking hands take long, and are not for a servo.
-//! Whole values in rings of one place; neither side waits.
+//! The handover of a link between a servo and the thread that repairs its port. Opening a port and shaking hands take
+//! too long for a servo. Each direction is a ring with one place, and neither side waits.
 
 use crate::board::Link;
 use crate::board::protocol::Configured;
@@ -7,40 +7,40 @@ use crate::model::configuration::FINGERS;
 use crate::realtime::{Consumer, Producer, ring};
 
 /// A link that no finger uses any more.
-pub struct Lent<T> {
-    /// It.
+pub struct ReleasedLink<T> {
+    /// The link.
     pub link: Link<T>,
-    /// Its port has failed: it is of no use but to be closed.
+    /// Whether its port has failed, so that the link can only be closed.
     pub failed: bool,
 }
 
-/// A link whose boards have shaken hands anew.
-pub struct Mended<T> {
-    /// It.
+/// A link whose boards have completed a new handshake.
+pub struct RepairedLink<T> {
+    /// The link.
     pub link: Link<T>,
-    /// What the boards of its fingers, in their order, have confirmed.
+    /// What the board of each finger of the link has confirmed, in their order.
     pub configured: [Option<Configured>; FINGERS],
-    /// Emergency stops that had been called for when this was asked for.
+    /// Number of emergency stops ([`stop_calls`](crate::finger::stop_calls)) when the repair was requested.
     pub stop_calls: u32,
 }
 
 /// The servo's end.
-pub struct Lender<T> {
-    pub(super) lend: Producer<Lent<T>>,
-    pub(super) mended: Consumer<Mended<T>>,
+pub struct LinkServoEnd<T> {
+    pub(super) released: Producer<ReleasedLink<T>>,
+    pub(super) repaired: Consumer<RepairedLink<T>>,
 }
 
-/// The mender's end.
-pub struct Borrower<T> {
-    /// From the servo.
-    pub lent: Consumer<Lent<T>>,
-    /// To the servo.
-    pub mended: Producer<Mended<T>>,
+/// The repairing thread's end.
+pub struct LinkRepairEnd<T> {
+    /// Links from the servo.
+    pub released: Consumer<ReleasedLink<T>>,
+    /// Links to the servo.
+    pub repaired: Producer<RepairedLink<T>>,
 }
 
-/// Both ends.
-pub fn link_handover<T>() -> (Lender<T>, Borrower<T>) {
-    let (lend, lent) = ring(1);
-    let (to_servo, from_mender) = ring(1);
-    (Lender { lend, mended: from_mender }, Borrower { lent, mended: to_servo })
+/// Returns both ends.
+pub fn link_handover<T>() -> (LinkServoEnd<T>, LinkRepairEnd<T>) {
+    let (released, released_out) = ring(1);
+    let (repaired, repaired_out) = ring(1);
+    (LinkServoEnd { released, repaired: repaired_out }, LinkRepairEnd { released: released_out, repaired })
 }

@@ -1,46 +1,47 @@
-//! Lost replies in a row. At first the last command is held, or what follows from it is predicted; then the motors are
-//! led to what they do at rest; at last the finger faults, while its board's watchdog is not yet over.
+//! The reaction to lost replies in a row. First the last command is held, or continued by prediction. Then the motor
+//! torques are faded to their rest values. Finally the finger faults, before the time of its board's watchdog is over.
 
 use crate::model::configuration::{ConfiguredHand, EndState};
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};
 
-/// So long, ms, the last command is held.
+/// How long the last command is held, ms.
 const HELD_MS: f64 = 3.0;
 
-/// After so long, ms, the motors are at rest: a torque that nobody watches winds a tendon up, or off its motor, within
-/// some ms, and the watchdog does not see it, as commands go on.
+/// After this time, ms, the motor torques are at rest. An unmonitored torque winds a tendon up, or off its motor,
+/// within some milliseconds. The watchdog does not prevent that, because commands are still sent.
 const BLIND_MS: f64 = 10.0;
 
-/// At slow rates so many lost replies in a row are let pass all the same.
+/// Lost replies in a row before the motor torques are at rest, at least. It matters at slow rates.
 const LEAST_BLIND: u32 = 3;
 
-/// At slow rates one lost reply is no fault all the same.
+/// Lost replies in a row before the finger faults, at least: at slow rates too, one lost reply is not a fault.
 const LEAST_LOST: u32 = 2;
 
-/// A built-in simulated board is silent when the machine is too busy to run it, or to carry its bytes: no reason to
-/// stop the hand.
+/// Time-out of a built-in simulated board, ms. Such a board is silent when the machine is too busy to run it or to
+/// carry its bytes, which is no reason to stop the hand.
 const SIMULATION_PATIENCE_MS: f64 = 5000.0;
 
-/// So long, ms, such a board has to answer before its command is sent again: either may have been thrown away.
+/// Time after which an unanswered command to such a board is sent again, ms. The command or the reply may have been
+/// discarded.
 const REPEAT_MS: f64 = 100.0;
 
-/// Motor torques on their way from the last command to rest.
+/// Motor torques that fade from the last command to their rest values.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Fading {
-    /// The part of the way that is left, 0 to 1.
+    /// Remaining part of the fade, 1 to 0.
     pub left: f64,
-    /// What every motor keeps at rest, N cm at most: 0 with the end state *release*.
+    /// Largest torque that a motor keeps at rest, N cm: 0 with the end state *release*.
     pub rest: f64,
 }
 
 impl Fading {
-    /// Whether a finger of this hand can fade like this.
+    /// Whether a finger of this hand can have this fade.
     pub(super) fn possible(&self, hand: &ConfiguredHand) -> bool {
         (0.0..=1.0).contains(&self.left) && (0.0..=hand.hold_torque_limit).contains(&self.rest)
     }
 
-    /// N cm.
+    /// The faded torques, N cm.
     pub fn torques(&self, commanded: &Vector4<f64>) -> Vector4<f64> {
         commanded.map(|torque| {
             let rest = torque.clamp(-self.rest, self.rest);
@@ -49,9 +50,9 @@ impl Fading {
     }
 }
 
-/// Counts them. In attempts, not in time: a machine that pauses everything has lost no reply.
+/// Counts lost replies in a row. It counts attempts and not time: when the whole machine pauses, no reply is lost.
 pub(super) struct LinkWatch {
-    /// The finger has a built-in board.
+    /// Whether the finger has a built-in simulated board.
     simulated: bool,
     in_a_row: u32,
     repeat: u32,
@@ -62,11 +63,11 @@ pub(super) struct LinkWatch {
 }
 
 impl LinkWatch {
-    /// `simulated`: the finger has a built-in board.
+    /// `simulated`: whether the finger has a built-in simulated board.
     pub fn new(hand: &ConfiguredHand, simulated: bool) -> Self {
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
-        // The board is told to stop one period after the last lost reply: within the watchdog's time after the last
-        // good one.
+        // The board gets the Stop one period after the last lost reply. That must be within the watchdog's time after
+        // the last good reply.
         let within_watchdog = (f64::from(hand.watchdog_ms) * 1e-3 * hand.rate).floor() as u32;
         Self {
             simulated,
@@ -85,32 +86,32 @@ impl LinkWatch {
         }
     }
 
-    /// Whether the finger and its controller go on together, as built-in ones do: the next command leaves when the last
-    /// one was answered, however late, and a cycle without a reply is none for the controller. The board stands still
-    /// meanwhile. A controller that counted time which did not pass at the finger, or physics that went on without
-    /// their controller, would throw the finger about on a busy machine.
+    /// Whether the finger and its controller run in step, as built-in simulated fingers do. The next command is sent
+    /// when the last one was answered, however late. A cycle without a reply is none for the controller, and the board
+    /// does not move meanwhile. Otherwise, on a busy machine, the controller would count time that did not pass at the
+    /// finger, or the physics would run without its controller, and the finger would move wildly.
     pub fn in_step(&self) -> bool {
         self.simulated
     }
 
-    /// Whether it is time to send an unanswered command again.
+    /// Whether to send an unanswered command again.
     pub fn repeats(&self) -> bool {
         self.in_a_row.is_multiple_of(self.repeat)
     }
 
-    /// A reply came: whether the finger was not seen for so long that its controller begins anew, with what the tendons
-    /// pull now.
+    /// Notes a reply. Returns whether so many replies were lost that the controller must restart from the measured
+    /// tensions.
     pub fn answered(&mut self) -> bool {
         std::mem::take(&mut self.in_a_row) >= self.blind && !self.in_step()
     }
 
-    /// None came: whether it is a fault, and after how many.
+    /// Notes a lost reply. Returns the number of lost replies in a row if it is a fault.
     pub fn missed(&mut self) -> Option<u32> {
         self.in_a_row += 1;
         (self.in_a_row >= self.lost).then_some(self.in_a_row)
     }
 
-    /// How the next command fades; none while it is held.
+    /// The fade of the next command; none while the command is held.
     pub fn fading(&self) -> Option<Fading> {
         if self.in_a_row <= self.held || self.in_step() {
             return None;
@@ -119,7 +120,7 @@ impl LinkWatch {
         Some(Fading { left, rest: self.rest })
     }
 
-    /// More replies in a row than can be missed.
+    /// Lost replies in a row at which the finger faults.
     pub fn most(&self) -> u32 {
         self.lost
     }
@@ -130,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn held_then_faded_then_faulted_within_the_watchdogs_time() {
+    fn torques_are_held_then_faded_and_the_finger_faults_within_the_watchdogs_time() {
         for (rate, last_held, first_at_rest, faulted) in [(1000.0, 3, 10, 17), (2000.0, 6, 20, 35), (500.0, 2, 5, 8)] {
             let mut watch = LinkWatch::new(&ConfiguredHand { rate, ..Default::default() }, false);
             for lost in 1..=faulted {
@@ -145,12 +146,12 @@ mod tests {
                     }
                 }
             }
-            // The Stop leaves one period later.
+            // The Stop is sent one period later.
             assert!(f64::from(faulted + 1) / rate <= 0.018);
-            assert!(watch.answered(), "begins anew");
+            assert!(watch.answered(), "the controller restarts");
             assert!(watch.fading().is_none() && !watch.answered());
         }
-        // A watchdog of two periods, the least, lets one lost reply pass all the same.
+        // With the shortest watchdog, two periods, one lost reply is still not a fault.
         let mut slow = LinkWatch::new(&ConfiguredHand { rate: 500.0, watchdog_ms: 4, ..Default::default() }, false);
         assert_eq!((slow.missed(), slow.missed()), (None, Some(2)));
     }

@@ -1,28 +1,28 @@
-//! What a servo could not do in time, counted.
+//! Counts of the servo's timing and communication errors.
 
-/// How many cycles a finger had, and what went wrong in them.
+/// Number of cycles of a finger, and of their errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Losses {
-    /// Cycles.
+    /// Number of cycles.
     pub cycles: u64,
-    /// Cycles that were not over when the next one should have begun.
+    /// Cycles that ended after the next one should have begun.
     pub overruns: u64,
-    /// Periods skipped because of that.
+    /// Periods skipped because of overruns.
     pub skipped_periods: u64,
     /// Cycles without a valid reply in time.
     pub lost_replies: u64,
-    /// Replies that came when their cycle was over.
+    /// Replies that arrived after the end of their cycle.
     pub late_replies: u64,
-    /// Replies that came once more.
+    /// Replies that arrived twice.
     pub duplicate_replies: u64,
-    /// Pieces of bytes on the finger's port that were no frame.
+    /// Byte sequences on the finger's port that were no valid frame.
     pub damaged_frames: u64,
-    /// Whole frames on the finger's port that nobody waited for.
+    /// Valid frames on the finger's port that nobody waited for.
     pub foreign_frames: u64,
 }
 
 impl Losses {
-    /// Since `earlier`.
+    /// The counts since `earlier`.
     pub fn since(&self, earlier: &Self) -> Self {
         Self {
             cycles: self.cycles - earlier.cycles,

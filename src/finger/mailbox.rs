@@ -1,8 +1,9 @@
-//! Between planners and one finger's servo: set points down, reports up, neither side waiting for the other.
+//! The exchange between planners and one finger's servo. Set points go to the servo, reports to the planners, and
+//! neither side waits for the other.
 //!
-//! Both ways go through a triple buffer: whole values, wait-free. A lock would let a planner stop a servo (no priority
-//! inheritance), and a channel is not lock-free when a real-time thread shares a core with a preempted sender. The
-//! planners' own side is locked among themselves only.
+//! Both directions use wait-free triple buffers of whole values. A lock without priority inheritance would let a
+//! planner stop a servo. A channel is not lock-free when a real-time thread shares a core with a preempted sender. A
+//! lock exists only among the planners.
 
 use crate::control::SetPoint;
 use crate::finger::{Adjustable, Fault, FingerReport, Order, Stage};
@@ -25,17 +26,17 @@ struct PlannersEnd {
     reports: Output<FingerReport>,
 }
 
-/// A set point for one stretch of a finger's life as a spring. Servo and planners tell stretches by their number,
-/// because planners change parts of a set point: what they start from must be what the servo holds, and when that
-/// changes is the servo's to say.
+/// A set point, valid for one spring phase of a finger: from becoming a spring to a fault or a calibration. Planners
+/// change parts of a set point, so they must start from the one that the servo holds, and the servo replaces it at the
+/// beginning of a spring phase. Both sides identify the phases by number.
 #[derive(Clone, Copy)]
 struct SentSetPoint {
-    /// [`FingerReport::springs`].
+    /// Number of the spring phase, [`FingerReport::springs`].
     spring: u32,
     set_point: SetPoint,
 }
 
-/// The servo's end. Nothing here waits or allocates.
+/// The servo's end. It never waits or allocates.
 pub(super) struct ServoEnd {
     set_points: Output<SentSetPoint>,
     adjustments: Output<Adjustable>,
@@ -44,7 +45,8 @@ pub(super) struct ServoEnd {
     closing: SharedPages<AtomicBool>,
 }
 
-/// A mailbox whose both ends hold `report`, with its set point, and `adjustable`; and the memory that they share.
+/// Creates a mailbox with `report`, its set point and `adjustable` at both ends. Also returns the memory that both ends
+/// share.
 pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd, LockedMemory) {
     let mut memory = LockedMemory::default();
     let sent = SentSetPoint { spring: report.springs, set_point: report.set_point };
@@ -72,7 +74,7 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
     (Mailbox { planners: Mutex::new(planners), closing }, servo, memory)
 }
 
-/// A triple buffer, and where it is.
+/// A triple buffer, whose pages are added to `memory`.
 fn shared<T: Clone + Send>(initial: &T, memory: &mut LockedMemory) -> (Input<T>, Output<T>) {
     let ends = triple_buffer(initial);
     ends.0.add_to(memory);
@@ -85,24 +87,24 @@ impl Mailbox {
         self.look(|report| *report)
     }
 
-    /// Looks at the newest report where it is: it is large.
+    /// Calls `look` with the newest report in place, because a report is large.
     pub fn look<R>(&self, look: impl FnOnce(&FingerReport) -> R) -> R {
         look(self.planners.lock().reports.read())
     }
 
-    /// Whether the servo has nothing more to do for the finger; none where a planner's call is just using the mailbox,
-    /// perhaps one that the calling thread has left for a signal handler, so that waiting for it would be for ever.
+    /// Whether the servo has finished with the finger. Returns none while a planner's call uses the mailbox. That call
+    /// may be one that a signal handler of the calling thread has interrupted, and waiting for it would be a deadlock.
     pub fn ended(&self) -> Option<bool> {
         let mut planners = self.planners.try_lock()?;
         Some(matches!(planners.reports.read().stage, Stage::Closed | Stage::Faulted(_)))
     }
 
-    /// Changes the set point that was sent last and sends it whole, unless the finger is faulted. Where none was sent
-    /// since it became a spring, that is the one it holds. It counts for this spring only: a finger that faults
-    /// meanwhile forgets it.
+    /// Changes the last set point and sends it as a whole, unless the finger is faulted. If none was sent since the
+    /// finger became a spring, the change starts from the set point that the servo holds. The new set point is valid
+    /// for this spring phase only: if the finger faults meanwhile, it is discarded.
     ///
     /// # Errors
-    /// The fault; nothing is sent then.
+    /// The fault, if the finger is faulted. Then nothing is sent.
     pub fn send(&self, change: impl FnOnce(&mut SetPoint)) -> Result<(), Fault> {
         let planners = &mut *self.planners.lock();
         planners.begin()?;
@@ -111,11 +113,11 @@ impl Mailbox {
         Ok(())
     }
 
-    /// The same with a change that may refuse the set point that it starts from. It is made in a copy, which takes
-    /// longer.
+    /// Like [`Mailbox::send`], for a change that may refuse the set point that it starts from. The change is made in a
+    /// copy, which takes longer.
     ///
     /// # Errors
-    /// The fault, or inside it what the change refuses; nothing is sent then.
+    /// The fault, if the finger is faulted; inside the result, the change's refusal. Then nothing is sent.
     pub fn try_send<E>(&self, change: impl FnOnce(&mut SetPoint) -> Result<(), E>) -> Result<Result<(), E>, Fault> {
         let planners = &mut *self.planners.lock();
         planners.begin()?;
@@ -129,17 +131,18 @@ impl Mailbox {
         Ok(Ok(()))
     }
 
-    /// The set point that was sent last; where none was since the finger became a spring, the one it holds.
+    /// The last set point that was sent. If none was sent since the finger became a spring, the one that the servo
+    /// holds.
     pub fn sent(&self) -> SetPoint {
         let planners = &mut *self.planners.lock();
         planners.sent.begin_with(planners.reports.read());
         planners.sent.set_point
     }
 
-    /// Gives the servo something else to compute with, unless the finger is faulted.
+    /// Replaces the data that the servo computes with, unless the finger is faulted.
     ///
     /// # Errors
-    /// The fault; nothing is changed then.
+    /// The fault, if the finger is faulted. Then nothing is changed.
     pub fn adjust(&self, adjustable: Adjustable) -> Result<(), Fault> {
         let mut planners = self.planners.lock();
         if let Stage::Faulted(fault) = planners.reports.read().stage {
@@ -149,31 +152,33 @@ impl Mailbox {
         Ok(())
     }
 
-    /// Gives an order and its number, which is that of [`FingerReport::orders`] as soon as it is taken; none while
-    /// another order is being carried out.
+    /// Gives an order. Returns its number, which [`FingerReport::orders`] has when the servo takes the order. Returns
+    /// none while another order is being carried out.
     ///
     /// # Errors
-    /// The fault; nothing is ordered then.
+    /// The fault, if the finger is faulted. Then no order is given.
     pub fn order(&self, order: Order) -> Result<Option<u32>, Fault> {
         self.planners.lock().order(order, None)
     }
 
-    /// Gives the servo something else to compute with, which it begins anew with. Otherwise like [`Mailbox::order`].
+    /// Replaces the data that the servo computes with, and makes the servo restart with it. Otherwise like
+    /// [`Mailbox::order`].
     ///
     /// # Errors
-    /// The fault; nothing is changed then.
+    /// The fault, if the finger is faulted. Then nothing is changed.
     pub fn restart(&self, adjustable: Adjustable, limp: bool) -> Result<Option<u32>, Fault> {
         self.planners.lock().order(Order::Restart { limp }, Some(adjustable))
     }
 
-    /// Asks the servo to bring the finger to its end state.
+    /// Requests that the servo bring the finger to its end state.
     pub fn close(&self) {
         self.closing.store(true, Ordering::Release);
     }
 }
 
 impl SentSetPoint {
-    /// What the next change starts from: what was sent last; in a new stretch what the servo holds.
+    /// Prepares the next change: if the finger has become a spring since the last one, it starts from what the servo
+    /// holds.
     fn begin_with(&mut self, report: &FingerReport) {
         if report.springs != self.spring {
             *self = Self { spring: report.springs, set_point: report.set_point };
@@ -182,7 +187,7 @@ impl SentSetPoint {
 }
 
 impl PlannersEnd {
-    /// Makes what was sent last what the next change starts from.
+    /// Prepares the next change of the set point.
     fn begin(&mut self) -> Result<(), Fault> {
         let report = self.reports.read();
         if let Stage::Faulted(fault) = report.stage {
@@ -192,7 +197,7 @@ impl PlannersEnd {
         Ok(())
     }
 
-    /// What is handed over goes first: a servo that has the order has that too.
+    /// The data is written before the order, so that a servo that has the order also has the data.
     fn order(&mut self, order: Order, adjustable: Option<Adjustable>) -> Result<Option<u32>, Fault> {
         let report = *self.reports.read();
         match report.stage {
@@ -210,13 +215,13 @@ impl PlannersEnd {
 }
 
 impl ServoEnd {
-    /// The set point, if a planner has sent one since the last call, and for this spring.
+    /// The set point, if a planner has sent one since the last call for this spring phase.
     pub fn new_set_point(&mut self, spring: u32) -> Option<SetPoint> {
         let sent = self.set_points.update().then(|| *self.set_points.output_buffer());
         sent.filter(|sent| sent.spring == spring).map(|sent| sent.set_point)
     }
 
-    /// What the servo shall compute with, if a planner has changed it since the last call.
+    /// The data to compute with, if a planner has replaced it since the last call.
     pub fn new_adjustable(&mut self) -> Option<&Adjustable> {
         self.adjustments.update().then(|| self.adjustments.output_buffer())
     }
@@ -226,7 +231,7 @@ impl ServoEnd {
         self.orders.update().then(|| self.orders.output_buffer().clone())
     }
 
-    /// Whether the finger shall be brought to its end state.
+    /// Whether to bring the finger to its end state.
     pub fn closing(&self) -> bool {
         self.closing.load(Ordering::Acquire)
     }

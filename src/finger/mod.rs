@@ -1,4 +1,4 @@
-//! One finger's servo thread and its mailboxes: the shell around the pure core.
+//! One finger's servo: its thread and mailbox, which connect the pure control computation to the board and the planner.
 
 mod adjustable;
 mod black_box;
@@ -24,7 +24,7 @@ pub use black_box::{BlackBox, Recorder};
 pub use control_input::ControlInput;
 pub use cycle_record::{ControlRecord, ControllerSource, CycleRecord, KeptRecord};
 pub use faults::{Description, Fault, FaultKind, PartKind, Quantity, Severity, Warnings};
-pub use link_handover::{Borrower, Lender, Lent, Mended, link_handover};
+pub use link_handover::{LinkRepairEnd, LinkServoEnd, ReleasedLink, RepairedLink, link_handover};
 pub use link_watch::Fading;
 pub use losses::Losses;
 pub use mailbox::Mailbox;

@@ -1,29 +1,29 @@
-//! What planners ask of a finger besides set points.
+//! Orders of planners to a finger, besides set points.
 
 use crate::calibration::Calibration;
 use crate::finger::Adjustable;
 
-/// What a finger is asked for besides set points. Plain values: the servo neither allocates nor frees.
+/// An order to a finger. Orders are plain values, so that the servo neither allocates nor frees.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug)]
 pub enum Order {
-    /// Nothing, as in the beginning.
+    /// No order yet.
     Nothing,
-    /// To be calibrated; the finger is limp afterwards, whatever comes of it.
+    /// Calibrate. The finger is limp afterwards, whether the calibration succeeds or not.
     Calibrate(CalibrationRun),
-    /// To begin anew with what it was handed last to compute with: what its state is measured in may have changed.
+    /// Restart with the newest [`Adjustable`], because the units of the controller's state may have changed.
     Restart {
-        /// With the motors off; else slack is taken up, as after open.
+        /// Whether the motors are off afterwards. Otherwise slack is taken up, as after open.
         limp: bool,
     },
 }
 
-/// A calibration with what the servo computes with until its verdict. What it was handed besides is kept for
-/// afterwards.
+/// A calibration, and the data that the servo computes with until its verdict. Newer data from planners takes effect
+/// after that.
 #[derive(Clone, Debug)]
 pub struct CalibrationRun {
     /// The routine.
     pub calibration: Calibration,
-    /// Made for [`Calibration::controlled`].
+    /// The data to compute with, made for [`Calibration::controlled`].
     pub adjustable: Adjustable,
 }

@@ -1,4 +1,5 @@
-//! A black box as a file: lines of JSON, the first of which says what all others need. docs/black-box.md describes it.
+//! A black box as a file: lines of JSON. The first line holds what all others need. docs/black-box.md describes the
+//! format.
 
 mod reading;
 
@@ -15,28 +16,28 @@ use thiserror::Error;
 /// Version of the format.
 const VERSION: u32 = 1;
 
-/// A stretch of a finger's life, without a gap, and everything that is needed to compute it again.
+/// Consecutive cycles of a finger, and everything that is needed to compute them again.
 #[derive(Clone, Debug)]
 pub struct Recording {
-    /// What the cycles start from.
+    /// The data that all cycles start from.
     pub origin: Origin,
     /// Version of the library that recorded it.
     pub library: String,
-    /// One after the other.
+    /// The cycles, without a gap.
     pub cycles: Vec<CycleRecord<String>>,
 }
 
-/// What the cycles of a recording start from.
+/// The data that the cycles of a recording start from.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Origin {
-    /// 1 to 3.
+    /// Number of the finger, 1 to 3.
     pub finger: i32,
-    /// With the rate.
+    /// The hand's configuration, with the rate.
     pub hand: ConfiguredHand,
     /// Every controller that the cycles name.
     #[serde(deserialize_with = "reading::controllers")]
     pub controllers: Vec<ControllerSource>,
-    /// Of the first cycle's controller, before that cycle.
+    /// State of the first cycle's controller before that cycle.
     pub state: State,
 }
 
@@ -45,23 +46,23 @@ pub struct Origin {
 struct Header {
     sun2xp_black_box: u32,
     library: String,
-    /// Lines that follow.
+    /// Number of lines that follow.
     cycles: usize,
-    /// When it was written, s since 1970.
+    /// Time of writing, s since 1970.
     written: u64,
     origin: Origin,
 }
 
-/// Why a file is no recording that can be replayed.
+/// Why a file is not a recording that can be replayed.
 #[derive(Debug, Error)]
 pub enum RecordingError {
-    /// The system cannot read it, or it is not a regular file of a sensible size.
+    /// The file cannot be read, or it is not a regular file of an acceptable size.
     #[error("cannot read {0}: {1}")]
     Unreadable(String, io::Error),
-    /// It is something else.
+    /// The file is not a black box.
     #[error("{0} is not a black box of sun2xp: {1}")]
     Foreign(String, String),
-    /// Another version of the format.
+    /// The file has another version of the format.
     #[error(
         "{file} has version {found} of the format, this program reads {VERSION}: replay it with library {library}, \
          which wrote it"
@@ -69,21 +70,21 @@ pub enum RecordingError {
     Version {
         /// The file.
         file: String,
-        /// Its version.
+        /// Version of the file.
         found: u32,
-        /// What wrote it.
+        /// Version of the library that wrote the file.
         library: String,
     },
-    /// A line that does not fit.
+    /// A line cannot be parsed.
     #[error("{file}, line {line}: {reason}{}", written_by(library))]
     Line {
         /// The file.
         file: String,
-        /// Counted from 1.
+        /// Number of the line, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// What is wrong with the line.
         reason: String,
-        /// What wrote it.
+        /// Version of the library that wrote the file.
         library: String,
     },
     /// Cycles are missing.
@@ -91,9 +92,9 @@ pub enum RecordingError {
     Short {
         /// The file.
         file: String,
-        /// Cycles that are there.
+        /// Number of cycles in the file.
         found: usize,
-        /// Cycles that the first line tells of.
+        /// Number of cycles that the first line announces.
         expected: usize,
     },
     /// The file has more cycles than its first line announces, or than a black box can have.
@@ -101,12 +102,12 @@ pub enum RecordingError {
     Long {
         /// The file.
         file: String,
-        /// How many it may have.
+        /// Largest number of cycles that it may have.
         most: usize,
     },
 }
 
-/// Libraries of different versions remember different things.
+/// A hint for files of another library version, because versions differ in what they record.
 fn written_by(library: &str) -> String {
     match env!("CARGO_PKG_VERSION") {
         own if own == library => String::new(),
@@ -119,18 +120,18 @@ impl Recording {
         Self { origin, library: env!("CARGO_PKG_VERSION").into(), cycles }
     }
 
-    /// Writes it into a new file, or in the place of an old one, which stays as it was until the new one is whole.
+    /// Writes the recording to a file. An existing file stays unchanged until the new one is complete.
     ///
     /// # Errors
-    /// What the system says; a path that leads to something other than a regular file, such as a symbolic link.
+    /// The system's error. `path` leads to something other than a regular file, such as a symbolic link.
     pub fn save(&self, path: &Path) -> io::Result<()> {
         replace_file(path, |output| self.write(output))
     }
 
-    /// Writes it.
+    /// Writes the recording.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     pub fn write(&self, output: impl Write) -> io::Result<()> {
         let mut output = BufWriter::new(output);
         let header = Header {

@@ -1,4 +1,4 @@
-//! The pure controller over a recording: what it commanded once it must command again, to the last bit.
+//! Replay: runs the pure controller over a recording. It must compute the same commands, to the last bit.
 
 mod soundness;
 
@@ -9,32 +9,32 @@ use nalgebra::Vector4;
 use std::collections::HashMap;
 use thiserror::Error;
 
-/// What came of a replay.
+/// The result of a replay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replayed {
     /// Cycles in which a controller ran.
     pub cycles: usize,
-    /// Those that came out otherwise than they were recorded.
+    /// Cycles whose result differs from the recorded one.
     pub different: usize,
-    /// The first of them.
+    /// The first of these cycles.
     pub first: Option<Difference>,
 }
 
-/// A cycle that came out otherwise.
+/// A cycle whose result differs from the recorded one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// Its place in the recording, from 0.
+    /// Index of the cycle in the recording, from 0.
     pub index: usize,
-    /// As recorded.
+    /// The recorded cycle.
     pub recorded: ControlRecord,
-    /// As it came out now: command and report.
+    /// The replayed cycle: its command and report are recomputed.
     pub replayed: ControlRecord,
 }
 
-/// A recording that nothing can be computed from.
+/// Why a recording cannot be replayed.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NotReplayable {
-    /// The hand's configuration, or a number of what all cycles start from.
+    /// The hand's configuration, or a number in the data that all cycles start from, is invalid.
     #[error("line 1: {key} {reason}")]
     Origin {
         /// The key, with dots.
@@ -42,37 +42,37 @@ pub enum NotReplayable {
         /// What is wrong with it.
         reason: String,
     },
-    /// A configuration that makes no controller.
+    /// A configuration that no controller can be made from.
     #[error("line 1: controller {number}: {key} {reason}")]
     Unusable {
-        /// The controller.
+        /// Number of the controller.
         number: u32,
         /// The key.
         key: &'static str,
-        /// Why.
+        /// What is wrong with it.
         reason: String,
     },
-    /// A cycle names a controller that is not described.
+    /// A cycle names a controller that the recording does not describe.
     #[error("cycle {cycle} names controller {number}, which the recording does not describe")]
     UnknownController {
-        /// The cycle.
+        /// Number of the cycle.
         cycle: u64,
-        /// The controller.
+        /// Number of the controller.
         number: u32,
     },
-    /// A cycle that no servo has recorded.
+    /// A cycle that no servo can have recorded.
     #[error("cycle {cycle}, line {line}: {key} {reason}")]
     Cycle {
-        /// The cycle.
+        /// Number of the cycle.
         cycle: u64,
-        /// Its line in a file, from 1.
+        /// Its line in the file, from 1.
         line: usize,
         /// The key, with dots.
         key: String,
         /// What is wrong with it.
         reason: String,
     },
-    /// A controller that commands what is no number.
+    /// A controller computes a command that is not a finite number.
     #[error(
         "cycle {0}: the controller commands a torque that is not a finite number: a number of the recording was altered"
     )]
@@ -83,8 +83,8 @@ impl Recording {
     /// Runs the controller over every cycle.
     ///
     /// # Errors
-    /// A recording whose configuration OpenHand would refuse, with numbers that no servo has recorded, or whose
-    /// controllers are not all there. The first wrong number is named; nothing is computed from it.
+    /// The configuration is one that OpenHand would refuse, a number is one that no servo records, or a controller is
+    /// missing. The first wrong number is named, and nothing is computed from it.
     pub fn replay(&self) -> Result<Replayed, NotReplayable> {
         self.check()?;
         let mut controllers = Controllers { recording: self, made: HashMap::new() };
@@ -113,7 +113,7 @@ impl Recording {
     }
 }
 
-/// The controllers that are needed, made when the first cycle names them.
+/// The controllers of a recording, each made when the first cycle names it.
 struct Controllers<'a> {
     recording: &'a Recording,
     made: HashMap<u32, Controller>,

@@ -1,51 +1,51 @@
-//! What a servo reports of its finger.
+//! The servo's report of its finger.
 
 use crate::calibration::Verdict;
 use crate::control::{Report, SetPoint};
 use crate::finger::{Losses, Stage, Warnings};
 
-/// What a servo tells of its finger, each cycle.
+/// What a servo reports of its finger after every cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FingerReport {
-    /// Where the finger is between open and close.
+    /// Stage of the finger between open and close.
     pub stage: Stage,
     /// The set point in force.
     pub set_point: SetPoint,
-    /// How often it has become a spring that holds the pose it was found in: at open, after a fault, after a
-    /// calibration. What was sent before is gone.
+    /// How many times the finger has become a spring that holds the pose it was found in: at open, after a fault, after
+    /// a calibration. Set points that were sent before that are discarded.
     pub springs: u32,
-    /// What the last cycle found and decided.
+    /// The controller's report of the last cycle.
     pub cycle: Report,
-    /// Number of the controller that planners have handed over last and the servo has taken: it is computed with, or
-    /// will be after a calibration.
+    /// Number of the newest controller that the servo has taken from planners. The servo computes with it now, or will
+    /// do so after a calibration.
     pub controller: u32,
-    /// How many orders have been taken.
+    /// Number of orders that the servo has taken.
     pub orders: u32,
-    /// What became of the last calibration, if there was one.
+    /// Verdict of the last calibration, if there was one.
     pub calibration: Option<Verdict>,
-    /// Since open.
+    /// Counts since open.
     pub losses: Losses,
-    /// How often it has gone on after a fault.
+    /// Number of recoveries from a fault.
     pub recoveries: u32,
-    /// What the finger is warned of.
+    /// Warnings of the finger.
     pub warnings: Warnings,
-    /// When the first cycle began, ns of the monotonic clock.
+    /// Beginning of the first cycle, ns of the monotonic clock.
     pub first: u64,
-    /// When the last cycle began, ns of the monotonic clock.
+    /// Beginning of the last cycle, ns of the monotonic clock.
     pub last: u64,
-    /// When the next cycle shall begin, ns of the monotonic clock.
+    /// Scheduled beginning of the next cycle, ns of the monotonic clock.
     pub next: u64,
 }
 
 impl FingerReport {
-    /// Whole periods, of `period` ns, that have passed without a cycle and are not counted in
-    /// [`Losses::skipped_periods`] yet, because the servo counts at the end of its next cycle. `now`: ns of the
+    /// Whole periods of `period` ns that have passed without a cycle and are not yet counted in
+    /// [`Losses::skipped_periods`], because the servo counts at the end of its next cycle. `now` is in ns of the
     /// monotonic clock.
     pub fn missing_periods(&self, now: u64, period: u64) -> u64 {
         if self.losses.cycles == 0 || self.stage == Stage::Closed {
             return 0;
         }
-        // As many as the servo would skip if its next cycle ended now.
+        // As many periods as the servo would skip if its next cycle ended now.
         now.saturating_sub(self.next + period) / period
     }
 }

@@ -1,4 +1,4 @@
-//! One finger in its servo thread: from reply to command, and from open to close.
+//! One finger in its servo thread: from the reply to the next command, and from open to close.
 
 mod calibrating;
 mod calibration;
@@ -20,43 +20,43 @@ use crate::model::configuration::EndState;
 use crate::realtime::{self, CycleTiming, LockedMemory, Producer};
 use calibration::Calibrating;
 
-/// After a fault the board is told to stop so many times: more than once, because a line that has just failed may lose
-/// one.
+/// Number of Stop frames that the board gets after a fault. There are several, because a line that has just failed may
+/// lose one.
 const STOPS_AFTER_FAULT: u8 = 3;
 
-/// One finger: its controller, its place in the protocol, its mailbox.
+/// One finger: its controller, its part of the board protocol, and its mailbox.
 pub struct FingerServo {
     adjustable: Adjustable,
     state: State,
     activity: Activity,
     calibration: Option<Calibrating>,
-    /// Of the newest reply.
+    /// Status of the newest reply.
     status: Status,
     feedback: Feedback,
-    /// The state is to be made anew from the feedback.
-    anew: bool,
+    /// The controller must restart from the feedback.
+    restart: bool,
     command: MotorCommand,
     mailbox: ServoEnd,
     timing: CycleTiming,
     timings: Producer<CycleTiming>,
     black_box: Recorder,
-    /// What this cycle leaves in the black box; none of a finger that was faulted or closed before.
+    /// The black box record of this cycle; none if the finger was faulted or closed before.
     record: Option<CycleRecord>,
-    /// Whether the last cycle left something there.
+    /// Whether the last cycle was recorded.
     recording: bool,
     report: FingerReport,
     address: u8,
-    /// Knows the torque of one count of a command.
+    /// What the board reported about itself. It converts torques to counts.
     board: Identity,
     sequence: u8,
     toggle: bool,
     answered: bool,
-    /// Sequence number of the reply that was taken last.
+    /// Sequence number of the last reply that was accepted.
     last_answer: u8,
     link: LinkWatch,
     supervision: Supervision,
     alarm: StopSignal,
-    /// The board's clock at the last measurement, us modulo 65 536; none before the first.
+    /// The board's clock at the last measurement, us modulo 65 536; none before the first measurement.
     sampled_at: Option<u16>,
     /// Periods from that measurement to this cycle.
     sample_age: u64,
@@ -64,54 +64,55 @@ pub struct FingerServo {
     settled_cycles: u32,
     /// Cycles since the stage began.
     stage_cycles: u32,
-    /// When the finger began to take up slack, ns; none: in the next cycle.
+    /// When the finger began to take up slack, ns; none until the next cycle of the opening stage.
     opening_since: Option<u64>,
     stops_left: u8,
-    /// How the finger holds the pose that it finds at open.
+    /// How the finger holds the pose that it is in at open.
     initial: SetPoint,
     end_state: EndState,
-    /// What of the finger is on the heap.
+    /// The parts of the finger that are in memory of their own.
     memory: LockedMemory,
 }
 
-/// Times of the configuration, in cycles where nothing else is said.
+/// Limits from the configuration, in cycles unless the name has a unit.
 struct Limits {
     period_ms: f64,
-    /// How long the finger may take to become a spring, ms.
+    /// Longest time that the finger may take to become a spring, ms.
     opening_ms: f64,
     settled: u32,
     ramp: u32,
-    /// How long a warning stays.
+    /// How long a warning is kept.
     warning: u32,
 }
 
 impl FingerServo {
-    /// The same finger with its motors off until it is told to take up slack.
+    /// Makes the motors stay off until an order to take up slack.
     pub fn limp(mut self) -> Self {
         self.go_limp();
         self
     }
 
-    /// What of the finger its servo touches and is not in this value itself.
+    /// The memory that the servo accesses and that is not in this value itself.
     pub fn memory(&self) -> &LockedMemory {
         &self.memory
     }
 
-    /// The same finger, to be stopped by this alarm.
+    /// Sets the signal that stops this finger.
     pub fn with(mut self, alarm: StopSignal) -> Self {
         alarm.add_to(&mut self.memory);
         self.alarm = alarm;
         self
     }
 
-    /// Begins a period: stops where an emergency stop was called for, or another finger has faulted.
-    pub fn listen(&mut self) {
-        if let Some(kind) = self.alarm.heard() {
+    /// Begins a period: faults after an emergency stop call or after the fault of a finger that stops together with
+    /// this.
+    pub fn check_stop_signal(&mut self) {
+        if let Some(kind) = self.alarm.pending() {
             self.fault(Fault::new(kind));
         }
     }
 
-    /// Whether the finger has faulted, and its board been told.
+    /// Whether the finger has faulted and all of its Stop frames are sent.
     pub fn at_rest(&self) -> bool {
         matches!(self.report.stage, Stage::Faulted(_)) && self.stops_left == 0 && !self.mailbox.closing()
     }
@@ -121,7 +122,7 @@ impl FingerServo {
         self.address
     }
 
-    /// Whether the finger has nothing more to tell its board.
+    /// Whether nothing is left to be sent to the board.
     pub fn finished(&self) -> bool {
         match self.report.stage {
             Stage::Closed => true,
@@ -130,24 +131,24 @@ impl FingerServo {
         }
     }
 
-    /// Ends a cycle: computes the next command. `next`: when the next cycle shall begin, ns. `overrun`: the next cycle
-    /// should have begun already, and so many periods are skipped.
-    pub fn end(&mut self, began: u64, next: u64, overrun: Option<u64>, heard: &LinkCounters) {
+    /// Ends a cycle and computes the next command. `next` is the scheduled beginning of the next cycle, ns. `overrun`
+    /// is the number of skipped periods, if the next cycle should have begun already.
+    pub fn end(&mut self, began: u64, next: u64, overrun: Option<u64>, counters: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
         self.sample_age += 1 + skipped;
         let losses = &mut self.report.losses;
         losses.cycles += 1;
         losses.overruns += u64::from(overrun.is_some());
         losses.skipped_periods += skipped;
-        (losses.damaged_frames, losses.foreign_frames) = (heard.damaged, heard.foreign);
+        (losses.damaged_frames, losses.foreign_frames) = (counters.damaged, counters.foreign);
         (self.report.last, self.report.next) = (began, next);
         if losses.cycles == 1 {
             self.report.first = began;
         }
         if self.under_control()
-            // A machine that is busy is no noise on the line.
+            // In step with a simulated board, a missing reply means a busy machine and not noise on the line.
             && let Some(fault) =
-                self.supervision.note_period(self.answered || self.link.in_step(), skipped, heard.damaged)
+                self.supervision.note_period(self.answered || self.link.in_step(), skipped, counters.damaged)
         {
             self.fault(fault);
         }
@@ -181,20 +182,20 @@ impl FingerServo {
         self.timing.note(stage, from, to);
     }
 
-    /// Leaves the timing and the record of this cycle to whoever collects them, and then reports: who knows the report
-    /// of a cycle finds its record.
-    pub fn tell(&mut self) {
+    /// Publishes the timing, the record and the report of this cycle. The report comes after the record, so that
+    /// whoever has read the report of a cycle finds its record.
+    pub fn publish(&mut self) {
         let timing = std::mem::take(&mut self.timing);
         if let Some(record) = self.record.take() {
             self.black_box.record(CycleRecord { timing, ..record });
         }
         self.mailbox.publish(self.report);
-        // After the report: no more timings than cycles are ever counted. A full ring means that nobody collects: the
-        // cycle is worth more than its figure.
+        // The timings come after the report, so that no more timings than cycles are ever counted. The ring is full
+        // only if nobody collects. The timing is dropped then, because the cycle is more important.
         let _ = self.timings.push(timing);
     }
 
-    /// Stops the finger for a reason.
+    /// Stops the finger because of a fault.
     pub fn fault(&mut self, fault: Fault) {
         if self.under_control() {
             self.alarm.raise(fault.kind);
@@ -206,7 +207,7 @@ impl FingerServo {
         !matches!(self.report.stage, Stage::Closed | Stage::Faulted(_))
     }
 
-    /// The monitors of a finger that is a spring.
+    /// Runs the monitors of a finger that is a spring.
     fn watch(&mut self, adjusted: bool) {
         if adjusted {
             self.supervision.adjusted();
@@ -233,7 +234,7 @@ impl FingerServo {
     fn count_replies(&mut self) {
         if self.answered {
             if self.link.answered() {
-                self.anew = true;
+                self.restart = true;
                 self.supervision.begin();
             }
             return;

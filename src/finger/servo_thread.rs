@@ -1,46 +1,46 @@
-//! A servo thread: periods by absolute deadlines, one transaction a finger and period.
+//! A servo thread: periods with absolute deadlines, and one transaction per finger and period.
 
 use crate::board::{Allowance, Link, LinkCounters, LinkError, OutgoingCommand, Transport};
-use crate::finger::{Fault, FaultKind, FingerServo, Lender, Lent, Mended};
+use crate::finger::{Fault, FaultKind, FingerServo, LinkServoEnd, ReleasedLink, RepairedLink};
 use crate::model::configuration::FINGERS;
 use crate::realtime::{Clock, CycleStage, Follower, LockedMemory, Pages, Schedule};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The part of a period, from the thread's awakening, in which replies are awaited; the rest is for computing.
+/// The part of a period, from the wake-up of the thread, in which replies are awaited. The rest is for computing.
 pub const REPLY_WINDOW: f64 = 0.85;
 
-/// A port with the fingers behind it.
+/// A port and its fingers.
 pub struct ServedPort<T> {
-    /// None while it is lent.
+    /// None while the link is being repaired.
     link: Option<Link<T>>,
-    /// The port has failed.
+    /// Whether the port has failed.
     failed: bool,
-    lender: Option<Lender<T>>,
+    handover: Option<LinkServoEnd<T>>,
     fingers: Pages<[FingerServo]>,
-    /// What was heard on links before this one.
-    heard_before: LinkCounters,
+    /// Counters of earlier links.
+    earlier_counters: LinkCounters,
 }
 
 impl<T: Transport> ServedPort<T> {
-    /// `fingers` have shaken hands over `link`.
+    /// The handshake with `fingers` over `link` must be complete.
     pub fn new(link: Link<T>, fingers: Vec<FingerServo>) -> Self {
         Self {
             link: Some(link),
             failed: false,
-            lender: None,
+            handover: None,
             fingers: fingers.into(),
-            heard_before: LinkCounters::default(),
+            earlier_counters: LinkCounters::default(),
         }
     }
 
-    /// The same port, whose link is lent when all of its fingers have faulted, to be mended.
-    pub fn lent_through(mut self, lender: Lender<T>) -> Self {
-        self.lender = Some(lender);
+    /// Makes the servo release the link through `handover` for repair when all fingers of the port have faulted.
+    pub fn with_handover(mut self, handover: LinkServoEnd<T>) -> Self {
+        self.handover = Some(handover);
         self
     }
 }
 
-/// How long a board may take to confirm its end state, ns: two attempts. Without it the watchdog does the same.
+/// Time for a board to confirm its end state, ns: two attempts. Without a Stop frame the watchdog has the same effect.
 const CONFIRMATION: u64 = 100_000_000;
 
 /// One to three fingers on one to three ports, run by one thread.
@@ -59,19 +59,19 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         Self { clock, schedule, reply_window, ports: ports.into(), follower: None }
     }
 
-    /// The same servo with its schedule so much later, ns.
+    /// Delays the schedule by `by` ns.
     pub fn later(mut self, by: u64) -> Self {
         self.schedule.shift(by.cast_signed());
         self
     }
 
-    /// The same servo, with periods by the clock of its first board.
+    /// Makes the periods follow the clock of the first board.
     pub fn following_board(mut self) -> Self {
         self.follower = Some(Follower::new(self.schedule.period()));
         self
     }
 
-    /// What the servo touches and is not in this value itself.
+    /// The memory that the servo accesses and that is not in this value itself.
     pub fn memory(&self) -> LockedMemory {
         let mut memory = LockedMemory::default();
         memory.add(&self.ports);
@@ -82,8 +82,8 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         memory
     }
 
-    /// Runs until every finger is closed, or faulted and asked to close. A panic is a defect, but it must not leave the
-    /// last torque on the motors: it faults every finger, and every board is told to stop.
+    /// Runs until every finger is closed, or is faulted and has been asked to close. A panic is a defect, but it must
+    /// not leave the last torque on the motors: it faults every finger, and every board gets a Stop frame.
     pub fn run(&mut self) {
         let cycles = || {
             while !self.finished() {
@@ -92,7 +92,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
             self.confirm_stops();
         };
         if catch_unwind(AssertUnwindSafe(cycles)).is_err() {
-            // If even this panics, the board's watchdog is left.
+            // If this panics too, the watchdog of the board stops the motors.
             let _ = catch_unwind(AssertUnwindSafe(|| self.fail()));
         }
     }
@@ -102,15 +102,15 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         self.ports.iter().flat_map(|port| port.fingers.iter()).all(FingerServo::finished)
     }
 
-    /// One period: wait, commands out, replies in, compute, report. Nothing here allocates, locks or blocks beyond the
-    /// deadline.
+    /// One period: wait, send commands, receive replies, compute, report. Nothing here allocates, locks, or blocks
+    /// beyond the deadline.
     pub fn cycle(&mut self) {
         let beginning = self.schedule.next();
         self.clock.sleep_until(beginning);
         let began = self.clock.now();
         for port in self.ports.iter_mut() {
             port.exchange();
-            port.fingers.iter_mut().for_each(FingerServo::listen);
+            port.fingers.iter_mut().for_each(FingerServo::check_stop_signal);
         }
         self.send_stops();
         let mut sending = began;
@@ -133,40 +133,40 @@ impl<T: Transport, C: Clock> Servo<T, C> {
             self.schedule.shift(follower.correction(reading, 1 + skipped));
         }
         for port in self.ports.iter_mut() {
-            let heard = port.heard();
+            let counters = port.counters();
             for finger in port.fingers.iter_mut() {
-                finger.end(began, self.schedule.next(), overrun, &heard);
+                finger.end(began, self.schedule.next(), overrun, &counters);
                 let computed = self.clock.now();
                 finger.note(CycleStage::Compute, computing, computed);
                 finger.note(CycleStage::Whole, beginning, computed);
-                finger.tell();
+                finger.publish();
                 computing = computed;
             }
         }
     }
 
-    /// The last thing to do when a cycle panicked: every finger faulted, every board told to stop.
+    /// The last action after a panic: faults every finger and stops every board.
     fn fail(&mut self) {
-        // Whoever would mend a port learns that nobody is left to run it.
-        self.ports.iter_mut().for_each(|port| port.lender = None);
+        // Dropping the handover informs the repairing thread that no servo runs the port any more.
+        self.ports.iter_mut().for_each(|port| port.handover = None);
         let now = self.clock.now();
         for port in self.ports.iter_mut() {
-            let heard = port.heard();
+            let counters = port.counters();
             for finger in port.fingers.iter_mut() {
                 finger.fault(Fault::new(FaultKind::ServoPanic));
-                finger.end(now, self.schedule.next(), None, &heard);
-                finger.tell();
+                finger.end(now, self.schedule.next(), None, &counters);
+                finger.publish();
             }
         }
         self.confirm_stops();
     }
 
-    /// Tells every board to stop, until it confirms that or the line fails: closing a port throws away what has not
-    /// left it yet. Nothing else is left to do in time, so this waits.
+    /// Sends Stop frames to every board until the board confirms or the line fails. Closing the port earlier would
+    /// discard bytes that have not been sent yet. The servo has no deadlines any more, so this may wait.
     fn confirm_stops(&mut self) {
         self.send_stops();
         for port in self.ports.iter_mut() {
-            // A link that was lent has stopped its boards before.
+            // The boards of a released link were stopped before it was released.
             let Some(link) = &mut port.link else { continue };
             for finger in port.fingers.iter() {
                 let deadline = self.clock.now() + CONFIRMATION;
@@ -179,7 +179,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         for port in self.ports.iter_mut() {
             for finger in port.fingers.iter_mut() {
                 if let (true, Some(link)) = (finger.stopping(), &mut port.link) {
-                    // Where nobody is left to tell, the board's watchdog does the rest.
+                    // If the port has failed, the watchdog of the board stops the motors.
                     port.failed |= matches!(link.stop(finger.address(), 0), Err(LinkError::Port(_)));
                 }
             }
@@ -188,20 +188,20 @@ impl<T: Transport, C: Clock> Servo<T, C> {
 }
 
 impl<T: Transport> ServedPort<T> {
-    /// Lends the link when no finger uses it any more, and takes back a mended one.
+    /// Releases the link for repair when no finger uses it any more, or takes back a repaired one.
     fn exchange(&mut self) {
-        let Some(lender) = &mut self.lender else { return };
+        let Some(handover) = &mut self.handover else { return };
         let all_at_rest = self.fingers.iter().all(FingerServo::at_rest);
         if let Some(link) = self.link.take_if(|_| all_at_rest) {
-            self.heard_before = self.heard_before.plus(&link.counters());
-            // There is room: it is the only link.
-            if let Err(lent) = lender.lend.push(Lent { link, failed: self.failed }) {
-                self.link = Some(lent.link);
+            self.earlier_counters = self.earlier_counters.plus(&link.counters());
+            // The push succeeds, because this is the only link.
+            if let Err(rejected) = handover.released.push(ReleasedLink { link, failed: self.failed }) {
+                self.link = Some(rejected.link);
             }
-        } else if let Some(Mended { link, configured, stop_calls }) = lender.mended.pop() {
+        } else if let Some(RepairedLink { link, configured, stop_calls }) = handover.repaired.pop() {
             self.failed = false;
-            // Of the same link, or of a new one: it goes on from what was counted.
-            self.heard_before = self.heard_before.less(&link.counters());
+            // This may be the same link or a new one. Counting continues from the current totals.
+            self.earlier_counters = self.earlier_counters.less(&link.counters());
             self.link = Some(link);
             for (finger, configured) in self.fingers.iter_mut().zip(configured) {
                 configured.into_iter().for_each(|configured| finger.recover(&configured, stop_calls));
@@ -209,12 +209,12 @@ impl<T: Transport> ServedPort<T> {
         }
     }
 
-    /// What was heard since open.
-    fn heard(&self) -> LinkCounters {
-        self.link.as_ref().map_or(self.heard_before, |link| self.heard_before.plus(&link.counters()))
+    /// Counters of the port since open.
+    fn counters(&self) -> LinkCounters {
+        self.link.as_ref().map_or(self.earlier_counters, |link| self.earlier_counters.plus(&link.counters()))
     }
 
-    /// All commands of the port back to back, so that replies overlap the commands that follow.
+    /// Sends all commands of the port back to back, so that replies overlap with the commands after them.
     fn send(&mut self) {
         let mut commands = [OutgoingCommand::default(); FINGERS];
         let mut count = 0;
@@ -229,7 +229,7 @@ impl<T: Transport> ServedPort<T> {
     }
 
     fn receive(&mut self, deadline: u64, sent: u64, clock: &impl Clock) {
-        // One for all replies of the period: a board that sends without end must not hold the thread.
+        // One allowance for all replies of the period: a board that sends without end must not keep the thread here.
         let mut allowance = Allowance::for_replies(deadline);
         while self.fingers.iter().any(FingerServo::waiting) {
             let Some(link) = &mut self.link else { return };
@@ -237,7 +237,7 @@ impl<T: Transport> ServedPort<T> {
                 Ok(Some(received)) => {
                     let mut addressed = self.fingers.iter_mut().find(|finger| finger.address() == received.address);
                     let Some(finger) = addressed.take_if(|finger| finger.awaits(&received)) else {
-                        addressed.into_iter().for_each(|finger| finger.pass_over(&received));
+                        addressed.into_iter().for_each(|finger| finger.count_unexpected(&received));
                         continue;
                     };
                     finger.take(&received);
@@ -247,7 +247,7 @@ impl<T: Transport> ServedPort<T> {
                     finger.note(CycleStage::Decode, read, clock.now());
                 }
                 Ok(None) => break,
-                // The other fingers of the board may be as they were.
+                // Only the refused finger faults, because the other fingers of the board may be unaffected.
                 Err(LinkError::Refused { address, refused }) => {
                     let addressed = self.fingers.iter_mut().filter(|finger| finger.address() == address);
                     addressed.for_each(|finger| finger.fault((&refused).into()));

@@ -3,23 +3,23 @@
 use crate::finger::Fault;
 use std::fmt;
 
-/// Where a finger is between open and close.
+/// A stage of a finger between open and close.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Stage {
-    /// Tendons are brought under tension.
+    /// Slack is being taken up.
     #[default]
     Opening,
-    /// The motors are off: opened that way, or after a calibration.
+    /// The motors are off: the finger was opened that way, or a calibration has ended.
     Limp,
-    /// A calibration moves the finger.
+    /// A calibration is in control of the finger.
     Calibrating,
     /// The fingertip is a spring.
     Running,
-    /// On the way to the configured end state.
+    /// The finger is being brought to the configured end state.
     Closing,
-    /// The board is in its end state.
+    /// The finger is in its end state.
     Closed,
-    /// Stopped by itself.
+    /// The finger has stopped because of a fault.
     Faulted(Fault),
 }
 

@@ -1,56 +1,58 @@
-//! What stops a finger that nothing is wrong with: an emergency stop, or another finger that faults.
+//! Signals that stop a healthy finger: an emergency stop call, or a fault of another finger.
 
 use crate::finger::FaultKind;
 use crate::realtime::{LockedMemory, Pages, SharedPages};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Emergency stops called for in this process so far. Counted, so that a finger that recovers from one hears the next.
+/// Number of emergency stop calls in this process. It is a counter, so that a finger that has recovered from one call
+/// stops at the next.
 static CALLS: AtomicU32 = AtomicU32::new(0);
 
-/// Emergency stop: every finger of every open hand of this process faults at the beginning of its next cycle. It stays
-/// so until it recovers, or its hand is opened anew.
+/// Emergency stop: every finger of every open hand in this process faults at the beginning of its next cycle. A finger
+/// stays faulted until it recovers or its hand is opened again.
 ///
-/// Adds to an atomic number and does nothing else: it serves in any thread and in a signal handler.
+/// The function only increments an atomic number, so it may be called in any thread and in a signal handler.
 pub fn stop_all() {
     CALLS.fetch_add(1, Ordering::SeqCst);
 }
 
-/// How many emergency stops there were: a finger that begins now answers for later ones.
+/// Number of emergency stop calls so far. A finger that starts now stops at later calls.
 pub fn stop_calls() -> u32 {
     CALLS.load(Ordering::SeqCst)
 }
 
-/// One finger's ear.
+/// One finger's view of the stop signals.
 #[derive(Clone)]
 pub struct StopSignal {
-    calls_heard: u32,
-    /// Faults of all fingers that stop together; none: each stops alone.
+    calls_seen: u32,
+    /// Counter of the faults of all fingers that stop together; none if each finger stops alone.
     together: Option<SharedPages<AtomicU32>>,
-    faults_heard: u32,
+    faults_seen: u32,
 }
 
 impl StopSignal {
-    /// `together`: the fingers with clones of it stop together. `calls_heard`: of [`stop_calls`], from before anything
-    /// moved.
-    pub fn new(together: bool, calls_heard: u32) -> Self {
-        Self { calls_heard, together: together.then(|| Pages::new(AtomicU32::new(0)).into()), faults_heard: 0 }
+    /// If `together` is true, all fingers with clones of this signal stop together. `calls_seen` is the result of
+    /// [`stop_calls`] before any motor moved.
+    pub fn new(together: bool, calls_seen: u32) -> Self {
+        Self { calls_seen, together: together.then(|| Pages::new(AtomicU32::new(0)).into()), faults_seen: 0 }
     }
 
-    /// Adds the pages of what the fingers share.
+    /// Adds the pages that the fingers share to `memory`.
     pub(super) fn add_to(&self, memory: &mut LockedMemory) {
         self.together.iter().for_each(|together| memory.add_shared(together));
     }
 
-    /// Why the finger shall stop.
-    pub(super) fn heard(&self) -> Option<FaultKind> {
-        if stop_calls() != self.calls_heard {
+    /// Why the finger must stop; none if it need not.
+    pub(super) fn pending(&self) -> Option<FaultKind> {
+        if stop_calls() != self.calls_seen {
             return Some(FaultKind::EmergencyStopCall);
         }
         let faults = self.together.as_ref()?.load(Ordering::Acquire);
-        (faults != self.faults_heard).then_some(FaultKind::Companion)
+        (faults != self.faults_seen).then_some(FaultKind::Companion)
     }
 
-    /// The finger has faulted. What it has heard itself the others hear too.
+    /// Signals a fault of this finger to the others. Faults that came from these signals are not passed on, because the
+    /// other fingers receive the same signals.
     pub(super) fn raise(&self, kind: FaultKind) {
         if let Some(faults) = &self.together
             && !matches!(kind, FaultKind::EmergencyStopCall | FaultKind::Companion)
@@ -59,9 +61,9 @@ impl StopSignal {
         }
     }
 
-    /// The finger recovers: what was called before counts no more.
-    pub(super) fn forget(&mut self, calls_heard: u32) {
-        self.calls_heard = calls_heard;
-        self.faults_heard = self.together.as_ref().map_or(0, |faults| faults.load(Ordering::Acquire));
+    /// Clears the signals when the finger recovers: earlier calls and faults do not stop it again.
+    pub(super) fn forget(&mut self, calls_seen: u32) {
+        self.calls_seen = calls_seen;
+        self.faults_seen = self.together.as_ref().map_or(0, |faults| faults.load(Ordering::Acquire));
     }
 }

@@ -1,31 +1,30 @@
-//! What a finger's servo watches beside its controller: the monitors of the core, and how well the line and the machine
-//! do.
+//! Monitoring of one finger: the monitors of the control code, the quality of the line, and overruns of the servo.
 
 use crate::board::protocol::Status;
 use crate::control::monitors::{LineQuality, Watch};
 use crate::control::{Controller, Feedback, State};
 use crate::finger::{Fault, FaultKind};
 
-/// Seconds over which losses and overruns are told as warnings.
+/// Window over which losses and overruns cause warnings, s.
 const WARNING_WINDOW: f64 = 1.0;
 
-/// Shares of the last second from which on a line is noisy, and a servo overruns.
+/// Share of the window above which a line counts as noisy (lost replies) and a servo as overrunning (skipped periods).
 const NOISY: f64 = 0.02;
 const OVERRUN: f64 = 0.02;
 
-/// Most of the window's replies were damaged: no luck, but a line that cannot be used. One in two still controls a
-/// finger.
+/// Share of damaged replies in the time-out window above which the line counts as unusable. With one damaged reply in
+/// two, the finger is still under control.
 const UNUSABLE: f64 = 0.6;
 
-/// Where replies stay away altogether, so many damaged ones among them tell why.
+/// If replies are missing altogether, a share of damaged ones above this is reported as the cause.
 const DAMAGED: f64 = 0.25;
 
-/// Memory of the monitors of one finger.
+/// State of the monitors of one finger.
 pub(super) struct Supervision {
     watch: Watch,
-    /// Periods from the sample before to the newest one.
+    /// Periods between the last two samples.
     age: f64,
-    /// The gauges' largest count.
+    /// Largest count of the gauges.
     full_scale: u16,
     noise: LineQuality,
     damage: LineQuality,
@@ -33,12 +32,12 @@ pub(super) struct Supervision {
     overruns: LineQuality,
     damaged_frames: u64,
     clipped: bool,
-    /// Of this period.
+    /// Warning of this period.
     warning: Option<Fault>,
 }
 
 impl Supervision {
-    /// `patience`: cycles after which a finger without replies faults.
+    /// `patience`: number of cycles without replies after which a finger faults.
     pub fn new(rate: f64, patience: u32, gauge_bits: u8) -> Self {
         let warnings = LineQuality::new(rate * WARNING_WINDOW);
         Self {
@@ -55,14 +54,14 @@ impl Supervision {
         }
     }
 
-    /// What a reply's status says beside faults, and how many periods after the reply before it was sampled.
+    /// Notes the warnings in a reply's status, and how many periods after the previous reply it was sampled.
     pub fn note_reply(&mut self, status: Status, age: f64) {
         self.age = age;
         self.clipped = status.has(Status::TORQUE_CLIPPED);
     }
 
-    /// One period: whether the reply came, how many periods were skipped, how many frames have come in damaged in all.
-    /// A line that cannot be used is a fault.
+    /// Notes one period: whether the reply arrived, how many periods were skipped, and the total number of damaged
+    /// frames. Returns a fault if the line is unusable.
     pub fn note_period(&mut self, answered: bool, skipped: u64, damaged_frames: u64) -> Option<Fault> {
         let count = |wrong: bool| f64::from(u8::from(wrong));
         let damaged = !answered && damaged_frames != self.damaged_frames;
@@ -81,7 +80,7 @@ impl Supervision {
         (self.damaged > UNUSABLE).then(|| share(FaultKind::DamagedReplies, self.damaged))
     }
 
-    /// Why no valid reply has come for so many ms.
+    /// The fault for a finger without a valid reply for this many milliseconds.
     pub fn silence(&self, milliseconds: f64) -> Fault {
         match self.damaged > DAMAGED {
             true => Fault::of(FaultKind::DamagedReplies, 100.0 * self.damaged),
@@ -89,25 +88,26 @@ impl Supervision {
         }
     }
 
-    /// One cycle of a finger that is a spring, after `controller` has computed; none where the reply was lost.
+    /// Runs the monitors for one cycle of a finger that is a spring, after `controller` has computed. `feedback` is
+    /// none if the reply was lost.
     pub fn spring(&mut self, controller: &Controller, state: &State, feedback: Option<&Feedback>) -> Option<Fault> {
         let alarms = controller.watch(&mut self.watch, state, feedback?, self.age, self.full_scale);
-        // Line and machine explain what the finger does.
+        // The state of the line and of the machine takes precedence, because it can explain the symptoms of the finger.
         self.warning = self.warning.or(alarms.warning.map(Fault::from));
         alarms.fault.map(Fault::from)
     }
 
-    /// The controller has been changed for another one.
+    /// Notes that another controller is in use.
     pub fn adjusted(&mut self) {
         self.watch.adjusted();
     }
 
-    /// The finger begins to be a spring, or is watched again.
+    /// Resets the monitors when the finger becomes a spring or replies return.
     pub fn begin(&mut self) {
         self.watch = Watch::default();
     }
 
-    /// What this period gives warning of.
+    /// The warning of this period.
     pub fn warning(&self) -> Option<Fault> {
         self.warning
     }

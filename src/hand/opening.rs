@@ -137,16 +137,16 @@ pub(super) fn reach(
             reached.push(finger);
             boards.push(board);
         }
-        let (lender, borrower) = link_handover();
+        let (handover, repair_end) = link_handover();
         lines.push(Line {
             thread: configuration.thread(first),
-            port: ServedPort::new(link, servos).lent_through(lender),
+            port: ServedPort::new(link, servos).with_handover(handover),
         });
         let baud = configuration.fingers[first].baud;
         // The path of a built-in board's port may mean a pseudo-terminal of the planner's once that port is gone.
         let reconnects = |&index: &usize| configuration.fingers[index].reconnect && simulated[index].is_none();
         let reconnect = sharing.iter().any(reconnects);
-        workshops.push(Workshop::new(path, baud, reconnect, boards, borrower));
+        workshops.push(Workshop::new(path, baud, reconnect, boards, repair_end));
     }
     reached.sort_by_key(|finger| finger.index);
     Ok(Connected { lines, reached, workshops })

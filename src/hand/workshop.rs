@@ -2,7 +2,7 @@
 
 use crate::board::protocol::{Configured, Identity, Status};
 use crate::board::{Link, LinkError, Port, Terms};
-use crate::finger::{Borrower, Fault, FaultKind, Mended};
+use crate::finger::{Fault, FaultKind, LinkRepairEnd, RepairedLink};
 use crate::hand::{HandError, RecoveryError};
 use crate::model::configuration::FINGERS;
 use crate::realtime::now;
@@ -19,9 +19,9 @@ pub(super) struct Workshop {
     pub reconnect: bool,
     /// In the order of the servo's.
     pub boards: Vec<KnownBoard>,
-    borrower: Borrower<Port>,
+    handover: LinkRepairEnd<Port>,
     /// The servo has lent its link, and not got it back.
-    lent: bool,
+    released: bool,
     /// That link, or a new one; none where the port is gone.
     link: Option<Link<Port>>,
     /// Its boards have answered, and are those of open.
@@ -41,22 +41,28 @@ pub(super) struct KnownBoard {
 impl Workshop {
     /// `path` and `baud`: how the port is opened. `reconnect`: whether it is, once it has failed. `boards` in the order
     /// of the servo's fingers.
-    pub fn new(path: PathBuf, baud: u32, reconnect: bool, boards: Vec<KnownBoard>, borrower: Borrower<Port>) -> Self {
-        Self { path, baud, reconnect, boards, borrower, lent: false, link: None, checked: false }
+    pub fn new(
+        path: PathBuf,
+        baud: u32,
+        reconnect: bool,
+        boards: Vec<KnownBoard>,
+        handover: LinkRepairEnd<Port>,
+    ) -> Self {
+        Self { path, baud, reconnect, boards, handover, released: false, link: None, checked: false }
     }
 
     /// Takes the link, if the servo has lent it.
     pub fn fetch(&mut self) -> bool {
-        if let Some(lent) = self.borrower.lent.pop() {
-            (self.lent, self.checked) = (true, false);
-            self.link = (!lent.failed).then_some(lent.link);
+        if let Some(released) = self.handover.released.pop() {
+            (self.released, self.checked) = (true, false);
+            self.link = (!released.failed).then_some(released.link);
         }
-        self.lent
+        self.released
     }
 
     /// Whether the servo has failed: it takes nothing back.
     pub fn servo_ended(&self) -> bool {
-        self.borrower.lent.is_abandoned()
+        self.handover.released.is_abandoned()
     }
 
     /// Opens the port where it is gone, and shakes hands with its boards: the same ones, with their zeros.
@@ -97,9 +103,9 @@ impl Workshop {
 
     pub fn give_back(&mut self, configured: [Option<Configured>; FINGERS], stop_calls: u32) {
         if let Some(link) = self.link.take() {
-            self.lent = false;
+            self.released = false;
             // There is room: the servo has taken the last one, or it would not have lent this one.
-            let _ = self.borrower.mended.push(Mended { link, configured, stop_calls });
+            let _ = self.handover.repaired.push(RepairedLink { link, configured, stop_calls });
         }
     }
 }

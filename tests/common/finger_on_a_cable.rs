@@ -4,7 +4,7 @@ use std::cell::{RefCell, RefMut};
 use std::rc::Rc;
 use sun2xp::board::protocol::Identity;
 use sun2xp::board::{Link, PortError, Terms, Transport};
-use sun2xp::finger::{BlackBox, Borrower, FingerServo, Mailbox, ServedPort, Servo, link_handover};
+use sun2xp::finger::{BlackBox, FingerServo, LinkRepairEnd, Mailbox, ServedPort, Servo, link_handover};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, Consumer, CycleTiming, Schedule, ring};
 use sun2xp::simulated::{SimulatedBoard, SimulatedCable};
@@ -97,7 +97,7 @@ impl<H: Hooks> Clock for World<H> {
 pub struct ServedFinger<W> {
     pub servo: Servo<W, W>,
     pub mailbox: Mailbox,
-    pub borrower: Borrower<W>,
+    pub repair_end: LinkRepairEnd<W>,
     pub timings: Consumer<CycleTiming>,
     pub black_box: BlackBox,
     pub identity: Identity,
@@ -122,10 +122,10 @@ impl<W: Transport + Clock + Clone> ServedFinger<W> {
         let stiffness = finger.initial_stiffness();
         let (finger, mailbox) =
             FingerServo::new(belief, 0, stiffness, &identity, &configured, producer, recorder).expect("a finger");
-        let (lender, borrower) = link_handover();
-        let ports = vec![ServedPort::new(link, vec![finger]).lent_through(lender)];
+        let (handover, repair_end) = link_handover();
+        let ports = vec![ServedPort::new(link, vec![finger]).with_handover(handover)];
         let schedule = Schedule::new(Clock::now(world) + period, period);
         let servo = Servo::new(world.clone(), schedule, ports);
-        Self { servo, mailbox, borrower, timings, black_box, identity }
+        Self { servo, mailbox, repair_end, timings, black_box, identity }
     }
 }

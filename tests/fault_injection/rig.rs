@@ -6,7 +6,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::control::Law;
-use sun2xp::finger::{Fault, FingerReport, Lent, Mended, Stage, stop_calls};
+use sun2xp::finger::{Fault, FingerReport, ReleasedLink, RepairedLink, Stage, stop_calls};
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::realtime::Clock;
 use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
@@ -274,17 +274,17 @@ impl Bench {
         let before = self.report().recoveries;
         // What was on its way comes.
         self.pause(200 * MILLISECOND);
-        let lent = (0..10).find_map(|_| {
+        let released = (0..10).find_map(|_| {
             self.served.servo.cycle();
-            self.served.borrower.lent.pop()
+            self.served.repair_end.released.pop()
         });
-        let Lent { link, failed } = lent.expect("the servo lends its link");
+        let ReleasedLink { link, failed } = released.expect("the servo releases its link");
         let mut link = if failed { Link::new(self.world.clone()) } else { link };
         let deadline = self.now() + 300 * MILLISECOND;
         let (identity, configured) = link.shake_hands(1, &self.terms, deadline).expect("the board answers again");
         assert_eq!(identity, self.served.identity);
-        let mended = Mended { link, configured: [Some(configured), None, None], stop_calls: stop_calls() };
-        assert!(self.served.borrower.mended.push(mended).is_ok());
+        let repaired = RepairedLink { link, configured: [Some(configured), None, None], stop_calls: stop_calls() };
+        assert!(self.served.repair_end.repaired.push(repaired).is_ok());
         self.come_under_tension();
         assert_eq!(self.report().recoveries, before + 1);
     }

@@ -1,11 +1,11 @@
-//! A finger with its servo, its link and its board in memory, on simulated time, and a link that can be mended after a
+//! A finger with its servo, its link and its board in memory, on simulated time, and a link that can be repaired after a
 //! fault.
 
 use crate::finger_on_a_cable::{Hooks, ServedFinger, World};
 use nalgebra::Vector3;
 use sun2xp::board::protocol::{Frame, Message, WireFrame};
 use sun2xp::board::{PortError, Terms, Transport};
-use sun2xp::finger::{Borrower, Fault, FaultKind, FingerReport, Mailbox, Mended, Servo, Stage, stop_calls};
+use sun2xp::finger::{Fault, FaultKind, FingerReport, LinkRepairEnd, Mailbox, RepairedLink, Servo, Stage, stop_calls};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
 
@@ -62,7 +62,7 @@ pub struct Bench {
     pub world: World<Line>,
     pub servo: Servo<World<Line>, World<Line>>,
     pub mailbox: Mailbox,
-    borrower: Borrower<World<Line>>,
+    repair_end: LinkRepairEnd<World<Line>>,
     /// As the board has it.
     configuration: Configuration,
 }
@@ -89,8 +89,8 @@ impl Bench {
         let mut belief = configuration.clone();
         believed(&mut belief);
         let world = World::new(&configuration, Line::default());
-        let ServedFinger { servo, mailbox, borrower, .. } = ServedFinger::believing(&world, &configuration, &belief);
-        Self { world, servo, mailbox, borrower, configuration }
+        let ServedFinger { servo, mailbox, repair_end, .. } = ServedFinger::believing(&world, &configuration, &belief);
+        Self { world, servo, mailbox, repair_end, configuration }
     }
 
     pub fn report(&self) -> FingerReport {
@@ -200,13 +200,13 @@ impl Bench {
 
     /// The link in other hands, which shake hands with the board and give it back: the finger takes up slack.
     pub fn mend(&mut self) {
-        self.until("at rest", |bench| !bench.borrower.lent.is_empty());
-        let mut link = self.borrower.lent.pop().expect("lent").link;
+        self.until("at rest", |bench| !bench.repair_end.released.is_empty());
+        let mut link = self.repair_end.released.pop().expect("released").link;
         let terms = Terms::new(&self.configuration.hand, &self.configuration.fingers[0]);
         let deadline = Transport::now(&self.world) + 1000 * MILLISECOND;
         let (_, configured) = link.shake_hands(1, &terms, deadline).expect("the board answers");
-        let mended = Mended { link, configured: [Some(configured), None, None], stop_calls: stop_calls() };
-        assert!(self.borrower.mended.push(mended).is_ok());
+        let repaired = RepairedLink { link, configured: [Some(configured), None, None], stop_calls: stop_calls() };
+        assert!(self.repair_end.repaired.push(repaired).is_ok());
         self.cycles(1);
         assert_eq!(self.stage(), Stage::Opening);
     }

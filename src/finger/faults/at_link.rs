@@ -1,4 +1,4 @@
-//! Faults of a port and of what answers at it.
+//! Faults of a port and of the board at it.
 
 use super::{Fault, FaultKind};
 use crate::board::protocol::{Reason, Refused, Status};
@@ -48,7 +48,7 @@ impl From<&Refused> for Fault {
 }
 
 impl Fault {
-    /// What a board reports that has stopped its motors.
+    /// The fault for the status of a board that has stopped its motors.
     pub fn stopped(status: Status) -> Self {
         let kind = [
             (Status::EMERGENCY_STOP, FaultKind::EmergencyStopInput),

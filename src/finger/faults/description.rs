@@ -1,19 +1,19 @@
-//! What the table of faults says about each kind of fault.
+//! The fields of the fault table.
 
 use std::fmt::{self, Display, Formatter};
 
-/// What becomes of the finger.
+/// The effect of a fault on the finger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// The finger is told so and goes on.
+    /// The finger continues, and the planner can read the warning.
     Warning,
-    /// The motors go to the configured end state, and the finger's calls are refused.
+    /// The motors go to the configured end state, and calls for the finger are refused.
     Fault,
-    /// The hand does not open, or a call is refused; no finger runs that could stop.
+    /// The hand does not open, or a call is refused. No finger is running that could stop.
     Refusal,
 }
 
-/// What the number of a part counts.
+/// The meaning of a fault's part number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartKind {
     /// The whole finger; the number is 0.
@@ -30,58 +30,58 @@ pub enum PartKind {
     Encoder,
 }
 
-/// What the value of a fault measures.
+/// The meaning of a fault's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// Nothing; the value is 0.
+    /// No value; it is 0.
     Nothing,
-    /// N.
+    /// Tension, N.
     Tension,
-    /// ms.
+    /// Time, ms.
     Time,
-    /// Degrees.
+    /// Angle, degrees.
     Angle,
     /// Counts of a sensor.
     Counts,
-    /// Per cent.
+    /// Share, per cent.
     Share,
     /// errno of the system.
     Errno,
     /// Status bits of a reply.
     Status,
-    /// The reason of a Refused frame, its number on the wire.
+    /// Reason of a Refused frame, as its number on the wire.
     Reason,
 }
 
-/// What stands about a fault in the table.
+/// The row of the fault table for one kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Description {
-    /// As in the C header, without `FAULT_`.
+    /// The name in the C header, without `FAULT_`.
     pub constant: &'static str,
-    /// What becomes of the finger.
+    /// The effect on the finger.
     pub severity: Severity,
-    /// What the number of the part counts.
+    /// The meaning of the part number.
     pub part: PartKind,
-    /// What the value measures.
+    /// The meaning of the value.
     pub quantity: Quantity,
-    /// A name of few words.
+    /// A short name.
     pub name: &'static str,
-    /// What is the case.
+    /// What has happened.
     pub text: &'static str,
-    /// What is most often the reason.
+    /// The most frequent cause.
     pub cause: &'static str,
     /// What to do.
     pub remedy: &'static str,
 }
 
 impl Description {
-    /// What is the case, its likely cause and the remedy, in sentences of which the last has no full stop.
+    /// What has happened, its likely cause and the remedy, as sentences. The last one has no full stop.
     pub fn explanation(&self) -> impl Display {
         Explanation(*self)
     }
 }
 
-/// Written where it is needed, without a copy.
+/// Formats the sentences without an allocation.
 struct Explanation(Description);
 
 impl Display for Explanation {
@@ -92,7 +92,7 @@ impl Display for Explanation {
 }
 
 impl PartKind {
-    /// The singular, as in a sentence; none for the whole finger.
+    /// The singular for use in a sentence; none for the whole finger.
     pub fn word(self) -> Option<&'static str> {
         match self {
             PartKind::Finger => None,
@@ -106,7 +106,7 @@ impl PartKind {
 }
 
 impl Quantity {
-    /// The quantity with its unit, as in a table; none where there is no value.
+    /// The unit or the kind of the value for use in a table; none if there is no value.
     pub fn words(self) -> Option<&'static str> {
         match self {
             Quantity::Nothing => None,

@@ -1,18 +1,18 @@
-//! A fault that happened: its kind, where, and how much.
+//! A fault that occurred: its kind, its place and its value.
 
 use super::{FaultKind, Quantity};
 use crate::model::Part;
 use std::error::Error;
 use std::fmt;
 
-/// What made a finger stop, or what it is warned of.
+/// The reason why a finger stopped, or a warning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fault {
-    /// Which one.
+    /// Kind of the fault.
     pub kind: FaultKind,
-    /// Where.
+    /// Place of the fault.
     pub part: Part,
-    /// How much, in the unit of the kind's [`Quantity`]; 0 where there is nothing to measure.
+    /// Value in the unit of the kind's [`Quantity`]; 0 if there is none.
     pub value: f64,
 }
 
@@ -28,25 +28,25 @@ impl Fault {
     }
 }
 
-/// Name, place and figure, what is the case, cause and remedy.
+/// Writes name, place and value, then what has happened, cause and remedy.
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let told = self.kind.description();
-        write!(f, "{}", told.name)?;
+        let description = self.kind.description();
+        write!(f, "{}", description.name)?;
         if self.part != Part::Finger {
             write!(f, ", {}", self.part)?;
         }
-        match told.quantity {
+        match description.quantity {
             Quantity::Nothing => {}
             Quantity::Errno => write!(f, " (errno {})", self.value)?,
             Quantity::Status => write!(f, " (status bits {:#06x})", self.value as u16)?,
             Quantity::Reason => write!(f, " (reason {})", self.value)?,
-            Quantity::Tension | Quantity::Angle => write!(f, " ({:.1} {})", self.value, unit(told.quantity))?,
+            Quantity::Tension | Quantity::Angle => write!(f, " ({:.1} {})", self.value, unit(description.quantity))?,
             Quantity::Time | Quantity::Counts | Quantity::Share => {
-                write!(f, " ({:.0} {})", self.value, unit(told.quantity))?
+                write!(f, " ({:.0} {})", self.value, unit(description.quantity))?
             }
         }
-        write!(f, ": {}", told.explanation())
+        write!(f, ": {}", description.explanation())
     }
 }
 

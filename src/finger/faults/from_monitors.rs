@@ -1,4 +1,4 @@
-//! What the monitors of the core find, as faults.
+//! Conversion of the monitors' symptoms to faults.
 
 use super::{Fault, FaultKind};
 use crate::control::monitors::{Alarm, Symptom};

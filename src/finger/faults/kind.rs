@@ -1,9 +1,9 @@
-//! The kinds of faults and their numbers.
+//! Numbers of the kinds of faults.
 
 use super::table::FaultKind;
 
 impl FaultKind {
-    /// The number, from 1; the same in every version of this library.
+    /// The number, from 1. It is the same in every version of this library.
     pub fn number(self) -> u8 {
         self as u8
     }

@@ -1,5 +1,5 @@
-//! Faults with names: what can go wrong with a finger, in numbers that never change and in words for the person at the
-//! bench.
+//! Named faults: everything that can go wrong with a finger, with numbers that never change and texts for the person at
+//! the bench.
 
 mod at_link;
 mod description;

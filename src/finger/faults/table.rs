@@ -1,13 +1,14 @@
-//! The table of all faults: texts, the constants of the C header and `docs/faults.md` come from here.
+//! The table of all faults. The texts, the constants of the C header and `docs/faults.md` are generated from it.
 //!
-//! Numbers are for ever: a new fault takes the next one, and one that is no longer found keeps its own.
+//! Numbers are permanent: a new fault gets the next free number, and a fault that is no longer detected keeps its
+//! number.
 
 use super::description::{Description, PartKind, Quantity, Severity};
 
 macro_rules! faults {
     ($($number:literal $kind:ident $constant:literal $severity:ident $part:ident $quantity:ident
         $name:literal, $text:literal, $cause:literal, $remedy:literal;)*) => {
-        /// Everything that has a name of its own when it goes wrong.
+        /// Every kind of fault.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum FaultKind {
@@ -15,10 +16,10 @@ macro_rules! faults {
         }
 
         impl FaultKind {
-            /// All of them, in the order of their numbers.
+            /// All kinds, in the order of their numbers.
             pub const ALL: &[FaultKind] = &[$(FaultKind::$kind,)*];
 
-            /// What is to be said about it.
+            /// The row of the table.
             pub fn description(self) -> &'static Description {
                 match self {
                     $(FaultKind::$kind => &Description {

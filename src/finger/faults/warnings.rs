@@ -1,18 +1,18 @@
-//! What a finger is warned of and goes on all the same.
+//! Warnings: conditions that do not stop a finger.
 
 use super::Fault;
 
-/// The newest warning. It stays for a while after it was last given, so that a planner that looks now and then sees it.
+/// The newest warning. It stays for a while after it was last noted, so that a planner that polls slowly sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Warnings {
     newest: Option<Fault>,
-    /// Cycles until it is forgotten.
+    /// Cycles until it is cleared.
     left: u32,
     given: u64,
 }
 
 impl Warnings {
-    /// Takes the warning that this cycle gives, if it gives one, and keeps it for so many cycles.
+    /// Notes the warning of this cycle, if there is one, and keeps it for `cycles` cycles.
     pub fn note(&mut self, warning: Option<Fault>, cycles: u32) {
         match warning {
             Some(fault) => {
@@ -25,12 +25,12 @@ impl Warnings {
         }
     }
 
-    /// The newest, if it was given within the last second.
+    /// The newest warning, if it was noted within the last second.
     pub fn newest(&self) -> Option<Fault> {
         self.newest
     }
 
-    /// How many have been given; one that goes on counts once.
+    /// Number of warnings. One that persists counts once.
     pub fn given(&self) -> u64 {
         self.given
     }

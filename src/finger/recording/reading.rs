@@ -1,4 +1,4 @@
-//! Reading the file of a black box, which anybody may have altered: nothing in it makes this program use much memory.
+//! Reading a black box file. Anybody may have altered the file, so nothing in it can make this program use much memory.
 
 use super::{Header, Recording, RecordingError, VERSION};
 use crate::files::open_regular_file;
@@ -10,22 +10,22 @@ use std::fmt;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 
-/// The largest file, bytes. Two seconds at the highest rate take 13 MB, and a thousand controllers 3 MB.
+/// Largest file, bytes. Two seconds at the highest rate take 13 MB, and a thousand controllers take 3 MB.
 const LARGEST: u64 = 1 << 26;
 
-/// The longest line of a cycle, bytes. The library writes some 1500.
+/// Longest line of a cycle, bytes. The library writes about 1500.
 const LONGEST_LINE: u64 = 1 << 16;
 
-/// No black box has more cycles: five times those of two seconds at the highest rate.
+/// Largest number of cycles: five times those of two seconds at the highest rate.
 const MOST_CYCLES: usize = 50_000;
 
-/// No black box has more controllers: to make one takes a planner longer than half a millisecond.
+/// Largest number of controllers. A planner takes longer than half a millisecond to make one.
 const MOST_CONTROLLERS: usize = 4096;
 
-/// The longest reason that is shown, characters.
+/// Longest reason that is shown, characters.
 const LONGEST_REASON: usize = 200;
 
-/// What every version of the format begins with.
+/// The fields that the header has in every version of the format.
 #[derive(Deserialize)]
 struct Identity {
     sun2xp_black_box: u32,
@@ -36,7 +36,7 @@ impl Recording {
     /// Reads a file.
     ///
     /// # Errors
-    /// A file that cannot be read, or is no whole recording of this version.
+    /// The file cannot be read, or is not a complete recording of this version.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let file = ShownPath(path).to_string();
         match open_regular_file(path, LARGEST) {
@@ -45,7 +45,7 @@ impl Recording {
         }
     }
 
-    /// Reads a recording from `input`, which errors call `file`.
+    /// Reads a recording from `input`. Error texts name it `file`.
     ///
     /// # Errors
     /// As [`Recording::open`].
@@ -89,7 +89,7 @@ impl Recording {
     }
 }
 
-/// A line of at most `longest` bytes without its end; none after the last one.
+/// Reads a line of at most `longest` bytes, without its end; none after the last line.
 fn next_line(input: &mut impl BufRead, longest: u64) -> io::Result<Option<Vec<u8>>> {
     let mut line = Vec::new();
     if input.take(longest + 1).read_until(b'\n', &mut line)? == 0 {
@@ -104,16 +104,16 @@ fn next_line(input: &mut impl BufRead, longest: u64) -> io::Result<Option<Vec<u8
     Ok(Some(line))
 }
 
-/// What is wrong with a line. The parser sees one line, so of the place that it names only the column counts.
+/// What is wrong with a line. The parser sees a single line, so only the column of its position is useful.
 fn describe(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let reason = text.rsplit_once(" at line ").map_or(text.as_str(), |(reason, _)| reason);
-    // The reason may hold any text of the file.
+    // The reason may contain any text of the file.
     let shown = one_line(&reason.chars().take(LONGEST_REASON).collect::<String>());
     format!("{shown} (column {})", error.column())
 }
 
-/// The controllers, of which there are not too many.
+/// Reads the controllers, with a limit on their number.
 pub(super) fn controllers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ControllerSource>, D::Error> {
     struct Bounded;
 

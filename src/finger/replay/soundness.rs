@@ -1,6 +1,5 @@
-//! What a recording must satisfy before anything is computed from it: what a configuration must, and that a servo can
-//! have recorded the rest. A file can be altered, and a number that no servo writes makes a controller compute for
-//! ever, or panic.
+//! Checks of a recording before anything is computed from it: the configuration must be valid, and a servo must be able
+//! to have recorded the rest. A file can be altered, and with some numbers a controller would compute forever or panic.
 
 use super::NotReplayable;
 use crate::finger::link_watch::LinkWatch;
@@ -10,18 +9,18 @@ use serde::Serialize;
 use serde_json::Value;
 use std::ops::RangeInclusive;
 
-/// Cycles of controllers that are computed at most, with those for skipped periods: a hundred for every cycle of two
-/// seconds at the highest rate. They take some seconds.
+/// Largest number of controller cycles that a replay computes, including those for skipped periods: a hundred for every
+/// cycle of two seconds at the highest rate. They take some seconds.
 const MOST_COMPUTED: u64 = 1_000_000;
 
-/// Larger than every number that a finger can come to, in any unit, and so small that its powers are finite.
+/// Larger than any quantity of a finger in any unit, and small enough that its powers are finite.
 const LARGEST: f64 = 1e30;
 
-/// Gravity in any direction, m/s^2: a configuration may have 100 in each of three.
+/// Range of each component of gravity, m/s^2. A configuration may have 100 in each of three components.
 const GRAVITY: RangeInclusive<f64> = -200.0..=200.0;
 
 impl Recording {
-    /// Refuses what no servo has recorded.
+    /// Refuses a recording that no servo can have made.
     pub(super) fn check(&self) -> Result<(), NotReplayable> {
         let origin = &self.origin;
         let wrong = |key: &str, reason: String| Err(NotReplayable::Origin { key: format!("origin.{key}"), reason });
@@ -52,7 +51,8 @@ impl Recording {
 
     fn check_cycles(&self) -> Result<(), NotReplayable> {
         let hand = &self.origin.hand;
-        // A built-in finger waits for its servo, so it skips nothing.
+        // A built-in simulated finger waits for its servo and never skips a period, so the limit for real fingers
+        // serves for all.
         let most_skipped = u64::from(LinkWatch::new(hand, false).most());
         let mut computed: u64 = 0;
         for (index, record) in self.cycles.iter().enumerate() {
@@ -81,7 +81,7 @@ impl Recording {
     }
 }
 
-/// Whether every number is within bounds; else the key and the reason.
+/// Checks that every number is within bounds. Otherwise returns the key and the reason.
 fn within_bounds(value: &impl Serialize, key: &str) -> Result<(), (String, String)> {
     match serde_json::to_value(value) {
         Ok(value) => check_numbers(&value, key),

@@ -1,4 +1,4 @@
-//! A finger that is being calibrated: whether its routine is in charge, and what becomes of the finger afterwards.
+//! A finger that is being calibrated: when the routine takes over, and what the finger does after it.
 
 use super::FingerServo;
 use super::calibration::{Before, Calibrating};
@@ -15,8 +15,8 @@ impl FingerServo {
         self.enter(Stage::Calibrating);
     }
 
-    /// One step of the calibration, if there is one: it decides what the finger does. What the finger was computed with
-    /// until now, if the routine takes over in this cycle.
+    /// Runs one step of the calibration, if there is one, and sets the finger's activity. Returns the data that the
+    /// servo computed with until now, if the routine takes over in this cycle.
     pub(super) fn calibrate(&mut self) -> Option<Adjustable> {
         let Calibrating { run, before } = self.calibration.as_mut()?;
         if !self.answered {
@@ -42,10 +42,10 @@ impl FingerServo {
         previous
     }
 
-    /// Nothing was done to the finger. What it was computed with until now, if planners have changed that meanwhile.
+    /// Continues as before a calibration that has not moved the finger. Returns the data that the servo computed with
+    /// until now, if planners have replaced it meanwhile.
     fn go_on_from(&mut self, before: Before) -> Option<Adjustable> {
-        // The set points that planners have sent meanwhile had no effect. They must not come into force with the next
-        // one either.
+        // Set points that planners sent meanwhile had no effect. They must not take effect with the next one either.
         self.report.springs += u32::from(before.stage == Stage::Running);
         self.enter(before.stage);
         (before.adjustable.number != self.adjustable.number).then_some(before.adjustable)

@@ -1,4 +1,4 @@
-//! A finger's servo as its configuration and its board's answers make it.
+//! Construction of a finger's servo from the configuration and the board's answers.
 
 use super::{FingerServo, Limits, STOPS_AFTER_FAULT};
 use crate::board::protocol::{Configured, Identity};
@@ -12,17 +12,17 @@ use crate::model::configuration::{Configuration, ConfiguredHand, Unusable};
 use crate::realtime::{CycleTiming, Producer};
 use nalgebra::{Matrix3, Vector3};
 
-/// For so long, s, every tendon must be under tension and the motors still before the finger becomes a spring.
+/// Time for which every tendon must be under tension, with the motors still, before the finger becomes a spring, s.
 const TENSION_SETTLED: f64 = 0.02;
 
-/// So far beyond its soft limits, rad, no joint gets: stops are closer, and measured angles err by less.
+/// No joint gets this far beyond its soft limits, rad: mechanical stops are closer, and measured angles err by less.
 const BEYOND_LIMITS: f64 = 0.5;
 
-/// So long, ms, a warning stays after it was last given.
+/// How long a warning is kept after it was last noted, ms.
 const WARNING_MS: f64 = 1000.0;
 
 impl Adjustable {
-    /// What the configuration says, with the number of a finger's first controller.
+    /// The data that the configuration describes, with the number of a finger's first controller.
     ///
     /// # Errors
     /// A configuration that no controller can be made from.
@@ -49,10 +49,10 @@ impl Limits {
 }
 
 impl FingerServo {
-    /// A finger that stands where its board says, limp, with the planners' end of its mailbox. Timings go to `timings`,
-    /// records of its cycles to `black_box`; those that nobody collects are dropped.
+    /// A limp finger in the pose that its board has reported, and the planners' end of its mailbox. Timings are written
+    /// to `timings`, and records of its cycles to `black_box`. Those that nobody collects are dropped.
     ///
-    /// `stiffness` is the Kx that it will hold its pose with, already admitted.
+    /// `stiffness` is the Kx with which the finger holds its initial pose. It must be admitted already.
     ///
     /// # Errors
     /// A configuration that no controller can be made from.
@@ -84,7 +84,7 @@ impl FingerServo {
             calibration: None,
             status: configured.status,
             feedback,
-            anew: false,
+            restart: false,
             command: MotorCommand::default(),
             mailbox: servo,
             timing: CycleTiming::default(),
@@ -117,7 +117,7 @@ impl FingerServo {
     }
 }
 
-/// The report of a finger before its first cycle.
+/// The report before the first cycle.
 fn opening_report(set_point: SetPoint) -> FingerReport {
     FingerReport {
         stage: Stage::Opening,

@@ -1,4 +1,5 @@
-//! A finger's part of the exchange with its board, once a period: what it sends, and which reply it takes in.
+//! A finger's part of the exchange with its board in every period: the command that it sends, and the reply that it
+//! accepts.
 
 use super::FingerServo;
 use crate::board::protocol::{Command, Status};
@@ -6,11 +7,12 @@ use crate::board::{OutgoingCommand, Received};
 use crate::finger::{Fault, FaultKind};
 use crate::realtime::CycleStage;
 
-/// The board's clock wraps after 65.5 ms: after a longer silence, ms, it does not say how old a measurement is.
+/// The board's clock wraps after 65.5 ms. After a longer silence, ms, it does not give the age of a measurement.
 const CLOCK_UNKNOWN_MS: f64 = 60.0;
 
 impl FingerServo {
-    /// Begins a cycle: the command that the last one found, if the finger is under control and the command due.
+    /// Begins a cycle. Returns the command that the last cycle computed, if the finger is under control and a command
+    /// is due.
     pub fn begin(&mut self) -> Option<OutgoingCommand> {
         if !self.under_control() {
             return None;
@@ -27,43 +29,43 @@ impl FingerServo {
         Some(OutgoingCommand { address: self.address, sequence: self.sequence, command })
     }
 
-    /// Whether the board shall be told to stop, after a fault or at the end.
+    /// Whether to send a Stop frame to the board, after a fault or at the end.
     pub fn stopping(&mut self) -> bool {
         let stopping = !self.under_control() && self.stops_left > 0;
         self.stops_left -= u8::from(stopping);
         stopping
     }
 
-    /// Whether this cycle's reply is still awaited.
+    /// Whether this cycle's reply has not arrived yet.
     pub fn waiting(&self) -> bool {
         !self.answered && self.under_control()
     }
 
-    /// Whether a reply answers this cycle's command: a late one would be an old measurement.
+    /// Whether a reply answers this cycle's command. A late reply would be an old measurement.
     pub fn awaits(&self, received: &Received) -> bool {
         received.sequence == self.sequence && self.waiting()
     }
 
-    /// Counts a reply that this cycle does not await: it came once more, or when its cycle was over.
-    pub fn pass_over(&mut self, received: &Received) {
+    /// Counts a reply that does not answer this cycle's command: it arrived twice, or after the end of its cycle.
+    pub fn count_unexpected(&mut self, received: &Received) {
         match received.sequence == self.last_answer {
             true => self.report.losses.duplicate_replies += 1,
             false => self.report.losses.late_replies += 1,
         }
     }
 
-    /// The board's clock as this cycle's command arrived, us modulo 65 536; none without a reply.
+    /// The board's clock when this cycle's command arrived, us modulo 65 536; none without a reply.
     pub fn sampled_at(&self) -> Option<u16> {
         self.sampled_at.filter(|_| self.answered)
     }
 
-    /// Takes in the reply that answers this cycle's command.
+    /// Accepts the reply that answers this cycle's command.
     pub fn take(&mut self, received: &Received) {
         self.answered = true;
         self.last_answer = received.sequence;
         let reply = &received.reply;
         let mut age = self.sample_age as f64;
-        // This cycle's command took effect as it was sampled; what it was computed from was sampled before.
+        // This cycle's command took effect at this measurement. It was computed from the previous measurement.
         if let Some(before) = self.sampled_at
             && age * self.limits.period_ms < CLOCK_UNKNOWN_MS
         {

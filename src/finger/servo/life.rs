@@ -1,4 +1,4 @@
-//! The stages of a finger's life, from open to close, and what leads from one to the next.
+//! The stages of a finger from open to close, and the transitions between them.
 
 use super::{FingerServo, STOPS_AFTER_FAULT};
 use crate::board::protocol::Configured;
@@ -7,12 +7,14 @@ use crate::finger::{Fault, FaultKind, Order, Stage};
 use crate::model::Part;
 use nalgebra::Vector4;
 
-/// While its tendons hang after a blow a joint seems to be so much further, rad, than any at rest does. Of 100 fingers
-/// that a force of 6 N flung aside one seemed to be 0.55 rad beyond its limits, and came back.
-const FLUNG: f64 = 0.3;
+/// Additional margin of the pose check in the stage Running, rad. While its tendons are slack after a blow, a joint can
+/// seem to be further beyond its limits than any joint at rest. Of 100 fingers hit by a force of 6 N, one seemed to be
+/// 0.55 rad beyond its limits, and returned.
+const BLOW_MARGIN: f64 = 0.3;
 
-/// A machine that runs less than this part of the cycles of a finger while it opens explains why it takes long.
-const MOSTLY: f64 = 0.75;
+/// Share of its cycles that a finger must have run while it opened, so that a timed-out opening is blamed on a tendon
+/// and not on the machine.
+const MOST_CYCLES: f64 = 0.75;
 
 impl FingerServo {
     pub(super) fn carry_out(&mut self, order: Order) {
@@ -22,7 +24,7 @@ impl FingerServo {
                 self.begin_calibration(run);
             }
             Order::Restart { limp } => {
-                self.anew = true;
+                self.restart = true;
                 if limp {
                     self.go_limp();
                 } else {
@@ -37,12 +39,12 @@ impl FingerServo {
         self.enter(Stage::Limp);
     }
 
-    /// Decides what the finger does next by what the cycle has found.
+    /// Enters the next stage if this cycle's results permit it.
     pub(super) fn move_on(&mut self) {
         self.stage_cycles += 1;
         match self.report.stage {
             Stage::Opening if self.report.cycle.under_tension => {
-                // Without a reply it says what was, not what is.
+                // Without a reply, `under_tension` describes an earlier cycle.
                 self.settled_cycles += u32::from(self.answered);
                 if self.settled_cycles >= self.limits.settled {
                     self.check_pose(0.0);
@@ -58,14 +60,14 @@ impl FingerServo {
                 }
             }
             Stage::Opening => self.settled_cycles = 0,
-            Stage::Running => self.check_pose(FLUNG),
+            Stage::Running => self.check_pose(BLOW_MARGIN),
             Stage::Closing if self.stage_cycles > self.limits.ramp => self.enter(Stage::Closed),
             _ => {}
         }
     }
 
-    /// Stops a finger that has been opening for too long in the cycle that begins at `began`, ns. By the clock and not
-    /// by cycles, because a machine that runs few of them must not keep a planner waiting.
+    /// Faults a finger that has been opening for too long. `began` is the beginning of this cycle, ns. The limit is a
+    /// time and not a number of cycles, because on a machine that runs few cycles the planner must not wait longer.
     pub(super) fn limit_opening(&mut self, began: u64) {
         if self.report.stage != Stage::Opening {
             return;
@@ -75,9 +77,9 @@ impl FingerServo {
         if waited_ms < self.limits.opening_ms {
             return;
         }
-        // A tendon is to blame where the motors had the time to wind it in.
+        // The motors had enough cycles to wind the tendon in, so the tendon is the cause.
         let wound_ms = f64::from(self.stage_cycles) * self.limits.period_ms;
-        self.fault(if wound_ms >= MOSTLY * waited_ms {
+        self.fault(if wound_ms >= MOST_CYCLES * waited_ms {
             let slackest = self.report.cycle.slackest;
             let value = self.report.cycle.tensions[slackest];
             Fault { kind: FaultKind::SlackTendon, part: Part::tendon(slackest), value }
@@ -91,18 +93,18 @@ impl FingerServo {
         self.stage_cycles = 0;
     }
 
-    /// Goes on after a fault: the board has been configured anew, and nothing has moved the motors yet.
+    /// Resumes after a fault. The board has been configured again, and no motor has moved since.
     pub(in crate::finger) fn recover(&mut self, configured: &Configured, stop_calls: u32) {
         self.alarm.forget(stop_calls);
         self.feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         self.status = configured.status;
         self.sampled_at = None;
         self.command = MotorCommand::default();
-        self.anew = true;
+        self.restart = true;
         self.link.answered();
         self.calibration = None;
-        // What was ordered before the fault and not begun is gone with it; what was handed over stays, but nothing goes
-        // over to it.
+        // An order from before the fault that has not started is discarded. The data stays, and the controller starts
+        // with it instead of taking over from the previous one.
         self.report.orders += u32::from(self.mailbox.new_order().is_some());
         if let Some(new) = self.mailbox.new_adjustable() {
             self.adjustable = new.clone();
@@ -119,11 +121,11 @@ impl FingerServo {
         self.enter(Stage::Opening);
     }
 
-    /// A spring pulls a finger that is believed to be where it cannot be with all it has. `further`: rad, beyond
-    /// what a joint at rest can seem to be.
-    fn check_pose(&mut self, further: f64) {
+    /// Faults a finger whose measured pose is impossible, because a spring would pull it with full force. `margin`,
+    /// rad, is added to the limits of a joint at rest.
+    fn check_pose(&mut self, margin: f64) {
         let (low, high) = self.adjustable.pose;
-        let (low, high) = (low.add_scalar(-further), high.add_scalar(further));
+        let (low, high) = (low.add_scalar(-margin), high.add_scalar(margin));
         let joints = self.report.cycle.joints;
         if let Some(joint) = (0..3).find(|&joint| !(low[joint]..=high[joint]).contains(&joints[joint])) {
             let value = joints[joint].to_degrees();
