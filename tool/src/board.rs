@@ -1,4 +1,4 @@
-//! `sun2xp board`: a simulated board as a program of its own.
+//! `sun2xp board`: a simulated board as a separate program.
 
 mod faults;
 mod orders;
@@ -18,54 +18,56 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 /// Runs a simulated board behind a serial port of its own.
 ///
-/// The first line of standard output is the port's path. Then each line of standard input is an order, and each is
-/// answered with one line: `ok`, `state ...` or `error ...`.
+/// The first line on standard output is the path of the port. Each line on standard input is an order. The board
+/// answers each order with one line: `ok`, `state ...` or `error ...`.
 ///
 ///     force FINGER X Y Z                     push the fingertip, N
-///     wall FINGER PX PY PZ NX NY NZ K        a wall through P with normal N, stiffness K N/cm
-///     ball FINGER X Y Z RADIUS K             a ball
-///     hold FINGER                            a hand that holds the finger in the pose it is in
-///     free FINGER                            no force, no wall, no ball, no hand
-///     state FINGER                           true joints (rad), tip (cm) and tensions (N), torques of the motors
-///                                            (N cm), times by the board's clock (ms): now, of the last Command that
-///                                            was obeyed, of the end state that followed; NaN: not since the last
+///     wall FINGER PX PY PZ NX NY NZ K        put a wall through P with normal N, stiffness K N/cm
+///     ball FINGER X Y Z RADIUS K             put a ball
+///     hold FINGER                            hold the finger in its current pose, like a jig
+///     free FINGER                            remove force, wall, ball and jig
+///     state FINGER                           true joint angles (rad), tip (cm), tensions (N) and motor torques (N cm);
+///                                            times by the board's clock (ms): now, of the last Command that was
+///                                            obeyed, and of the end state after it; NaN if not since the last
 ///                                            Configure; status bits as in a Reply
-///     quit
+///     quit                                   end the program
 ///
-/// What is broken stays so until `mend` or `good`. Parts are counted from 1 to 4; a probability is of each frame from
-/// the board, or with `commands` before it to the board, and without MS it is for ever:
+/// A defect stays until `mend`, a line fault until `good` or for the time MS. Tendons, motors, gauges and encoders are
+/// numbered 1 to 4. PROBABILITY applies to each frame from the board, or with `commands` to each frame to the board.
 ///
-///     cut FINGER TENDON                      a torn tendon
-///     slack FINGER TENDON GRIP               a tendon that slips and bears no more than GRIP, N
-///     jam FINGER MOTOR                       a motor that does not turn
-///     hot FINGER MOTOR                       a driver that switches off for heat
-///     dead-gauge FINGER GAUGE [COUNT]        a gauge that shows COUNT, or what it shows now
-///     drift-gauge FINGER GAUGE SPEED         a gauge that drifts, N/s
-///     jump FINGER ENCODER COUNTS             an encoder that gains counts
-///     zero-lost FINGER                       a board that no longer vouches for its counts
+///     cut FINGER TENDON                      tear a tendon
+///     slack FINGER TENDON GRIP               let a tendon slip at tensions above GRIP, N
+///     jam FINGER MOTOR                       block a motor
+///     hot FINGER MOTOR                       switch a motor driver off, as at over-temperature
+///     dead-gauge FINGER GAUGE [COUNT]        freeze a gauge at COUNT, or at its current count
+///     drift-gauge FINGER GAUGE SPEED         let a gauge drift, N/s
+///     jump FINGER ENCODER COUNTS             add COUNTS to the count of an encoder
+///     zero-lost FINGER                       declare the encoder counts invalid
 ///     emergency FINGER, supply FINGER, sensor FINGER
-///                                            the emergency stop input, the motor supply, a sensor that cannot be read
-///     reset FINGER                           power lost for a moment
-///     mend FINGER                            all that is whole again
-///     drop PROBABILITY [MS]                  frames are lost
-///     corrupt PROBABILITY [MS]               a bit is turned over
-///     delay PROBABILITY LATER [MS]           frames come LATER ms later
+///                                            activate the emergency stop input, fail the motor supply, fail a sensor
+///     reset FINGER                           interrupt the board's power for a moment
+///     mend FINGER                            repair all of the above
+///     drop PROBABILITY [MS]                  lose frames
+///     corrupt PROBABILITY [MS]               invert one bit of a frame
+///     delay PROBABILITY LATER [MS]           delay frames by LATER ms
 ///     duplicate PROBABILITY [MS], reorder PROBABILITY [MS]
-///     stall MS                               nothing comes, then everything
+///                                            send frames twice, send frames in the wrong order
+///     stall MS                               send nothing for MS, then everything at once
 ///     commands drop 0.01, commands stall MS, and so on
-///                                            the same to frames to the board
-///     good                                   a good line again, both ways
-///     unplug, replug                         the port vanishes; another one comes, whose path is answered
+///                                            the same for frames to the board
+///     good                                   end all line faults, in both directions
+///     unplug, replug                         remove the port; create a new port and answer with its path
 ///
-/// Positions and forces are in the finger's frame, lengths in cm. The end of standard input does not end the program,
+/// Positions and forces are in the finger's frame, lengths in cm. The program ends at `quit` or a signal, and not at
+/// the end of standard input, so that it can run detached.
 /// so that it can run detached; `quit` or a signal does.
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// The configuration whose fingers are simulated; without it the default ones. Ports in it do not matter.
+    /// The configuration of the simulated fingers; default values without it. Its ports are ignored.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// A finger of the board, 1 to 3; may be repeated. Unless configured, its address is its number.
+    /// A finger of the board, 1 to 3; may be repeated. Its address is its number unless the configuration has another.
     #[arg(
         long = "finger",
         value_name = "N",
@@ -81,7 +83,7 @@ pub struct Arguments {
         value_parser = |list: &str| Action::from_list("force", list)
     )]
     force: Option<Action>,
-    /// A wall before every finger from the start, cm and N/cm.
+    /// Put a wall in front of every finger from the start, cm and N/cm.
     #[arg(
         long,
         value_name = "PX,PY,PZ,NX,NY,NZ,K",
@@ -89,7 +91,7 @@ pub struct Arguments {
         value_parser = |list: &str| Action::from_list("wall", list)
     )]
     wall: Option<Action>,
-    /// A ball before every finger from the start, cm and N/cm.
+    /// Put a ball in front of every finger from the start, cm and N/cm.
     #[arg(
         long,
         value_name = "X,Y,Z,RADIUS,K",
@@ -97,26 +99,27 @@ pub struct Arguments {
         value_parser = |list: &str| Action::from_list("ball", list)
     )]
     ball: Option<Action>,
-    /// Seed of the gauge noise; each finger's own follows from it.
+    /// Seed of the gauge noise. The seed of each finger is derived from it.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// An order to carry out at the start; may be repeated.
     #[arg(long = "order", value_name = "ORDER")]
     orders: Vec<String>,
-    /// A symbolic link to the port, made now and removed by `quit`. A symbolic link that is there is replaced. A board
-    /// that is started again with the same link is the same board for its host: its unique number comes from this path.
+    /// Make a symbolic link to the port, and remove it at `quit`. An existing symbolic link is replaced. The board's
+    /// unique number is derived from this path, so a board that is restarted with the same link is the same board for
+    /// its host.
     #[arg(long, value_name = "PATH")]
     link: Option<PathBuf>,
-    /// SCHED_FIFO priority of the board, where permitted; 0: not real-time.
+    /// SCHED_FIFO priority of the board, where permitted. 0 means not real-time.
     #[arg(long, value_name = "P", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=99))]
     priority: u8,
-    /// Stand still, for up to two seconds, while the commands of a host of RATE cycles a second stay away: for a busy
-    /// machine, which carries the bytes of a pseudo-terminal late. The watchdog waits so much longer.
+    /// Pause the simulation for up to two seconds while commands of a host with RATE cycles per second are missing, and
+    /// extend the watchdog by the same time. This is for a busy machine, which delays the bytes of a pseudo-terminal.
     #[arg(long, value_name = "RATE", value_parser = rate)]
     patient: Option<f64>,
 }
 
-/// Starts the board, and carries out orders until `quit`.
+/// Starts the board, and executes orders until `quit`.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut configuration = match &arguments.config {
         Some(file) => hand::read_configuration(file)?,
@@ -138,11 +141,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         make_link(&port.path(), link)?;
     }
     say(&port.path().display().to_string())?;
-    let desk =
-        Desk { port: &port, configuration: &configuration, link: arguments.link.as_deref(), seed: arguments.seed };
+    let session =
+        Session { port: &port, configuration: &configuration, link: arguments.link.as_deref(), seed: arguments.seed };
     for order in &arguments.orders {
         let order = Order::read(order)?.ok_or("an --order is empty: see sun2xp board --help")?;
-        let answer = desk.carry_out(&order)?;
+        let answer = session.carry_out(&order)?;
         if answer.starts_with("error") {
             return Err(answer.into());
         }
@@ -157,7 +160,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 }
                 return Ok(());
             }
-            Ok(Some(order)) => say(&desk.carry_out(&order)?)?,
+            Ok(Some(order)) => say(&session.carry_out(&order)?)?,
             Ok(None) => {}
             Err(error) => say(&one_line(&format!("error {error}")))?,
         }
@@ -167,8 +170,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The board's number: by its link, so that it stays when the board is started again, or else by its process. Processes
-/// have numbers of less than 31 bits, and links of more.
+/// The unique number of the board. It is derived from the link, so that it stays the same when the board is restarted,
+/// or from the process number without a link. Process numbers have less than 31 bits. Bit 31 marks a number from a
+/// link.
 fn number(link: Option<&Path>) -> io::Result<u32> {
     match link {
         Some(link) => Ok(check(std::path::absolute(link)?.as_os_str().as_bytes()) | 1 << 31),
@@ -176,7 +180,7 @@ fn number(link: Option<&Path>) -> io::Result<u32> {
     }
 }
 
-/// One line, at once, also into a pipe.
+/// Prints one line and flushes it, because standard output may be a pipe.
 fn say(line: &str) -> io::Result<()> {
     let mut output = io::stdout().lock();
     writeln!(output, "{line}")?;
@@ -187,7 +191,7 @@ fn make_link(port: &Path, link: &Path) -> Result<(), Failure> {
     match std::fs::symlink_metadata(link) {
         Ok(there) if there.is_symlink() => std::fs::remove_file(link)?,
         Ok(_) => {
-            return Err(format!("{} exists and is no symbolic link: choose another --link", ShownPath(link)).into());
+            return Err(format!("{} exists and is not a symbolic link: choose another --link", ShownPath(link)).into());
         }
         Err(_) => {}
     }
@@ -195,16 +199,16 @@ fn make_link(port: &Path, link: &Path) -> Result<(), Failure> {
         .map_err(|error| format!("cannot make the symbolic link {}: {error}", ShownPath(link)).into())
 }
 
-/// Where orders are carried out.
-struct Desk<'a> {
+/// A running board, and what is needed to execute orders.
+struct Session<'a> {
     port: &'a SimulatedPort,
     configuration: &'a Configuration,
     link: Option<&'a Path>,
     seed: Option<u64>,
 }
 
-impl Desk<'_> {
-    /// The answer.
+impl Session<'_> {
+    /// Executes an order and returns the answer.
     fn carry_out(&self, order: &Order) -> Result<String, Failure> {
         let address = |number: u8| {
             let index = usize::from(number).checked_sub(1).filter(|&index| index < FINGERS)?;
@@ -217,7 +221,7 @@ impl Desk<'_> {
                 Ok(found.unwrap_or_else(|| format!("error this board has no finger {number}")))
             }
             Order::Trouble(trouble) => {
-                let answer = trouble.happen(self.port, self.seed.unwrap_or_default(), address);
+                let answer = trouble.apply(self.port, self.seed.unwrap_or_default(), address);
                 if *trouble == Trouble::PlugIn
                     && let Some(link) = self.link
                 {

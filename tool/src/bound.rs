@@ -1,4 +1,4 @@
-//! `sun2xp bound`: how stiff a finger may be, into the configuration file.
+//! `sun2xp bound`: finds the largest stiffness of a finger, and stores it in the configuration file.
 
 use crate::failure::Failure;
 use serde::Deserialize;
@@ -11,33 +11,33 @@ use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RATES, Scheme};
 use sun2xp::stability::{Limit, Search, StiffnessBound};
 
-/// Finds the bound on the largest eigenvalue of Kx: the stiffness up to which a finger is stable in every pose.
+/// Finds the bound on the largest eigenvalue of Kx, up to which a finger is stable in every pose.
 ///
-/// Controller, links, tendons and motors are those of the configuration, in simulation: without friction, exactly
-/// measured, with one cycle of delay. Poses within the joint limits, axes of Kx and loads are random. Where a pose
-/// carries less than the bound the servo scales Kx down, as it does here; no pose gets less than half. Takes up to a
-/// minute for each kind of finger.
+/// The search simulates the configured controller, links, tendons and motors without friction, with exact measurements
+/// and one cycle of delay. Poses within the joint limits, axes of Kx and loads are random. In a pose that is stable
+/// only below the bound, the servo scales Kx down, and so does the search. The bound is low enough that no pose needs a
+/// scale below one half. The search takes up to a minute for each kind of finger.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file. Without it: the one that OpenHand would take.
+    /// The configuration file. Without it: the file that OpenHand would use.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// Which finger; may be given again. Without it: all.
+    /// The finger; may be repeated. Without it: all fingers.
     #[arg(long = "finger", value_name = "N", value_parser = clap::value_parser!(i32).range(1..=FINGERS as i64))]
     fingers: Vec<i32>,
-    /// Writes the bounds into the configuration file, as finger.N.stiffness.bound, and nothing else.
+    /// Write the bounds into the configuration file as finger.N.stiffness.bound, and change nothing else.
     #[arg(long, requires = "config", conflicts_with_all = ["scheme", "rate"])]
     write: bool,
-    /// Another controller than the configured one: "figure 9", "figure 10", "figure 11" or "state feedback".
+    /// A controller other than the configured one: "figure 9", "figure 10", "figure 11" or "state feedback".
     #[arg(long, value_parser = scheme)]
     scheme: Option<Scheme>,
-    /// Another rate than the configured one, Hz.
+    /// A rate other than the configured one, Hz.
     #[arg(long, value_name = "HZ", value_parser = rate)]
     rate: Option<f64>,
-    /// How many poses.
+    /// Number of poses.
     #[arg(long, value_name = "N", default_value_t = 2000)]
     samples: usize,
-    /// Seed of all that is random.
+    /// Seed of the random numbers.
     #[arg(long, default_value_t = 1990)]
     seed: u64,
 }
@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 .bound(finger, configuration.hand.rate)
                 .map_err(|unusable| format!("finger {}: {} {}", index + 1, unusable.key, unusable.reason))?,
         };
-        tell(&configuration, index, &bound, twin.map(|&(other, _)| other))?;
+        report(&configuration, index, &bound, twin.map(|&(other, _)| other))?;
         found.push((index, bound));
     }
     let Some(path) = arguments.config.as_ref().filter(|_| arguments.write) else { return Ok(()) };
@@ -87,7 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether two fingers differ in nothing that their stability depends on.
+/// Whether two fingers are equal in everything that stability depends on.
 fn alike(one: &ConfiguredFinger, other: &ConfiguredFinger) -> bool {
     let parts = |of: &ConfiguredFinger| {
         (of.geometry.clone(), of.motor.clone(), of.tendon.clone(), of.joints.clone(), of.links.clone())
@@ -95,25 +95,24 @@ fn alike(one: &ConfiguredFinger, other: &ConfiguredFinger) -> bool {
     parts(one) == parts(other) && one.friction == other.friction && one.controller == other.controller
 }
 
-fn tell(configuration: &Configuration, index: usize, bound: &StiffnessBound, twin: Option<usize>) -> io::Result<()> {
+fn report(configuration: &Configuration, index: usize, bound: &StiffnessBound, twin: Option<usize>) -> io::Result<()> {
     let mut output = io::stdout().lock();
     let number = index + 1;
     writeln!(output, "finger {number}: {:.1} N/cm at {} Hz", bound.stiffness, configuration.hand.rate)?;
     if let Some(twin) = twin {
-        return writeln!(output, "    like finger {}", twin + 1);
+        return writeln!(output, "    as for finger {}", twin + 1);
     }
     let degrees =
         |pose: sun2xp::nalgebra::Vector3<f64>| format!("{:.0?} degrees", pose.map(f64::to_degrees).as_slice());
     match bound.limit {
-        Limit::Unstable(pose) => writeln!(output, "    more is unstable at {}", degrees(pose))?,
+        Limit::Unstable(pose) => writeln!(output, "    above this, unstable at {}", degrees(pose))?,
         Limit::Scaled(pose) => {
-            writeln!(output, "    with more, the servo would scale Kx down by more than half at {}", degrees(pose))?
+            writeln!(output, "    above this, the servo would scale Kx down by more than half at {}", degrees(pose))?
         }
     }
     writeln!(
         output,
-        "    {} samples stable; {:.1} % of the poses carry less, the softest {:.2} of it: there the servo scales Kx \
-         down",
+        "    {} samples stable; in {:.1} % of the poses the servo scales Kx down, in the worst one to {:.2} of it",
         bound.samples,
         100.0 * bound.scaled,
         bound.least_scale
@@ -123,8 +122,8 @@ fn tell(configuration: &Configuration, index: usize, bound: &StiffnessBound, twi
         0 => writeln!(output, "    {near} samples with the tip within 3 cm of the axis of joint 0: all stable"),
         _ => writeln!(
             output,
-            "    not covered: of {near} samples with the tip within 3 cm of the axis of joint 0 {unstable} are \
-             unstable, up to {distance:.1} cm"
+            "    not covered: {unstable} of {near} samples with the tip within 3 cm of the axis of joint 0 are \
+             unstable, at up to {distance:.1} cm"
         ),
     }
 }

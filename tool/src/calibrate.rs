@@ -1,4 +1,5 @@
-//! `sun2xp calibrate`: signs, zeros, friction and stiffness of the fingers, into the configuration file.
+//! `sun2xp calibrate`: finds signs, zeros, friction and stiffness of the fingers, and stores them in the configuration
+//! file.
 
 mod pose;
 
@@ -12,23 +13,29 @@ use sun2xp::hand::{Configured, Fingers, Hand};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 
-/// Finds signs, zeros, friction and stiffness of the fingers and writes them into the configuration file.
+/// Finds signs, zeros, friction and stiffness of the fingers, and writes them into the configuration file.
 ///
-/// Without --signs, --zero and --identify it does all three, in this order. The motors are off in the beginning. Signs:
-/// every motor turns a little, to and fro. Zero: tendons are let out and gauges read, then the encoders are zeroed as
-/// `finger.zeroing.method` says: without it, against the stops of the finger where `finger.zeroing` says where they
-/// are, and else at a pose that you are asked to hold the finger in. A pose that is not held is refused. Identify: the
-/// finger goes to its lower stops, moves its joints to and fro and presses. Needs the room that the joints can reach,
-/// and nothing in the hand. Only what was found is written; all else in the file stays.
+/// Without --signs, --zero and --identify the tool does all three, in this order. The motors are off at the beginning.
+///
+/// Signs: every motor turns a little in both directions.
+///
+/// Zero: the tendons are slackened and the gauges read. Then the encoders are zeroed by the method
+/// `finger.zeroing.method`. Without that key, they are zeroed against the stops of the finger if `finger.zeroing` gives
+/// their angles, or else at a pose in which you hold the finger. A finger that is not held in the pose is refused.
+///
+/// Identify: the finger goes to its lower stops, moves its joints in both directions and presses. It needs the whole
+/// range of its joints free of objects.
+///
+/// Only the results are written; the rest of the file stays unchanged.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file. The tool reads it, and writes what it has found into it after each task.
+    /// The configuration file. The tool reads it, and writes the results of each task into it.
     #[arg(long, value_name = "FILE")]
     config: PathBuf,
-    /// Which finger; may be given again. Without it: all. The ports of the others are not opened.
+    /// The finger; may be repeated. Without it: all fingers. The ports of other fingers are not opened.
     #[arg(long = "finger", value_name = "N", value_parser = clap::value_parser!(i32).range(1..=FINGERS as i64))]
     fingers: Vec<i32>,
-    /// Find which way motors, encoders and gauges count.
+    /// Find the directions in which motors, encoders and gauges count.
     #[arg(long)]
     signs: bool,
     /// Zero gauges and encoders.
@@ -37,10 +44,10 @@ pub struct Arguments {
     /// Measure friction and tendon stiffness. The finger must have been zeroed.
     #[arg(long)]
     identify: bool,
-    /// Do not wait for Enter where a person is to hold a finger or let it go: for scripts, with a jig.
+    /// Do not wait for Enter when a person is to hold a finger or let it go. For scripts, with a jig.
     #[arg(long)]
     yes: bool,
-    /// Write nothing.
+    /// Do not write the results.
     #[arg(long)]
     dry_run: bool,
 }
@@ -74,10 +81,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let found = found.map_err(|error| {
                 end_line();
                 let rest = fingers.numbers().filter(|&other| other > finger);
-                format!("{error}\n{}", arguments.to_go_on(finger, &tasks[done..], &rest.collect::<Vec<_>>()))
+                format!("{error}\n{}", arguments.instructions(finger, &tasks[done..], &rest.collect::<Vec<_>>()))
             })?;
-            tell(found)?;
-            // After each task: the file keeps these findings if the next task is refused.
+            report(found)?;
+            // Results are stored after each task, so that they are kept if a later task is refused.
             if !arguments.dry_run {
                 hand.store_calibration(finger)?;
             }
@@ -93,15 +100,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
-    /// What was asked for, in the order in which it is done.
+    /// The requested tasks, in the order of their execution.
     fn tasks(&self) -> Vec<Task> {
         let asked = [(Task::Signs, self.signs), (Task::Zero, self.zero), (Task::Identify, self.identify)];
         let everything = asked.iter().all(|&(_, asked)| !asked);
         asked.into_iter().filter(|&(_, asked)| asked || everything).map(|(task, _)| task).collect()
     }
 
-    /// What to do after a refusal: these tasks of the finger are left, and everything of the others.
-    fn to_go_on(&self, finger: i32, left: &[Task], others: &[i32]) -> String {
+    /// What to do after a refusal. `left` are the remaining tasks of this finger; all tasks of the `others` remain.
+    fn instructions(&self, finger: i32, left: &[Task], others: &[i32]) -> String {
         let command = format!("sun2xp calibrate --config {}", ShownPath(&self.config));
         let options = |tasks: &[Task]| {
             let option = |task| match task {
@@ -113,25 +120,25 @@ impl Arguments {
         };
         let again = if self.dry_run { self.tasks() } else { left.to_vec() };
         let mut text = format!(
-            "Nothing more is done. To go on when that is mended: {command} --finger {finger}{}",
+            "The calibration has stopped. To continue after the cause is removed: {command} --finger {finger}{}",
             options(&again)
         );
         if !others.is_empty() {
             let fingers: String = others.iter().map(|other| format!(" --finger {other}")).collect();
-            text += &format!("; and for what was not begun: {command}{fingers}{}", options(&self.tasks()));
+            text += &format!("; then for the remaining fingers: {command}{fingers}{}", options(&self.tasks()));
         }
         text
     }
 }
 
-/// Ends a line of progress on a terminal.
+/// Ends the progress line on a terminal.
 fn end_line() {
     if io::stderr().is_terminal() {
         let _ = writeln!(io::stderr());
     }
 }
 
-/// Progress on standard error: a line that is overwritten on a terminal, else one line for each step.
+/// Shows progress on standard error. On a terminal one line is overwritten; otherwise there is one line per step.
 fn show(finger: i32, task: Task) -> impl FnMut(Progress) {
     let doing = match task {
         Task::Signs => "finding signs",
@@ -143,54 +150,54 @@ fn show(finger: i32, task: Task) -> impl FnMut(Progress) {
     move |progress| {
         let what = match progress.step {
             Step::TakingUpSlack => "taking up slack",
-            Step::ZeroingGauges => "reading the gauges with the tendons let out",
-            Step::TryingPose => "pushing lightly against what holds the pose",
+            Step::ZeroingGauges => "reading the gauges with slack tendons",
+            Step::TryingPose => "pushing lightly to check that the pose is held",
             Step::ReadingEncoders => "reading the encoders",
-            Step::SeekingStops => "leading the joints against their stops",
+            Step::SeekingStops => "moving the joints against their stops",
             Step::TryingMotors => "turning the motors one by one",
             Step::ComparingGauges => "comparing the gauges",
             Step::MovingJoints => "moving the joints",
             Step::Pressing => "pressing against the stops",
-            Step::Returning => "going back to where it began",
+            Step::Returning => "returning to the initial pose",
         };
         let percent = (progress.part * 100.0) as u32;
         if last != Some((progress.step, if terminal { percent } else { 0 })) {
             let (begin, end) = if terminal { ("\r\x1b[K", "") } else { ("", "\n") };
-            // Nobody may be reading it: no reason to stop the finger.
+            // A failed write, for example because nobody reads, is no reason to stop the finger.
             let _ = write!(io::stderr(), "{begin}finger {finger}, {doing}: {percent:3} %, {what}{end}");
             last = Some((progress.step, if terminal { percent } else { 0 }));
         }
     }
 }
 
-/// What is found and stored nowhere.
-fn tell(findings: Findings) -> io::Result<()> {
+/// Prints results that are not stored.
+fn report(findings: Findings) -> io::Result<()> {
     let mut output = io::stdout().lock();
     end_line();
     match findings {
         Findings::Signs(_) => Ok(()),
         Findings::Zeros(zeros) => {
             let degrees = zeros.joint_error.map(f64::to_degrees);
-            writeln!(output, "joint angles were off by, degrees:      {}", list(degrees.as_slice(), 2))?;
+            writeln!(output, "joint angle errors before zeroing, degrees: {}", list(degrees.as_slice(), 2))?;
             if let Some(range) = zeros.range_error {
                 writeln!(
                     output,
-                    "way between stops, more than configured: {}",
+                    "stop range beyond configuration, degrees:   {}",
                     list(range.map(f64::to_degrees).as_slice(), 2)
                 )?;
             }
             Ok(())
         }
         Findings::Identified(found) => {
-            writeln!(output, "gauge gain over the configured one: {}", list(found.gauge_gain.as_slice(), 4))?;
-            writeln!(output, "motor torque over command, by the gauges: {}", list(found.motor_ratio.as_slice(), 3))?;
-            writeln!(output, "viscous joint friction, N cm s/rad:       {}", list(found.joint_viscous.as_slice(), 3))?;
-            writeln!(output, "motor travel not explained, cm rms:       {:.5}", found.travel_residual)
+            writeln!(output, "gauge gain / configured gain:          {}", list(found.gauge_gain.as_slice(), 4))?;
+            writeln!(output, "motor torque by gauges / command:      {}", list(found.motor_ratio.as_slice(), 3))?;
+            writeln!(output, "viscous joint friction, N cm s/rad:    {}", list(found.joint_viscous.as_slice(), 3))?;
+            writeln!(output, "residual of the motor travel, cm rms:  {:.5}", found.travel_residual)
         }
     }
 }
 
-/// A table of what was configured and what was found.
+/// Prints a table of the configured and the found values.
 fn compare(finger: i32, before: &ConfiguredFinger, after: &ConfiguredFinger) -> io::Result<()> {
     let mut output = io::stdout().lock();
     writeln!(output, "{:<32} {:<36} {:<36} changed", format!("finger.{finger}"), "configured", "found")?;

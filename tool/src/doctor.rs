@@ -1,4 +1,4 @@
-//! `sun2xp doctor`: whether this machine can run the hand as it is configured.
+//! `sun2xp doctor`: checks whether this machine can run the hand as configured.
 
 mod examination;
 mod finding;
@@ -16,24 +16,24 @@ use std::process::ExitCode;
 use std::time::Duration;
 use sun2xp::hand::{self, Configured, Fingers};
 
-/// Looks at kernel, limits, cores and ports, measures wake-ups and round trips, and says what to change. Motors stay
-/// off.
+/// Checks kernel, limits, cores and ports, measures wake-ups and round trips, and reports what to change. The motors
+/// stay off.
 ///
-/// Exit status 0: the hand can run as configured. 1: it cannot, or not at its rate.
+/// Exit status: 0 if the hand can run as configured, 1 if it cannot, or not at its rate.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file. Without it: the one that OpenHand would read.
+    /// The configuration file. Without it: the file that OpenHand would use.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// How long to measure.
+    /// Duration of the measurements, s.
     #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
     seconds: f64,
-    /// For machines: one JSON object, with `pass` and `findings`.
+    /// Print one JSON object with `pass` and `findings`, for other programs.
     #[arg(long)]
     json: bool,
 }
 
-/// What `--json` prints.
+/// The output of `--json`.
 #[derive(Serialize)]
 struct Examination<'a> {
     pass: bool,
@@ -52,13 +52,13 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if arguments.json {
         writeln!(output, "{}", serde_json::to_string_pretty(&Examination { pass, findings: &findings })?)?;
     } else {
-        findings.iter().try_for_each(|finding| tell(&mut output, finding))?;
+        findings.iter().try_for_each(|finding| report(&mut output, finding))?;
         writeln!(output, "{}", if pass { "pass" } else { "fail" })?;
     }
     Ok(if pass { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-fn tell(output: &mut impl Write, finding: &Finding) -> io::Result<()> {
+fn report(output: &mut impl Write, finding: &Finding) -> io::Result<()> {
     let mark = match finding.verdict {
         Rating::Good => "good   ",
         Rating::Warning => "warning",
@@ -71,6 +71,6 @@ fn tell(output: &mut impl Write, finding: &Finding) -> io::Result<()> {
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if (0.1..=60.0).contains(&seconds) => Ok(seconds),
-        _ => Err("0.1 to 60 seconds".into()),
+        _ => Err("not a time of 0.1 to 60 seconds".into()),
     }
 }

@@ -1,6 +1,6 @@
-//! Why a command of the tool ends without success.
+//! Failures of the tool's commands.
 
 use std::error::Error;
 
-/// Its text is the line that the tool prints, and names cause and remedy.
+/// The reason why a command failed. The tool prints its text, which names cause and remedy, in one line.
 pub type Failure = Box<dyn Error>;

@@ -1,4 +1,4 @@
-//! The tool beside the library.
+//! The command-line tool of the library.
 
 #![deny(unsafe_code)]
 
@@ -22,7 +22,7 @@ struct Arguments {
     tool: Tool,
 }
 
-// There is one of it in a process.
+// A process has only one value of this type, so its size does not matter.
 #[allow(clippy::large_enum_variant)]
 #[derive(Subcommand)]
 enum Tool {

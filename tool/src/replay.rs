@@ -1,4 +1,4 @@
-//! `sun2xp replay`: computes again what a black box has recorded.
+//! `sun2xp replay`: recomputes the cycles of a black box file.
 
 use crate::failure::Failure;
 use std::collections::BTreeMap;
@@ -9,17 +9,17 @@ use sun2xp::control::Activity;
 use sun2xp::finger::{CycleRecord, Difference, Recording};
 use sun2xp::model::{Shown, ShownPath};
 
-/// Runs the pure controller over a black box and compares what it commands with what was commanded, bit for bit.
+/// Runs the controller over a black box file, and compares its commands with the recorded ones, bit for bit.
 ///
-/// Exit status: 0 all the same, 2 something differs, 1 the file cannot be replayed.
+/// Exit status: 0 if all are equal, 2 if something differs, 1 if the file cannot be replayed.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// What WriteBlackBox or `hand.black_box` has written.
+    /// A file written by WriteBlackBox or because of `hand.black_box`.
     #[arg(value_name = "FILE")]
     file: PathBuf,
 }
 
-/// Exit status where something differs.
+/// Exit status if something differs.
 const DIFFERENT: u8 = 2;
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
@@ -62,7 +62,7 @@ fn describe(recording: &Recording, output: &mut impl Write) -> io::Result<()> {
     let controls = || cycles.iter().filter_map(|cycle| cycle.control.as_ref());
     let skipped: u64 = controls().map(|control| control.input.skipped).sum();
     let adjusted = controls().filter(|control| control.previous != control.controller).count();
-    let anew = controls().filter(|control| control.input.anew_from.is_some()).count();
+    let restarts = controls().filter(|control| control.input.anew_from.is_some()).count();
     let mut set_points: Vec<_> = controls()
         .filter_map(|control| match control.input.activity {
             Activity::Follow(set_point) => Some(set_point),
@@ -72,7 +72,7 @@ fn describe(recording: &Recording, output: &mut impl Write) -> io::Result<()> {
     set_points.dedup();
     writeln!(
         output,
-        "events       {} set points, {adjusted} adjustments, {anew} times begun anew, {skipped} periods skipped",
+        "events       {} set points, {adjusted} adjustments, {restarts} restarts, {skipped} periods skipped",
         set_points.len()
     )?;
     let strongest = controls().map(|control| control.command.motor_torques.amax()).fold(0.0, f64::max);
@@ -80,7 +80,7 @@ fn describe(recording: &Recording, output: &mut impl Write) -> io::Result<()> {
 }
 
 fn show(first: &Difference, recording: &Recording, output: &mut impl Write) -> io::Result<()> {
-    // The file's first line is the header.
+    // The first line of the file is the header, so cycle 0 is in line 2.
     writeln!(output, "first        cycle {}, line {}", recording.cycles[first.index].cycle, first.index + 2)?;
     let (recorded, replayed) = (&first.recorded, &first.replayed);
     let (was, is) = (recorded.command.motor_torques, replayed.command.motor_torques);

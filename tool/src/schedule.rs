@@ -1,5 +1,5 @@
-//! `sun2xp schedule`: whether every cycle of a configured hand ends in time, at which rate that ends, and what another
-//! sensor would cost.
+//! `sun2xp schedule`: computes whether every cycle of a configured hand meets its deadline, the highest possible rate,
+//! and the cost of another sensor.
 
 mod off_line;
 
@@ -15,25 +15,26 @@ use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, RATES};
 use sun2xp::realtime::{CycleStage, Distribution};
 
-/// The largest file of costs that is read, bytes: it holds four numbers.
+/// Largest file of costs, bytes. It holds four numbers.
 const LARGEST_COSTS: u64 = 1 << 16;
 
-/// Whether every cycle of the hand ends in time: response times from worst cases, line times and the allocation of
-/// fingers.
+/// Computes whether every cycle of the hand meets its deadline, from worst-case times, line times and the allocation of
+/// the fingers.
 ///
 /// The worst cases of this machine are measured on the simulated hand, with the rate, threads, cores and priorities of
-/// the configuration, or read from --costs: a TOML file with `wake_up`, `write` (of one port), `read` (and decode one
-/// reply) and `compute` (one finger), all in us. Lines are as configured; a simulated port counts as a serial line of
-/// its baud. The analysis holds for any phases of the threads. Exit status 1: a deadline may be missed.
+/// the configuration. With --costs they are read from a TOML file with the keys `wake_up`, `write` (the commands of one
+/// port), `read` (receive and decode one reply) and `compute` (one finger), all in us. Lines are as configured; a
+/// simulated port counts as a serial line of its baud rate. The results hold for any phases of the threads. Exit status
+/// 1: a deadline may be missed.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file. Without it: the one that OpenHand would take.
+    /// The configuration file. Without it: the file that OpenHand would use.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// Worst cases instead of a measurement.
+    /// Read the worst cases from a file instead of measuring them.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["measure", "p999"])]
     costs: Option<PathBuf>,
-    /// For so long the simulated hand is measured, s.
+    /// Duration of the measurement, s.
     #[arg(
         long,
         value_name = "SECONDS",
@@ -41,14 +42,14 @@ pub struct Arguments {
         value_parser = clap::value_parser!(u64).range(1..=86_400)
     )]
     measure: u64,
-    /// Leave out one cycle in a thousand of each cost: on a virtual machine a pause of the whole machine is in every
-    /// maximum.
+    /// Use the 99.9 % value of each cost instead of its maximum. On a virtual machine every maximum includes a pause of
+    /// the whole machine.
     #[arg(long)]
     p999: bool,
-    /// Another sensor: bytes more in each reply.
+    /// Another sensor: additional bytes in each reply.
     #[arg(long, value_name = "N", default_value_t = 16)]
     sensor_bytes: usize,
-    /// Another sensor: computation more for each finger, us.
+    /// Another sensor: additional computing time per finger, us.
     #[arg(long, value_name = "US", default_value_t = 20.0, value_parser = not_negative)]
     sensor_compute: f64,
 }
@@ -79,13 +80,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Costs { wake_up, write, read, compute } = costs;
     writeln!(out, "Worst cases, us: wake-up {wake_up:.1}, write {write:.1}, read {read:.1}, compute {compute:.1}\n")?;
     table(&mut out, &schedule, &format!("{rate:.0} Hz"))?;
-    let title = format!("{rate:.0} Hz and {} bytes, {:.0} us more a finger", sensor.bytes, sensor.compute);
+    let title = format!("{rate:.0} Hz with {} more bytes and {:.0} us more per finger", sensor.bytes, sensor.compute);
     table(&mut out, &more, &title)?;
     let [fastest, with_sensor] =
         [&none, &sensor].map(|sensor| fastest_rate(&configuration, &costs, sensor, *RATES.end() as u32));
     let limited = |rate: u32, sensor| limits(&off_line_schedule(&configuration, f64::from(rate + 1), &costs, sensor));
     writeln!(out, "Every deadline is met up to {fastest} Hz: {}.", limited(fastest, &none))?;
-    writeln!(out, "With the sensor up to {with_sensor} Hz: {}.", limited(with_sensor, &sensor))?;
+    writeln!(out, "With the sensor, every deadline is met up to {with_sensor} Hz: {}.", limited(with_sensor, &sensor))?;
     out.flush()?;
     if schedule.iter().any(|thread| thread.limit.is_some()) {
         return Err(format!(
@@ -123,7 +124,7 @@ fn measure(configuration: &Configuration, arguments: &Arguments) -> Result<Costs
 
 fn table(out: &mut impl Write, schedule: &[Scheduled], title: &str) -> io::Result<()> {
     writeln!(out, "{title}:\n")?;
-    writeln!(out, "| thread | fingers | core | priority | computes | line busy | replies by | done by | deadlines |")?;
+    writeln!(out, "| thread | fingers | core | priority | computing | line busy | replies by | done by | deadlines |")?;
     writeln!(out, "|---|---|---|---|---|---|---|---|---|")?;
     for thread in schedule {
         let fingers = thread.fingers.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
@@ -144,18 +145,18 @@ fn table(out: &mut impl Write, schedule: &[Scheduled], title: &str) -> io::Resul
     writeln!(out)
 }
 
-/// What ends it, thread by thread.
+/// What limits the rate.
 fn limits(schedule: &[Scheduled]) -> String {
-    let first = schedule
-        .iter()
-        .find_map(|thread| thread.limit.map(|limit| format!("then {}, thread {}", missed(limit), thread.thread)));
-    first.unwrap_or_else(|| "the highest rate there is".into())
+    let first = schedule.iter().find_map(|thread| {
+        thread.limit.map(|limit| format!("above that, {}, thread {}", missed(limit), thread.thread))
+    });
+    first.unwrap_or_else(|| "the highest rate that can be configured".into())
 }
 
 fn missed(limit: RateLimit) -> &'static str {
     match limit {
         RateLimit::Line => "the line is too busy",
-        RateLimit::Replies => "replies may come too late",
-        RateLimit::Cycle => "a cycle may not be done in time",
+        RateLimit::Replies => "replies may arrive too late",
+        RateLimit::Cycle => "a cycle may end too late",
     }
 }

@@ -1,4 +1,4 @@
-//! `sun2xp board`: a board as a program of its own, found through the port that it names.
+//! `sun2xp board`: a board as a separate program, at the port that it prints.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -73,7 +73,7 @@ fn port_orders_and_end() {
     let before = board.order("state 2");
     assert_eq!(numbers(&before, "joints", 3).len(), 3);
     assert!(numbers(&before, "tensions", 4).iter().all(|&tension| tension > 4.9), "{before}");
-    // Along x only joint 0 can give way.
+    // A force along x can move joint 0 only.
     assert_eq!(board.order("force 2 1 0 0"), "ok");
     while numbers(&board.order("state 2"), "tip", 3)[0] < 0.05 {
         assert!(board.process.try_wait().unwrap().is_none());
@@ -97,7 +97,7 @@ fn the_end_of_its_input_does_not_end_it() {
 }
 
 #[test]
-fn things_break_while_it_runs_and_are_mended() {
+fn defects_occur_while_it_runs_and_are_repaired() {
     let mut board = Board::start(&["--finger", "1", "--order", "cut 1 2"]);
     let port = board.line();
     let tensions = |board: &mut Board| numbers(&board.order("state 1"), "tensions", 4);
@@ -107,13 +107,13 @@ fn things_break_while_it_runs_and_are_mended() {
     assert!(board.order("jam 7 1").starts_with("error this board has no finger 7"));
     assert!(board.order("jam 1 7").starts_with("error"));
 
-    // A line that carries nothing, then a good one.
+    // The line loses every frame, and then works again.
     assert_eq!(board.order("drop 1"), "ok");
     assert!(matches!(shake_hands(Path::new(&port), 1), Err(LinkError::Silent { .. })));
     assert_eq!(board.order("good"), "ok");
     shake_hands(Path::new(&port), 1).unwrap();
 
-    // The port vanishes under its user; the next one serves.
+    // The port vanishes while it is in use. The next port works.
     let mut link = Link::open(Path::new(&port), 1_000_000).unwrap();
     assert_eq!(board.order("unplug"), "ok");
     let met = link.receive(realtime::now() + 1000 * MS);

@@ -17,7 +17,7 @@ fn the_tool_stores_the_bound_and_keeps_the_rest_of_the_file() {
     let looked = run(&[]);
     assert!(looked.status.success(), "{looked:?}");
     assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
-    // Of one finger, for which alone it is looked.
+    // The search is limited to one finger.
     let one = run(&["--finger", "2", "--write"]);
     let said = String::from_utf8(one.stdout).unwrap();
     assert!(said.contains("finger 2:") && !said.contains("finger 1:") && !said.contains("finger 3:"), "{said}");

@@ -1,4 +1,4 @@
-//! `sun2xp calibrate` as a person and as a script start it.
+//! `sun2xp calibrate`, started by a person and by a script.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use tempfile::TempDir;
 
-/// A configuration file in a folder of its own.
+/// A configuration file in a temporary folder.
 struct Desk {
     folder: TempDir,
     text: String,
@@ -27,13 +27,13 @@ impl Desk {
         fs::read_to_string(self.file()).expect("there") == self.text
     }
 
-    /// With this on standard input.
+    /// Runs the tool with `input` on standard input.
     fn calibrate(&self, arguments: &[&str], input: &str) -> Output {
         let mut tool = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
         tool.args(["calibrate", "--config"]).arg(self.file()).args(arguments);
         tool.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut tool = tool.spawn().expect("the tool runs");
-        // It may have ended before it reads.
+        // The tool may end before it reads.
         let _ = tool.stdin.take().expect("a pipe").write_all(input.as_bytes());
         tool.wait_with_output().expect("the tool ends")
     }
@@ -49,7 +49,7 @@ fn contains(text: &str, parts: &[&str]) {
     }
 }
 
-/// A board with finger 1 at a pseudo-terminal of its own.
+/// A board with finger 1 at a pseudo-terminal.
 struct Board(Child);
 
 impl Board {
@@ -70,9 +70,9 @@ impl Drop for Board {
     }
 }
 
-/// Neither the boards of the others nor their ports are there.
+/// The other fingers have neither boards nor ports.
 #[test]
-fn one_finger_at_a_port_is_asked_to_be_held_in_its_pose() {
+fn a_person_is_asked_to_hold_one_finger_in_its_pose() {
     let links = tempfile::tempdir().expect("a folder");
     let link = links.path().join("board");
     let _board = Board::start(&link);
@@ -86,20 +86,20 @@ fn one_finger_at_a_port_is_asked_to_be_held_in_its_pose() {
     contains(
         &said(&output),
         &[
-            "finger 1 is zeroed at a pose, because zeroing.lower_stop_degrees and upper_stop_degrees do not say where \
-             its stops are",
+            "finger 1 is zeroed at a pose, because zeroing.lower_stop_degrees and upper_stop_degrees do not give the \
+             angles of its stops",
             "0.0 degrees, straight ahead",
             "-10.0 degrees, bent back",
             "60.0 degrees, bent inward",
-            "Press Enter when it is held there",
-            "nobody has pressed Enter",
+            "Press Enter when you hold it there",
+            "standard input ended before Enter was pressed",
             "--yes",
         ],
     );
     assert!(desk.unchanged());
 }
 
-/// A built-in simulated finger stands in its pose, but nothing holds it there.
+/// A built-in simulated finger is in its pose, but nothing holds it there.
 #[test]
 fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
     let desk = Desk::new("[hand]\nrate = 500\n[finger]\nport = \"simulated\"\n[finger.zeroing]\nmethod = \"pose\"\n");
@@ -114,7 +114,7 @@ fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
                 "finger 2, zeroing:",
                 "finger 2 is not calibrated, its motors are off, and nothing was changed: nothing holds the finger in \
                  its pose",
-                "--finger 2 --zero --identify; and for what was not begun:",
+                "--finger 2 --zero --identify; then for the remaining fingers:",
                 "--finger 3 --zero --identify\n",
             ],
         );
@@ -123,7 +123,7 @@ fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
     }
 }
 
-/// The command that is printed to go on leaves the signs out: the file must have them.
+/// The printed command to continue does not find the signs again, so the file must have them.
 #[test]
 fn signs_are_stored_before_a_zero_that_is_refused() {
     let links = tempfile::tempdir().expect("a folder");
@@ -137,7 +137,7 @@ fn signs_are_stored_before_a_zero_that_is_refused() {
     ));
     let output = desk.calibrate(&["--finger", "1"], "");
     assert_eq!(output.status.code(), Some(1));
-    contains(&said(&output), &["nobody has pressed Enter"]);
+    contains(&said(&output), &["standard input ended before Enter was pressed"]);
     let stored = fs::read_to_string(desk.file()).expect("there");
     contains(&stored, &["[finger.1.encoder]\nsign = [1, 1, 1, 1]"]);
 }
@@ -152,8 +152,8 @@ fn a_finger_whose_stops_are_known_is_zeroed_against_them() {
     let output = desk.calibrate(&["--finger", "1", "--zero"], "");
     assert!(output.status.success(), "{}", said(&output));
     let text = said(&output);
-    contains(&text, &["finger 1, zeroing:", "leading the joints against their stops"]);
+    contains(&text, &["finger 1, zeroing:", "moving the joints against their stops"]);
     assert!(!text.contains("Press Enter"), "{text}");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("way between stops"), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("stop range beyond"), "{output:?}");
     assert!(!desk.unchanged());
 }

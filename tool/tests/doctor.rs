@@ -1,4 +1,4 @@
-//! `sun2xp doctor` as its users run it: on the simulated hand, on ports that do not serve, and for machines.
+//! `sun2xp doctor`: on the simulated hand, on unusable ports, and with output for other programs.
 
 use serde_json::Value;
 use std::fs;
@@ -9,7 +9,8 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
-/// Runs it with a configuration, and checks that exit status, `pass` and the verdicts agree; the findings.
+/// Runs the doctor with a configuration and returns the findings. Checks that the exit status, `pass` and the verdicts
+/// agree.
 fn examined(configuration: &str) -> Vec<Value> {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("named.toml");
@@ -51,14 +52,14 @@ fn the_simulated_hand_is_examined_whole() {
     };
     assert_eq!((measured("wake-up").count(), measured("port").count(), measured("round trip").count()), (3, 3, 3));
     for finding in measured("round trip") {
-        // 0.25 s on three ports, at 500 Hz.
+        // 0.25 s for three ports at 500 Hz.
         let found = finding["found"].as_str().expect("a text");
         assert!(found.starts_with("median ") && found.contains("of 41 lost"), "{found}");
     }
 }
 
 #[test]
-fn a_port_that_does_not_serve_fails_with_its_remedy() {
+fn an_unusable_port_fails_with_its_remedy() {
     let findings = examined("[finger.2]\nport = '/dev/there-is-no-such-port'\n");
     let missing = find(&findings, "port /dev/there-is-no-such-port");
     assert_eq!(missing["verdict"], "failure");
@@ -72,7 +73,7 @@ fn a_port_that_does_not_serve_fails_with_its_remedy() {
     let busy = find(&findings, &format!("port {}", board.path().display()));
     assert!(busy["advice"].as_str().is_some_and(|advice| advice.contains("in use")), "{busy}");
 
-    // A board with another address answers, and is not the finger's.
+    // A board with another address answers. It does not belong to the finger.
     drop(taken);
     let findings = examined(&configuration.replace("port", "address = 9\nport"));
     let foreign = find(&findings, &format!("round trip on {}", board.path().display()));
@@ -81,7 +82,7 @@ fn a_port_that_does_not_serve_fails_with_its_remedy() {
 }
 
 #[test]
-fn people_get_lines_and_a_configuration_that_cannot_be_used_is_refused() {
+fn the_report_is_readable_and_an_invalid_configuration_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("named.toml");
     fs::write(&file, "").expect("written");

@@ -1,4 +1,4 @@
-//! A program with more rights than its caller takes no configuration from the caller.
+//! A program with more privileges than its caller ignores configurations of the caller.
 
 #[allow(dead_code)]
 #[path = "../../tests/common/tools.rs"]
@@ -10,15 +10,15 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-/// A group that owns nothing.
+/// A group that owns no files.
 const NOBODY: u32 = 65534;
 
 /// The file that such a program reads.
 const SYSTEM_FILE: &str = "/etc/xdg/sun2xp/sun2xp.toml";
 
-/// The tool in a folder of its own, in another group than its caller. None where this user cannot do that.
+/// A copy of the tool that runs with another group than its caller. None if this user cannot make one.
 fn setgid_tool() -> Option<(TempDir, PathBuf)> {
-    // Not in /tmp, which may be mounted nosuid.
+    // The folder is not in /tmp, which may be mounted nosuid.
     let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
     let tool = folder.path().join("sun2xp");
     copy(env!("CARGO_BIN_EXE_sun2xp"), &tool).expect("a copy");
@@ -31,20 +31,20 @@ fn setgid_tool() -> Option<(TempDir, PathBuf)> {
     Some((folder, tool))
 }
 
-/// A group that this process can give a file to, and is not its own.
+/// A group that this process may give to a file and that is not its own.
 fn another_group() -> Option<u32> {
-    // SAFETY: these have no arguments, and always succeed.
+    // SAFETY: these functions have no arguments and always succeed.
     let (user, own) = unsafe { (libc::geteuid(), libc::getegid()) };
     if user == 0 {
         return Some(NOBODY);
     }
     let mut groups = [0; 1024];
-    // SAFETY: the array has as many places as are told.
+    // SAFETY: the array has as many places as the first argument says.
     let count = unsafe { libc::getgroups(groups.len() as libc::c_int, groups.as_mut_ptr()) };
     groups.iter().take(usize::try_from(count).ok()?).copied().find(|&group| group != own)
 }
 
-/// Whether it took the rate of a configuration from its caller, and what it said.
+/// Runs the tool. Returns whether it used the rate of the caller's configuration, and its output.
 fn rate(tool: &Path, folder: &Path, environment: &[(&str, &Path)]) -> (bool, String) {
     let mut command = Command::new(tool);
     command
@@ -59,7 +59,7 @@ fn rate(tool: &Path, folder: &Path, environment: &[(&str, &Path)]) -> (bool, Str
 }
 
 #[test]
-fn a_setgid_program_takes_no_configuration_from_its_caller() {
+fn a_setgid_program_ignores_configurations_of_its_caller() {
     let Some((folder, tool)) = setgid_tool() else { return };
     let folder = folder.path();
     if Path::new(SYSTEM_FILE).exists() {
@@ -80,7 +80,7 @@ fn a_setgid_program_takes_no_configuration_from_its_caller() {
     {
         let (taken, said) = rate(&tool, folder, &environment);
         assert!(!taken && said.contains("1000 Hz"), "{environment:?}: {said}");
-        // The same files count for a program without such rights.
+        // A program without such privileges uses the same files.
         let (taken, said) = rate(ordinary, folder, &environment);
         assert!(taken, "{environment:?}: {said}");
     }

@@ -1,4 +1,4 @@
-//! `sun2xp schedule` from a file of costs to its verdict.
+//! `sun2xp schedule` with a file of costs.
 
 use std::process::{Command, Output};
 
@@ -28,16 +28,16 @@ fn a_hand_that_meets_its_deadlines() {
     for part in [
         "| 3 | 3 | 2 | 80 | 3.0 % | 55 % | 660 us | 680 us | met |",
         "| 3 | 3 | 2 | 80 | 8.0 % | 65 % | 760 us | 830 us | met |",
-        "met up to 1454 Hz: then the line is too busy, thread 1",
+        "met up to 1454 Hz: above that, the line is too busy, thread 1",
         // 100 + 10 + 650 + 70 us.
-        "With the sensor up to 1204 Hz: then a cycle may not be done in time, thread 1",
+        "With the sensor, every deadline is met up to 1204 Hz: above that, a cycle may end too late, thread 1",
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");
     }
 }
 
 #[test]
-fn without_a_file_it_is_the_one_that_open_hand_would_take() {
+fn without_an_argument_the_tool_uses_the_file_of_open_hand() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("sun2xp.toml"), "[hand]\nrate = 640\n").expect("written");
     std::fs::write(folder.path().join("costs.toml"), COSTS).expect("written");
@@ -51,10 +51,10 @@ fn without_a_file_it_is_the_one_that_open_hand_would_take() {
 }
 
 #[test]
-fn a_hand_that_may_miss_one_and_costs_that_are_none() {
+fn a_hand_that_may_miss_a_deadline_and_invalid_costs() {
     let output = schedule("[finger]\ncore = 0\n", &COSTS.replace("15", "150"));
     assert_eq!(output.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&output.stdout).contains("a cycle may not be done in time"), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("a cycle may end too late"), "{output:?}");
     assert!(String::from_utf8_lossy(&output.stderr).contains("lower hand.rate"), "{output:?}");
     for (wrong, part) in [
         ("compute = -1", "costs.toml:4: compute: -1 is not"),

@@ -1,5 +1,4 @@
-//! Paths that lead to something other than a file of a sensible size are refused at once, wherever the library or the
-//! tool reads one.
+//! Library and tool refuse every path that is not a regular file of an acceptable size, and do so at once.
 
 use std::fs::{File, write};
 use std::path::Path;
@@ -7,7 +6,7 @@ use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// What the tool answers. It must not take longer than this, and must not use more than half a gigabyte of memory.
+/// Runs the tool. It must end within a time limit and use less than half a gigabyte of memory.
 fn tool(arguments: &[&str], configuration: Option<&Path>) -> Output {
     let mut command = Command::new("sh");
     command.args(["-c", "ulimit -v 524288; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_sun2xp")]).args(arguments);
@@ -38,7 +37,7 @@ fn every_file_that_is_read_is_a_regular_file_of_a_sensible_size() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
     assert!(Command::new("mkfifo").arg(path("fifo")).status().expect("mkfifo").success());
-    // Sparse: it takes no space.
+    // The file is sparse and takes no space.
     File::create(path("large")).and_then(|file| file.set_len(1 << 40)).expect("made");
     write(path("good"), "").expect("written");
     write(path("costs"), "wake_up = 1\nwrite = 1\nread = 1\ncompute = 1\n").expect("written");

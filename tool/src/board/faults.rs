@@ -1,30 +1,30 @@
-//! Orders of `sun2xp board` that break things.
+//! Orders of `sun2xp board` that cause faults.
 
 use sun2xp::model::Shown;
 use sun2xp::simulated::{Defect, LineFault, SimulatedPort};
 
-/// What an order does to the board or its cable.
+/// A fault of the board or its cable, or the end of faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trouble {
-    /// To a finger, by its number.
+    /// A defect of the finger with this number.
     Finger(u8, Defect),
-    /// No defects any more.
+    /// The end of all defects of the finger with this number.
     Mend(u8),
-    /// To frames from the board: with this probability, for so long, ns.
+    /// A fault of frames from the board, with this probability and duration, ns.
     Line(LineFault, f64, u64),
-    /// The same to frames to the board.
+    /// The same for frames to the board.
     LineToBoard(LineFault, f64, u64),
-    /// The line is good again.
+    /// The end of all line faults.
     GoodLine,
     Unplug,
     PlugIn,
 }
 
-/// A longer time than any program runs.
-const FOR_EVER: u64 = u64::MAX;
+/// Longer than any program runs.
+const FOREVER: u64 = u64::MAX;
 
 impl Trouble {
-    /// None: not an order of this kind.
+    /// Reads an order; none if it is not of this kind.
     pub fn read(words: &[&str]) -> Result<Option<Self>, String> {
         let [name, rest @ ..] = words else { return Ok(None) };
         let numbers = || -> Result<Vec<f64>, String> { rest.iter().map(|word| number(word)).collect() };
@@ -42,13 +42,13 @@ impl Trouble {
                     _ => LineFault::Reorder,
                 };
                 match numbers()?[..] {
-                    [chance] => Trouble::Line(fault, probability(chance)?, FOR_EVER),
+                    [chance] => Trouble::Line(fault, probability(chance)?, FOREVER),
                     [chance, time] => Trouble::Line(fault, probability(chance)?, nanoseconds(time)?),
                     _ => return Err(format!("usage: {name} PROBABILITY [MS]")),
                 }
             }
             "delay" => match numbers()?[..] {
-                [chance, delay] => Trouble::Line(LineFault::Delay(nanoseconds(delay)?), probability(chance)?, FOR_EVER),
+                [chance, delay] => Trouble::Line(LineFault::Delay(nanoseconds(delay)?), probability(chance)?, FOREVER),
                 [chance, delay, time] => {
                     let fault = LineFault::Delay(nanoseconds(delay)?);
                     Trouble::Line(fault, probability(chance)?, nanoseconds(time)?)
@@ -120,15 +120,15 @@ impl Trouble {
         Ok(Some(Trouble::Finger(finger, defect)))
     }
 
-    /// Makes it happen, and answers. `address`: of a finger, by its number.
-    pub fn happen(&self, port: &SimulatedPort, seed: u64, address: impl Fn(u8) -> Option<u8>) -> String {
+    /// Causes the fault and returns the answer. `address` maps the number of a finger to its address.
+    pub fn apply(&self, port: &SimulatedPort, seed: u64, address: impl Fn(u8) -> Option<u8>) -> String {
         let finger = |number: u8, act: &dyn Fn(&mut sun2xp::simulated::SimulatedFinger)| {
             let found = address(number).and_then(|address| port.with_finger(address, |finger| act(finger)));
             found.map_or_else(|| format!("error this board has no finger {number}"), |()| "ok".into())
         };
         match *self {
             Trouble::Finger(number, defect) => finger(number, &|finger| {
-                // The part was looked at when the order was read.
+                // The number of the part was checked when the order was read.
                 finger.suffer(&defect);
             }),
             Trouble::Mend(number) => finger(number, &sun2xp::simulated::SimulatedFinger::mend),
@@ -196,11 +196,11 @@ mod tests {
             ("jump 1 2 -300", Trouble::Finger(1, Defect::EncoderJump { encoder: 2, counts: -300 })),
             ("reset 3", Trouble::Finger(3, Defect::Reset)),
             ("mend 3", Trouble::Mend(3)),
-            ("drop 0.05", Trouble::Line(LineFault::Drop, 0.05, FOR_EVER)),
+            ("drop 0.05", Trouble::Line(LineFault::Drop, 0.05, FOREVER)),
             ("corrupt 1 20", Trouble::Line(LineFault::Corrupt, 1.0, 20_000_000)),
             ("delay 0.5 3 100", Trouble::Line(LineFault::Delay(3_000_000), 0.5, 100_000_000)),
             ("stall 50", Trouble::Line(LineFault::Stall, 1.0, 50_000_000)),
-            ("commands drop 0.05", Trouble::LineToBoard(LineFault::Drop, 0.05, FOR_EVER)),
+            ("commands drop 0.05", Trouble::LineToBoard(LineFault::Drop, 0.05, FOREVER)),
             ("commands stall 50", Trouble::LineToBoard(LineFault::Stall, 1.0, 50_000_000)),
             ("unplug", Trouble::Unplug),
             ("replug", Trouble::PlugIn),

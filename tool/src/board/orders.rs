@@ -1,4 +1,4 @@
-//! What `sun2xp board` can be told.
+//! The orders of `sun2xp board`.
 
 use super::faults::Trouble;
 use sun2xp::model::Shown;
@@ -6,7 +6,7 @@ use sun2xp::model::configuration::Surface;
 use sun2xp::nalgebra::Vector3;
 use sun2xp::simulated::SimulatedFinger;
 
-/// A line of standard input.
+/// An order: one line of standard input.
 #[derive(Debug, PartialEq)]
 pub enum Order {
     For(u8, Action),
@@ -14,7 +14,7 @@ pub enum Order {
     Quit,
 }
 
-/// What is done to one finger, or asked of it.
+/// An action on one finger, or a query of its state.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     Force([f64; 3]),
@@ -25,7 +25,7 @@ pub enum Action {
 }
 
 impl Order {
-    /// None: an empty line.
+    /// Reads an order; none for an empty line.
     pub fn read(line: &str) -> Result<Option<Self>, String> {
         let words: Vec<&str> = line.split_whitespace().collect();
         if let Some(trouble) = Trouble::read(&words)? {
@@ -47,7 +47,7 @@ fn numbers_in(words: &[&str]) -> Result<Vec<f64>, String> {
 }
 
 impl Action {
-    /// From an option's value: numbers with commas between them.
+    /// Reads the value of an option: numbers separated by commas.
     pub fn from_list(name: &str, list: &str) -> Result<Self, String> {
         let words: Vec<&str> = list.split(',').collect();
         Self::new(name, &numbers_in(&words)?)
@@ -79,7 +79,7 @@ impl Action {
         }
     }
 
-    /// The answer.
+    /// Executes the action and returns the answer.
     pub fn apply(&self, finger: &mut SimulatedFinger) -> String {
         let (torques, status) = (finger.motor_torques(), finger.status());
         let times = [Some(finger.clock()), finger.commanded_at(), finger.ended_at()];

@@ -1,29 +1,33 @@
-//! The person beside a finger that is zeroed at a pose: what to hold, and when to let go.
+//! Prompts for the person who holds a finger that is zeroed at a pose.
 
 use crate::failure::Failure;
 use std::io::{self, Write};
 use sun2xp::model::configuration::ConfiguredFinger;
 
-/// Asks for the pose that the finger is to be held in. `yes`: does not wait for Enter.
+/// Asks the person to hold the finger in its zeroing pose. With `yes` it does not wait for Enter.
 pub fn ask_to_hold(finger: i32, configured: &ConfiguredFinger, yes: bool) -> Result<(), Failure> {
     let reason = match configured.zeroing.method {
         Some(_) => "zeroing.method is \"pose\"",
-        None => "zeroing.lower_stop_degrees and upper_stop_degrees do not say where its stops are",
+        None => "zeroing.lower_stop_degrees and upper_stop_degrees do not give the angles of its stops",
     };
     let text = format!(
         "finger {finger} is zeroed at a pose, because {reason}.\n\
          Hold it in this pose with a jig or a steady hand, until its zeros are found (about 10 s):\n{}",
         pose(configured.zeroing.pose_degrees)
     );
-    wait(&text, "when it is held there", yes)
+    wait(&text, "when you hold it there", yes)
 }
 
-/// Asks to let go of a finger that moves by itself from now on.
+/// Asks the person to let go of a finger that will move by itself.
 pub fn ask_to_let_go(finger: i32, yes: bool) -> Result<(), Failure> {
-    wait(&format!("finger {finger} moves by itself next. Let go of it and clear its room.\n"), "when it is free", yes)
+    wait(
+        &format!("finger {finger} will move by itself. Let go of it and clear the space around it.\n"),
+        "when it is free",
+        yes,
+    )
 }
 
-/// The joints in words, one a line.
+/// Describes the joints in words, one per line.
 fn pose([side, base, middle]: [f64; 3]) -> String {
     let toward = |angle: f64, positive, negative, zero| match angle {
         angle if angle > 0.0 => positive,
@@ -45,16 +49,18 @@ fn wait(text: &str, when: &str, yes: bool) -> Result<(), Failure> {
     let mut output = io::stderr().lock();
     write!(output, "{text}")?;
     if yes {
-        writeln!(output, "Goes on at once (--yes).")?;
+        writeln!(output, "Continuing without waiting (--yes).")?;
         return Ok(());
     }
-    write!(output, "Press Enter {when}, or Ctrl-C to give up: ")?;
+    write!(output, "Press Enter {when}, or Ctrl-C to cancel: ")?;
     output.flush()?;
     if io::stdin().read_line(&mut String::new())? == 0 {
         writeln!(output)?;
-        return Err("standard input has ended, and nobody has pressed Enter: start it from a terminal, or with --yes \
-                    where a jig holds the finger"
-            .into());
+        return Err(
+            "standard input ended before Enter was pressed: run the tool in a terminal, or with --yes if a jig \
+                    holds the finger"
+                .into(),
+        );
     }
     Ok(())
 }
@@ -64,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_joint_is_told_in_degrees_and_in_words() {
+    fn every_joint_is_described_in_degrees_and_in_words() {
         let text = pose([-5.0, 30.0, 0.0]);
         for part in
             ["-5.0 degrees, swung toward its -x axis", "30.0 degrees, bent inward", " 0.0 degrees, in line with"]

@@ -1,4 +1,4 @@
-//! Whether this machine and its ports can run a hand as it is configured, and what to change where not.
+//! Checks whether this machine and its ports can run a hand as configured, and what to change if not.
 
 use super::finding::Finding;
 use super::{machine, measured, ports};
@@ -7,11 +7,11 @@ use std::time::Duration;
 use sun2xp::hand::{Fingers, HandError, check, simulate};
 use sun2xp::model::configuration::Configuration;
 
-/// Looks at the machine, whose files are below `root` (`/`, but for tests), and at the ports of a hand, which must be
-/// closed. Measures for about `duration`. Motors stay off.
+/// Checks the machine, whose files are below `root` (`/`, except in tests), and the ports of a hand, which must be
+/// closed. The measurements take about `duration`. The motors stay off.
 ///
 /// # Errors
-/// A configuration that cannot be used, a system that refuses a thread or a pseudo-terminal.
+/// The configuration cannot be used, or the system refuses a thread or a pseudo-terminal.
 pub fn examine(configuration: &Configuration, root: &Path, duration: Duration) -> Result<Vec<Finding>, HandError> {
     check(configuration)?;
     let mut findings = machine::findings(configuration, root);

@@ -1,30 +1,30 @@
-//! What the examination has found, and how serious a finding is.
+//! A finding of the doctor, and its rating.
 
 use serde::Serialize;
 use sun2xp::model::configuration::{Configuration, RealTime};
 
-/// How serious a finding is, from harmless to grave.
+/// Rating of a finding, from harmless to serious.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Rating {
-    /// As it should be.
+    /// Nothing needs to be changed.
     Good,
     /// The hand runs, but worse than it could.
     Warning,
-    /// The hand cannot be opened, or does not keep its periods.
+    /// The hand cannot be opened, or misses its deadlines.
     Failure,
 }
 
-/// One thing that was looked at.
+/// The result of one check.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Finding {
-    /// What was looked at.
+    /// What was checked.
     pub subject: String,
-    /// What is to be thought of it.
+    /// The rating.
     pub verdict: Rating,
-    /// What is there, with numbers and units.
+    /// What was found, with numbers and units.
     pub found: String,
-    /// What that means and how to mend it; empty where it is good.
+    /// What that means, and how to fix it; empty if the rating is good.
     pub advice: String,
 }
 
@@ -43,7 +43,7 @@ impl Finding {
     }
 }
 
-/// What it is to lack something that makes a thread real-time.
+/// The finding for a missing permission that a real-time thread needs.
 pub(super) fn lacking(configuration: &Configuration, subject: &str, found: String, advice: String) -> Finding {
     match configuration.hand.real_time {
         RealTime::Enforce => Finding::new(Rating::Failure, subject, found, advice),

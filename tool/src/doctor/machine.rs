@@ -1,17 +1,17 @@
-//! What the files of /proc and /sys say of the kernel, its limits and its cores.
+//! Checks of the kernel, its limits and its cores, from files in /proc and /sys.
 
 use super::finding::{Finding, Rating, lacking};
 use std::fs::read_to_string;
 use std::path::Path;
 use sun2xp::model::configuration::Configuration;
 
-/// What three servo threads lock, with room, bytes: stacks, timings on their way, mailboxes.
+/// Memory that three servo threads lock, with reserve, bytes: stacks, rings and mailboxes.
 const LOCKED: u64 = 4 << 20;
 
 const CAP_IPC_LOCK: u32 = 14;
 const CAP_SYS_NICE: u32 = 23;
 
-/// The limits file that README tells to write.
+/// The limits file that README recommends.
 const LIMITS: &str = "/etc/security/limits.d/sun2xp.conf";
 
 pub(super) fn findings(configuration: &Configuration, root: &Path) -> Vec<Finding> {
@@ -40,23 +40,23 @@ fn kernel(version: &str, realtime: bool) -> Finding {
     if realtime || version.contains("PREEMPT_RT") {
         return Finding::good("kernel", format!("Linux {release}, PREEMPT_RT"));
     }
-    let advice = "An ordinary kernel mostly wakes threads up in time, but its worst wake-up has no bound. Install a \
-                  PREEMPT_RT kernel (Debian: apt install linux-image-rt-amd64) and boot it";
+    let advice = "An ordinary kernel usually wakes threads up in time, but its worst wake-up latency has no bound. \
+                  Install a PREEMPT_RT kernel (Debian: apt install linux-image-rt-amd64) and boot it";
     Finding::new(Rating::Warning, "kernel", format!("Linux {release}, without PREEMPT_RT"), advice)
 }
 
-/// `runtime` us of every `period` us are left to real-time threads.
+/// `runtime` us of every `period` us are available to real-time threads.
 fn throttling(runtime: &str, period: &str) -> Finding {
     let subject = "real-time throttling";
-    let mend = "sudo sysctl kernel.sched_rt_runtime_us=950000";
+    let remedy = "sudo sysctl kernel.sched_rt_runtime_us=950000";
     match (runtime.parse::<i64>(), period.parse::<i64>()) {
         (Ok(-1), _) => Finding::new(
             Rating::Warning,
             subject,
             "off",
             format!(
-                "A real-time thread that never sleeps would stop its core for good, and the ports with it. Switch the \
-                 throttling on: {mend}"
+                "A real-time thread that never sleeps would block its core permanently, and the ports with it. Switch \
+                 the throttling on: {remedy}"
             ),
         ),
         (Ok(runtime), Ok(period)) if period > 0 => {
@@ -67,13 +67,13 @@ fn throttling(runtime: &str, period: &str) -> Finding {
                     Rating::Failure,
                     subject,
                     found,
-                    format!("Real-time threads get no time at all. Change that: {mend}"),
+                    format!("Real-time threads get no time at all. Change that: {remedy}"),
                 ),
                 1..50 => Finding::new(
                     Rating::Warning,
                     subject,
                     found,
-                    format!("The servos may be stopped in the middle of a period. Change that: {mend}"),
+                    format!("The servos may be stopped in the middle of a period. Change that: {remedy}"),
                 ),
                 _ => Finding::good(subject, found),
             }
@@ -98,12 +98,12 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
         "The servos would have the jitter of ordinary threads. Write `@realtime - rtprio 90` into {LIMITS}, join the \
          group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
-    lacking(configuration, subject, format!("{wanted} is wanted, the rtprio limit is {limit}"), advice)
+    lacking(configuration, subject, format!("{wanted} is configured, the rtprio limit is {limit}"), advice)
 }
 
 fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> Finding {
     let subject = "locked memory";
-    // None: unlimited.
+    // No limit means unlimited.
     if capable || limit.is_none_or(|limit| limit >= LOCKED) {
         let by = if capable { "CAP_IPC_LOCK" } else { "the memlock limit" };
         return Finding::good(subject, format!("permitted by {by}"));
@@ -113,7 +113,7 @@ fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> F
         "When memory is short, a servo may have to wait for its own pages. Write `@realtime - memlock unlimited` into \
          {LIMITS}, join the group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
-    let found = format!("the memlock limit is {kilobytes} kB, the servos want {} kB", LOCKED / 1024);
+    let found = format!("the memlock limit is {kilobytes} kB, the servos need {} kB", LOCKED / 1024);
     lacking(configuration, subject, found, advice)
 }
 
@@ -125,17 +125,17 @@ fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -
     let found = format!("configured {wanted:?}, allowed {allowed:?}, isolated {isolated:?}");
     if let Some(core) = wanted.iter().find(|core| !allowed.contains(core)) {
         let advice =
-            format!("The servo cannot run on core {core}: set finger.core to one that is allowed (taskset -p $$)");
+            format!("The servo cannot run on core {core}: set finger.core to a permitted core (taskset -p $$)");
         return lacking(configuration, subject, found, advice);
     }
     if let Some(core) = wanted.iter().find(|core| !isolated.contains(core)) {
         let advice = format!(
-            "Other programs run on core {core} too and make the servo late: boot with isolcpus={core} nohz_full={core}"
+            "Other programs run on core {core} too and delay the servo: boot with isolcpus={core} nohz_full={core}"
         );
         return Finding::new(Rating::Warning, subject, found, advice);
     }
     if wanted.is_empty() && !isolated.is_empty() {
-        let advice = "Nobody uses the isolated cores: set finger.core to one of them";
+        let advice = "No servo uses the isolated cores: set finger.core to one of them";
         return Finding::new(Rating::Warning, subject, found, advice);
     }
     Finding::good(subject, found)
@@ -149,31 +149,31 @@ fn governor(online: &[usize], read: impl Fn(usize) -> Option<String>) -> Finding
     });
     match slow {
         Some((core, governor)) => {
-            let advice = "A core at a low frequency wakes up late. Set it to a high one: sudo cpupower frequency-set \
-                          -g performance";
+            let advice = "A core at a low frequency wakes up late. Select a high frequency: sudo cpupower \
+                          frequency-set -g performance";
             Finding::new(Rating::Warning, subject, format!("{governor} on core {core}"), advice)
         }
         None if online.iter().any(|&core| read(core).is_some()) => Finding::good(subject, "performance"),
-        None => Finding::good(subject, "none: hypervisor or firmware decides"),
+        None => Finding::good(subject, "none: the hypervisor or the firmware decides"),
     }
 }
 
-/// The soft limit in a line of /proc/self/limits, none: unlimited, or not there.
+/// The soft limit in a line of /proc/self/limits; none if it is unlimited or the line is missing.
 fn limit(limits: &str, name: &str) -> Option<u64> {
     field(limits, name).split_whitespace().next()?.parse().ok()
 }
 
-/// Whether an effective capability is in /proc/self/status.
+/// Whether /proc/self/status lists an effective capability.
 fn has(status: &str, capability: u32) -> bool {
     u64::from_str_radix(field(status, "CapEff:"), 16).is_ok_and(|bits| bits & 1 << capability != 0)
 }
 
-/// What follows a name at the beginning of a line.
+/// The rest of the line that begins with `name`.
 fn field<'a>(text: &'a str, name: &str) -> &'a str {
     text.lines().find_map(|line| line.strip_prefix(name)).unwrap_or("").trim()
 }
 
-/// The kernel's lists of cores: `0-2,5`.
+/// Parses the kernel's lists of cores, such as `0-2,5`.
 fn listed(list: &str) -> Vec<usize> {
     let range = |part: &str| {
         let (first, last) = part.split_once('-').unwrap_or((part, part));
@@ -189,7 +189,7 @@ mod tests {
     use sun2xp::model::configuration::RealTime;
     use tempfile::TempDir;
 
-    /// A machine as it should be.
+    /// Files of a machine that passes every check.
     const GOOD: [(&str, &str); 9] = [
         ("proc/version", "Linux version 6.1.0-18-rt-amd64 (debian) #1 SMP PREEMPT_RT Debian 6.1.76-1\n"),
         ("proc/sys/kernel/sched_rt_runtime_us", "950000\n"),
@@ -206,7 +206,7 @@ mod tests {
         ("sys/devices/system/cpu/cpu3/cpufreq/scaling_governor", "performance\n"),
     ];
 
-    /// What is found where one file of a good machine differs.
+    /// The findings if one file of a good machine differs.
     fn found(path: &str, text: &str, change: impl FnOnce(&mut Configuration)) -> Vec<Finding> {
         let root = TempDir::new().expect("a folder");
         for (file, text) in GOOD.into_iter().chain([(path, text)]) {
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn capabilities_do_instead_of_limits_and_enforcing_makes_failures() {
+    fn capabilities_replace_limits_and_enforcing_makes_failures() {
         let none = "Max locked memory  0  0 bytes\nMax realtime priority  0  0\n";
         let failures =
             found("proc/self/limits", none, |configuration| configuration.hand.real_time = RealTime::Enforce);

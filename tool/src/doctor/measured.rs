@@ -1,4 +1,4 @@
-//! Wake-ups of threads like the servo's, against the period.
+//! Wake-up latencies of threads like the servos', compared with the period.
 
 use super::finding::{Finding, Rating, lacking};
 use std::time::Duration;
@@ -8,20 +8,20 @@ use sun2xp::hand::priority;
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{Schedule, WakeUp, measure_wake_up, now};
 
-/// Threads are ready after this, ns.
+/// Time until all threads are ready, ns.
 const HEAD_START: u64 = 10_000_000;
 
-/// Wake-ups later than this part of the period, 99 of 100, take what the reply needs.
+/// Part of the period. If the 99 % wake-up latency exceeds it, the time for the replies becomes short.
 const LATE: f64 = 0.1;
 
-/// Later than this, and a period is lost every now and then.
+/// Part of the period. If the 99 % wake-up latency exceeds it, some periods are lost.
 const TOO_LATE: f64 = 0.5;
 
-/// What the kernel may add to the wake-up of a thread that is not real-time, ns: servos ask for 1. The kernel's own
-/// default is 50 us.
+/// Largest acceptable timer slack of a thread that is not real-time, ns. Servos request 1 ns; the kernel's default is
+/// 50 us.
 const SLACK: u64 = 1000;
 
-/// What wakes up as the servos would, all at once and staggered as they are.
+/// Measures threads that wake up as the servos would: all at the same time, staggered like them.
 pub(super) fn wake_ups(configuration: &Configuration, duration: Duration) -> Result<Vec<Finding>, HandError> {
     let period = (1e9 / configuration.hand.rate).round() as u64;
     let cycles = (duration.as_nanos() as u64 / period).max(1);
@@ -38,7 +38,7 @@ pub(super) fn wake_ups(configuration: &Configuration, duration: Duration) -> Res
         })
         .collect();
     let measuring = measuring.map_err(|source| HandError::System { doing: "start a thread", source })?;
-    // A thread that panicked has nothing to tell.
+    // A thread that panicked has no result.
     let measured = measuring.into_iter().filter_map(|(thread, measuring)| Some((thread, measuring.join().ok()?)));
     Ok(measured
         .flat_map(|(thread, wake_up)| {
@@ -62,8 +62,8 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
         _ => Rating::Good,
     };
     if verdict > Rating::Good {
-        let advice = "Something keeps this thread from running: other real-time threads, a busy or paused virtual \
-                      machine, power saving. Isolate a core for it (finger.core), or lower hand.rate";
+        let advice = "Something keeps this thread from running, for example other real-time threads, a busy or paused \
+                      virtual machine, or power saving. Isolate a core for it (finger.core), or lower hand.rate";
         return Finding::new(verdict, subject, found, advice);
     }
     if let Some(missing) = missing_permissions(vec![refusals]).first() {
@@ -78,11 +78,11 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
         return Finding::good(subject, format!("{slack} ns"));
     }
     if asked && wake_up.refusals.scheduling.is_none() {
-        return Finding::good(subject, format!("{slack} ns, which a real-time thread does not wait for"));
+        return Finding::good(subject, format!("{slack} ns, which does not apply to a real-time thread"));
     }
-    let advice = "The kernel may wake this thread up late by this time, and has refused to change it (prctl, \
-                  PR_SET_TIMERSLACK). Allow that call where a sandbox forbids it, or let the thread be real-time: \
-                  finger.priority";
+    let advice = "The kernel may wake this thread up late by this time, and refused to change it (prctl, \
+                  PR_SET_TIMERSLACK). Permit that call if a sandbox forbids it, or make the thread real-time \
+                  (finger.priority)";
     Finding::new(Rating::Warning, subject, format!("{slack} ns"), advice)
 }
 

@@ -1,4 +1,5 @@
-//! The ports of a hand: whether they can be opened, hold bytes back, and how long a round trip to the board takes.
+//! Checks of a hand's ports: whether they can be opened, whether adapters delay bytes, and how long a round trip to the
+//! board takes.
 
 use super::finding::{Finding, Rating};
 use std::os::unix::fs::MetadataExt;
@@ -17,10 +18,10 @@ use sun2xp::realtime::{
 };
 use sun2xp::simulated::SimulatedPort;
 
-/// Round trips longer than this part of the reply window, 99 of 100, leave little room for a bad day.
+/// Part of the reply window. If the 99 % round trip exceeds it, little reserve is left.
 const LONG: f64 = 0.75;
 
-/// Lost replies beyond this part of all are no accident.
+/// Largest acceptable part of lost replies.
 const TOO_MANY_LOST: f64 = 0.01;
 
 pub(super) fn findings(
@@ -46,7 +47,7 @@ pub(super) fn findings(
         let owned = configuration.clone();
         let measuring = spawn("sun2xp doctor", priority, move |_| round_trips(&owned, &mut link, &fingers, each))
             .map_err(|source| HandError::System { doing: "start a thread", source })?;
-        // A thread that panicked has nothing to tell.
+        // A thread that panicked has no result.
         if let Ok(measured) = measuring.join() {
             findings.push(judge(configuration, format!("round trip on {}", ShownPath(&path)), measured));
         }
@@ -54,7 +55,7 @@ pub(super) fn findings(
     Ok(findings)
 }
 
-/// What the error says, and of a port without permission also whose it is.
+/// The text of the error, with the port's group if the permission is missing.
 fn advice(error: &LinkError, root: &Path, path: &Path) -> String {
     let group = match error {
         LinkError::Port(PortError::Forbidden(_)) => std::fs::metadata(path).ok().and_then(|file| {
@@ -83,22 +84,22 @@ fn latency(subject: String, timer_ms: Option<u32>) -> Finding {
         Some(milliseconds) if milliseconds > 1 => Finding::new(
             Rating::Failure,
             subject,
-            format!("opened; its adapter holds bytes back for {milliseconds} ms"),
-            "Every reply waits for the adapter's latency timer: write 1 to latency_timer under \
-             /sys/bus/usb-serial/devices, or let the udev rule of README do so",
+            format!("opened; its adapter delays bytes by {milliseconds} ms"),
+            "Every reply waits for the adapter's latency timer. Write 1 to latency_timer under \
+             /sys/bus/usb-serial/devices, or install the udev rule of README",
         ),
         Some(_) => Finding::good(subject, "opened; its adapter has the shortest latency timer"),
-        None => Finding::good(subject, "opened, and nobody else has it; no latency timer"),
+        None => Finding::good(subject, "opened, and no other program uses it; no latency timer"),
     }
 }
 
-/// Round trips and how many got no reply of every finger.
+/// Distribution of the round trips, and the number of cycles in which a finger's reply was missing.
 struct Measured {
     times: Distribution,
     lost: u64,
 }
 
-/// Exchanges frames with every finger on a port, as its servo would, but with motors off.
+/// Exchanges frames with every finger on a port like its servo, but with the motors off.
 fn round_trips(
     configuration: &Configuration,
     link: &mut Link<Port>,
@@ -124,7 +125,7 @@ fn round_trips(
         }
         let began = now();
         link.send(&commands[..fingers.len()])?;
-        // Longer than the servo would wait, to know how long it takes.
+        // This waits longer than the servo, in order to measure how long a reply takes.
         let mut allowance = Allowance::for_replies(began + period);
         let mut missing = fingers.len();
         while missing > 0
@@ -151,7 +152,7 @@ fn judge(configuration: &Configuration, subject: String, measured: Result<Measur
     };
     let window = 1e6 / configuration.hand.rate * REPLY_WINDOW;
     let found = format!(
-        "median {:.0}, 99 % {:.0}, worst {:.0} us, where {window:.0} us are allowed; {lost} of {} lost",
+        "median {:.0}, 99 % {:.0}, worst {:.0} us of {window:.0} us permitted; {lost} of {} lost",
         times.median,
         times.p99,
         times.maximum,
@@ -163,8 +164,8 @@ fn judge(configuration: &Configuration, subject: String, measured: Result<Measur
         share if share > LONG => Rating::Warning,
         _ => return Finding::good(subject, found),
     };
-    let advice = "Replies come too late for their cycle: raise the baud rate of board and finger.baud, give the \
-         adapter a port of its own on the machine, shorten its latency timer, or lower hand.rate";
+    let advice = "Replies arrive too late for their cycle: raise the baud rate of the board and finger.baud, connect \
+         the adapter to a USB port of its own, shorten its latency timer, or lower hand.rate";
     Finding::new(verdict, subject, found, advice)
 }
 
@@ -178,7 +179,7 @@ mod tests {
             let times = Distribution { count: 1000, p99, ..Distribution::default() };
             judge(&Configuration::default(), "x".into(), Ok(Measured { times, lost })).verdict
         };
-        // 850 us at 1000 Hz.
+        // The reply window is 850 us at 1000 Hz.
         assert_eq!(judged(600.0, 0), Rating::Good);
         assert_eq!(judged(700.0, 5), Rating::Warning);
         assert_eq!(judged(900.0, 0), Rating::Failure);

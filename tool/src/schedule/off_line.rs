@@ -1,5 +1,6 @@
-//! Whether every cycle of a configured hand ends in time, found off-line, as section 6.2 of the report wants: from
-//! worst cases, the times on the lines, and which finger is on which thread, core and port.
+//! The off-line schedule that section 6.2 of the report asks for: whether every cycle of a configured hand meets its
+//! deadline. The inputs are worst-case times, the times on the lines, and the allocation of fingers to threads, cores
+//! and ports.
 
 use serde::Deserialize;
 use sun2xp::board::{USABLE_SHARE, exchange_microseconds};
@@ -9,25 +10,25 @@ use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{PeriodicThread, response_times};
 use toml_edit::Document;
 
-/// Worst cases of one machine, us.
+/// Worst-case times of a machine, us.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Costs {
     /// From the scheduled beginning of a cycle to the thread's first instruction.
     pub wake_up: f64,
-    /// Handing the commands of one port to the system.
+    /// Passing the commands of one port to the system.
     pub write: f64,
-    /// Taking one reply from the system and decoding it.
+    /// Receiving one reply from the system and decoding it.
     pub read: f64,
-    /// The pure core of one finger, and its report.
+    /// The control computation and the report of one finger.
     pub compute: f64,
 }
 
 impl Costs {
-    /// Reads the four worst cases from text in TOML: `wake_up`, `write`, `read` and `compute`.
+    /// Reads the four times from TOML text with the keys `wake_up`, `write`, `read` and `compute`.
     ///
     /// # Errors
-    /// The line and what is wrong with it.
+    /// The line number, and what is wrong with it.
     pub fn parse(text: &str) -> Result<Self, String> {
         let refused = |wrong: Wrong| match wrong.line(text) {
             Some(line) => format!("{line}: {wrong}"),
@@ -49,47 +50,47 @@ impl Costs {
 /// What another sensor would add to every finger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensor {
-    /// Bytes in each reply.
+    /// Additional bytes in each reply.
     pub bytes: usize,
-    /// Computation in each cycle, us.
+    /// Additional computing time in each cycle, us.
     pub compute: f64,
 }
 
 /// One servo thread of the schedule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scheduled {
-    /// 1 to 3.
+    /// Number of the thread, 1 to 3.
     pub thread: u8,
-    /// The core it is bound to.
+    /// The core that the thread is bound to.
     pub core: Option<usize>,
     /// SCHED_FIFO priority.
     pub priority: u8,
-    /// 1 to 3, in the order in which they are served.
+    /// The fingers of the thread, 1 to 3, in the order in which they are served.
     pub fingers: Vec<usize>,
-    /// The part of a period that the thread computes.
+    /// Part of a period in which the thread computes.
     pub load: f64,
-    /// The part of a period that its busiest line is busy.
+    /// Part of a period in which the thread's busiest line is busy.
     pub line: f64,
-    /// When the replies are there and when the cycle is done, us after its scheduled beginning at the latest; none
-    /// where there is no bound within the period.
+    /// The latest times at which the replies have arrived and the cycle is done, us after its scheduled beginning; none
+    /// if there is no bound within the period.
     pub response: Option<(f64, f64)>,
-    /// Which deadline may be missed first.
+    /// The deadline that may be missed.
     pub limit: Option<RateLimit>,
 }
 
 /// A deadline that may be missed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RateLimit {
-    /// The line is busy for more of a period than it may be.
+    /// The line is busy for a larger part of a period than permitted.
     Line,
-    /// Replies come after the part of a period in which they are awaited.
+    /// Replies may arrive after the part of a period in which they are awaited.
     Replies,
     /// The cycle may not be done when the next one begins.
     Cycle,
 }
 
-/// The schedule of a hand at a rate, Hz, with one entry a servo thread. Ports that are `simulated` count as serial
-/// lines of the configured baud.
+/// The schedule of a hand at a rate, Hz, with one entry per servo thread. A port that is `simulated` counts as a serial
+/// line of the configured baud rate.
 pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor: &Sensor) -> Vec<Scheduled> {
     let numbers = (1..=FINGERS as u8).filter(|&number| (0..FINGERS).any(|index| hand.thread(index) == number));
     let threads: Vec<(u8, Vec<usize>)> =
@@ -117,12 +118,12 @@ pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor:
         .collect()
 }
 
-/// The highest whole rate, Hz, up to `most`, at which every deadline is met; 0 where there is none.
+/// The highest whole rate up to `most`, Hz, at which every deadline is met; 0 if there is none.
 pub fn fastest_rate(hand: &Configuration, costs: &Costs, sensor: &Sensor, most: u32) -> u32 {
     let met = |rate: u32| {
         off_line_schedule(hand, rate.into(), costs, sensor).iter().all(|scheduled| scheduled.limit.is_none())
     };
-    // A longer period moves every deadline away and nothing nearer.
+    // With a longer period, every deadline is later and nothing else changes, so bisection is valid.
     let (mut met_at, mut missed_at) = (0, most + 1);
     while missed_at - met_at > 1 {
         let rate = met_at + (missed_at - met_at) / 2;
@@ -132,10 +133,10 @@ pub fn fastest_rate(hand: &Configuration, costs: &Costs, sensor: &Sensor, most: 
 }
 
 fn task(hand: &Configuration, fingers: &[usize], period: f64, costs: &Costs, sensor: &Sensor) -> PeriodicThread {
-    // Fingers on one thread have one core and one priority: the configuration was checked.
+    // Fingers on one thread have the same core and priority, because the configuration was checked.
     let first = &hand.fingers[fingers[0]];
     let ports = lines(hand, fingers).count() as f64;
-    // Up for what is asked, down for what there is.
+    // Required times are rounded up, the available time is rounded down.
     let needed = |microseconds: f64| (microseconds * 1e3).ceil() as u64;
     PeriodicThread {
         core: first.core,
@@ -148,8 +149,8 @@ fn task(hand: &Configuration, fingers: &[usize], period: f64, costs: &Costs, sen
     }
 }
 
-/// The ports of a thread, as a finger on each and how many there are on it. Every simulated finger has a port of its
-/// own.
+/// The ports of a thread, each as one of its fingers and the number of fingers on it. Every simulated finger has a port
+/// of its own.
 fn lines<'a>(hand: &'a Configuration, fingers: &'a [usize]) -> impl Iterator<Item = (usize, usize)> + 'a {
     let shares =
         |a: usize, b: usize| a == b || (!hand.fingers[a].simulated() && hand.fingers[a].port == hand.fingers[b].port);
@@ -159,7 +160,7 @@ fn lines<'a>(hand: &'a Configuration, fingers: &'a [usize]) -> impl Iterator<Ite
         .map(move |&finger| (finger, fingers.iter().filter(|&&other| shares(finger, other)).count()))
 }
 
-/// us.
+/// Time of the longest exchange on the thread's ports, us.
 fn longest_exchange(hand: &Configuration, fingers: &[usize], sensor: &Sensor) -> f64 {
     lines(hand, fingers)
         .map(|(finger, sharing)| exchange_microseconds(hand.fingers[finger].baud, sharing, sensor.bytes))
@@ -172,8 +173,8 @@ mod tests {
 
     const COSTS: Costs = Costs { wake_up: 100.0, write: 10.0, read: 5.0, compute: 15.0 };
 
-    /// Each finger on its own core: 100 + 10 until the commands are out, 550 on the line (17 bytes, 100 us, 28 bytes),
-    /// 20 after.
+    /// Each finger is on its own core: 100 + 10 us until the commands are written, 550 us on the line (17 bytes, 100
+    /// us, 28 bytes), and 20 us after that.
     #[test]
     fn three_fingers_on_three_cores() {
         let mut hand = Configuration::default();
@@ -190,38 +191,38 @@ mod tests {
             assert_eq!((thread.response, thread.limit), (Some((660.0, 680.0)), None));
             assert!((thread.load - 0.03).abs() < 1e-9 && (thread.line - 0.55).abs() < 1e-9);
         }
-        // The line is what ends it: 550 us are 80 % of a period at 1454.5 Hz.
+        // The line is the limit: 550 us are 80 % of a period at 1454.5 Hz.
         assert_eq!(fastest_rate(&hand, &COSTS, &Sensor::default(), 5000), 1454);
         assert_eq!(off_line_schedule(&hand, 1455.0, &COSTS, &Sensor::default())[0].limit, Some(RateLimit::Line));
-        // Ten bytes more are 100 us more; at 2 megabaud 225 + 100 + 50 us, 80 % of a period at 2133 Hz.
+        // Ten more bytes take 100 us more. At 2 megabaud it is 225 + 100 + 50 us, which is 80 % of a period at 2133 Hz.
         let sensor = Sensor { bytes: 10, compute: 50.0 };
         assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &sensor)[0].response, Some((760.0, 830.0)));
         hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
-        // 100 + 10 + 375 + 70 = 555: the cycle would be done at up to 1801 Hz.
+        // 100 + 10 + 375 + 70 = 555: the cycle is done in time up to 1801 Hz.
         assert_eq!(fastest_rate(&hand, &COSTS, &sensor, 5000), 1801);
         assert_eq!(off_line_schedule(&hand, 1802.0, &COSTS, &sensor)[0].limit, Some(RateLimit::Cycle));
     }
 
-    /// On one core each may have to wait for two cycles of both others: 680 + 4 * 30.
+    /// On one core each thread may have to wait for two cycles of both others: 680 + 4 * 30.
     #[test]
     fn three_fingers_on_one_core() {
         let mut hand = Configuration::default();
         hand.fingers.iter_mut().for_each(|finger| finger.core = Some(1));
         let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
         assert!(schedule.iter().all(|thread| thread.response == Some((780.0, 800.0))), "{schedule:?}");
-        // Not bound to cores they may meet on one.
+        // Threads that are not bound to cores may compete on one.
         hand.fingers.iter_mut().for_each(|finger| finger.core = None);
         assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[2].response, Some((780.0, 800.0)));
     }
 
-    /// One thread: the lines are busy side by side, the fingers computed one after the other.
+    /// On one thread, the lines are busy in parallel, and the fingers are computed one after the other.
     #[test]
     fn three_fingers_on_one_thread() {
         let mut hand = Configuration::default();
         hand.fingers.iter_mut().for_each(|finger| finger.thread = 1);
         let [thread] = &off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[..] else { panic!("one thread") };
         assert_eq!(thread.response, Some((680.0, 740.0)));
-        // On one port the replies are behind each other: 100 + 10 + 170 + 100 + 3 * 280 + 60 is more than a period.
+        // On one port the replies follow each other: 100 + 10 + 170 + 100 + 3 * 280 + 60 is more than a period.
         hand.fingers.iter_mut().for_each(|finger| finger.port = "/dev/ttyUSB0".into());
         assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[0].limit, Some(RateLimit::Line));
         hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
@@ -230,13 +231,13 @@ mod tests {
         assert_eq!((&schedule[0].fingers[..], schedule[0].limit), (&[1, 2, 3][..], None));
     }
 
-    /// A slow wake-up is not the board's fault: replies are awaited from the awakening on.
+    /// A late wake-up is not the board's fault: the reply window begins at the wake-up.
     #[test]
-    fn replies_are_awaited_from_the_awakening_on() {
+    fn the_reply_window_begins_at_the_wake_up() {
         let hand = Configuration::default();
         let costs = Costs { wake_up: 300.0, write: 10.0, read: 1.0, compute: 1.0 };
         assert_eq!(off_line_schedule(&hand, 1000.0, &costs, &Sensor::default())[0].limit, None);
-        // 310 + 550 us of 850, each finger on its own core.
+        // 310 + 550 us of 850 us, with each finger on its own core.
         let mut apart = hand.clone();
         apart.fingers.iter_mut().enumerate().for_each(|(core, finger)| finger.core = Some(core));
         let costs = Costs { wake_up: 9.0, write: 310.0, ..costs };

@@ -1,4 +1,4 @@
-//! Files of black boxes: a changed bit is found, a damaged file is refused, and numbers keep every bit.
+//! Black box files: an altered bit is found, a damaged file is refused, and numbers keep every bit.
 
 use crate::rig::{eventful, own_board, replayed, turn};
 use std::fs;
@@ -30,7 +30,7 @@ fn one_bit_of_feedback_is_found_where_it_was_changed() {
         }
     }
 
-    // The same through a file and the tool.
+    // The same alteration through a file and the tool.
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("finger-2.jsonl");
     let mut altered = recording.clone();
@@ -89,7 +89,7 @@ fn a_folder_that_is_not_there_is_refused_when_the_hand_is_opened() {
     assert!(error.to_string().contains("hand.black_box: /no/such/folder is no folder"), "{error}");
 }
 
-/// One cycle without a finger, to see that nothing of it is lost in a file.
+/// A cycle without a finger. A file must preserve all of its numbers.
 #[test]
 fn numbers_come_back_to_the_last_bit() {
     let third = |sign: f64| sign / 3.0;

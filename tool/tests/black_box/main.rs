@@ -1,4 +1,4 @@
-//! The black box: what is recorded while a hand runs is computed again to the last bit, and a changed bit is found.
+//! The black box: recorded cycles are recomputed to the last bit, and an altered bit is found.
 
 mod files;
 #[allow(dead_code)]

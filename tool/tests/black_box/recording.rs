@@ -1,4 +1,4 @@
-//! What a black box keeps of a run, and that a replay computes the same.
+//! The contents of a black box after a run, and their replay.
 
 use crate::rig::{RATE, cycles, eventful, own_board, replayed, turn, wait_until};
 use std::fs;
@@ -9,7 +9,7 @@ use sun2xp::finger::Recording;
 use sun2xp::hand::{Calibrating, Hand, Standing};
 use sun2xp::model::configuration::{Configuration, Scheme, ZeroingMethod};
 
-/// The black boxes in a folder. While one is written it has another name.
+/// The black box files in a folder. A file that is being written has another name.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let paths = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     paths.filter(|path| path.extension().is_some_and(|extension| extension == "jsonl")).collect()
@@ -41,7 +41,7 @@ fn an_eventful_run_that_ends_in_a_fault_is_written_and_replayed() {
         assert!(lost > 10, "{lost}");
         let adjusted = controls(&recording).filter(|control| control.previous != control.controller).count();
         assert_eq!(adjusted, 3);
-        assert!(controls(&recording).any(|control| control.input.anew_from.is_some()), "never begun anew");
+        assert!(controls(&recording).any(|control| control.input.anew_from.is_some()), "never restarted");
         assert!(
             controls(&recording).any(|control| control.input.fading.is_some_and(|fading| fading.left == 0.0)),
             "never at rest"
@@ -69,18 +69,18 @@ fn two_seconds_are_kept_and_those_before_a_fault_stay() {
     let after = hand.recording(1).expect("a recording");
     assert!((2.0..2.2).contains(&kept(&after)), "{} s", kept(&after));
     assert!(after.cycles.last().expect("cycles").stage.starts_with("faulted: "));
-    // The others go on.
+    // The other fingers continue.
     let other = hand.recording(3).expect("a recording");
     assert!(other.cycles.last().expect("cycles").cycle > after.cycles.last().expect("cycles").cycle + 1000);
     assert_eq!(other.replay().expect("replayable").different, 0);
 }
 
 #[test]
-fn of_adjustments_that_are_refused_or_overtaken_nothing_is_kept() {
+fn refused_and_superseded_adjustments_are_not_kept() {
     let _turn = turn();
     let (board, hand) = own_board(Scheme::Figure10, None);
     let kept = |finger| hand.recording(finger).expect("a recording").origin.controllers.len();
-    // Outside of what was sent; and on a finger that has faulted.
+    // An adjustment is refused if the set point is outside of its limits, or if the finger is faulted.
     for _ in 0..10 {
         let error = hand.adjust(1, "joints.minimum_degrees = [30, 60, 90]").expect_err("refused");
         assert_eq!(error.errno(), libc::ERANGE, "{error}");
@@ -93,14 +93,14 @@ fn of_adjustments_that_are_refused_or_overtaken_nothing_is_kept() {
         assert_eq!(Calibrating::begin(&hand, 1, Task::Zero).expect_err("refused").errno(), libc::EIO);
     }
     assert_eq!(kept(1), 1);
-    // One that is being calibrated takes none of them that comes after the order; and a second calibration is refused.
+    // A finger that is being calibrated does not compute with later adjustments. A second calibration is refused.
     let mut calibrating = Calibrating::begin(&hand, 2, Task::Zero).expect("begun");
     for step in 0..20 {
         hand.adjust(2, &format!("tendon.minimum = {}", 5 + step % 2)).expect("adjusted");
         assert_eq!(Calibrating::begin(&hand, 2, Task::Zero).expect_err("refused").errno(), libc::EBUSY);
         cycles(&hand, 5);
     }
-    // Before it, with the order, its own that has not taken over yet, the newest and the one it overtook.
+    // The controllers before the order, with the order, for the calibration, the newest and the one that it replaced.
     assert!(kept(2) <= 5, "{}", kept(2));
     wait_until("calibrated", || matches!(calibrating.poll(&hand), Ok(Standing::Done(_))));
     hand.send_position(2, [0.1, 0.5, 1.0]).expect("sent");
@@ -131,7 +131,7 @@ fn opening_calibrating_and_closing_are_replayed() {
     assert!(calibrating.cycles.iter().any(|cycle| cycle.stage == "calibrating"));
     let calibrated = hand.recording(1).expect("a recording");
     let adopted = calibrated.origin.controllers.last().expect("a controller");
-    // 0 opened the finger, 1 is what calibration computes with.
+    // Controller 0 opened the finger. The calibration computes with controller 1.
     assert!(adopted.number == 2 && adopted.gravity.norm() > 0.0, "{adopted:?}");
     for recording in [&opened, &calibrating, &calibrated] {
         let replayed = recording.replay().expect("replayable");

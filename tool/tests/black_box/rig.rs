@@ -1,4 +1,4 @@
-//! A hand on a board of this process, and a run with everything that a black box records.
+//! A hand on a board in this process, and a run with every event that a black box records.
 
 use crate::pauses;
 use std::path::Path;
@@ -12,7 +12,7 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 pub const RATE: f64 = 500.0;
 
-/// A hand whose fingers are on one board in this process, so that things can happen to it.
+/// A hand whose fingers are on one board in this process, so that a test can cause events.
 pub fn own_board(scheme: Scheme, folder: Option<&Path>) -> (SimulatedPort, Hand) {
     let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
     let port = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None })
@@ -28,7 +28,7 @@ pub fn own_board(scheme: Scheme, folder: Option<&Path>) -> (SimulatedPort, Hand)
     (port, hand)
 }
 
-/// One hand at a time: its servos and boards want the machine.
+/// Only one hand runs at a time, because its servos and boards need the machine.
 pub fn turn() -> MutexGuard<'static, ()> {
     pauses::name_pauses();
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
@@ -43,14 +43,14 @@ pub fn wait_until(what: &str, mut wanted: impl FnMut() -> bool) {
     }
 }
 
-/// Lets a number of cycles pass.
+/// Waits for a number of cycles.
 pub fn cycles(hand: &Hand, count: u64) {
     let now = || hand.report(2).expect("a report").losses.cycles;
     let end = now() + count;
     wait_until("so many cycles", || now() >= end);
 }
 
-/// Set points, stiffnesses, adjustments, replies lost for a moment and for long.
+/// Sends set points and stiffnesses, adjusts the finger, and loses replies for a short and a long time.
 pub fn eventful(board: &SimulatedPort, hand: &Hand) {
     for (step, angle) in [0.9, 1.2, 1.0].into_iter().enumerate() {
         hand.send_position(2, [0.1, 0.5, angle]).expect("sent");
@@ -59,7 +59,7 @@ pub fn eventful(board: &SimulatedPort, hand: &Hand) {
         hand.adjust(2, &format!("tendon.minimum = {}", 5 + step % 2)).expect("adjusted");
         cycles(hand, 60);
     }
-    // The board says nothing for so long; the second time the servo lets the motors go, and begins anew.
+    // The board is silent. The second silence is so long that the servo fades the motor torques and then restarts.
     for silence in [3.0, 30.0] {
         board.with_board(|_| std::thread::sleep(Duration::from_secs_f64(silence / RATE)));
         cycles(hand, 40);

@@ -1,5 +1,5 @@
-//! Every number, every key and every array of a recording altered, one at a time and several at once: a replay ends,
-//! and does not panic.
+//! Alters every number, key and array of a recording, one at a time and several at once. Every replay ends without a
+//! panic.
 
 use crate::recorded::{record, recorded, varied};
 use rand_pcg::Pcg64Mcg;
@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use sun2xp::finger::Recording;
 use sun2xp::model::configuration::Scheme;
 
-/// What stands in the place of a number. Not all of it is JSON.
+/// Replacements for a number. Some are not JSON.
 const INSTEAD: [&str; 18] = [
     "null",
     "NaN",
@@ -32,19 +32,19 @@ const INSTEAD: [&str; 18] = [
     "100000000000000000000000000000000000000000",
 ];
 
-/// Marks the place of what stands instead.
+/// Marks the place of a replacement.
 const MARK: &str = "@instead@";
 
-/// In a sample one of so many alterations is tried.
+/// A sample tries one of this many alterations.
 const SAMPLE: usize = 41;
 
-/// Alterations of several numbers at once, in a sample.
+/// Number of alterations of several numbers at once in a sample.
 const AT_ONCE: usize = 400;
 
-/// Set, it has every alteration tried, of every controller, and 200 times as many at once.
+/// If this variable is set, every alteration of every controller is tried, and 200 times as many of several numbers.
 const EVERYTHING: &str = "SUN2XP_EVERY_ALTERATION";
 
-/// A recording as lines of values.
+/// A recording as lines of JSON values.
 struct Lines(Vec<Value>);
 
 impl Lines {
@@ -55,7 +55,7 @@ impl Lines {
         Self(text.lines().map(|line| serde_json::from_str(line).expect("a line")).collect())
     }
 
-    /// Every place: line and pointer.
+    /// Every place, as line number and JSON pointer.
     fn places(&self) -> Vec<(usize, String)> {
         let mut places = Vec::new();
         for (line, value) in self.0.iter().enumerate() {
@@ -87,12 +87,12 @@ fn collect(value: &Value, pointer: String, found: &mut impl FnMut(String)) {
     found(pointer);
 }
 
-/// How replays of altered recordings ended, by the way they did.
+/// Number of altered recordings for each outcome.
 #[derive(Default)]
 struct Outcomes(BTreeMap<&'static str, usize>);
 
 impl Outcomes {
-    /// Reads and replays a text that differs from a recording by `what`.
+    /// Reads and replays `text`, an altered recording. `what` describes the alteration.
     fn note(&mut self, text: &str, what: &dyn Fn() -> String) {
         let run = || {
             let refused = |error: String| {
@@ -107,7 +107,7 @@ impl Outcomes {
                 Ok(recording) => match recording.replay() {
                     Err(error) => {
                         refused(error.to_string());
-                        "refused before or while it was computed"
+                        "refused before or during the computation"
                     }
                     Ok(replayed) if replayed.different > 0 => "a difference was found",
                     Ok(_) => "made no difference",
@@ -125,7 +125,7 @@ impl Outcomes {
     }
 }
 
-/// Puts every value of [`INSTEAD`] in the place of every number, and of what holds numbers.
+/// Replaces every number, and every value that contains numbers, by every value of [`INSTEAD`].
 fn alter_values(lines: &mut Lines, every: usize, outcomes: &mut Outcomes) {
     let mut turn = 0;
     for place in lines.places() {
@@ -141,7 +141,7 @@ fn alter_values(lines: &mut Lines, every: usize, outcomes: &mut Outcomes) {
     }
 }
 
-/// Leaves every key out, and makes every array shorter, longer and much longer.
+/// Removes every key, and makes every array shorter, longer and much longer.
 fn alter_shapes(lines: &mut Lines, every: usize, outcomes: &mut Outcomes) {
     let mut turn = 0;
     let mut note = |lines: &Lines, what: &dyn Fn() -> String| {
@@ -183,7 +183,7 @@ fn alter_at_once(lines: &mut Lines, times: usize, outcomes: &mut Outcomes) {
     let numbers: Vec<_> = places.into_iter().filter(|place| lines.at(place).is_number()).collect();
     for _ in 0..times {
         let mut below = |bound: usize| random.next_u64() as usize % bound;
-        // Numbers, most of which get through the reading.
+        // Most of these numbers pass the parser.
         let chosen: Vec<_> =
             (0..2 + below(5)).map(|_| (&numbers[below(numbers.len())], INSTEAD[6 + below(8)])).collect();
         let before: Vec<_> = chosen
@@ -199,7 +199,7 @@ fn alter_at_once(lines: &mut Lines, times: usize, outcomes: &mut Outcomes) {
     }
 }
 
-/// The most memory that this process has had, MiB.
+/// Peak memory of this process, MiB.
 fn most_memory() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").expect("Linux");
     let line = status.lines().find(|line| line.starts_with("VmHWM:")).expect("a line");

@@ -1,11 +1,11 @@
-//! Recordings that once made `sun2xp replay` hang or panic are refused in one line that names the place and the reason.
+//! Recordings that once made `sun2xp replay` hang or panic are refused in one line with the place and the reason.
 
 use crate::recorded::{recorded, varied};
 use std::fs;
 use std::process::Command;
 use sun2xp::finger::{Fading, Recording};
 
-/// What the tool says of a recording that it refuses.
+/// The tool's error text for a recording that it refuses.
 fn refusal(recording: &Recording) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("altered.jsonl");
@@ -40,11 +40,11 @@ fn skipped_periods_without_end_are_refused() {
     };
     let told = refusal(&altered(skipped(7, 1_000_000_000_000)));
     assert!(told.contains(", line 9: control.input.skipped is 1000000000000:"), "{told}");
-    // At most as many as the watchdog lets pass.
+    // The number of skipped periods is limited by the watchdog.
     assert!(altered(skipped(7, 12)).replay().is_ok());
     let told = refusal(&altered(skipped(7, 13)));
     assert!(told.contains("with this watchdog it is 12 at most"), "{told}");
-    // Not in all either.
+    // The total of skipped periods is limited too.
     let slow = altered(|recording| {
         recording.origin.hand.watchdog_ms = 1000;
         let cycle = recording.cycles[11].clone();
@@ -60,7 +60,7 @@ fn skipped_periods_without_end_are_refused() {
 }
 
 #[test]
-fn configurations_that_open_no_hand_make_no_controller() {
+fn invalid_configurations_make_no_controller() {
     type Alter = fn(&mut Recording);
     let alterations: [(Alter, &str); 8] = [
         (|recording| recording.origin.controllers[0].finger.geometry.r[1][2] = 1e308, "geometry.r"),
@@ -79,7 +79,7 @@ fn configurations_that_open_no_hand_make_no_controller() {
 }
 
 #[test]
-fn a_command_fades_no_further_than_to_rest() {
+fn a_fade_ends_at_the_rest_torque() {
     for (left, rest) in [(0.4, -1.0), (0.4, 1.1), (-0.1, 0.5), (1.1, 0.5)] {
         let told = refusal(&altered(|recording| {
             recording.cycles[8].control.as_mut().expect("computed").input.fading = Some(Fading { left, rest });
@@ -89,7 +89,7 @@ fn a_command_fades_no_further_than_to_rest() {
 }
 
 #[test]
-fn what_no_file_of_a_black_box_holds_is_refused() {
+fn files_that_no_black_box_writes_are_refused() {
     let text = {
         let mut text = Vec::new();
         varied(&recorded().opening).write(&mut text).expect("written");

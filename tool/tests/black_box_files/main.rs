@@ -1,5 +1,5 @@
-//! Files of black boxes: a file is written whole or not at all, and no file, however it was altered, makes a replay
-//! panic, hang or exhaust the memory.
+//! Black box files: a file is written completely or not at all, and no altered file makes a replay panic, hang or
+//! exhaust the memory.
 
 mod altered;
 mod hostile;

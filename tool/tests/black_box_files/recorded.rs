@@ -1,4 +1,4 @@
-//! Recordings to work with.
+//! Recordings for the tests.
 
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -10,19 +10,19 @@ use sun2xp::nalgebra::Vector4;
 
 /// Recordings of one finger of a hand.
 pub struct Recorded {
-    /// It begins while the tendons are brought under tension. With a set point, a spring and an adjustment.
+    /// Begins while slack is taken up. Contains a set point, a stiffness and an adjustment.
     pub opening: Recording,
-    /// It begins while the finger is a spring.
+    /// Begins while the finger is a spring.
     pub running: Recording,
 }
 
-/// Of the default controller.
+/// Recordings of the default controller.
 pub fn recorded() -> &'static Recorded {
     static RECORDED: OnceLock<Recorded> = OnceLock::new();
     RECORDED.get_or_init(|| record(Scheme::StateFeedback))
 }
 
-/// Of a simulated finger with this controller.
+/// Recordings of a simulated finger with this controller.
 pub fn record(scheme: Scheme) -> Recorded {
     let mut configuration = Configuration::default();
     configuration.hand.rate = 750.0;
@@ -47,7 +47,7 @@ pub fn record(scheme: Scheme) -> Recorded {
     Recorded { opening, running }
 }
 
-/// The first cycles of a recording, changed so that every kind of input is among them, and replayed without a
+/// The first cycles of a recording, changed so that they contain every kind of input, and replayed without a
 /// difference.
 pub fn varied(recording: &Recording) -> Recording {
     let mut varied = recording.clone();
@@ -62,7 +62,7 @@ pub fn varied(recording: &Recording) -> Recording {
         Activity::Release { ramp: 0.2 },
     ];
     let followed = recording.cycles.last().and_then(|cycle| cycle.control).expect("a spring").input.activity;
-    // On a busy machine the simulated finger is now and then waited for, and nothing is computed.
+    // On a busy machine the servo sometimes waits for the simulated finger. Nothing is computed in such a cycle.
     varied.cycles.retain(|cycle| cycle.control.is_some());
     varied.cycles.truncate(activities.len() + 6);
     for (index, cycle) in varied.cycles.iter_mut().enumerate() {
@@ -80,7 +80,7 @@ pub fn varied(recording: &Recording) -> Recording {
             _ => {}
         }
     }
-    // What such cycles command instead.
+    // The commands of the changed cycles.
     while let Some(first) = varied.replay().expect("replayable").first {
         varied.cycles[first.index].control = Some(first.replayed);
     }

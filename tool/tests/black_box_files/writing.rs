@@ -1,4 +1,4 @@
-//! A black box is written whole, beside its place, and takes the place in one step.
+//! A black box is written to a temporary file, which then replaces the target in one step.
 
 use crate::recorded::recorded;
 use std::fs;
@@ -13,13 +13,13 @@ fn names(folder: &Path) -> Vec<String> {
     fs::read_dir(folder).expect("a folder").map(name).collect()
 }
 
-/// The name of the environment variable that tells the second process which file to replace.
+/// Environment variable with the file that the second process replaces.
 const FILE: &str = "SUN2XP_TEST_FILE";
 
 #[test]
 fn a_full_disk_leaves_the_old_file() {
     if let Some(file) = std::env::var_os(FILE) {
-        // This is the second process, which can write 16 KiB into a file.
+        // This is the second process. It can write at most 16 KiB into a file.
         let error = recorded().opening.save(Path::new(&file)).expect_err("too large");
         assert_eq!(error.raw_os_error(), Some(libc::EFBIG), "{error}");
         return;
@@ -29,8 +29,8 @@ fn a_full_disk_leaves_the_old_file() {
     recorded().opening.save(&file).expect("written");
     let before = fs::read(&file).expect("read");
     assert!(before.len() > 16 * 1024, "{}", before.len());
-    // Without the signal, which would kill the process, a write beyond the limit fails as on a full disk. A block of a
-    // shell has 512 or 1024 bytes.
+    // The shell ignores the signal, which would kill the process. A write beyond the limit then fails as on a full
+    // disk. A block of a shell has 512 or 1024 bytes.
     let limited = "trap '' XFSZ; ulimit -f 16; exec \"$@\"";
     let test = "writing::a_full_disk_leaves_the_old_file";
     let run = Command::new("sh")
@@ -68,7 +68,7 @@ fn an_old_file_is_replaced_with_its_permissions() {
     recorded().opening.save(&file).expect("written");
     assert_eq!(fs::metadata(&file).expect("there").permissions().mode() & 0o7777, 0o640);
     assert_eq!(Recording::open(&file).expect("a recording").cycles.len(), recorded().opening.cycles.len());
-    // Whoever reads the old file reads it to its end.
+    // A reader that has opened the old file reads the old contents to the end.
     assert!(io::read_to_string(reader).expect("read") == "old", "the old file was written over");
     assert_eq!(names(folder.path()), ["finger-1.jsonl"]);
 }
