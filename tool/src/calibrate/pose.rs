@@ -56,11 +56,9 @@ fn wait(text: &str, when: &str, yes: bool) -> Result<(), Failure> {
     output.flush()?;
     if io::stdin().read_line(&mut String::new())? == 0 {
         writeln!(output)?;
-        return Err(
-            "standard input ended before Enter was pressed: run the tool in a terminal, or with --yes if a jig \
-                    holds the finger"
-                .into(),
-        );
+        return Err("standard input ended before Enter was pressed: run the tool in a terminal, or with --yes if a \
+                    jig holds the finger"
+            .into());
     }
     Ok(())
 }
