@@ -1,4 +1,4 @@
-//! A finger's command of one cycle: what planners have sent, then the controller.
+//! Computation of a finger's command in one cycle: takes what planners have sent, then runs the controller.
 
 use super::FingerServo;
 use crate::control::Activity;
@@ -11,7 +11,7 @@ impl FingerServo {
         let previous = self.take_commands();
         let previous = self.calibrate().or(previous);
         let input = ControlInput {
-            anew_from: std::mem::take(&mut self.anew).then_some(self.feedback),
+            anew_from: std::mem::take(&mut self.restart).then_some(self.feedback),
             activity: self.activity,
             skipped: if self.link.in_step() { 0 } else { skipped.min(self.link.most().into()) },
             fading: self.link.fading(),
@@ -32,15 +32,16 @@ impl FingerServo {
         record
     }
 
-    /// Whatever planners have sent; what it computed with until now, if something else takes over from it.
+    /// Takes what planners have sent. Returns the data that the servo computed with until now, if other data replaces
+    /// it.
     fn take_commands(&mut self) -> Option<Adjustable> {
         let running = self.report.stage == Stage::Running;
         let order = self.mailbox.new_order();
-        // After the order: what was handed over with it is there.
+        // The data is read after the order, because it was written before the order.
         let new = self.mailbox.new_adjustable();
         let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
         if self.calibration.is_some() {
-            // It goes on with its own.
+            // A calibration computes with its own data.
             previous = None;
         }
         if let Some(order) = order {
@@ -51,8 +52,8 @@ impl FingerServo {
             }
             self.carry_out(order);
         }
-        // One that was sent before the order for a calibration counts: the finger moves to it, and the routine must see
-        // that.
+        // A set point that was sent before the order to calibrate counts: the finger moves to it, and the routine must
+        // see the motion.
         if let Some(set_point) = self.mailbox.new_set_point(self.report.springs)
             && running
         {
