@@ -1,8 +1,8 @@
-/* High.c - the program of Figure 6, filled in: a planner calls the hand.
+/* High.c - the program of Figure 6, completed: a planner that calls the hand.
 
    make run        (in this folder) compiles it and runs it on the simulated hand
 
-   Each finger becomes a spring of 3 N/cm and is sent to a pose. The exit status is 0 if every finger arrived. */
+   Each finger becomes a spring of 3 N/cm and is sent to a pose. The exit status is 0 if every finger arrives. */
 
 #include <stdio.h>
 #include <unistd.h>

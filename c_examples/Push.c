@@ -59,14 +59,14 @@ int main(void)
         fprintf(stderr, "%s\n", HandError());
         return 1;
     }
-    printf("axis   commanded   felt, N/cm\n");
+    printf("axis   commanded   measured, N/cm\n");
     for (axis = 0; axis < 3; axis++) {
         if (push(axis, FORCE, there) != 0 || push(axis, -FORCE, back) != 0) {
             fprintf(stderr, "%s\n", HandError());
             return 1;
         }
         stiffness = 2.0 * FORCE / (there[axis] - back[axis]);
-        printf("%c      %8.2f   %8.2f\n", "xyz"[axis], Kx[axis][axis], stiffness);
+        printf("%c       %8.2f   %8.2f\n", "xyz"[axis], Kx[axis][axis], stiffness);
         springs += stiffness > 0.5 * Kx[axis][axis] && stiffness < 2.0 * Kx[axis][axis];
     }
     CloseHand();

@@ -1,6 +1,6 @@
 /* Sun2Xp.h - a three-finger tendon-driven hand as a set of springs
 
-   GENERATED from src/capi/ and cbindgen.toml; do not edit. To renew it:
+   GENERATED from src/capi/; do not edit. To renew it:
 
        SUN2XP_WRITE_HEADER=1 cargo test --test header
 
@@ -43,240 +43,229 @@
        cc planner.c -I include -L lib -lsun2xp -Wl,-rpath,lib
        ./a.out
 
-   Angles are in rad, stiffness in N/cm. Without a configuration file this moves a
-   simulated hand, and says so on standard error. Each finger is a spring: its tip is
-   pulled to where SendPos says with the stiffness that SendKx says, until the next
-   command.
+   Angles are in rad, stiffness in N/cm. Each finger is a spring: until the next command it pulls
+   its tip to the pose of SendPos with the stiffness of SendKx. Without a configuration file the
+   program moves a simulated hand, and one line on standard error says so.
 
 
    2. RETURN VALUES, ERRNO
 
-   Every call but HandError and FaultText returns an int: 0 if it was done, and -1 if it
-   was refused. A refused call has written no output, and has changed nothing unless its
-   entry says so. errno tells the kind, HandError() the cause and the remedy:
+   Every call except HandError and FaultText returns an int: 0 if it succeeded, -1 if it was
+   refused. A refused call has changed nothing, unless its entry says otherwise. errno gives the
+   kind of the refusal, HandError() its cause and remedy:
 
-       EPERM    the process is a forked child (chapter 6)
-       EFAULT   an argument is a null pointer
-       ENODEV   no hand is open
-       EBUSY    a hand is open already, or is being opened or closed; the finger is being
-                calibrated or recovered, or another one on its port runs; the key cannot
-                change while a hand is open
-       EINVAL   no such finger; NaN or infinity; an unusable configuration
-       ERANGE   angles outside the joint limits; a tip out of reach; Kx stiffer than the
-                bound; damping outside its range
-       EDOM     Kx not symmetric, or with a negative eigenvalue; a normal of length zero
-       EIO      the finger is faulted: it has stopped by itself
-       ENOTSUP  not for a finger on a real port
+       EPERM      the process is a forked child (chapter 6)
+       EFAULT     an argument is a null pointer
+       ENODEV     no hand is open
+       EBUSY      a hand is open already, or is being opened or closed; the finger is being
+                  calibrated or recovered, or another one on its port runs; the key cannot change while
+                  a hand is open
+       EINVAL     no such finger; NaN or infinity; an unusable configuration
+       ERANGE     angles outside the joint limits; a tip out of reach; Kx stiffer than the bound;
+                  damping outside its range
+       EDOM       Kx not symmetric, or with a negative eigenvalue; a normal of length zero
+       EIO        the finger is faulted: it has stopped by itself
+       ENOTSUP    not for a finger on a real port
        ESHUTDOWN  the process is exiting, and the hand is closed (chapter 6)
-       others   a configuration file, a port, or enforced real time: what the system
-                said, or the nearest
+       others     a configuration file, a port, or enforced real time: errno of the system, or the
+                  nearest one
 
-   Where several are true, a call reports the first in the order of its entry. A call that
-   succeeds leaves errno and HandError() as they are.
+   If several reasons apply, a call reports the first one in its entry. A call that succeeds changes
+   neither errno nor HandError().
 
-   Planners of 1990 never look at results. So the first refusal of each kind in a
-   process also prints one line on standard error (off: hand.print_refusals = false).
+   Arrays, structs and texts are read and written only during the call. An output is written only if
+   the call returns 0.
+
+   Planners of 1990 ignore return values. For them the first refusal of each kind in a process also
+   prints one line on standard error, unless hand.print_refusals is false.
 
 
    3. UNITS, FRAMES, ORDER
 
-   Angles rad; lengths cm; forces N; stiffness N/cm. Fingers are 1, 2, 3; 3 is the
-   thumb. Joints are 0, 1, 2: 0 turns the finger sideways, 1 and 2 bend it.
+   Angles are in rad, lengths in cm, forces in N, stiffness in N/cm. The fingers are 1, 2 and 3; 3
+   is the thumb. The joints are 0, 1 and 2: 0 turns the finger sideways, 1 and 2 bend it.
 
    The frame of a finger has its origin at the finger's base. With link lengths
-   l0 = 3.556, l1 = 5.080, l2 = 4.000 cm (configurable) its tip is at
+   l0 = 3.556, l1 = 5.080, l2 = 4.000 cm (configurable) the tip is at
 
        x = (l0 + l1 cos(j1) + l2 cos(j1 + j2)) sin(j0)
        y = -l1 sin(j1) - l2 sin(j1 + j2)
        z = (l0 + l1 cos(j1) + l2 cos(j1 + j2)) cos(j0)
 
-   At 0, 0, 0 the finger is straight along z; bending moves the tip toward -y. Kx,
-   forces and displacements are in this frame. Matrices are rows first, as C keeps
-   them: Kx[row][column].
+   At 0, 0, 0 the finger is straight along z; bending moves the tip toward -y. Kx, forces and
+   displacements are in this frame. Matrices are in row-major order, as in C: Kx[row][column].
 
 
    4. FLOAT AND DOUBLE
 
-   SendPos, SendKx and GetPos take arrays of float and arrays of double. The compiler
-   chooses by the type of the argument (Pos[3], Kx[3][3] or Kx[9], const or not), in C
-   with macros and in C++ with templates. Other types do not compile: cast a void *
-   pointer to the type of its elements. NULL and 0 compile, and are refused with EFAULT.
-   C arrays of variable length compile, but nothing checks their lengths.
+   SendPos, SendKx and GetPos take arrays of float and arrays of double. The compiler chooses by the
+   type of the argument (Pos[3], Kx[3][3] or Kx[9], const or not), in C with macros and in C++ with
+   templates. Other types do not compile: cast a void * pointer to the type of its elements. NULL
+   and 0 compile, and are refused with EFAULT. C arrays of variable length compile, but their
+   lengths are not checked.
 
-   In C this is done by function-like macros. They do not serve a planner that declares
-   the functions itself or takes their addresses. For those compile with
+   The C macros are function-like, so they do not serve a planner that declares the functions itself
+   or takes their addresses. Compile such a planner with
 
        -DSUN2XP_REAL=float     or      -DSUN2XP_REAL=double
 
-   which says what all arrays of the planner are. Then SendPos, SendKx and GetPos are
-   plain functions for that type: double by renaming them to SendPosD, SendKxD and
-   GetPosD. Own declarations may be int SendPos(); or the ones below. Where they
-   differ from those below, add -DSUN2XP_H: it leaves this header out.
+   for the element type of all its arrays. SendPos, SendKx and GetPos are then plain functions for
+   that type; for double they are renamed to SendPosD, SendKxD and GetPosD. The planner's
+   declarations may be int SendPos(); or those below. If they differ from those below, add
+   -DSUN2XP_H, which leaves out this header.
 
-   In the library the plain symbols take float, those ending in D take double.
-   Compilers without _Generic (gcc before 4.9) choose by the size of an element: there
-   an array of int is taken for one of float, and NULL needs a cast.
+   The plain symbols of the library take float, those ending in D take double. Compilers without
+   _Generic (gcc before 4.9) choose by the size of an element: they treat an array of int as one of
+   float, and NULL needs a cast.
 
 
    5. PLANNERS OF 1990
 
-       #include "Sun2Xp.c"        works, in several files of a program too: it
-                                  includes this header
+       #include "Sun2Xp.c"        works, also in several files of a program: it includes this header
        K&R source                 gcc -std=gnu89
-       no include at all          the plain symbols take float; for double compile
-                                  with -DSendPos=SendPosD -DSendKx=SendKxD
-                                  -DGetPos=GetPosD
-       no look at results         see the line on standard error (chapter 2)
-       own functions named        #define SUN2XP_FIVE_CALLS before the include: the
-       GetTip, StopHand ...       header declares only OpenHand, SendPos, SendKx,
-                                  GetPos, CloseHand, HandError, and SendPosD, SendKxD
-                                  and GetPosD for double. The shared library never
-                                  calls the planner's functions for its own. To link
-                                  the static library, name the planner's files first
+       no include at all          the plain symbols take float; for double compile with
+                                  -DSendPos=SendPosD -DSendKx=SendKxD -DGetPos=GetPosD
+       return values ignored      see the line on standard error (chapter 2)
+       own functions named        #define SUN2XP_FIVE_CALLS before the include: the header then
+       GetTip, StopHand ...       declares only OpenHand, SendPos, SendKx, GetPos, CloseHand and
+                                  HandError, and SendPosD, SendKxD and GetPosD for double. The
+                                  shared library never calls the planner's functions instead of its
+                                  own. To link the static library, name the planner's files first
                                   and add -Wl,--allow-multiple-definition
 
-   Macros: gcc and clang set the planner's macros aside while they read this header. So
-   a planner may have macros named i, K or Pos, macros of X11 such as Status, and macros
-   named like words of C, such as const, volatile, int or float. The exceptions are
+   Macros: with gcc and clang this header saves the planner's macros and restores them at its end.
+   So a planner may have macros named i, K or Pos, macros of X11 such as Status, and macros named
+   like C keywords, such as const, volatile, int or float. The exceptions are
 
        SendPos, SendKx, GetPos, SendPosD, SendKxD, GetPosD
        names that begin with FAULT_, FINGER_, TIMING_, SUN2XP_ or Sun2Xp
        _Pragma, and names that the compiler defines itself
        _Generic, default and sizeof where a C file calls SendPos, SendKx or GetPos
 
-   A name that is poisoned (#pragma GCC poison) must not be a name of this header. Under
-   other compilers the planner must have no macro that is named like a word of C, or like
-   a struct, a member or a call of this header.
+   A poisoned name (#pragma GCC poison) must not be a name of this header. With other compilers, no
+   macro of the planner may have the name of a C keyword or of a struct, member or call of this
+   header.
 
-   Packing: after #pragma pack, gcc and clang still give the structs of this header the
-   library's layout. Where a compiler for 64 bits lays them out in another way, as gcc
-   does with -fpack-struct, the header does not compile.
+   Packing: with gcc and clang the structs of this header have the library's layout also after
+   #pragma pack. If a 64-bit compiler gives them another layout, as gcc -fpack-struct does, the
+   header does not compile.
 
 
    6. THREADS, SIGNALS, FORK, EXIT
 
-   Threads: every call may be made from any thread, at the same time as any other. A
-   servo never waits for a call. A call waits for a servo only where its entry says that
-   it waits. Of two threads that command one finger the later call wins; each command
-   takes effect whole.
+   Threads: any thread may make any call, also while other threads make calls. A servo never waits
+   for a call. A call waits for a servo only if its entry says so. If two threads command one
+   finger, the later call wins; each command takes effect as a whole.
 
-   Signals: the servo threads block all signals, so the planner's alarms and handlers
-   are served by the planner's own threads. A signal handler may call StopHand, and no
-   other call. C does not promise that exit works in a signal handler. If a handler calls
-   it nevertheless, the library closes the hand. If the signal interrupted OpenHand or
-   CloseHand, the process may end before that is done, and then the boards end the motion.
+   Signals: the servo threads block all signals, so the planner's own threads serve its alarms and
+   handlers. A signal handler may call StopHand, and no other call. C does not guarantee that exit
+   works in a signal handler. If a handler calls it nevertheless, the library closes the hand. If
+   the signal interrupted OpenHand or CloseHand, the process may end before that is done, and then
+   the boards end the motion.
 
-   The planner's arrays, structs and texts may lie in pages that its own handler of SIGSEGV
-   or SIGBUS makes accessible when a call first touches them.
+   The planner's arrays, structs and texts may lie in pages that its own handler of SIGSEGV or
+   SIGBUS makes accessible when a call first accesses them.
 
-   Standard error: where nobody reads it, and where it is a file that may not grow, lines
-   of the library are lost. The planner gets no SIGPIPE and no SIGXFSZ for them. A call that
-   prints a line waits until it is written. So a full pipe or a stopped terminal (Control-S)
-   holds up OpenHand and the first refusal of each kind, but no servo.
+   Standard error: lines of the library are lost if nobody reads standard error, or if it is a file
+   that may not grow. The planner gets no SIGPIPE and no SIGXFSZ for them. A call that prints a line
+   waits until it is written. So a full pipe or a stopped terminal (Control-S) delays OpenHand and
+   the first refusal of each kind, but no servo.
 
-   Stack: a call needs up to 16 KiB of the stack of its thread. The thread-local data of
-   the planner (__thread) are in the library's threads too. They make its stacks larger,
-   and with hand.real_time they add to the locked memory of each servo.
+   Stack: a call needs up to 16 KiB of its thread's stack. The library's threads also contain the
+   planner's thread-local data (__thread). These data enlarge their stacks, and with hand.real_time
+   the locked memory of each servo.
 
-   Slow calls: OpenHand, CloseHand, RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger
-   and WriteBlackBox work in a thread of the library, for which the planner's waits. A
-   signal handler may jump out of that wait (siglongjmp). The call then goes on to its
-   end by itself: until then OpenHand is refused with EBUSY, and CloseHand waits.
+   Slow calls: OpenHand, CloseHand, RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger and
+   WriteBlackBox run in a thread of the library, and the planner's thread waits for it. A signal
+   handler may jump out of that wait (siglongjmp). The call then continues to its end; until then
+   OpenHand is refused with EBUSY, and CloseHand waits.
 
-   Undefined: to jump out of any other call (longjmp, siglongjmp); to call pthread_exit in
-   a signal handler that interrupted a call; and in C++ to throw an exception out of such a
-   handler.
+   Undefined behaviour: jumping out of any other call (longjmp, siglongjmp), calling pthread_exit in
+   a signal handler that interrupted a call, and in C++ throwing an exception out of such a handler.
 
-   Memory: OpenHand takes what the servos, CloseHand and all other calls need. Where
-   malloc returns NULL afterwards the hand goes on, these calls work, and CloseHand closes
-   it. OpenHand (12 MiB), RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger and
-   WriteBlackBox (4 MiB) are refused with ENOMEM where so much is not free. If memory runs
-   out while one of them is at work, the process is aborted, and the boards end the
-   motion. A fault whose black box finds no 4 MiB free is reported without one, and a line
-   on standard error says so. In a library that was loaded with dlopen, the first call of
-   a thread needs memory for its thread-local data; without that the C library aborts the
-   process.
+   Memory: OpenHand allocates the memory for the servos, for CloseHand and for all calls that are
+   not slow. These work even if malloc later returns NULL. OpenHand (12 MiB), RecoverHand,
+   ZeroFinger, IdentifyFinger, AdjustFinger and WriteBlackBox (4 MiB) are refused with ENOMEM if
+   that much memory is not free. If memory runs out while one of them runs, the process is aborted,
+   and the boards end the motion. A fault without 4 MiB for its black box is reported without one,
+   and a line on standard error says so. If the library was loaded with dlopen, the first call of a
+   thread needs memory for its thread-local data; without it the C library aborts the process.
 
-   Cancellation: pthread_cancel does not interrupt a call. It takes effect at the
-   planner's next cancellation point; with asynchronous cancellation, when the call
-   returns.
+   Cancellation: pthread_cancel does not interrupt a call. It takes effect at the planner's next
+   cancellation point or, with asynchronous cancellation, when the call returns.
 
-   Floating point: the library computes in the default environment, in its threads and
-   in every call. The planner's rounding, traps, treatment of denormals and exception
-   flags are after a call what they were before.
+   Floating point: the library computes in the default environment, in its threads and in every
+   call. A call leaves the planner's rounding mode, traps, treatment of denormals and exception
+   flags as they were.
 
-   Fork: a child has no servo threads. Once a process has called OpenHand, every call
-   in a child forked from it is refused with EPERM, except HandError, FaultText and
-   StopHand; the parent is undisturbed. That holds for children of fork, _Fork and the
-   system calls fork and clone, and in handlers of pthread_atfork; before Linux 4.14 for
-   those of fork only, after such handlers. A child that shares the memory of its parent
-   (vfork) may only call exec. A child that calls exec starts afresh.
+   Fork: a child process has no servo threads. Once a process has called OpenHand, every call in a
+   child forked from it is refused with EPERM, except HandError, FaultText and StopHand; the parent
+   is not affected. This applies to children of fork, _Fork and the system calls fork and clone, and
+   inside handlers of pthread_atfork. Before Linux 4.14 it applies only to children of fork, after
+   these handlers. A child that shares the memory of its parent (vfork) may only call exec. A child
+   that calls exec starts afresh.
 
-   CloseHand frees the ports also while forked children live. Where the planner ends
-   without CloseHand, its ports stay locked until those children have ended too.
+   CloseHand releases the ports even if forked children are alive. If the planner ends without
+   CloseHand, its ports stay locked until those children have ended too.
 
-   Descriptors: become a daemon first, then call OpenHand. The library's descriptors
-   close at exec. They have numbers from 512 on where the limit (ulimit -n) permits it,
-   so a planner that closes those up to 255 keeps its hand. One that closes all of them
-   loses it: the fingers fault with FAULT_PORT_CLOSED or FAULT_PORT_VANISHED. Files that
-   the planner then opens under these numbers are not touched. CloseHand and OpenHand
-   start again.
+   Descriptors: a daemon must detach before it calls OpenHand. The library's descriptors close at
+   exec. Their numbers are 512 or more if the limit (ulimit -n) permits it, so a planner may close
+   all descriptors up to 255 and keep its hand. A planner that closes all of them loses it: the
+   fingers fault with FAULT_PORT_CLOSED or FAULT_PORT_VANISHED. The library does not touch files
+   that the planner then opens under these numbers. CloseHand and OpenHand start the hand again.
 
-   Exit: when a planner exits with a hand open, an exit handler of the library brings the
-   fingers to their end state, as CloseHand does. The first OpenHand registers that handler
-   (atexit). Exit handlers of the planner that are registered later run before it and find
-   the hand open. Those that are registered earlier run after it and find the hand closed:
-   calls that only read still work, calls that would open or move a hand are refused with
-   ESHUTDOWN, and CloseHand returns 0.
+   Exit: when a planner exits with a hand open, an exit handler of the library brings the fingers to
+   their end state, as CloseHand does. The first OpenHand registers that handler (atexit). Exit
+   handlers that the planner registers later run before it and find the hand open. Those registered
+   earlier run after it and find the hand closed: calls that only read still work, calls that would
+   open or move a hand are refused with ESHUTDOWN, and CloseHand returns 0.
 
-   A planner that is killed, or calls _exit, leaves the motors to the boards, which receive
-   no more commands and go to the configured end state. When the last thread of a process
-   ends by pthread_exit with a hand open, the library ends the process within some seconds,
-   as by exit (0). dlclose does not unload the library, and the hand stays open.
+   A planner that is killed or calls _exit leaves the motors to the boards, which receive no more
+   commands and enter the configured end state. If the last thread of a process ends by pthread_exit
+   with a hand open, the library ends the process within some seconds, as by exit (0). dlclose does
+   not unload the library, and the hand stays open.
 
 
    7. SERVO AND REAL TIME
 
-   By default each finger has a servo thread of its own, which runs 1000 times a second
-   under SCHED_FIFO, with locked memory and on the configured core. Where the system does
-   not permit that, hand.real_time says what OpenHand does:
+   By default each finger has its own servo thread, which runs 1000 times a second under SCHED_FIFO,
+   with locked memory and on the configured core. If the system does not permit that, OpenHand
+   follows hand.real_time:
 
-       "try"      goes on without; one line on standard error says so, and GetStatus:
-                  everything works, but with the jitter of an ordinary process
+       "try"      continues without; one line on standard error and GetStatus report it. Everything
+                  works, but with the jitter of an ordinary process
        "enforce"  is refused, and HandError says what to change
        "ignore"   does not try
 
-   sun2xp doctor examines a machine and says what to change. GetTiming says where the
-   time of a cycle goes.
+   RLIMIT_RTTIME (ulimit -R) limits how long a thread under SCHED_FIFO may run without waiting. The
+   system ends a process that exceeds it, by SIGXCPU at the soft limit and by SIGKILL at the hard
+   limit. A servo waits in every cycle, but the system counts in ticks of up to 10 ms. Set the limit
+   to 100000 (microseconds) or more, or to unlimited, or set hand.real_time to "ignore".
 
-   RLIMIT_RTTIME (ulimit -R) limits how long a thread under SCHED_FIFO may compute without
-   waiting. The system ends a process that exceeds it, by SIGXCPU at the soft limit and by
-   SIGKILL at the hard one. A servo waits in every cycle, but the system counts in ticks of
-   up to 10 ms. Set the limit to 100000 (microseconds) or more, or to unlimited, or
-   set hand.real_time to "ignore".
+   sun2xp doctor examines a machine and says what to change. GetTiming reports where the time of a
+   cycle goes.
 
 
    8. CONFIGURATION
 
    OpenHand takes the first of
 
-       1. the file that SUN2XP_CONFIG names (environment); it must exist. An empty
+       1. the file that the environment variable SUN2XP_CONFIG names; it must exist. An empty
           SUN2XP_CONFIG counts as not set
        2. sun2xp.toml in the working directory
        3. sun2xp/sun2xp.toml in $XDG_CONFIG_HOME, or ~/.config
        4. sun2xp/sun2xp.toml in the folders of $XDG_CONFIG_DIRS, or /etc/xdg
        5. no file: the simulated hand, announced in one line on standard error
 
-   A finger whose port the file does not name is simulated, and announced too; with
-   port = "simulated" it is not announced. The file must be a regular file of at most
-   1 MiB.
+   The file must be a regular file of at most 1 MiB. A finger without a port in the file is
+   simulated, and announced too; with port = "simulated" it is not announced.
 
-   A program that is setuid or setgid, or whose file has capabilities, does not trust
-   its environment or its working directory, which belong to its caller. It reads only
-   /etc/xdg/sun2xp/sun2xp.toml; where SUN2XP_CONFIG is set, OpenHand fails with EACCES.
+   A program that is setuid or setgid, or whose file has capabilities, does not trust its
+   environment and working directory, which belong to its caller. It reads only
+   /etc/xdg/sun2xp/sun2xp.toml; if SUN2XP_CONFIG is set, OpenHand fails with EACCES.
 
-   The file is TOML: [hand], [finger] for all fingers, [finger.1] to [finger.3] for
-   one. Every key has a default. An unknown key is refused, with file, line and reason.
+   The file is TOML: [hand], [finger] for all fingers, [finger.1] to [finger.3] for one. Every key
+   has a default. An unknown key is refused, with file, line and reason.
 
    Example, sun2xp.toml:
 
@@ -288,25 +277,27 @@
 
    9. THE CALLS: below, each with its manual
 
-   The examples there are statements of a function that has opened the hand, in a file
-   that includes errno.h, signal.h, stdio.h, stdlib.h and unistd.h.
+   A struct that a call fills begins with Size. Set it to the sizeof of the struct before the call.
+   Later versions of the library add members at the end; a call never writes more than Size bytes.
+
+   The examples are statements of a function that has opened the hand, in a file that includes
+   errno.h, signal.h, stdio.h, stdlib.h and unistd.h.
 
 
    10. FAULTS
 
-   Every fault has a number that never changes (FAULT_..., below). FaultText gives its
-   text, its likely cause and its remedy. A fault stops the finger: its motors go to the
-   configured end state, its calls are refused with EIO, and HandError says why, until
-   RecoverHand, or CloseHand and OpenHand. A warning does not stop the finger; it lasts
-   until a second after its cause was last seen. GetFault reports both. Some faults make
-   OpenHand refuse; HandError gives their numbers. docs/faults.md lists all faults, with
-   how and how fast each is detected. */
+   Every fault has a number that never changes (FAULT_..., below). FaultText gives its text, likely
+   cause and remedy. A fault stops the finger: its motors enter the configured end state, and its
+   calls are refused with EIO until RecoverHand, or CloseHand and OpenHand. HandError gives the
+   reason. A warning does not stop the finger; it lasts until one second after its cause was last
+   detected. GetFault reports both. Some faults make OpenHand fail; HandError gives their numbers.
+   docs/faults.md lists all faults, and how and how fast each is detected. */
 
 #ifndef SUN2XP_H
 #define SUN2XP_H
 
 #ifdef SUN2XP_REAL
-/* The value of SUN2XP_REAL as a number: 1 float, 2 double, 0 anything else. */
+/* The value of SUN2XP_REAL as a number: 1 for float, 2 for double, 0 for anything else. */
 #define SUN2XP_REAL_IS_float 1
 #define SUN2XP_REAL_IS_double 2
 #define SUN2XP_PASTE_NOW(Left, Right) Left##Right
@@ -318,7 +309,7 @@
 #endif
 #endif
 
-/* Macros of the planner that are named like something below are set aside until the end of this file. */
+/* Macros of the planner whose names are used below are saved here and restored at the end. */
 #if defined(__clang__) || (defined(__GNUC__) && (__GNUC__ > 4 || (__GNUC__ == 4 && __GNUC_MINOR__ >= 6)))
 #define SUN2XP_SETS_MACROS_ASIDE
 #endif
@@ -467,23 +458,23 @@ extern "C" {
 
      int OpenHand(void);
 
- Reads the configuration (chapter 8), opens the ports, starts the servos, brings the
- tendons under tension and returns when every finger has answered and holds the pose
- it is in, at the configured initial stiffness. So GetPos is valid from then on, and
- nothing moves until SendPos. Takes about a second at most for the simulated hand.
+ Reads the configuration (chapter 8), opens the ports, starts the servos and brings the tendons
+ under tension. Returns when every finger has answered and holds its present pose at the configured
+ initial stiffness. From then on GetPos is valid, and nothing moves until SendPos. Takes at most
+ about a second for the simulated hand.
 
  Returns 0, or -1 with
    EPERM    forked child
-   EBUSY    a hand is open (it goes on), or another thread is just opening or closing one
-   ENOENT, EACCES ...  the configuration file cannot be read; the errno is the system's
-   EINVAL   the configuration cannot be used; HandError names file, line and reason
-   ENOENT, EACCES, EBUSY ...  a port cannot be opened; the errno is the system's
-   ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
-   EIO      a finger does not come under tension in time, or faults while it does
-   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory
-            or the configured core cannot be had; HandError says what to change
+   EBUSY    a hand is open and stays open, or another thread is opening or closing one
+   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
+   EINVAL   the configuration is unusable; HandError names file, line and reason
+   ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
+   ETIMEDOUT and other errnos of a link: a board does not answer, or the device is not a board
+   EIO      a finger does not come under tension in time, or faults before it does
+   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
+            configured core is not available; HandError says what to change
 
- Threads: any; one hand a process.
+ Threads: any; one hand per process.
 
  Example:
 
@@ -499,16 +490,16 @@ int OpenHand(void);
 
      int CloseHand(void);
 
- Brings every finger to the configured end state - release: the torque ramps to zero; hold: the board keeps the last
- torque, up to hand.hold_torque_limit, for hand.hold_time_ms, also after this call has returned - and ends the
- servos. With no hand open it does nothing and returns 0. After it OpenHand may be called again. A planner that exits
- without it has it called for it.
+ Brings every finger to the configured end state and stops the servos. With hand.end_state =
+ "release" the torque ramps to zero. With "hold" the board keeps the last torque, up to
+ hand.hold_torque_limit, for hand.hold_time_ms, also after this call has returned. If no hand is
+ open, the call does nothing and returns 0. OpenHand may be called again afterwards. At exit the
+ library closes a hand that is still open.
 
  Returns 0, or -1 with
    EPERM    forked child
 
- Threads: any. Waits for an OpenHand or CloseHand that another thread is in, then
- closes.
+ Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes.
  */
 int CloseHand(void);
 
@@ -518,22 +509,22 @@ int CloseHand(void);
      int SendPos(int i, const float *Pos);      also takes const double *Pos (chapter 4)
 
    i     finger, 1 to 3
-   Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3). Read during the call only
+   Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3)
 
- The fingertip's spring is anchored there from the next cycle on, with the stiffness
- sent last. All three angles take effect together. Does not wait for the finger to
- arrive: ask GetPos. Limits are the configured joint limits; by default joint 0:
- -1.0472 to 1.0472, joint 1: -0.5236 to 1.7453, joint 2: 0.0873 to 2.0944.
+ From the next cycle on the spring of the fingertip is anchored at this pose, with the stiffness
+ sent last. All three angles take effect together. The call does not wait until the finger arrives;
+ GetPos reads where it is. The limits are the configured joint limits, by default -1.0472 to 1.0472
+ for joint 0, -0.5236 to 1.7453 for joint 1 and 0.0873 to 2.0944 for joint 2.
 
  Returns 0, or -1 with
    EPERM    forked child
    EFAULT   Pos is null
    ENODEV   no hand is open
    EINVAL   no such finger; an angle is NaN or infinite
-   ERANGE   an angle is outside the joint limits (or it is clamped: hand.out_of_range)
+   ERANGE   an angle is outside the joint limits (hand.out_of_range = "clamp" clamps it instead)
    EIO      the finger is faulted
 
- Threads: any. Never waits for a servo; about 100 ns.
+ Threads: any. Never waits for a servo. Takes about 100 ns.
 
  Example:
 
@@ -555,16 +546,14 @@ int SendPosD(int, const double *);
      int SendKx(int i, const float *Kx);        also takes const double *Kx (chapter 4)
 
    i     finger, 1 to 3
-   Kx    Kx[3][3] or Kx[9], row by row: entry [row][column] is the force along axis
-         row (x, y, z of the finger's frame, chapter 3) for a displacement of 1 cm
-         along axis column, N/cm. Read during the call only
+   Kx    Kx[3][3] or Kx[9], row by row: entry [row][column] is the force along axis row (x, y, z of
+         the finger's frame, chapter 3) for a displacement of 1 cm along axis column, N/cm
 
- Kx takes effect whole, from the next cycle on and without a jump in torque: 95 % of the
- change is there after 50 ms. Kx must be symmetric; a difference of up to 1e-3 of the
- largest entry is averaged. No eigenvalue may be below -1e-3 of the largest one. Kx may
- have a lower rank, and may be zero: along directions without stiffness the finger is
- limp but still damped. The largest eigenvalue may be up to the configured bound, by
- default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
+ The whole matrix takes effect from the next cycle on, without a jump in torque: 95 % of the change
+ has taken effect after 50 ms. Kx must be symmetric; a difference of up to 1e-3 of the largest entry
+ is averaged. No eigenvalue may be below -1e-3 of the largest one. Kx may be singular or zero: along
+ directions without stiffness the finger is limp but still damped. The largest eigenvalue may be at
+ most the configured bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -572,12 +561,11 @@ int SendPosD(int, const double *);
    ENODEV   no hand is open
    EINVAL   no such finger; an entry is NaN or infinite
    EDOM     Kx is not symmetric, or has a negative eigenvalue
-   ERANGE   Kx is stiffer than the bound (or it is clamped: hand.out_of_range)
+   ERANGE   Kx is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
    EIO      the finger is faulted
-   ERANGE   Kx is too stiff for the ratio that SendDamping set (or the ratio is clamped:
-            hand.out_of_range)
+   ERANGE   Kx is too stiff for the ratio of SendDamping ("clamp" clamps the ratio instead)
 
- Threads: any. Never waits for a servo; about 1 us.
+ Threads: any. Never waits for a servo. Takes about 1 us.
 
  Example, softer along z:
 
@@ -599,11 +587,10 @@ int SendKxD(int, const double *);
      int GetPos(int i, float *Pos);             also takes double *Pos (chapter 4)
 
    i     finger, 1 to 3
-   Pos   Pos[3]: measured angles of joints 0, 1, 2, rad, from the servo's last cycle.
-         Written only if the call returns 0
+   Pos   Pos[3]: measured angles of joints 0, 1, 2, rad, from the last cycle of the servo
 
- While the servo thread does not run, the angles stay those of its last cycle. GetStatus
- shows that: SkippedPeriods grows.
+ While the servo thread does not run, the angles stay those of its last cycle, and SkippedPeriods of
+ GetStatus grows.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -612,7 +599,7 @@ int SendKxD(int, const double *);
    EINVAL   no such finger
    EIO      the finger is faulted
 
- Threads: any. Never waits for a servo; about 100 ns.
+ Threads: any. Never waits for a servo. Takes about 100 ns.
 
  Example:
 
@@ -630,14 +617,14 @@ int GetPos(int, float *);
 int GetPosD(int, double *);
 
 /*
- HandError - why a call was refused, and what to do about it
+ HandError - why a call was refused, and the remedy
 
      const char *HandError(void);
 
- The text of the calling thread's last refused call; an empty string if none was. A
- call that succeeds leaves it, like errno, as it is: look at it after a call has
- returned -1. Never null. It is the library's: do not free it. It is valid until the
- next refused call of the same thread.
+ Returns the text of the calling thread's last refused call, or an empty string if no call was
+ refused. Like errno, the text stays when a call succeeds, so read it only after a call has returned
+ -1. Never null. Do not free it: it belongs to the library, and is valid until the next refused call
+ of the same thread.
 
  Threads: any; each has its own text. Works in a forked child too.
  */
@@ -697,388 +684,136 @@ const char *HandError(void);
 #define FAULT_OPENING_TIMED_OUT      48 /* opening timed out */
 #define FAULT_SAME_NUMBER            49 /* same number */
 
+/* State of a finger (FingerStatus.State, FingerRecord.State) */
+#define FINGER_RUNNING 1            /* The fingertip is the spring that the planner has commanded. */
+#define FINGER_FAULTED 2            /* The finger has stopped by itself, and its motors are in the configured end
+                                       state. Its calls are refused with EIO and the reason until RecoverHand, or
+                                       CloseHand and OpenHand. */
+#define FINGER_LIMP 3               /* The motors are off after a refused calibration, which reported the reason. Set
+                                       points have no effect. Another calibration, or CloseHand and OpenHand, make
+                                       the finger a spring again. */
+#define FINGER_CALIBRATING 4        /* ZeroFinger or IdentifyFinger moves the finger. Set points have no effect. */
+#define FINGER_TENSIONING 5         /* RecoverHand or the end of a calibration brings the tendons under tension. Set
+                                       points have no effect. */
+#define FINGER_CLOSED 6             /* The process exits without CloseHand, and the finger goes to its configured end
+                                       state or is in it. Only exit handlers and remaining threads see this state. */
 
-/*
- FingerStatus.State: the fingertip is the spring that it was told to be.
- */
-#define FINGER_RUNNING 1
+/* Stage of a cycle (GetTiming, FingerTiming.Stage) */
+#define TIMING_WAKE_UP 0            /* From the scheduled start of a cycle to the thread's first instruction. */
+#define TIMING_WRITE 1              /* Passing the commands of the port to the system. */
+#define TIMING_WIRE 2               /* From there until the reply can be read: the line in both directions, and the
+                                       board. */
+#define TIMING_READ 3               /* Reading the reply. */
+#define TIMING_DECODE 4             /* From bytes to the finger's reply, including all checks. */
+#define TIMING_COMPUTE 5            /* The controller. */
+#define TIMING_CYCLE 6              /* From the scheduled start of a cycle to the end of its computation. */
+#define TIMING_AGE 7                /* Age of the newest measurement when the command computed from it takes effect,
+                                       by the board's clock. One period if nothing is late. */
 
-/*
- FingerStatus.State: the finger has stopped by itself, its motors are in the
- configured end state, and its calls are refused with EIO and the reason. RecoverHand,
- or CloseHand and OpenHand, start again.
- */
-#define FINGER_FAULTED 2
-
-/*
- FingerStatus.State: the motors are off, after a calibration that was refused (which
- says why). Set points have no effect. Another calibration, or CloseHand and OpenHand,
- make it a spring again.
- */
-#define FINGER_LIMP 3
-
-/*
- FingerStatus.State: ZeroFinger or IdentifyFinger moves the finger. Set points have no
- effect.
- */
-#define FINGER_CALIBRATING 4
-
-/*
- FingerStatus.State: the tendons are being brought under tension, by RecoverHand or at
- the end of a calibration. Set points have no effect.
- */
-#define FINGER_TENSIONING 5
-
-/*
- FingerStatus.State: the finger goes to its configured end state, or is there, because
- the planner has called exit or returned from main without CloseHand. Only exit handlers
- and threads that are left see it.
- */
-#define FINGER_CLOSED 6
-
-/*
- Stage for GetTiming: from the scheduled beginning of a cycle to the thread's first
- instruction.
- */
-#define TIMING_WAKE_UP 0
-
-/*
- Stage for GetTiming: handing the commands of the port to the system.
- */
-#define TIMING_WRITE 1
-
-/*
- Stage for GetTiming: from there until the reply can be read: both ways on the line, and
- the board.
- */
-#define TIMING_WIRE 2
-
-/*
- Stage for GetTiming: reading the reply.
- */
-#define TIMING_READ 3
-
-/*
- Stage for GetTiming: from bytes to the finger's reply, checks included.
- */
-#define TIMING_DECODE 4
-
-/*
- Stage for GetTiming: the controller.
- */
-#define TIMING_COMPUTE 5
-
-/*
- Stage for GetTiming: from the scheduled beginning of a cycle to the end of its
- computation.
- */
-#define TIMING_CYCLE 6
-
-/*
- Stage for GetTiming: how old the newest measurement is when the command that was
- computed from it takes effect, by the board's clock. One period where nothing is late.
- */
-#define TIMING_AGE 7
-
-/*
- What GetStatus tells of a finger. Set Size = sizeof (struct FingerStatus) before the
- call: later versions add members at the end, and a program never gets more than it
- has room for.
- */
+/* Result of GetStatus. */
 struct FingerStatus {
-    /*
-     In: bytes of room, sizeof *Status. Out: bytes that were filled, never more.
-     */
-    unsigned int Size;
-    /*
-     FINGER_RUNNING, FINGER_FAULTED, FINGER_LIMP, FINGER_CALIBRATING, FINGER_TENSIONING or
-     FINGER_CLOSED.
-     */
-    int State;
-    /*
-     1: every servo thread of the hand runs under SCHED_FIFO. 0: one does not, and shares
-     its core with everybody.
-     */
-    int Realtime;
-    /*
-     Configured servo rate, Hz.
-     */
-    double Rate;
-    /*
-     Measured servo rate since OpenHand, Hz. While the servo does not run, the periods that
-     are missing up to now count too, so the rate falls.
-     */
-    double MeasuredRate;
-    /*
-     How late cycles began since OpenHand or ResetTiming, microseconds: half of them no
-     later than this. The servo's jitter.
-     */
-    double WakeUpMedian;
-    /*
-     The same, microseconds: 99 of 100 cycles no later than this.
-     */
-    double WakeUp99;
-    /*
-     The same, microseconds: the latest.
-     */
-    double WakeUpMaximum;
-    /*
-     The part of the joint torque that the tension limits let through in the last cycle,
-     0 to 1. Its direction is kept.
-     */
-    double TorqueScale;
-    /*
-     Cycles since OpenHand.
-     */
-    unsigned long Cycles;
-    /*
-     Whole periods in which no cycle began, because the cycle before was not over or the
-     servo thread did not run, up to now. One such cycle may skip many.
-     */
-    unsigned long SkippedPeriods;
-    /*
-     Cycles without a valid reply in time.
-     */
-    unsigned long LostReplies;
-    /*
-     Pieces of bytes on the finger's port that were no frame: damaged, cut short, noise.
-     FingerTiming.ForeignFrames counts whole frames that nobody waited for.
-     */
-    unsigned long DamagedFrames;
-    /*
-     How much of a calibration is done, 0 to 1. 0 if the finger is not being calibrated.
-     */
-    double Calibration;
-    /*
-     1: OpenHand has locked the memory of every servo thread, so that it never waits for a
-     page. 0: one is not locked. If the planner calls munlockall later, this memory is
-     unlocked too, and this member stays 1. CloseHand and OpenHand lock it again.
-     */
-    int MemoryLocked;
-    /*
-     1: every servo thread runs on its configured core, or has none. 0: one does not.
-     */
-    int OnCore;
-    /*
-     The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where
-     its tendons carry no more in this pose, for example near the straight one.
-     */
-    double StiffnessScale;
+    unsigned int Size;              /* In: sizeof (struct FingerStatus). Out: bytes written, at most that. */
+    int State;                      /* FINGER_RUNNING to FINGER_CLOSED. */
+    int Realtime;                   /* 1: every servo thread of the hand runs under SCHED_FIFO. 0: at least one is an
+                                       ordinary thread. */
+    double Rate;                    /* Configured servo rate, Hz. */
+    double MeasuredRate;            /* Measured servo rate since OpenHand, Hz. It falls while the servo does not run:
+                                       the periods missing up to now count. */
+    double WakeUpMedian;            /* Jitter: how late cycles began since OpenHand or ResetTiming, us; median. */
+    double WakeUp99;                /* The same, us; 99 of 100 cycles began no later. */
+    double WakeUpMaximum;           /* The same, us; maximum. */
+    double TorqueScale;             /* Fraction of the joint torque that the tension limits admitted in the last
+                                       cycle, 0 to 1. The direction of the torque is kept. */
+    unsigned long Cycles;           /* Cycles since OpenHand. */
+    unsigned long SkippedPeriods;   /* Whole periods in which no cycle began because the previous cycle was not over
+                                       or the servo thread did not run, up to now. One late cycle may skip many
+                                       periods. */
+    unsigned long LostReplies;      /* Cycles without a valid reply in time. */
+    unsigned long DamagedFrames;    /* Pieces of data on the finger's port that are no frame: damaged, truncated,
+                                       noise. Whole frames that nobody expected are in FingerTiming.ForeignFrames. */
+    double Calibration;             /* Progress of a calibration, 0 to 1. 0 without a calibration. */
+    int MemoryLocked;               /* 1: OpenHand has locked the memory of every servo thread, so that it never
+                                       waits for a page. 0: at least one is not locked. If the planner calls
+                                       munlockall later, this memory is unlocked too, and this member stays 1.
+                                       CloseHand and OpenHand lock it again. */
+    int OnCore;                     /* 1: every servo thread with a configured core runs on it. 0: at least one does
+                                       not. */
+    double StiffnessScale;          /* Fraction of Kx in force in the last cycle, 0 to 1. It is below 1 where the
+                                       tendons cannot carry more in this pose, for example near the straight pose. */
 };
 
 /*
- What GetTiming tells of a stage of a finger's cycle. Set Size = sizeof (struct
- FingerTiming) before the call: later versions add members at the end, and a program
- never gets more than it has room for.
-
- All times are ns, within 1 %, at most 4.29e9, and 0 where nothing was counted. All
- numbers are since OpenHand or the finger's last ResetTiming.
+ Result of GetTiming. All times are in ns, within 1 %, at most 4.29e9, and 0 if nothing was counted.
+ All values are since OpenHand or the last ResetTiming of the finger.
  */
 struct FingerTiming {
-    /*
-     In: bytes of room, sizeof *Timing. Out: bytes that were filled, never more.
-     */
-    unsigned int Size;
-    /*
-     The stage that was asked for.
-     */
-    int Stage;
-    /*
-     Cycles that had this stage.
-     */
-    unsigned long Count;
-    /*
-     The shortest.
-     */
-    unsigned long Minimum;
-    /*
-     Half of them took no longer.
-     */
-    unsigned long Median;
-    /*
-     99 of 100 took no longer.
-     */
-    unsigned long P99;
-    /*
-     999 of 1000 took no longer.
-     */
-    unsigned long P999;
-    /*
-     The longest.
-     */
-    unsigned long Maximum;
-    /*
-     The finger's cycles, with or without this stage, like all that follows.
-     */
-    unsigned long Cycles;
-    /*
-     Cycles that were not over when the next one should have begun.
-     */
-    unsigned long Overruns;
-    /*
-     Whole periods in which no cycle began, because the cycle before was not over or the
-     servo thread did not run, up to the last cycle.
-     */
-    unsigned long SkippedPeriods;
-    /*
-     Cycles without a valid reply in time.
-     */
-    unsigned long LostReplies;
-    /*
-     Replies that came when their cycle was over.
-     */
-    unsigned long LateReplies;
-    /*
-     Pieces of bytes on the finger's port that were no frame: damaged, cut short, noise.
-     */
-    unsigned long CorruptReplies;
-    /*
-     Replies that came once more.
-     */
-    unsigned long DuplicateReplies;
-    /*
-     Whole frames on the finger's port that nobody waited for.
-     */
-    unsigned long ForeignFrames;
+    unsigned int Size;              /* In: sizeof (struct FingerTiming). Out: bytes written, at most that. */
+    int Stage;                      /* The requested stage. */
+    unsigned long Count;            /* Cycles that had this stage. */
+    unsigned long Minimum;          /* Shortest time of the stage. */
+    unsigned long Median;           /* Half of the cycles took no longer. */
+    unsigned long P99;              /* 99 of 100 cycles took no longer. */
+    unsigned long P999;             /* 999 of 1000 cycles took no longer. */
+    unsigned long Maximum;          /* Longest time of the stage. */
+    unsigned long Cycles;           /* Cycles of the finger. This member and all below count cycles with and without
+                                       this stage. */
+    unsigned long Overruns;         /* Cycles that were not over when the next one was due. */
+    unsigned long SkippedPeriods;   /* Whole periods in which no cycle began because the previous cycle was not over
+                                       or the servo thread did not run, up to the last cycle. */
+    unsigned long LostReplies;      /* Cycles without a valid reply in time. */
+    unsigned long LateReplies;      /* Replies that arrived after the end of their cycle. */
+    unsigned long CorruptReplies;   /* Pieces of data on the finger's port that are no frame: damaged, truncated,
+                                       noise. */
+    unsigned long DuplicateReplies; /* Replies that arrived a second time. */
+    unsigned long ForeignFrames;    /* Whole frames on the finger's port that nobody expected. */
 };
 
-/*
- What GetTip tells of a fingertip. Set Size = sizeof (struct FingerTip) before the call:
- later versions add members at the end, and a program never gets more than it has room
- for.
- */
+/* Result of GetTip. Vectors are in the finger's frame. */
 struct FingerTip {
-    /*
-     In: bytes of room, sizeof *Tip. Out: bytes that were filled, never more.
-     */
-    unsigned int Size;
-    /*
-     Directions of Force that the joints feel: 3, or fewer near a singular pose.
-     */
-    int Felt;
-    /*
-     Where the tip is, x, y, z of the finger's frame, cm.
-     */
-    double Tip[3];
-    /*
-     What the tip does to the thing it touches, x, y, z of the finger's frame, N. It comes
-     from the measured tensions, so the finger's friction and weight and what accelerates
-     it are in it. Never NaN: along a direction that the joints do not feel it is zero.
-     */
-    double Force[3];
-    /*
-     Measured tendon tensions, N.
-     */
-    double Tensions[4];
+    unsigned int Size;              /* In: sizeof (struct FingerTip). Out: bytes written, at most that. */
+    int Felt;                       /* Number of directions of Force that the joints can measure: 3, or fewer near a
+                                       singular pose. */
+    double Tip[3];                  /* Position of the tip: x, y, z, cm. */
+    double Force[3];                /* Force of the tip on the object that it touches: x, y, z, N. It is computed
+                                       from the measured tensions, so it includes friction, weight and inertia of the
+                                       finger. Never NaN: along a direction that the joints cannot measure it is
+                                       zero. */
+    double Tensions[4];             /* Measured tendon tensions, N. */
 };
 
-/*
- One cycle of a finger, as the black box keeps it. Set Size = sizeof (struct
- FingerRecord) before the call: later versions add members at the end.
- */
+/* Result of GetRecord: one cycle of a finger, from the black box. */
 struct FingerRecord {
-    /*
-     In: bytes of room, sizeof *Record. Out: bytes that were filled, never more.
-     */
-    unsigned int Size;
-    /*
-     As FingerStatus.State, at the end of the cycle.
-     */
-    int State;
-    /*
-     The cycle, counted from OpenHand; the first is 1.
-     */
-    unsigned long Cycle;
-    /*
-     The first and the last cycle that are kept now: without a gap between them.
-     */
-    unsigned long Oldest;
-    /*
-     See Oldest.
-     */
-    unsigned long Newest;
-    /*
-     When the cycle began, s on the clock CLOCK_MONOTONIC.
-     */
-    double Time;
-    /*
-     1: the board's reply came. 0: it was lost.
-     */
-    int Answered;
-    /*
-     Status bits of the newest reply (docs/board-protocol.md).
-     */
-    int StatusBits;
-    /*
-     1: the controller ran, and found what follows. 0: the finger was faulted before, or
-     the simulated one waited; what follows is 0.
-     */
-    int Computed;
-    /*
-     1: a set point is in force, and stands in PosSent. 0: none is, and there are zeros.
-     */
-    int Follows;
-    /*
-     Measured joint angles, rad.
-     */
-    double Pos[3];
-    /*
-     The joint angles that the finger is pulled to, rad.
-     */
-    double PosSent[3];
-    /*
-     Measured tendon tensions, N.
-     */
-    double Tension[4];
-    /*
-     Commanded tendon tensions, N.
-     */
-    double TensionSent[4];
-    /*
-     Commanded motor torques, N cm. They leave for the board in the next cycle.
-     */
-    double Torque[4];
+    unsigned int Size;              /* In: sizeof (struct FingerRecord). Out: bytes written, at most that. */
+    int State;                      /* FINGER_RUNNING to FINGER_CLOSED, at the end of the cycle. */
+    unsigned long Cycle;            /* The cycle, counted from OpenHand; the first is 1. */
+    unsigned long Oldest;           /* First cycle that is stored now. All cycles from Oldest to Newest are stored. */
+    unsigned long Newest;           /* Last cycle that is stored now. */
+    double Time;                    /* Start of the cycle on CLOCK_MONOTONIC, s. */
+    int Answered;                   /* 1: the board's reply arrived. 0: it was lost. */
+    int StatusBits;                 /* Status bits of the newest reply (docs/board-protocol.md). */
+    int Computed;                   /* 1: the controller ran and computed the members below. 0: they are 0, because
+                                       the finger was faulted already or the simulated finger waited. */
+    int Follows;                    /* 1: PosSent is the set point in force. 0: no set point is in force, and PosSent
+                                       is 0. */
+    double Pos[3];                  /* Measured joint angles, rad. */
+    double PosSent[3];              /* Joint angles at which the spring is anchored, rad. */
+    double Tension[4];              /* Measured tendon tensions, N. */
+    double TensionSent[4];          /* Commanded tendon tensions, N. */
+    double Torque[4];               /* Commanded motor torques, N cm. They are sent to the board in the next cycle. */
 };
 
-/*
- What GetFault tells of a finger. Set Size = sizeof (struct Fault) before the call:
- later versions add members at the end.
- */
+/* Result of GetFault. */
 struct Fault {
-    /*
-     In: bytes of room, sizeof *Fault. Out: bytes that were filled, never more.
-     */
-    unsigned int Size;
-    /*
-     The fault that has stopped the finger: FAULT_..., or 0 if none has.
-     */
-    int Number;
-    /*
-     Its joint (0 to 2), tendon, motor, gauge or encoder (1 to 4), as its text says;
-     0 where it is of the whole finger.
-     */
-    int Part;
-    /*
-     A warning of the last second: FAULT_..., or 0 if there was none.
-     */
-    int Warning;
-    /*
-     Its joint, tendon, motor, gauge or encoder.
-     */
-    int WarningPart;
-    /*
-     How much: N, ms, degrees, counts, per cent, errno or status bits, as
-     docs/faults.md says.
-     */
-    double Value;
-    /*
-     How much, of the warning.
-     */
-    double WarningValue;
-    /*
-     How many warnings have been given since OpenHand; one that goes on counts once.
-     */
-    unsigned long Warnings;
+    unsigned int Size;              /* In: sizeof (struct Fault). Out: bytes written, at most that. */
+    int Number;                     /* Fault that has stopped the finger: FAULT_..., or 0 if none has. */
+    int Part;                       /* Its joint (0 to 2) or its tendon, motor, gauge or encoder (1 to 4): FaultText
+                                       says which. 0 if it concerns the whole finger. */
+    int Warning;                    /* Warning of the last second: FAULT_..., or 0 if there was none. */
+    int WarningPart;                /* Joint, tendon, motor, gauge or encoder of the warning. */
+    double Value;                   /* Figure of the fault: N, ms, degrees, counts, per cent, errno or status bits
+                                       (docs/faults.md). */
+    double WarningValue;            /* Figure of the warning. */
+    unsigned long Warnings;         /* Warnings since OpenHand. A warning that persists counts once. */
 };
 
 /*
@@ -1087,15 +822,14 @@ struct Fault {
      int GetStatus(int i, struct FingerStatus *Status);
 
    i        finger, 1 to 3
-   Status   Status->Size is set by the caller, all else is filled in. Written only if
-            the call returns 0
+   Status   result; set Status->Size before the call
 
  Works on a faulted finger too.
 
- A servo thread does not run while a thread with a higher priority occupies its core, or
- while a debugger holds it. Then State is that of its last cycle and Cycles stands still.
- SkippedPeriods grows with every period, so a planner that compares it with an earlier
- value knows how old the pose of GetPos is.
+ A servo thread does not run while a thread with a higher priority occupies its core, or while a
+ debugger stops it. Then State stays that of the last cycle, and Cycles does not grow.
+ SkippedPeriods grows with every period, so a planner can compare it with an earlier value to
+ compute how old the pose of GetPos is.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1121,8 +855,7 @@ int GetStatus(int, struct FingerStatus *);
 
    i        finger, 1 to 3
    Stage    TIMING_WAKE_UP to TIMING_AGE
-   Timing   Timing->Size is set by the caller, all else is filled in. Written only if
-            the call returns 0
+   Timing   result; set Timing->Size before the call
 
  Works while the servo runs, and on a faulted finger too.
 
@@ -1132,7 +865,7 @@ int GetStatus(int, struct FingerStatus *);
    ENODEV   no hand is open
    EINVAL   Size is too small; no such finger; no such Stage
 
- Threads: any. Never waits for a servo; some us.
+ Threads: any. Never waits for a servo. Takes a few us.
 
  Example:
 
@@ -1150,7 +883,7 @@ int GetTiming(int, int, struct FingerTiming *);
 
    i        finger, 1 to 3; 0: all
 
- The counts of GetStatus go on, except the wake-up times, which are those of GetTiming.
+ The counts of GetStatus continue, except its wake-up times, which are those of GetTiming.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1167,24 +900,23 @@ int ResetTiming(int);
      int SendTip(int i, const double *Tip);
 
    i     finger, 1 to 3
-   Tip   Tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm.
-         Always double. Read during the call only
+   Tip   Tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm. Always double
 
- From the next cycle on the fingertip is a spring anchored there, with the stiffness
- sent last. Its force is Kx (Tip - tip) at any distance. SendPos by default uses the law
- of the report, which holds for small distances. Of several joint solutions within the
- joint limits the call takes the one nearest to the present pose. The anchor moves there
- in a straight line of joint angles, at a bounded speed.
+ From the next cycle on the fingertip is a spring anchored there, with the stiffness sent last. Its
+ force is Kx (Tip - tip) at any distance, while SendPos by default uses the law of the report, which
+ holds for small distances. If several joint solutions are within the joint limits, the call takes
+ the one nearest to the present pose. The anchor moves there along a straight line in joint angles,
+ at a bounded speed.
 
  Returns 0, or -1 with
    EPERM    forked child
    EFAULT   Tip is null
    ENODEV   no hand is open
    EINVAL   no such finger; an entry is NaN or infinite
-   ERANGE   too far, too near, or outside the joint limits; never clamped
+   ERANGE   Tip is too far, too near, or outside the joint limits; it is never clamped
    EIO      the finger is faulted
 
- Threads: any. Never waits for a servo; less than 1 us.
+ Threads: any. Never waits for a servo. Takes less than 1 us.
 
  Example:
 
@@ -1199,8 +931,7 @@ int SendTip(int, const double *);
      int GetTip(int i, struct FingerTip *Tip);
 
    i     finger, 1 to 3
-   Tip   Tip->Size is set by the caller, all else is filled in from the servo's last
-         cycle. Written only if the call returns 0
+   Tip   result, from the last cycle of the servo; set Tip->Size before the call
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1209,7 +940,7 @@ int SendTip(int, const double *);
    EINVAL   Size is too small; no such finger
    EIO      the finger is faulted
 
- Threads: any. Never waits for a servo; about 1 us.
+ Threads: any. Never waits for a servo. Takes about 1 us.
 
  Example:
 
@@ -1228,21 +959,20 @@ int GetTip(int, struct FingerTip *);
    i        finger, 1 to 3
    D        dimensions of the contact (section 4.2 of the report):
             1   frictionless point: a force along the normal
-            3   hard finger with friction: three forces; SendContact (i, 3, Kx, 0) is
+            3   hard finger with friction: three forces; SendContact (i, 3, Kx, 0) is the same as
                 SendKx (i, Kx)
             4   soft finger: three forces and a moment about the normal
-   K        K[D][D] or K[D * D], row by row. Rows and columns 0 to 2 of D = 3 and 4 are
-            x, y, z of the finger's frame, N/cm; row and column 3 are the rotation
-            about the normal: N cm/rad on the diagonal, N/rad beside it. For D = 1 N/cm
-            along the normal
-   Normal   Normal[3]: direction of the contact's normal in the finger's frame, of any
-            length but zero. Not used for D = 3, and may be null there
+   K        K[D][D] or K[D * D], row by row. Always double. For D = 1: N/cm along the normal. For
+            D = 3 and 4, rows and columns 0 to 2 are x, y, z of the finger's frame, N/cm. For D = 4,
+            row and column 3 are the rotation about the normal: N cm/rad on the diagonal, N/rad
+            beside it
+   Normal   Normal[3]: the contact normal in the finger's frame, of any length but zero. Always
+            double. Not used for D = 3, and may be null there
 
- Always double. Read during the call only. The contact takes effect whole, without a jump
- in torque. It replaces the stiffness sent last, and a later SendKx replaces it. In the
- directions that a contact does not have, the finger is limp but still damped. K must be
- symmetric and without a negative eigenvalue, as for SendKx. For the bound a rotation
- counts by how far it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
+ The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last,
+ and a later SendKx replaces it. In directions that the contact does not have, the finger is limp
+ but still damped. K must be symmetric and without a negative eigenvalue, as for SendKx. The bound
+ counts a rotation by how far it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1250,12 +980,11 @@ int GetTip(int, struct FingerTip *);
    ENODEV   no hand is open
    EINVAL   no such finger; no such D; an entry is NaN or infinite
    EDOM     K is not symmetric, or has a negative eigenvalue; Normal is zero
-   ERANGE   K is stiffer than the bound (or it is clamped: hand.out_of_range)
+   ERANGE   K is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
    EIO      the finger is faulted
-   ERANGE   K is too stiff for the ratio that SendDamping set (or the ratio is clamped:
-            hand.out_of_range)
+   ERANGE   K is too stiff for the ratio of SendDamping ("clamp" clamps the ratio instead)
 
- Threads: any. Never waits for a servo; a few us.
+ Threads: any. Never waits for a servo. Takes a few us.
 
  Example, a soft finger:
 
@@ -1271,31 +1000,31 @@ int SendContact(int, int, const double *, const double *);
      int SendDamping(int i, double Ratio);
 
    i       finger, 1 to 3
-   Ratio   damping relative to what the controller chooses from the stiffness. After
-           OpenHand it is 1
+   Ratio   damping relative to what the controller chooses from the stiffness; 1 after OpenHand
 
- The ratio changes without a jump in torque and stays until it is sent again. The range
- depends on controller, rate and the largest eigenvalue k of the stiffness, N/cm, because
- a finger with much less or much more damping does not come to rest:
+ The ratio changes without a jump in torque and stays until it is sent again. A finger with much
+ less or much more damping does not come to rest. The range therefore depends on controller, rate
+ and the largest eigenvalue k of the stiffness, N/cm:
 
-                          1000 Hz and more            below 1000 Hz
+                          1000 Hz and above           below 1000 Hz
    state feedback         0.40 + 0.09 k to            0.70 + 0.07 k to
                           2.50 - 0.22 k               2.00 - 0.20 k
    figures 9, 10, 11      1 to 2.50 - 0.22 k          1 to 2.00 - 0.20 k
 
- On a finger with other links or tendons k is scaled by what its tendons carry. So the
- range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm by default. 1 is always in
- it. SendKx and SendContact refuse a stiffness that the ratio sent last does not go with.
+ By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1.
+ For a finger with other links or tendons, k is first divided by the stiffness of its tip with
+ locked tendons and multiplied by that of the default finger. SendKx and SendContact refuse a
+ stiffness whose range does not include the ratio sent last.
 
  Returns 0, or -1 with
    EPERM    forked child
    ENODEV   no hand is open
    EINVAL   no such finger; Ratio is NaN or infinite
    EIO      the finger is faulted
-   ERANGE   Ratio is outside its range; HandError says which (or it is clamped:
-            hand.out_of_range)
+   ERANGE   Ratio is outside its range, which HandError gives (hand.out_of_range = "clamp" clamps it
+            instead)
 
- Threads: any. Never waits for a servo; about 100 ns.
+ Threads: any. Never waits for a servo. Takes about 100 ns.
  */
 int SendDamping(int, double);
 
@@ -1305,32 +1034,29 @@ int SendDamping(int, double);
      int AdjustFinger(int i, const char *Keys);
 
    i      finger, 1 to 3
-   Keys   lines of TOML as they would stand under [finger.i] of the configuration file
-          (chapter 8), in UTF-8. Read during the call only
+   Keys   lines of TOML, in UTF-8, as under [finger.i] of the configuration file (chapter 8)
 
- All keys take effect together, within a cycle and without a jump in torque; what is
- not named stays. The change lasts until CloseHand: the file is not written. What a
- finger is opened with cannot change: port, baud, reconnect, address, thread, core,
- priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
- motor.torque_constant, stiffness.initial and simulation. controller.law counts from
- the next SendPos on.
+ All keys take effect together, within a cycle and without a jump in torque; other keys stay as they
+ are. The change lasts until CloseHand: the file is not written. controller.law applies from the
+ next SendPos on. These keys cannot change while the hand is open: port, baud, reconnect, address,
+ thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
+ motor.torque_constant, stiffness.initial and simulation.
 
- A configured stiffness.bound was found for one controller. Under another
- controller.scheme it counts only if it is less than the default bound, or if Keys
- names it too.
+ A configured stiffness.bound is valid for one controller. If controller.scheme changes, it applies
+ only if it is less than the default bound, or if Keys includes it too.
 
  Returns 0, or -1 with
    EPERM    forked child
    EFAULT   Keys is null
    ENODEV   no hand is open
-   EINVAL   no such finger; Keys are no TOML
+   EINVAL   no such finger; Keys is not TOML
    EBUSY    a key cannot change while the hand is open
-   EINVAL   an unknown key; a configuration that cannot be used
-   ERANGE   the position or stiffness sent last is outside the new limits (or it is
-            clamped: hand.out_of_range)
+   EINVAL   an unknown key; an unusable configuration
+   ERANGE   the position or stiffness sent last is outside the new limits (hand.out_of_range =
+            "clamp" clamps it instead)
    EIO      the finger is faulted
 
- Threads: any. Never waits for a servo; about 200 us, and allocates.
+ Threads: any. Never waits for a servo. Takes about 200 us, and allocates.
 
  Example:
 
@@ -1344,9 +1070,8 @@ int AdjustFinger(int, const char *);
      int PushFinger(int i, const double *Force);
 
    i       finger, 1 to 3
-   Force   Force[3]: force on the fingertip along x, y, z of the finger's frame, N,
-           from now until the next call; zero lets go. Always double. Read during
-           the call only
+   Force   Force[3]: force on the fingertip along x, y, z of the finger's frame, N. Always double. It
+           acts until the next call; zero ends it
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1366,24 +1091,22 @@ int PushFinger(int, const double *);
      int GetRecord(int i, unsigned long Cycle, struct FingerRecord *Record);
 
    i        finger, 1 to 3
-   Cycle    which one, Record->Oldest to Record->Newest of a call before; 0: the newest
-   Record   Record->Size is set by the caller, all else is filled in. Written only if the
-            call returns 0
+   Cycle    Record->Oldest to Record->Newest of an earlier call; 0: the newest cycle
+   Record   result; set Record->Size before the call
 
- These numbers are a part of what WriteBlackBox writes into a file. Every cycle adds a
- record and removes the oldest one. The records of a faulted finger stay as they were at
- the fault.
+ A record is a part of what WriteBlackBox writes into a file. Every cycle adds a record and removes
+ the oldest one. A faulted finger adds none, so its records are the last ones before the fault.
 
  Returns 0, or -1 with
    EPERM    forked child
    EFAULT   Record is null
    ENODEV   no hand is open
    EINVAL   Size is too small; no such finger
-   ENOENT   the cycle is no longer kept, or has not taken place yet
+   ENOENT   the cycle is no longer stored, or has not taken place yet
 
  Threads: any. Never waits for a servo.
 
- Example, with the younger half of what is kept:
+ Example, with the newer half of the records:
 
      struct FingerRecord Record;
      unsigned long Cycle, Last;
@@ -1403,28 +1126,27 @@ int GetRecord(int, unsigned long, struct FingerRecord *);
      int WriteBlackBox(int i, const char *Path);
 
    i       finger, 1 to 3
-   Path    the file, new or to be replaced. Read during the call only
+   Path    the file, new or to be replaced
 
- The library keeps the last two seconds of every finger: feedback, set points, motor
- commands, timing, state. Of a faulted finger they are the last two before the fault.
- docs/black-box.md describes the file; `sun2xp replay Path` computes it again. With
- hand.black_box the library writes such a file by itself whenever a finger faults.
+ The library stores the last two seconds of every finger: feedback, set points, motor commands,
+ timing and state. For a faulted finger these are the last two seconds before the fault.
+ docs/black-box.md describes the file, and `sun2xp replay Path` recomputes it. With hand.black_box
+ the library also writes such a file whenever a finger faults.
 
- The file is written beside its place, under a temporary name that begins with ".sun2xp-",
- and takes its place once it is whole and on the disk. A call that fails leaves an old file
- as it was. The folder must be writable.
-
- Takes about 50 ms, and as long as the disk needs for some MB. The servos go on.
+ The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and
+ renames it when it is complete and on the disk. So the folder must be writable, and a refused call
+ leaves an old file unchanged. The call takes about 50 ms, and the time that the disk needs for some
+ MB. The servos continue.
 
  Returns 0, or -1 with
    EPERM    forked child
    EFAULT   Path is null
    ENODEV   no hand is open
-   EINVAL   no such finger; Path names something other than a regular file, such as a
-            symbolic link, a device or a folder
+   EINVAL   no such finger; Path names something other than a regular file, such as a symbolic link,
+            a device or a folder
    ENOENT, EACCES, ENOSPC ...  the file cannot be written
 
- Threads: any. Of two calls with the same Path the last one leaves its file.
+ Threads: any. If two calls write to the same Path, the file of the last one remains.
 
  Example:
 
@@ -1439,40 +1161,43 @@ int WriteBlackBox(int, const char *);
 
    i        finger, 1 to 3
 
- Lets the tendons out and reads the gauges, and finds the zero of the encoders as
- finger.zeroing.method says. "pose": the finger stands in finger.zeroing.pose_degrees.
- It must stand still there from the call on until it has been read: a finger that is a
- spring for 0.3 s; a finger that is limp for some seconds, held by a jig or a hand. A
- finger that moves, or that nothing holds, is refused. "stops": each joint is led slowly
- against both of its stops, for which the finger needs room. "kept": the configured zero
- stays, if the board says that its counts are still good. Where no method is configured
- it is "stops" if the configuration says where the stops are, or if the finger is
- simulated, and else "pose". What was found is in force at once, and is written into the
- configuration file if OpenHand has read one: these zeros and nothing else. All other keys
- and comments stay as they are in the file by then, so that several processes may store what
- they find. Each waits for the others, for 30 s at most.
- Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
- free finger has moved, by up to some tenths of a radian.
+ Slackens the tendons and reads the gauges. Then finds the zero of the encoders by
+ finger.zeroing.method:
 
- Waits until it is done: seconds, up to a minute with "stops". Meanwhile GetStatus tells
- the part that is done (FingerStatus.Calibration), other calls go on, and set points for
- this finger have no effect.
+   "pose"   The finger stands in finger.zeroing.pose_degrees. It must stand still from the start of
+            the call until it has been read: 0.3 s for a finger that is a spring, some seconds for a
+            limp one, which a jig or a hand must hold. A finger that moves, or that nothing holds,
+            is refused.
+   "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
+   "kept"   The configured zero stays, if the board reports that its counts are still valid.
+
+ The default is "stops" if the finger is simulated or the configuration gives the positions of its
+ stops, otherwise "pose". At the end the finger holds its present pose at its initial stiffness.
+ While it was limp, a free finger may have moved by some tenths of a radian.
+
+ The zeros take effect at once. If OpenHand has read a configuration file, they are written into
+ that file; all other keys and comments stay as they are in the file at that time. So several
+ processes may store their results: each waits for the others, at most 30 s.
+
+ Waits until all this is done: some seconds, or up to a minute with "stops". Meanwhile
+ FingerStatus.Calibration gives the progress, other calls work, and set points for this finger have
+ no effect.
 
  Returns 0, or -1 with
    EPERM      forked child
    ENODEV     no hand is open, or it was closed meanwhile
-   EINVAL     no such finger; the configuration file has been changed and what was found
-              does not fit it: the zeros are in force until CloseHand and not stored
+   EINVAL     no such finger; or the configuration file has changed, and the zeros do not fit it:
+              they are in force until CloseHand and not stored
    EIO        the finger is faulted
    EBUSY      the finger is being calibrated or recovered already
-   ECANCELED  something stood in the way (the finger moved in its pose, a tendon is slack,
-              a gauge dead, a joint meets no stop or meets it early ...). No zero was
-              changed, and HandError says what to do. The finger is limp; but one that was
-              refused before anything was done to it (it moved while it was read, or its
-              counts were not kept) is what it was before
-   ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
-   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
-              until CloseHand
+   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is
+              dead, a joint meets no stop or meets it too early ...). No zero has changed, and
+              HandError gives the remedy. The finger is limp, unless it was refused before the
+              calibration changed anything (it moved while it was read, or its counts were not
+              valid): then it is in its former state
+   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise the same
+   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
+              CloseHand
 
  Threads: any.
 
@@ -1490,29 +1215,27 @@ int ZeroFinger(int);
 
    i        finger, 1 to 3; it must have been zeroed
 
- Moves the joints a little to and fro where they are, leads the finger to its lower
- stops, moves each joint to and fro, presses against the stops with up to 0.6 of the
- largest tension, and returns to where it began. Finds the gains of the gauges, the
- stiffness of each tendon and the friction of motors, conduits and joints. What was
- found is in force at once and is written into the configuration file, as by
- ZeroFinger. Takes about a minute, and the room that the joints can reach.
+ Moves the joints a little back and forth where they are, moves the finger to its lower stops, moves
+ each joint back and forth, presses against the stops with up to 0.6 of the largest tension, and
+ returns to the start. Measures the gains of the gauges, the stiffness of each tendon and the
+ friction of motors, conduits and joints. The results take effect and are stored as those of
+ ZeroFinger. Takes about a minute, and all the room that the joints can reach.
 
- Returns and waits as ZeroFinger.
+ Returns and waits as ZeroFinger does.
 
  Threads: any.
  */
 int IdentifyFinger(int);
 
 /*
- GetFault - what is wrong with a finger
+ GetFault - fault and warning of a finger
 
      int GetFault(int i, struct Fault *Fault);
 
    i        finger, 1 to 3
-   Fault    Fault->Size is set by the caller, all else is filled in. Written only if
-            the call returns 0
+   Fault    result; set Fault->Size before the call
 
- Returns 0, whether something is wrong or not, or -1 with
+ Returns 0, with or without a fault, or -1 with
    EPERM    forked child
    EFAULT   Fault is null
    ENODEV   no hand is open
@@ -1530,15 +1253,15 @@ int IdentifyFinger(int);
 int GetFault(int, struct Fault *);
 
 /*
- FaultText - a fault in words
+ FaultText - description of a fault
 
      const char *FaultText(int Number);
 
    Number   FAULT_...
 
- Its name, what is the case, the likely cause and the remedy, in one line. An empty
- string for a number that is no fault. Never null, valid for ever. Where a call was
- refused because of a fault, HandError gives the same with part and figures.
+ Returns one line with the fault's name, its meaning, the likely cause and the remedy, or an empty
+ string for a number that is no fault. Never null. The text stays valid until the process ends. If a
+ call was refused because of a fault, HandError gives the same text with the part and its figures.
 
  Threads: any. Works in a forked child too.
  */
@@ -1549,20 +1272,21 @@ const char *FaultText(int);
 
      int StopHand(void);
 
- Every finger faults (FAULT_EMERGENCY_STOP_CALL) at the beginning of its next cycle: its
- board is told to go to the configured end state, and its calls are refused with EIO.
- With hand.end_state = "release", the default, the torque goes to zero at once. With
- "hold" the motors keep their last torque, up to hand.hold_torque_limit, for
- hand.hold_time_ms, by default 2 s and at most a minute: who configures "hold" has
- something that must not be dropped. No call makes the finger limp earlier; the
- emergency stop input of the board does, whatever the end state, and so does its power.
- It stays so until RecoverHand, or CloseHand and OpenHand. Without a hand it does
- nothing, and a hand that is opened later knows nothing of it. It is no safety function:
- it needs this process, this machine and the cable.
+ Every finger faults (FAULT_EMERGENCY_STOP_CALL) at the start of its next cycle. The servo commands
+ its board to enter the configured end state, and calls for the finger are refused with EIO until
+ RecoverHand, or CloseHand and OpenHand. If no hand is open, the call does nothing; a hand that is
+ opened later is not affected.
+
+ With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the
+ motors keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s
+ and at most a minute. Configure "hold" only for objects that must not be dropped: no call releases
+ the torque earlier. Only the emergency stop input of the board, or cutting the board's power, does.
+
+ StopHand is not a safety function: it needs this process, this machine and the cable.
 
  Returns 0.
 
- Threads: any, and signal handlers: it is async-signal-safe, sets no errno and waits for
+ Threads: any, and signal handlers: it is async-signal-safe, does not set errno and waits for
  nothing. In a forked child it does nothing.
 
  Example, for Control-C:
@@ -1584,26 +1308,26 @@ int StopHand(void);
 
    i        finger, 1 to 3
 
- Asks the finger's board who it is and configures it anew; opens the port anew where it
- has failed and finger.reconnect is true. Then the tendons are brought under tension,
- and the finger holds the pose that it is found in, at the configured initial stiffness.
- Fingers that share the port recover with it. A finger that is not faulted goes on as it
- is. Repair the cause of the fault first: GetFault and FaultText name it.
+ Queries the identity of the finger's board and configures the board again. If the port has failed
+ and finger.reconnect is true, reopens the port first. Then brings the tendons under tension. The
+ finger holds its present pose at the configured initial stiffness. Fingers on the same port recover
+ with it. A finger that is not faulted continues unchanged. Remove the cause of the fault
+ first: GetFault and FaultText name it.
 
- Waits until the finger holds its pose or faults again: up to some seconds. Other calls
- go on meanwhile. CloseHand too, and this call is refused then.
+ Waits until the finger holds its pose or faults again, up to some seconds. Other calls work
+ meanwhile. CloseHand works too, and this call is then refused.
 
  Returns 0, or -1 with
    EPERM    forked child
-   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and
-            finger.reconnect is false
+   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and finger.reconnect
+            is false
    EINVAL   no such finger
-   EIO      the finger faults again, or its board is another one than at OpenHand or has
-            lost its zero, or its servo thread has failed (FAULT_SERVO_PANIC), which only
-            CloseHand and OpenHand mend; HandError says which
+   EIO      the finger faults again; or its board is not the one of OpenHand, or has lost its zero;
+            or its servo thread has failed (FAULT_SERVO_PANIC), which only CloseHand and OpenHand
+            remedy. HandError says which
    EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
-   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: it is not there yet, or
-            the board does not answer, or the servo does not run. Call again
+   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
+            does not answer, or the servo does not run. Call again
 
  Threads: any.
 
@@ -1617,7 +1341,7 @@ int StopHand(void);
 int RecoverHand(int);
 
 
-/* Where these do not compile, the compiler packs structs in another way than the library. */
+/* These do not compile if the compiler lays out structs differently than the library. */
 #ifdef __LP64__
 typedef char Sun2XpFingerStatusSize[sizeof(struct FingerStatus) == 120 ? 1 : -1];
 typedef char Sun2XpFingerTimingSize[sizeof(struct FingerTiming) == 120 ? 1 : -1];
@@ -1637,7 +1361,7 @@ typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
 #endif
 
 
-/* What follows chooses between float and double (chapter 4). */
+/* The rest of this file chooses between float and double (chapter 4). */
 
 #if defined(SUN2XP_REAL)
 
@@ -1649,9 +1373,9 @@ typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
 
 #elif defined(__cplusplus)
 
-/* These are templates and not overloads for pointers, because NULL and 0 would fit two overloads. They fit no template,
-   so they go to the plain function, which refuses them. The block says extern "C++", because a planner may include this
-   header inside its own extern "C". */
+/* Templates, because NULL and 0 would match two overloads for pointers. They match no template, so the plain function
+   is called, which refuses them. The block is extern "C++", because a planner may include this header inside its own
+   extern "C". */
 extern "C++" {
 
 inline int Sun2XpSendPos(int Sun2XpFinger, const float *Sun2XpArray) { return ::SendPos(Sun2XpFinger, Sun2XpArray); }
@@ -1685,7 +1409,7 @@ template <class Sun2XpElement> inline int GetPos(int Sun2XpFinger, Sun2XpElement
 
 #else
 
-/* SUN2XP_NO_GENERIC turns _Generic off, for compilers that say they have it and do not. */
+/* SUN2XP_NO_GENERIC disables _Generic, for compilers that claim to support it but do not. */
 #if defined(SUN2XP_NO_GENERIC)
 #elif defined(__clang__)
 #if __has_extension(c_generic_selections)
@@ -1701,7 +1425,7 @@ template <class Sun2XpElement> inline int GetPos(int Sun2XpFinger, Sun2XpElement
 #endif
 #endif
 
-/* The macros below use these names, because a planner may have macros named like the words of C. */
+/* The macros below use these names, because a planner may have macros named like C keywords. */
 typedef char Sun2XpChar;
 typedef int Sun2XpInt;
 typedef long Sun2XpLong;
@@ -1717,15 +1441,15 @@ typedef volatile double Sun2XpDoubleV;
 typedef const volatile double Sun2XpDoubleCV;
 
 #ifdef SUN2XP_GENERIC
-/* The type of NULL and 0 below, which are refused at run time. It is incomplete, so no planner has an object of it. */
+/* The type of NULL and 0 below, which are refused at run time. It is incomplete, so a planner has no object of it. */
 typedef struct Sun2XpNull Sun2XpNull;
 /* A conditional expression has this type only if its other branch is a null pointer constant. So void * pointers and
-   integers other than 0 become void *, which fits no association of SUN2XP_SEND and SUN2XP_GET. */
+   integers other than 0 become void *, which matches no association of SUN2XP_SEND and SUN2XP_GET. */
 #define SUN2XP_NULL_POINTER(Array) \
     (1 ? _Generic(Array, Sun2XpVoid *: Array, default: (Sun2XpVoid *)0) : (Sun2XpNull *)0)
 #define SUN2XP_NULL_NUMBER(Array) \
     (1 ? (Sun2XpVoid *)(Sun2XpLong)_Generic(Array, Sun2XpInt: Array, Sun2XpLong: Array, default: 0) : (Sun2XpNull *)0)
-/* An array of variable length fits both Element (*)[3] and Element (*)[9], so they may not stand in one list. */
+/* An array of variable length matches both Element (*)[3] and Element (*)[9], so one list must not contain both. */
 #define SUN2XP_ROWS_OF_9(Element) \
     Element (*)[9]: (Element *)0, Element##C (*)[9]: (Element##C *)0, \
     Element##V (*)[9]: (Element##V *)0, Element##CV (*)[9]: (Element##CV *)0
@@ -1747,8 +1471,8 @@ typedef struct Sun2XpNull Sun2XpNull;
         SUN2XP_POINTERS(Sun2XpDouble, Double), SUN2XP_POINTERS(Sun2XpDoubleV, Double), \
         Sun2XpNull *: Single)((Finger), (Sun2XpVoid *)Array))
 #else
-/* float, float[3], float[9] have 4, 12, 36 bytes; double, double[3], double[9] have 8, 24, 72. Where the size is no
-   multiple of a float's, as that of void is for some compilers, the type char[-1] stops the compiler. */
+/* float, float[3], float[9] have 4, 12, 36 bytes; double, double[3], double[9] have 8, 24, 72. If the size is not a
+   multiple of a float's, as that of void for some compilers, the type char[-1] does not compile. */
 #define SUN2XP_IS_FLOAT(Array) \
     (sizeof *Array % sizeof(Sun2XpDouble) + 0 * sizeof(Sun2XpChar[sizeof *Array % sizeof(Sun2XpFloat) ? -1 : 1]))
 #define SUN2XP_SEND(Single, Double, Finger, Array) \
@@ -1757,7 +1481,7 @@ typedef struct Sun2XpNull Sun2XpNull;
     (SUN2XP_IS_FLOAT(Array) ? Single((Finger), (Sun2XpVoid *)Array) : Double((Finger), (Sun2XpVoid *)Array))
 #endif
 
-/* From C99 on the array may be a compound literal, whose commas a macro takes for its own. */
+/* From C99 on the array may be a compound literal. Its commas separate arguments of the macro. */
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
 #define SendPos(Finger, ...) SUN2XP_SEND(SendPos, SendPosD, Finger, (__VA_ARGS__))
 #define SendKx(Finger, ...) SUN2XP_SEND(SendKx, SendKxD, Finger, (__VA_ARGS__))

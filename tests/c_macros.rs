@@ -68,16 +68,15 @@ fn names() -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     let (mut manual, mut continued) = (false, false);
     for line in header.lines() {
-        let begins = line.trim_start().starts_with("/*");
-        manual |= begins;
         let entry = line.starts_with("     int ") || line.starts_with("     const char *");
         let directive = continued || line.starts_with('#');
         if (manual && entry) || (!manual && !directive) {
-            let declaration = line.split_once(';').map_or(line, |(declaration, _)| declaration);
+            let code = line.split("/*").next().unwrap_or_default();
+            let declaration = code.split_once(';').map_or(code, |(declaration, _)| declaration);
             names.extend(words(declaration).map(str::to_string));
         }
         continued = directive && line.ends_with('\\');
-        manual &= !line.contains("*/");
+        manual = (manual || line.contains("/*")) && !line.contains("*/");
     }
     let own = |name: &String| {
         let name = name.as_str();

@@ -1,5 +1,5 @@
-//! The committed header is what cbindgen makes of the exports. A build script must not write into the source, so a test
-//! compares, and writes when asked to.
+//! The committed header equals the one generated from the exports. A build script must not write into the source
+//! folder, so this test compares the two, and writes the header if SUN2XP_WRITE_HEADER is set.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -10,7 +10,7 @@ use sun2xp::finger::FaultKind;
 /// The five calls of 1990 and HandError.
 const CALLS_OF_1990: &[&str] = &["calls.rs"];
 
-/// Everything else, in the order of the manual.
+/// All other calls, in the order of the manual.
 const OTHER_CALLS: &[&str] = &[
     "status_calls.rs",
     "timing_calls.rs",
@@ -21,36 +21,96 @@ const OTHER_CALLS: &[&str] = &[
     "recovery_calls.rs",
 ];
 
-/// Words of C and C++ that stand in the header outside of the declarations.
-const WORDS_OF_THE_TRAILER: &[&str] =
+/// Keywords of C and C++ that the header uses outside of the declarations.
+const KEYWORDS_OF_AFTER: &[&str] =
     &["class", "extern", "inline", "reinterpret_cast", "return", "sizeof", "template", "typedef", "volatile"];
 
-/// The header makes macros of three of these itself, so it cannot give back a planner's macro of the same name. Those
+/// Three of these are macros of the header itself, so it cannot restore a planner's macro of the same name. These
 /// macros use the other three.
 const MACROS: &[&str] = &["GetPos", "GetPosD", "SendKx", "SendKxD", "SendPos", "SendPosD"];
+
+/// The column of the comments beside constants and members: behind the longest of them.
+const COMMENT_COLUMN: usize = 36;
+
+/// Headings of the two groups of constants.
+const HEADINGS: &[(&str, &str)] = &[
+    ("FINGER_", "State of a finger (FingerStatus.State, FingerRecord.State)"),
+    ("TIMING_", "Stage of a cycle (GetTiming, FingerTiming.Stage)"),
+];
 
 /// A constant for each fault.
 fn faults() -> String {
     let line = |kind: &FaultKind| {
-        let told = kind.description();
-        format!("#define FAULT_{:<22} {:>2} /* {} */", told.constant, kind.number(), told.name)
+        let description = kind.description();
+        format!("#define FAULT_{:<22} {:>2} /* {} */", description.constant, kind.number(), description.name)
     };
     FaultKind::ALL.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// What cbindgen makes of some files of src/capi, without header and trailer.
-fn declarations(mut config: cbindgen::Config, files: &[&str]) -> String {
-    (config.header, config.trailer) = (None, None);
+/// The chapters of the manual as a C comment.
+fn manual(text: &str) -> String {
+    let lines: Vec<_> =
+        text.lines().map(|line| if line.is_empty() { "\n".into() } else { format!("   {line}\n") }).collect();
+    format!("/* {} */\n", lines.concat().trim())
+}
+
+/// The output of cbindgen for some files of src/capi.
+fn declarations(config: cbindgen::Config, files: &[&str]) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/capi");
     let builder = cbindgen::Builder::new().with_config(config);
     let builder = files.iter().fold(builder, |builder, file| builder.with_src(folder.join(file)));
     let mut made = Vec::new();
     builder.generate().expect("the exports can be parsed").write(&mut made);
     let made = String::from_utf8(made).expect("declarations are text");
-    made.lines().map(|line| without_parameter_names(line) + "\n").collect()
+    let lines: Vec<_> = made.lines().map(without_parameter_names).collect();
+    with_comments_beside(&lines)
 }
 
-/// A planner may have macros named like parameters. The synopsis above each declaration names them.
+/// Moves the comment above each constant and member to its right: each of these takes one line then, or a few.
+fn with_comments_beside(lines: &[String]) -> String {
+    let mut rest = lines.iter();
+    let mut text = String::new();
+    while let Some(line) = rest.next() {
+        if line.trim() != "/*" {
+            text += &(line.clone() + "\n");
+            continue;
+        }
+        let comment: Vec<_> = rest.by_ref().take_while(|line| line.trim() != "*/").map(String::as_str).collect();
+        let declaration = rest.next().expect("every comment is above a declaration");
+        if declaration.starts_with("#define ") || declaration.starts_with("    ") {
+            text += &beside(declaration, &comment.join(" "));
+            if declaration.starts_with("#define ") {
+                rest.next().filter(|line| line.is_empty()).expect("an empty line follows each constant");
+            }
+            continue;
+        }
+        if text.ends_with(" */\n") {
+            text += "\n";
+        }
+        text += &match comment[..] {
+            [line] => format!("/*{line} */\n{declaration}\n"),
+            _ => format!("/*\n{}\n */\n{declaration}\n", comment.join("\n")),
+        };
+    }
+    text
+}
+
+/// A declaration with its comment to the right, wrapped.
+fn beside(declaration: &str, comment: &str) -> String {
+    let mut line = format!("{declaration:<COMMENT_COLUMN$}/*");
+    let mut text = String::new();
+    for word in comment.split_whitespace() {
+        if line.len() + 1 + word.len() + " */".len() > 120 {
+            text += &(line + "\n");
+            line = " ".repeat(COMMENT_COLUMN + 2);
+        }
+        line += &format!(" {word}");
+    }
+    text + &line + " */\n"
+}
+
+/// Removes the parameter names of a declaration, because a planner may have macros with these names. The synopsis above
+/// the declaration has them.
 fn without_parameter_names(line: &str) -> String {
     let call = line.starts_with("int ") || line.starts_with("const char *");
     let Some((call, parameters)) = line.strip_suffix(");").filter(|_| call).and_then(|line| line.split_once('('))
@@ -76,15 +136,15 @@ fn code(declarations: &str) -> String {
     code.concat()
 }
 
-/// Every name that the declarations use, and the words of C around them.
+/// Every name that the declarations use, and the C keywords around them.
 fn names(code: &str) -> BTreeSet<&str> {
     let lines = code.lines().filter(|line| !line.starts_with('#'));
     let words = lines.flat_map(|line| line.split(|letter: char| !letter.is_alphanumeric() && letter != '_'));
     let names = words.filter(|word| word.starts_with(|letter: char| letter.is_alphabetic()));
-    names.filter(|name| !MACROS.contains(name)).chain(WORDS_OF_THE_TRAILER.iter().copied()).collect()
+    names.filter(|name| !MACROS.contains(name)).chain(KEYWORDS_OF_AFTER.iter().copied()).collect()
 }
 
-/// Stops a compiler for 64 bits that lays a struct out in another way than the library.
+/// Checks that do not compile if a 64-bit compiler lays out a struct differently than the library.
 fn sizes(code: &str) -> String {
     let mut lines = String::new();
     for declaration in code.split("\nstruct ").skip(1) {
@@ -107,12 +167,12 @@ fn sizes(code: &str) -> String {
             .expect("a String grows");
     }
     format!(
-        "/* Where these do not compile, the compiler packs structs in another way than the library. */\n\
+        "/* These do not compile if the compiler lays out structs differently than the library. */\n\
              #ifdef __LP64__\n{lines}#endif\n"
     )
 }
 
-/// Sets the planner's macros aside, and takes them up again.
+/// Directives that save the planner's macros, and directives that restore them.
 fn shields(names: &BTreeSet<&str>) -> (String, String) {
     let pragmas = |pragma: &str| {
         let mut lines = Vec::<String>::new();
@@ -127,7 +187,7 @@ fn shields(names: &BTreeSet<&str>) -> (String, String) {
     };
     let undefine: String = names.iter().map(|name| format!("#undef {name}\n")).collect();
     let shield = format!(
-        "/* Macros of the planner that are named like something below are set aside until the end of this file. */\n\
+        "/* Macros of the planner whose names are used below are saved here and restored at the end. */\n\
          #if defined(__clang__) || (defined(__GNUC__) && (__GNUC__ > 4 || (__GNUC__ == 4 && __GNUC_MINOR__ >= 6)))\n\
          #define SUN2XP_SETS_MACROS_ASIDE\n#endif\n\n\
          #ifdef SUN2XP_SETS_MACROS_ASIDE\n{}\n{undefine}#endif\n",
@@ -140,21 +200,24 @@ fn shields(names: &BTreeSet<&str>) -> (String, String) {
 fn the_committed_header_is_the_one_of_the_exports() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml can be used");
-    let part = |part: &Option<String>| part.clone().expect("cbindgen.toml has header and trailer");
-    let (header, trailer) = (part(&config.header), part(&config.trailer));
+    let part = |name| fs::read_to_string(root.join("src/capi/header").join(name)).expect("a part of the header");
     let calls_of_1990 = declarations(config.clone(), CALLS_OF_1990);
-    let others = declarations(config, OTHER_CALLS);
+    let others = HEADINGS.iter().fold(declarations(config, OTHER_CALLS), |text, (prefix, heading)| {
+        let first = format!("#define {prefix}");
+        text.replacen(&first, &format!("\n/* {heading} */\n{first}"), 1)
+    });
     let sizes = sizes(&code(&others));
     let body = format!(
         "{calls_of_1990}\n\n\
          #ifndef SUN2XP_FIVE_CALLS\n\n\
-         /* The faults (chapter 10). Numbers never change. */\n{}\n\n\n{others}\n\n{sizes}\n\
+         /* The faults (chapter 10). Numbers never change. */\n{}\n{others}\n\n{sizes}\n\
          #endif /* SUN2XP_FIVE_CALLS */\n",
         faults()
     );
     let (shield, unshield) = shields(&names(&code(&format!("{calls_of_1990}{others}"))));
-    let (header, trailer) = (header.replace("@SHIELD@", &shield), trailer.replace("@UNSHIELD@", &unshield));
-    let made = format!("{header}\n{body}\n{trailer}");
+    let (before, after) =
+        (part("before.h").replace("@SHIELD@", &shield), part("after.h").replace("@UNSHIELD@", &unshield));
+    let made = format!("{}\n{before}\n{body}\n{after}", manual(&part("manual.txt")));
 
     let committed = root.join("include/Sun2Xp.h");
     if env::var_os("SUN2XP_WRITE_HEADER").is_some() {

@@ -1,4 +1,4 @@
-//! The exported functions about black boxes; their comments are the C manual, as in `calls.rs`.
+//! The exported functions for black boxes. Their doc comments are the C manual, as in `calls.rs`.
 
 // The names of the header.
 #![allow(non_snake_case)]
@@ -15,41 +15,40 @@ use std::ffi::{CStr, OsStr, c_char, c_int, c_uint, c_ulong};
 use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 
-/// One cycle of a finger, as the black box keeps it. Set Size = sizeof (struct
-/// FingerRecord) before the call: later versions add members at the end.
+/// Result of GetRecord: one cycle of a finger, from the black box.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct FingerRecord {
-    /// In: bytes of room, sizeof *Record. Out: bytes that were filled, never more.
+    /// In: sizeof (struct FingerRecord). Out: bytes written, at most that.
     pub Size: c_uint,
-    /// As FingerStatus.State, at the end of the cycle.
+    /// FINGER_RUNNING to FINGER_CLOSED, at the end of the cycle.
     pub State: c_int,
     /// The cycle, counted from OpenHand; the first is 1.
     pub Cycle: c_ulong,
-    /// The first and the last cycle that are kept now: without a gap between them.
+    /// First cycle that is stored now. All cycles from Oldest to Newest are stored.
     pub Oldest: c_ulong,
-    /// See Oldest.
+    /// Last cycle that is stored now.
     pub Newest: c_ulong,
-    /// When the cycle began, s on the clock CLOCK_MONOTONIC.
+    /// Start of the cycle on CLOCK_MONOTONIC, s.
     pub Time: f64,
-    /// 1: the board's reply came. 0: it was lost.
+    /// 1: the board's reply arrived. 0: it was lost.
     pub Answered: c_int,
     /// Status bits of the newest reply (docs/board-protocol.md).
     pub StatusBits: c_int,
-    /// 1: the controller ran, and found what follows. 0: the finger was faulted before, or
-    /// the simulated one waited; what follows is 0.
+    /// 1: the controller ran and computed the members below. 0: they are 0, because the finger was faulted already or
+    /// the simulated finger waited.
     pub Computed: c_int,
-    /// 1: a set point is in force, and stands in PosSent. 0: none is, and there are zeros.
+    /// 1: PosSent is the set point in force. 0: no set point is in force, and PosSent is 0.
     pub Follows: c_int,
     /// Measured joint angles, rad.
     pub Pos: [f64; 3],
-    /// The joint angles that the finger is pulled to, rad.
+    /// Joint angles at which the spring is anchored, rad.
     pub PosSent: [f64; 3],
     /// Measured tendon tensions, N.
     pub Tension: [f64; 4],
     /// Commanded tendon tensions, N.
     pub TensionSent: [f64; 4],
-    /// Commanded motor torques, N cm. They leave for the board in the next cycle.
+    /// Commanded motor torques, N cm. They are sent to the board in the next cycle.
     pub Torque: [f64; 4],
 }
 
@@ -58,24 +57,22 @@ pub struct FingerRecord {
 ///     int GetRecord(int i, unsigned long Cycle, struct FingerRecord *Record);
 ///
 ///   i        finger, 1 to 3
-///   Cycle    which one, Record->Oldest to Record->Newest of a call before; 0: the newest
-///   Record   Record->Size is set by the caller, all else is filled in. Written only if the
-///            call returns 0
+///   Cycle    Record->Oldest to Record->Newest of an earlier call; 0: the newest cycle
+///   Record   result; set Record->Size before the call
 ///
-/// These numbers are a part of what WriteBlackBox writes into a file. Every cycle adds a
-/// record and removes the oldest one. The records of a faulted finger stay as they were at
-/// the fault.
+/// A record is a part of what WriteBlackBox writes into a file. Every cycle adds a record and removes
+/// the oldest one. A faulted finger adds none, so its records are the last ones before the fault.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
 ///   EFAULT   Record is null
 ///   ENODEV   no hand is open
 ///   EINVAL   Size is too small; no such finger
-///   ENOENT   the cycle is no longer kept, or has not taken place yet
+///   ENOENT   the cycle is no longer stored, or has not taken place yet
 ///
 /// Threads: any. Never waits for a servo.
 ///
-/// Example, with the younger half of what is kept:
+/// Example, with the newer half of the records:
 ///
 ///     struct FingerRecord Record;
 ///     unsigned long Cycle, Last;
@@ -92,8 +89,8 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
         let least = size_up_to!(self::FingerRecord, Torque: [f64; 4]);
         #[allow(clippy::useless_conversion, reason = "`unsigned long` has 32 bits on some machines")]
         let cycle = (Cycle != 0).then_some(u64::from(Cycle));
-        // SAFETY: the manual's contract: null, or as much room as its first member says.
-        unsafe { fill(Record, "Record", least, |hand| hand.record(i, cycle).map(|kept| told(&kept))) }
+        // SAFETY: by the contract in the manual, null or as many bytes as its first member gives.
+        unsafe { fill(Record, "Record", least, |hand| hand.record(i, cycle).map(|kept| to_c(&kept))) }
     })
 }
 
@@ -102,28 +99,27 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 ///     int WriteBlackBox(int i, const char *Path);
 ///
 ///   i       finger, 1 to 3
-///   Path    the file, new or to be replaced. Read during the call only
+///   Path    the file, new or to be replaced
 ///
-/// The library keeps the last two seconds of every finger: feedback, set points, motor
-/// commands, timing, state. Of a faulted finger they are the last two before the fault.
-/// docs/black-box.md describes the file; `sun2xp replay Path` computes it again. With
-/// hand.black_box the library writes such a file by itself whenever a finger faults.
+/// The library stores the last two seconds of every finger: feedback, set points, motor commands,
+/// timing and state. For a faulted finger these are the last two seconds before the fault.
+/// docs/black-box.md describes the file, and `sun2xp replay Path` recomputes it. With hand.black_box
+/// the library also writes such a file whenever a finger faults.
 ///
-/// The file is written beside its place, under a temporary name that begins with ".sun2xp-",
-/// and takes its place once it is whole and on the disk. A call that fails leaves an old file
-/// as it was. The folder must be writable.
-///
-/// Takes about 50 ms, and as long as the disk needs for some MB. The servos go on.
+/// The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and
+/// renames it when it is complete and on the disk. So the folder must be writable, and a refused call
+/// leaves an old file unchanged. The call takes about 50 ms, and the time that the disk needs for some
+/// MB. The servos continue.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
 ///   EFAULT   Path is null
 ///   ENODEV   no hand is open
-///   EINVAL   no such finger; Path names something other than a regular file, such as a
-///            symbolic link, a device or a folder
+///   EINVAL   no such finger; Path names something other than a regular file, such as a symbolic link,
+///            a device or a folder
 ///   ENOENT, EACCES, ENOSPC ...  the file cannot be written
 ///
-/// Threads: any. Of two calls with the same Path the last one leaves its file.
+/// Threads: any. If two calls write to the same Path, the file of the last one remains.
 ///
 /// Example:
 ///
@@ -132,24 +128,25 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 pub unsafe extern "C" fn WriteBlackBox(i: c_int, Path: *const c_char) -> c_int {
     delegated("WriteBlackBox", MEMORY_OF_CALL, || {
         non_null(Path, "Path", Wanted::FileName)?;
-        // SAFETY: not null, and a C string by the manual's contract.
+        // SAFETY: checked for null above, and a C string by the contract in the manual.
         let path = PathBuf::from(OsStr::from_bytes(unsafe { CStr::from_ptr(Path) }.to_bytes()));
         Ok(move || {
             let recording = default_hand::with(|hand| hand.recording(i))?;
-            // Without the hand: a slow disk must not keep it from being closed.
+            // The hand is not locked here, so that CloseHand never waits for a slow disk.
             Ok(hand::save_recording(&recording, &path)?)
         })
     })
 }
 
-fn told(KeptRecord { record, oldest, newest }: &KeptRecord) -> FingerRecord {
+/// `Size` is set when the room of the caller is known.
+fn to_c(KeptRecord { record, oldest, newest }: &KeptRecord) -> FingerRecord {
     let found = record.control.map(|control| control.report).unwrap_or_default();
     let sent = match record.control.map(|control| control.input.activity) {
         Some(Activity::Follow(set_point)) => Some(set_point.joints),
         _ => None,
     };
     FingerRecord {
-        Size: 0, // until the caller's room is known
+        Size: 0,
         State: state(&record.stage),
         Cycle: count(record.cycle),
         Oldest: count(*oldest),

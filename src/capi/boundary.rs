@@ -1,9 +1,9 @@
-//! What every call does on its way in and out. No panic leaves a call, no cancellation enters it, and the planner's
-//! errno, floating-point environment and signal mask are after it what they were before.
+//! The entry and exit of every call. No panic leaves a call, no cancellation interrupts it, and it restores the
+//! planner's errno, floating-point environment and signal mask.
 //!
-//! A quick call runs in the planner's thread. A slow one runs in a thread of its own, for which the planner's waits: it
-//! needs little of the planner's stack then, and a signal handler that jumps out of it (siglongjmp) leaves nothing
-//! locked. The call goes on.
+//! A quick call runs in the planner's thread. A slow call runs in its own thread, and the planner's thread waits for
+//! it. So it needs little of the planner's stack, and a signal handler that jumps out of the wait (siglongjmp) leaves
+//! nothing locked: the call continues to its end.
 
 use crate::capi::forked::is_forked_child;
 use crate::capi::process;
@@ -14,29 +14,29 @@ use std::ffi::c_int;
 use std::mem::ManuallyDrop;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The memory that OpenHand may need, with the black boxes.
+/// Memory that OpenHand may need, including the black boxes, bytes.
 pub(super) const MEMORY_OF_HAND: usize = 12 << 20;
 
-/// The memory that a slow call on an open hand may need: a black box takes most.
+/// Memory that a slow call on an open hand may need, bytes. A black box needs most.
 pub(super) const MEMORY_OF_CALL: usize = 4 << 20;
 
-/// The memory that a thread for a call may need.
+/// Memory that the thread of a call may need, bytes.
 const MEMORY_OF_THREAD: usize = 64 * 1024;
 
-/// Runs a quick call: 0 where it is done, -1 where it is refused. `call` must have no cancellation point.
+/// Runs a quick call. Returns 0, or -1 if it is refused. `call` must have no cancellation point.
 #[inline(always)]
 pub(super) fn guarded(name: &'static str, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
     uncancelled(|| {
         let environment = Environment::enter_default();
         let errno = process::errno();
-        let result = finish(name, errno, admitted(call));
+        let result = finish(name, errno, unless_forked(call));
         environment.restore();
         result
     })
 }
 
-/// Runs a slow call in a thread of its own: 0 where it is done, -1 where it is refused. `prepare` copies the arguments
-/// in the planner's thread. The call is refused where less than `memory` is free, bytes.
+/// Runs a slow call in its own thread. Returns 0, or -1 if it is refused. `prepare` copies the arguments in the
+/// planner's thread. The call is refused if less than `memory` bytes are free.
 #[inline(always)]
 pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
     name: &'static str,
@@ -45,11 +45,11 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
 ) -> c_int {
     uncancelled(|| {
         let blocked = SignalsBlocked::all();
-        waited_for(name, &blocked, || {
+        slow(name, &blocked, || {
             if !is_memory_free(memory) {
                 return Err(Refusal::NoMemory);
             }
-            // With the signals of faults let in: it reads the planner's memory.
+            // The planner may handle SIGSEGV and SIGBUS to make pages accessible that `prepare` reads.
             let call = blocked.faults_let_in(prepare)?;
             let start = |source| HandError::System { doing: "start a thread for this call", source };
             let errand = Errand::begin(&blocked, || caught(call)).map_err(start)?;
@@ -58,13 +58,13 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
     })
 }
 
-/// Runs a slow call as [`delegated`] does, but in the planner's thread where there is no memory for another or the
-/// system refuses it: for what must not fail.
+/// Runs a slow call that must not fail. Differs from [`delegated`] in that the call runs in the planner's thread if
+/// there is no memory for another thread or the system refuses to start one.
 #[inline(always)]
 pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<(), Refusal>) -> c_int {
     uncancelled(|| {
         let blocked = SignalsBlocked::all();
-        waited_for(name, &blocked, || {
+        slow(name, &blocked, || {
             match is_memory_free(MEMORY_OF_THREAD).then(|| Errand::begin(&blocked, move || caught(call))) {
                 Some(Ok(errand)) => errand.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked)),
                 _ => {
@@ -79,32 +79,32 @@ pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<()
     })
 }
 
-/// Everything of a slow call but the wait itself is done with all signals blocked: nothing there can be jumped out of.
-/// During the wait the thread has the planner's floating-point environment, which a jump would leave as it is.
-fn waited_for(name: &str, _blocked: &SignalsBlocked, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
+/// Runs everything of a slow call except the wait itself with all signals blocked, so that no handler can jump out of
+/// it. During the wait the thread has the planner's floating-point environment, because a jump does not restore it.
+fn slow(name: &str, _blocked: &SignalsBlocked, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
     let errno = process::errno();
-    let outcome = admitted(call);
+    let outcome = unless_forked(call);
     let environment = Environment::enter_default();
     let result = finish(name, errno, outcome);
     environment.restore();
     result
 }
 
-/// Keeps cancellation out of `call`, which must not panic and whose result needs no destructor.
+/// Runs `call` without cancellation. It must not panic, and its result must need no destructor.
 ///
-/// This becomes a part of the exported function, in which nothing has a destructor: a thread with asynchronous
-/// cancellation may be unwound there before and after the call.
+/// This function is inlined into the exported function. Nothing there has a destructor, because a thread with
+/// asynchronous cancellation may be unwound there before and after the call.
 #[inline(always)]
 pub(super) fn uncancelled<R, F: FnOnce() -> R>(call: F) -> R {
     let mut call = ManuallyDrop::new(call);
     let cancellation = DeferredCancellation::begin();
-    // SAFETY: it is not used again.
+    // SAFETY: `call` is not used again.
     let result = unsafe { contained(&mut call) };
     cancellation.end();
     result
 }
 
-/// Runs a call in a frame of its own. `extern "C"`, because the compiler then knows that nothing unwinds out of it.
+/// Runs a call in its own frame. With `extern "C"` the compiler knows that nothing unwinds out of it.
 ///
 /// # Safety
 /// `call` is not used afterwards.
@@ -116,8 +116,8 @@ unsafe extern "C" fn contained<R, F: FnOnce() -> R>(call: &mut ManuallyDrop<F>) 
     call()
 }
 
-/// What becomes of a call, which is refused in a forked child.
-fn admitted(call: impl FnOnce() -> Result<(), Refusal>) -> Result<(), Refusal> {
+/// Runs a call, unless this process is a forked child.
+fn unless_forked(call: impl FnOnce() -> Result<(), Refusal>) -> Result<(), Refusal> {
     if is_forked_child() { Err(Refusal::Forked) } else { caught(call) }
 }
 
@@ -128,7 +128,7 @@ fn caught(call: impl FnOnce() -> Result<(), Refusal>) -> Result<(), Refusal> {
 fn finish(name: &str, errno: c_int, outcome: Result<(), Refusal>) -> c_int {
     match outcome {
         Ok(()) => {
-            // Files that are looked for and not there, and locks that were waited for, have set it.
+            // The system has set errno for missing optional files and for contended locks.
             process::set_errno(errno);
             0
         }
@@ -151,8 +151,8 @@ mod tests {
     use std::ffi::CStr;
     use std::thread;
 
-    fn told() -> String {
-        // SAFETY: the text of this thread, which refuses nothing meanwhile.
+    fn last_text() -> String {
+        // SAFETY: the text of this thread, which makes no refused call meanwhile.
         unsafe { CStr::from_ptr(text()) }.to_string_lossy().into_owned()
     }
 
@@ -161,7 +161,7 @@ mod tests {
         let result = guarded("SendPos", || panic!("a defect"));
         let errno = std::io::Error::last_os_error().raw_os_error();
         assert_eq!((result, errno), (-1, Some(libc::EIO)));
-        assert_eq!(told(), "SendPos: the library failed (a defect): a defect of this library, please report it");
+        assert_eq!(last_text(), "SendPos: the library failed (a defect): a defect of this library, please report it");
     }
 
     #[test]
@@ -176,11 +176,12 @@ mod tests {
 
     #[test]
     fn every_thread_has_its_own_text_which_success_leaves_alone() {
-        assert_eq!(told(), "");
+        assert_eq!(last_text(), "");
         assert_eq!(guarded("GetPos", || Err(Refusal::NoHand)), -1);
         assert_eq!(guarded("SendPos", || Ok(())), 0);
-        assert!(told().starts_with("GetPos: no hand is open"));
-        thread::scope(|scope| scope.spawn(|| assert_eq!(told(), "")).join()).expect("another thread has no text yet");
+        assert!(last_text().starts_with("GetPos: no hand is open"));
+        thread::scope(|scope| scope.spawn(|| assert_eq!(last_text(), "")).join())
+            .expect("another thread has no text yet");
     }
 
     #[test]
@@ -195,23 +196,23 @@ mod tests {
             (delegated("OpenHand", MEMORY_OF_CALL, || Ok(elsewhere)), process::errno()),
             (0, libc::E2BIG),
             "{}",
-            told()
+            last_text()
         );
         let none = || -> Result<fn() -> Result<(), Refusal>, Refusal> {
             Err(Refusal::SmallStruct { name: "Fault", size: 1, least: 2 })
         };
         assert_eq!((delegated("WriteBlackBox", MEMORY_OF_CALL, none), process::errno()), (-1, libc::EINVAL));
-        assert!(told().starts_with("WriteBlackBox: Fault->Size is 1"));
+        assert!(last_text().starts_with("WriteBlackBox: Fault->Size is 1"));
         assert_eq!(
             (delegated("OpenHand", MEMORY_OF_CALL, || Ok(|| Err(Refusal::NoHand))), process::errno()),
             (-1, libc::ENODEV)
         );
-        assert!(told().starts_with("OpenHand: no hand is open"));
+        assert!(last_text().starts_with("OpenHand: no hand is open"));
         assert_eq!(
             (delegated("OpenHand", MEMORY_OF_CALL, || Ok(|| panic!("a defect"))), process::errno()),
             (-1, libc::EIO)
         );
-        assert!(told().starts_with("OpenHand: the library failed (a defect)"));
+        assert!(last_text().starts_with("OpenHand: the library failed (a defect)"));
         assert_eq!(delegated_or_done_here("CloseHand", || Err(Refusal::Busy)), -1);
         assert_eq!(process::errno(), libc::EBUSY);
     }

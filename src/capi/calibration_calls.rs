@@ -1,6 +1,6 @@
-//! The exported functions that calibrate a finger. As in `calls.rs`, their comments are the C manual.
+//! The exported functions that calibrate a finger. Their doc comments are the C manual, as in `calls.rs`.
 
-// Named like the calls of 1990.
+// The names of the header.
 #![allow(non_snake_case)]
 
 use crate::calibration::Task;
@@ -14,40 +14,43 @@ use std::ffi::c_int;
 ///
 ///   i        finger, 1 to 3
 ///
-/// Lets the tendons out and reads the gauges, and finds the zero of the encoders as
-/// finger.zeroing.method says. "pose": the finger stands in finger.zeroing.pose_degrees.
-/// It must stand still there from the call on until it has been read: a finger that is a
-/// spring for 0.3 s; a finger that is limp for some seconds, held by a jig or a hand. A
-/// finger that moves, or that nothing holds, is refused. "stops": each joint is led slowly
-/// against both of its stops, for which the finger needs room. "kept": the configured zero
-/// stays, if the board says that its counts are still good. Where no method is configured
-/// it is "stops" if the configuration says where the stops are, or if the finger is
-/// simulated, and else "pose". What was found is in force at once, and is written into the
-/// configuration file if OpenHand has read one: these zeros and nothing else. All other keys
-/// and comments stay as they are in the file by then, so that several processes may store what
-/// they find. Each waits for the others, for 30 s at most.
-/// Then the finger holds the pose it is in, at its initial stiffness: while it was limp a
-/// free finger has moved, by up to some tenths of a radian.
+/// Slackens the tendons and reads the gauges. Then finds the zero of the encoders by
+/// finger.zeroing.method:
 ///
-/// Waits until it is done: seconds, up to a minute with "stops". Meanwhile GetStatus tells
-/// the part that is done (FingerStatus.Calibration), other calls go on, and set points for
-/// this finger have no effect.
+///   "pose"   The finger stands in finger.zeroing.pose_degrees. It must stand still from the start of
+///            the call until it has been read: 0.3 s for a finger that is a spring, some seconds for a
+///            limp one, which a jig or a hand must hold. A finger that moves, or that nothing holds,
+///            is refused.
+///   "stops"  Each joint moves slowly against both of its stops. The finger needs room for that.
+///   "kept"   The configured zero stays, if the board reports that its counts are still valid.
+///
+/// The default is "stops" if the finger is simulated or the configuration gives the positions of its
+/// stops, otherwise "pose". At the end the finger holds its present pose at its initial stiffness.
+/// While it was limp, a free finger may have moved by some tenths of a radian.
+///
+/// The zeros take effect at once. If OpenHand has read a configuration file, they are written into
+/// that file; all other keys and comments stay as they are in the file at that time. So several
+/// processes may store their results: each waits for the others, at most 30 s.
+///
+/// Waits until all this is done: some seconds, or up to a minute with "stops". Meanwhile
+/// FingerStatus.Calibration gives the progress, other calls work, and set points for this finger have
+/// no effect.
 ///
 /// Returns 0, or -1 with
 ///   EPERM      forked child
 ///   ENODEV     no hand is open, or it was closed meanwhile
-///   EINVAL     no such finger; the configuration file has been changed and what was found
-///              does not fit it: the zeros are in force until CloseHand and not stored
+///   EINVAL     no such finger; or the configuration file has changed, and the zeros do not fit it:
+///              they are in force until CloseHand and not stored
 ///   EIO        the finger is faulted
 ///   EBUSY      the finger is being calibrated or recovered already
-///   ECANCELED  something stood in the way (the finger moved in its pose, a tendon is slack,
-///              a gauge dead, a joint meets no stop or meets it early ...). No zero was
-///              changed, and HandError says what to do. The finger is limp; but one that was
-///              refused before anything was done to it (it moved while it was read, or its
-///              counts were not kept) is what it was before
-///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s: the same
-///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force
-///              until CloseHand
+///   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is
+///              dead, a joint meets no stop or meets it too early ...). No zero has changed, and
+///              HandError gives the remedy. The finger is limp, unless it was refused before the
+///              calibration changed anything (it moved while it was read, or its counts were not
+///              valid): then it is in its former state
+///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise the same
+///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
+///              CloseHand
 ///
 /// Threads: any.
 ///
@@ -66,14 +69,13 @@ pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
 ///
 ///   i        finger, 1 to 3; it must have been zeroed
 ///
-/// Moves the joints a little to and fro where they are, leads the finger to its lower
-/// stops, moves each joint to and fro, presses against the stops with up to 0.6 of the
-/// largest tension, and returns to where it began. Finds the gains of the gauges, the
-/// stiffness of each tendon and the friction of motors, conduits and joints. What was
-/// found is in force at once and is written into the configuration file, as by
-/// ZeroFinger. Takes about a minute, and the room that the joints can reach.
+/// Moves the joints a little back and forth where they are, moves the finger to its lower stops, moves
+/// each joint back and forth, presses against the stops with up to 0.6 of the largest tension, and
+/// returns to the start. Measures the gains of the gauges, the stiffness of each tendon and the
+/// friction of motors, conduits and joints. The results take effect and are stored as those of
+/// ZeroFinger. Takes about a minute, and all the room that the joints can reach.
 ///
-/// Returns and waits as ZeroFinger.
+/// Returns and waits as ZeroFinger does.
 ///
 /// Threads: any.
 #[unsafe(no_mangle)]

@@ -1,8 +1,8 @@
-//! The calls of 1990, and HandError. Their comments are the C manual: cbindgen copies them into `include/Sun2Xp.h`,
-//! whose opening chapters stand in `cbindgen.toml`. So they are written for C programmers, indented as they shall be
-//! read, and must not close a C comment.
+//! The five calls of 1990 and HandError. Their doc comments are the C manual: cbindgen copies them into
+//! `include/Sun2Xp.h`, below the chapters of `src/capi/header/manual.txt`. They are written for C programmers, keep
+//! their indentation in the header, and must not close a C comment.
 
-// The names of 1990.
+// The names of the header.
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::{MEMORY_OF_HAND, delegated, delegated_or_done_here, guarded, uncancelled};
@@ -15,23 +15,23 @@ use std::ffi::{c_char, c_int};
 ///
 ///     int OpenHand(void);
 ///
-/// Reads the configuration (chapter 8), opens the ports, starts the servos, brings the
-/// tendons under tension and returns when every finger has answered and holds the pose
-/// it is in, at the configured initial stiffness. So GetPos is valid from then on, and
-/// nothing moves until SendPos. Takes about a second at most for the simulated hand.
+/// Reads the configuration (chapter 8), opens the ports, starts the servos and brings the tendons
+/// under tension. Returns when every finger has answered and holds its present pose at the configured
+/// initial stiffness. From then on GetPos is valid, and nothing moves until SendPos. Takes at most
+/// about a second for the simulated hand.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
-///   EBUSY    a hand is open (it goes on), or another thread is just opening or closing one
-///   ENOENT, EACCES ...  the configuration file cannot be read; the errno is the system's
-///   EINVAL   the configuration cannot be used; HandError names file, line and reason
-///   ENOENT, EACCES, EBUSY ...  a port cannot be opened; the errno is the system's
-///   ETIMEDOUT and other errnos of a link: a board does not answer, or is not one
-///   EIO      a finger does not come under tension in time, or faults while it does
-///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory
-///            or the configured core cannot be had; HandError says what to change
+///   EBUSY    a hand is open and stays open, or another thread is opening or closing one
+///   ENOENT, EACCES ...  the configuration file cannot be read; errno of the system
+///   EINVAL   the configuration is unusable; HandError names file, line and reason
+///   ENOENT, EACCES, EBUSY ...  a port cannot be opened; errno of the system
+///   ETIMEDOUT and other errnos of a link: a board does not answer, or the device is not a board
+///   EIO      a finger does not come under tension in time, or faults before it does
+///   EPERM, ENOMEM, EINVAL ...  hand.real_time is "enforce", and SCHED_FIFO, locked memory or the
+///            configured core is not available; HandError says what to change
 ///
-/// Threads: any; one hand a process.
+/// Threads: any; one hand per process.
 ///
 /// Example:
 ///
@@ -48,16 +48,16 @@ pub extern "C" fn OpenHand() -> c_int {
 ///
 ///     int CloseHand(void);
 ///
-/// Brings every finger to the configured end state - release: the torque ramps to zero; hold: the board keeps the last
-/// torque, up to hand.hold_torque_limit, for hand.hold_time_ms, also after this call has returned - and ends the
-/// servos. With no hand open it does nothing and returns 0. After it OpenHand may be called again. A planner that exits
-/// without it has it called for it.
+/// Brings every finger to the configured end state and stops the servos. With hand.end_state =
+/// "release" the torque ramps to zero. With "hold" the board keeps the last torque, up to
+/// hand.hold_torque_limit, for hand.hold_time_ms, also after this call has returned. If no hand is
+/// open, the call does nothing and returns 0. OpenHand may be called again afterwards. At exit the
+/// library closes a hand that is still open.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
 ///
-/// Threads: any. Waits for an OpenHand or CloseHand that another thread is in, then
-/// closes.
+/// Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes.
 #[unsafe(no_mangle)]
 pub extern "C" fn CloseHand() -> c_int {
     delegated_or_done_here("CloseHand", default_hand::close)
@@ -68,22 +68,22 @@ pub extern "C" fn CloseHand() -> c_int {
 ///     int SendPos(int i, const float *Pos);      also takes const double *Pos (chapter 4)
 ///
 ///   i     finger, 1 to 3
-///   Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3). Read during the call only
+///   Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3)
 ///
-/// The fingertip's spring is anchored there from the next cycle on, with the stiffness
-/// sent last. All three angles take effect together. Does not wait for the finger to
-/// arrive: ask GetPos. Limits are the configured joint limits; by default joint 0:
-/// -1.0472 to 1.0472, joint 1: -0.5236 to 1.7453, joint 2: 0.0873 to 2.0944.
+/// From the next cycle on the spring of the fingertip is anchored at this pose, with the stiffness
+/// sent last. All three angles take effect together. The call does not wait until the finger arrives;
+/// GetPos reads where it is. The limits are the configured joint limits, by default -1.0472 to 1.0472
+/// for joint 0, -0.5236 to 1.7453 for joint 1 and 0.0873 to 2.0944 for joint 2.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
 ///   EFAULT   Pos is null
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; an angle is NaN or infinite
-///   ERANGE   an angle is outside the joint limits (or it is clamped: hand.out_of_range)
+///   ERANGE   an angle is outside the joint limits (hand.out_of_range = "clamp" clamps it instead)
 ///   EIO      the finger is faulted
 ///
-/// Threads: any. Never waits for a servo; about 100 ns.
+/// Threads: any. Never waits for a servo. Takes about 100 ns.
 ///
 /// Example:
 ///
@@ -92,7 +92,7 @@ pub extern "C" fn CloseHand() -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
     guarded("SendPos", || {
-        // SAFETY: the manual's contract: null, or the array of the synopsis.
+        // SAFETY: by the contract in the manual, null or the array of the synopsis.
         let joints = unsafe { load::<f32, 3>(Pos, "Pos") }?;
         default_hand::command(|hand| hand.send_position(i, joints.map(f64::from)))
     })
@@ -103,9 +103,9 @@ pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
 ///     int SendPosD(int i, const double *Pos);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
-    // Named as the planner has written it: the header or a flag of the compiler has added the D.
+    // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
     guarded("SendPos", || {
-        // SAFETY: the manual's contract: null, or the array of the synopsis.
+        // SAFETY: by the contract in the manual, null or the array of the synopsis.
         let joints = unsafe { load::<f64, 3>(Pos, "Pos") }?;
         default_hand::command(|hand| hand.send_position(i, joints))
     })
@@ -116,16 +116,14 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 ///     int SendKx(int i, const float *Kx);        also takes const double *Kx (chapter 4)
 ///
 ///   i     finger, 1 to 3
-///   Kx    Kx[3][3] or Kx[9], row by row: entry [row][column] is the force along axis
-///         row (x, y, z of the finger's frame, chapter 3) for a displacement of 1 cm
-///         along axis column, N/cm. Read during the call only
+///   Kx    Kx[3][3] or Kx[9], row by row: entry [row][column] is the force along axis row (x, y, z of
+///         the finger's frame, chapter 3) for a displacement of 1 cm along axis column, N/cm
 ///
-/// Kx takes effect whole, from the next cycle on and without a jump in torque: 95 % of the
-/// change is there after 50 ms. Kx must be symmetric; a difference of up to 1e-3 of the
-/// largest entry is averaged. No eigenvalue may be below -1e-3 of the largest one. Kx may
-/// have a lower rank, and may be zero: along directions without stiffness the finger is
-/// limp but still damped. The largest eigenvalue may be up to the configured bound, by
-/// default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
+/// The whole matrix takes effect from the next cycle on, without a jump in torque: 95 % of the change
+/// has taken effect after 50 ms. Kx must be symmetric; a difference of up to 1e-3 of the largest entry
+/// is averaged. No eigenvalue may be below -1e-3 of the largest one. Kx may be singular or zero: along
+/// directions without stiffness the finger is limp but still damped. The largest eigenvalue may be at
+/// most the configured bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -133,12 +131,11 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; an entry is NaN or infinite
 ///   EDOM     Kx is not symmetric, or has a negative eigenvalue
-///   ERANGE   Kx is stiffer than the bound (or it is clamped: hand.out_of_range)
+///   ERANGE   Kx is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
 ///   EIO      the finger is faulted
-///   ERANGE   Kx is too stiff for the ratio that SendDamping set (or the ratio is clamped:
-///            hand.out_of_range)
+///   ERANGE   Kx is too stiff for the ratio of SendDamping ("clamp" clamps the ratio instead)
 ///
-/// Threads: any. Never waits for a servo; about 1 us.
+/// Threads: any. Never waits for a servo. Takes about 1 us.
 ///
 /// Example, softer along z:
 ///
@@ -147,7 +144,7 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
     guarded("SendKx", || {
-        // SAFETY: the manual's contract: null, or the array of the synopsis.
+        // SAFETY: by the contract in the manual, null or the array of the synopsis.
         let rows = unsafe { load_rows(Kx, "Kx") }?;
         default_hand::command(|hand| hand.send_stiffness(i, rows.map(|row| row.map(f64::from))))
     })
@@ -158,9 +155,9 @@ pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
 ///     int SendKxD(int i, const double *Kx);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
-    // Named as the planner has written it: the header or a flag of the compiler has added the D.
+    // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
     guarded("SendKx", || {
-        // SAFETY: the manual's contract: null, or the array of the synopsis.
+        // SAFETY: by the contract in the manual, null or the array of the synopsis.
         let rows = unsafe { load_rows(Kx, "Kx") }?;
         default_hand::command(|hand| hand.send_stiffness(i, rows))
     })
@@ -171,11 +168,10 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
 ///     int GetPos(int i, float *Pos);             also takes double *Pos (chapter 4)
 ///
 ///   i     finger, 1 to 3
-///   Pos   Pos[3]: measured angles of joints 0, 1, 2, rad, from the servo's last cycle.
-///         Written only if the call returns 0
+///   Pos   Pos[3]: measured angles of joints 0, 1, 2, rad, from the last cycle of the servo
 ///
-/// While the servo thread does not run, the angles stay those of its last cycle. GetStatus
-/// shows that: SkippedPeriods grows.
+/// While the servo thread does not run, the angles stay those of its last cycle, and SkippedPeriods of
+/// GetStatus grows.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -184,7 +180,7 @@ pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
 ///   EINVAL   no such finger
 ///   EIO      the finger is faulted
 ///
-/// Threads: any. Never waits for a servo; about 100 ns.
+/// Threads: any. Never waits for a servo. Takes about 100 ns.
 ///
 /// Example:
 ///
@@ -196,7 +192,7 @@ pub unsafe extern "C" fn GetPos(i: c_int, Pos: *mut f32) -> c_int {
     guarded("GetPos", || {
         let joints =
             non_null(Pos, "Pos", Wanted::Array(3)).and_then(|_| default_hand::with(|hand| hand.position(i)))?;
-        // SAFETY: not null, and room for three by the manual's contract.
+        // SAFETY: checked for null above, and room for three by the contract in the manual.
         unsafe { Pos.cast::<[f32; 3]>().write_unaligned(joints.map(|joint| joint as f32)) };
         Ok(())
     })
@@ -207,24 +203,24 @@ pub unsafe extern "C" fn GetPos(i: c_int, Pos: *mut f32) -> c_int {
 ///     int GetPosD(int i, double *Pos);
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn GetPosD(i: c_int, Pos: *mut f64) -> c_int {
-    // Named as the planner has written it: the header or a flag of the compiler has added the D.
+    // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
     guarded("GetPos", || {
         let joints =
             non_null(Pos, "Pos", Wanted::Array(3)).and_then(|_| default_hand::with(|hand| hand.position(i)))?;
-        // SAFETY: not null, and room for three by the manual's contract.
+        // SAFETY: checked for null above, and room for three by the contract in the manual.
         unsafe { Pos.cast::<[f64; 3]>().write_unaligned(joints) };
         Ok(())
     })
 }
 
-/// HandError - why a call was refused, and what to do about it
+/// HandError - why a call was refused, and the remedy
 ///
 ///     const char *HandError(void);
 ///
-/// The text of the calling thread's last refused call; an empty string if none was. A
-/// call that succeeds leaves it, like errno, as it is: look at it after a call has
-/// returned -1. Never null. It is the library's: do not free it. It is valid until the
-/// next refused call of the same thread.
+/// Returns the text of the calling thread's last refused call, or an empty string if no call was
+/// refused. Like errno, the text stays when a call succeeds, so read it only after a call has returned
+/// -1. Never null. Do not free it: it belongs to the library, and is valid until the next refused call
+/// of the same thread.
 ///
 /// Threads: any; each has its own text. Works in a forked child too.
 #[unsafe(no_mangle)]

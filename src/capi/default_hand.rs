@@ -1,4 +1,4 @@
-//! The one hand that the C calls work on.
+//! The one hand of the C calls.
 
 use crate::calibration::Task;
 use crate::capi::process;
@@ -9,26 +9,26 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// Locked while a hand is being opened or closed, which takes long; the calls to a finger never wait for it.
-static LIFE: Mutex<()> = Mutex::new(());
+/// Locked while a hand is being opened or closed, which takes long. Calls for a finger never wait for it.
+static LIFECYCLE: Mutex<()> = Mutex::new(());
 
-/// Locked for writing only for as long as it takes to put a hand in or to take it out.
+/// Locked for writing only to insert or remove a hand.
 static HAND: RwLock<Option<Hand>> = RwLock::new(None);
 
 /// Set when the process exits, before the exit handler of the library closes the hand. From then on no call may open or
 /// move a hand, because nothing would close it.
 static EXITING: AtomicBool = AtomicBool::new(false);
 
-/// How long exit waits for a call in progress. That call may be on the exiting thread itself, which has left it by a
-/// signal handler that calls exit: then it would wait for ever.
-const PATIENCE_AT_EXIT: Duration = Duration::from_millis(100);
+/// How long exit waits for a call in progress. The wait is limited because that call may be in the exiting thread
+/// itself, interrupted by a signal handler that calls exit.
+const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
 
-/// How often a calibration is looked at.
-const LOOKING: Duration = Duration::from_millis(5);
+/// Polling period of a calibration or recovery.
+const POLLING_PERIOD: Duration = Duration::from_millis(5);
 
 pub(super) fn open() -> Result<(), Refusal> {
     refuse_while_exiting()?;
-    let Some(_opening) = LIFE.try_lock() else { return Err(Refusal::Busy) };
+    let Some(_opening) = LIFECYCLE.try_lock() else { return Err(Refusal::Busy) };
     if HAND.read().is_some() {
         return Err(Refusal::AlreadyOpen);
     }
@@ -44,19 +44,19 @@ pub(super) fn open() -> Result<(), Refusal> {
 }
 
 pub(super) fn close() -> Result<(), Refusal> {
-    let _closing = LIFE.lock();
+    let _closing = LIFECYCLE.lock();
     let hand = HAND.write().take();
-    // Closing takes long; by now the calls to a finger are refused and do not wait for it.
+    // Dropping the hand takes long. The lock is free by now, so other calls are refused instead of waiting.
     drop(hand);
     Ok(())
 }
 
 fn close_at_exit() {
     EXITING.store(true, Ordering::Release);
-    let Some(_closing) = LIFE.try_lock_for(PATIENCE_AT_EXIT) else { return };
-    // Ended and not closed: a signal handler may have called exit in the middle of malloc, and then freeing would wait
-    // for ever.
-    if let Some(hand) = HAND.try_read_for(PATIENCE_AT_EXIT)
+    let Some(_closing) = LIFECYCLE.try_lock_for(LONGEST_WAIT_AT_EXIT) else { return };
+    // The hand ends without being dropped: a signal handler may have called exit in the middle of malloc, and then free
+    // would never return.
+    if let Some(hand) = HAND.try_read_for(LONGEST_WAIT_AT_EXIT)
         && let Some(hand) = &*hand
     {
         hand.end();
@@ -81,27 +81,27 @@ fn refuse_while_exiting() -> Result<(), Refusal> {
     if EXITING.load(Ordering::Acquire) { Err(Refusal::Exiting) } else { Ok(()) }
 }
 
-/// Makes a faulted finger of the open hand a spring again. The hand is looked at from time to time and not kept from
-/// being closed, nor other calls from being made.
+/// Makes a faulted finger of the open hand a spring again. Polls the hand without holding its lock in between, so that
+/// CloseHand and other calls work meanwhile.
 pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
     let recovering = command(|hand| Recovering::begin(hand, finger))?;
-    // Without the hand: ports are slow. Was it closed meanwhile, that is what there is to tell.
-    let mended = recovering.mend();
-    command(|_| mended)?;
+    // The hand is not locked here, because ports are slow. If it was closed meanwhile, that is reported first.
+    let result = recovering.mend();
+    command(|_| result)?;
     while !command(|hand| recovering.poll(hand))? {
-        sleep(LOOKING);
+        sleep(POLLING_PERIOD);
     }
     Ok(())
 }
 
-/// Calibrates a finger of the open hand and stores what was found. The hand is looked at from time to time and not kept
-/// from being closed, nor other calls from being made.
+/// Calibrates a finger of the open hand and stores the results. Polls the hand without holding its lock in between, so
+/// that CloseHand and other calls work meanwhile.
 pub(super) fn calibrate(finger: i32, task: Task) -> Result<(), Refusal> {
     let mut calibrating = command(|hand| Calibrating::begin(hand, finger, task))?;
     while let Standing::Going(_) = command(|hand| calibrating.poll(hand))? {
-        sleep(LOOKING);
+        sleep(POLLING_PERIOD);
     }
-    // Without the hand: a slow disk, and others that store, must not keep it from being closed.
+    // The hand is not locked here, so that CloseHand waits neither for a slow disk nor for other processes that store.
     match with(|hand| Ok::<_, hand::HandError>(hand.to_store(finger)))? {
         Some(calibration) => Ok(calibration.store()?),
         None => Ok(()),

@@ -1,4 +1,4 @@
-//! The exported functions about faults; their comments are the C manual, as in `calls.rs`.
+//! The exported functions for faults. Their doc comments are the C manual, as in `calls.rs`.
 
 // The names of the header.
 #![allow(non_snake_case)]
@@ -10,40 +10,37 @@ use crate::finger;
 use crate::hand::FingerFault;
 use std::ffi::{c_char, c_int, c_uint, c_ulong};
 
-/// What GetFault tells of a finger. Set Size = sizeof (struct Fault) before the call:
-/// later versions add members at the end.
+/// Result of GetFault.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct Fault {
-    /// In: bytes of room, sizeof *Fault. Out: bytes that were filled, never more.
+    /// In: sizeof (struct Fault). Out: bytes written, at most that.
     pub Size: c_uint,
-    /// The fault that has stopped the finger: FAULT_..., or 0 if none has.
+    /// Fault that has stopped the finger: FAULT_..., or 0 if none has.
     pub Number: c_int,
-    /// Its joint (0 to 2), tendon, motor, gauge or encoder (1 to 4), as its text says;
-    /// 0 where it is of the whole finger.
+    /// Its joint (0 to 2) or its tendon, motor, gauge or encoder (1 to 4): FaultText says which. 0 if it concerns the
+    /// whole finger.
     pub Part: c_int,
-    /// A warning of the last second: FAULT_..., or 0 if there was none.
+    /// Warning of the last second: FAULT_..., or 0 if there was none.
     pub Warning: c_int,
-    /// Its joint, tendon, motor, gauge or encoder.
+    /// Joint, tendon, motor, gauge or encoder of the warning.
     pub WarningPart: c_int,
-    /// How much: N, ms, degrees, counts, per cent, errno or status bits, as
-    /// docs/faults.md says.
+    /// Figure of the fault: N, ms, degrees, counts, per cent, errno or status bits (docs/faults.md).
     pub Value: f64,
-    /// How much, of the warning.
+    /// Figure of the warning.
     pub WarningValue: f64,
-    /// How many warnings have been given since OpenHand; one that goes on counts once.
+    /// Warnings since OpenHand. A warning that persists counts once.
     pub Warnings: c_ulong,
 }
 
-/// GetFault - what is wrong with a finger
+/// GetFault - fault and warning of a finger
 ///
 ///     int GetFault(int i, struct Fault *Fault);
 ///
 ///   i        finger, 1 to 3
-///   Fault    Fault->Size is set by the caller, all else is filled in. Written only if
-///            the call returns 0
+///   Fault    result; set Fault->Size before the call
 ///
-/// Returns 0, whether something is wrong or not, or -1 with
+/// Returns 0, with or without a fault, or -1 with
 ///   EPERM    forked child
 ///   EFAULT   Fault is null
 ///   ENODEV   no hand is open
@@ -61,20 +58,20 @@ pub struct Fault {
 pub unsafe extern "C" fn GetFault(i: c_int, Fault: *mut Fault) -> c_int {
     guarded("GetFault", || {
         let least = size_up_to!(self::Fault, Warnings: c_ulong);
-        // SAFETY: the manual's contract: null, or as much room as its first member says.
-        unsafe { fill(Fault, "Fault", least, |hand| hand.fault(i).map(|fault| told(&fault))) }
+        // SAFETY: by the contract in the manual, null or as many bytes as its first member gives.
+        unsafe { fill(Fault, "Fault", least, |hand| hand.fault(i).map(|fault| to_c(&fault))) }
     })
 }
 
-/// FaultText - a fault in words
+/// FaultText - description of a fault
 ///
 ///     const char *FaultText(int Number);
 ///
 ///   Number   FAULT_...
 ///
-/// Its name, what is the case, the likely cause and the remedy, in one line. An empty
-/// string for a number that is no fault. Never null, valid for ever. Where a call was
-/// refused because of a fault, HandError gives the same with part and figures.
+/// Returns one line with the fault's name, its meaning, the likely cause and the remedy, or an empty
+/// string for a number that is no fault. Never null. The text stays valid until the process ends. If a
+/// call was refused because of a fault, HandError gives the same text with the part and its figures.
 ///
 /// Threads: any. Works in a forked child too.
 #[unsafe(no_mangle)]
@@ -85,22 +82,23 @@ pub extern "C" fn FaultText(Number: c_int) -> *const c_char {
     })
 }
 
-fn told(told: &FingerFault) -> Fault {
+/// `Size` is set when the room of the caller is known.
+fn to_c(found: &FingerFault) -> Fault {
     let parts = |fault: Option<finger::Fault>| {
         fault.map_or((0, 0, 0.0), |fault| {
             (c_int::from(fault.kind.number()), c_int::from(fault.part.number()), fault.value)
         })
     };
-    let (number, part, value) = parts(told.stopped);
-    let (warning, warning_part, warning_value) = parts(told.warning);
+    let (number, part, value) = parts(found.stopped);
+    let (warning, warning_part, warning_value) = parts(found.warning);
     Fault {
-        Size: 0, // until the caller's room is known
+        Size: 0,
         Number: number,
         Part: part,
         Warning: warning,
         WarningPart: warning_part,
         Value: value,
         WarningValue: warning_value,
-        Warnings: c_ulong::try_from(told.warnings).unwrap_or(c_ulong::MAX),
+        Warnings: c_ulong::try_from(found.warnings).unwrap_or(c_ulong::MAX),
     }
 }

@@ -1,7 +1,7 @@
-//! The exported functions that speak of the fingertip, and of what else may change while a finger runs. As in
-//! `calls.rs`, their comments are the C manual.
+//! The exported functions for the fingertip, and for other changes while a finger runs. Their doc comments are the C
+//! manual, as in `calls.rs`.
 
-// Named like the calls of 1990.
+// The names of the header.
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
@@ -13,21 +13,19 @@ use crate::model::{Contact, ContactError};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use std::ffi::{CStr, c_char, c_int, c_uint};
 
-/// What GetTip tells of a fingertip. Set Size = sizeof (struct FingerTip) before the call:
-/// later versions add members at the end, and a program never gets more than it has room
-/// for.
+/// Result of GetTip. Vectors are in the finger's frame.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct FingerTip {
-    /// In: bytes of room, sizeof *Tip. Out: bytes that were filled, never more.
+    /// In: sizeof (struct FingerTip). Out: bytes written, at most that.
     pub Size: c_uint,
-    /// Directions of Force that the joints feel: 3, or fewer near a singular pose.
+    /// Number of directions of Force that the joints can measure: 3, or fewer near a singular pose.
     pub Felt: c_int,
-    /// Where the tip is, x, y, z of the finger's frame, cm.
+    /// Position of the tip: x, y, z, cm.
     pub Tip: [f64; 3],
-    /// What the tip does to the thing it touches, x, y, z of the finger's frame, N. It comes
-    /// from the measured tensions, so the finger's friction and weight and what accelerates
-    /// it are in it. Never NaN: along a direction that the joints do not feel it is zero.
+    /// Force of the tip on the object that it touches: x, y, z, N. It is computed from the measured tensions, so it
+    /// includes friction, weight and inertia of the finger. Never NaN: along a direction that the joints cannot
+    /// measure it is zero.
     pub Force: [f64; 3],
     /// Measured tendon tensions, N.
     pub Tensions: [f64; 4],
@@ -38,24 +36,23 @@ pub struct FingerTip {
 ///     int SendTip(int i, const double *Tip);
 ///
 ///   i     finger, 1 to 3
-///   Tip   Tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm.
-///         Always double. Read during the call only
+///   Tip   Tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm. Always double
 ///
-/// From the next cycle on the fingertip is a spring anchored there, with the stiffness
-/// sent last. Its force is Kx (Tip - tip) at any distance. SendPos by default uses the law
-/// of the report, which holds for small distances. Of several joint solutions within the
-/// joint limits the call takes the one nearest to the present pose. The anchor moves there
-/// in a straight line of joint angles, at a bounded speed.
+/// From the next cycle on the fingertip is a spring anchored there, with the stiffness sent last. Its
+/// force is Kx (Tip - tip) at any distance, while SendPos by default uses the law of the report, which
+/// holds for small distances. If several joint solutions are within the joint limits, the call takes
+/// the one nearest to the present pose. The anchor moves there along a straight line in joint angles,
+/// at a bounded speed.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
 ///   EFAULT   Tip is null
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; an entry is NaN or infinite
-///   ERANGE   too far, too near, or outside the joint limits; never clamped
+///   ERANGE   Tip is too far, too near, or outside the joint limits; it is never clamped
 ///   EIO      the finger is faulted
 ///
-/// Threads: any. Never waits for a servo; less than 1 us.
+/// Threads: any. Never waits for a servo. Takes less than 1 us.
 ///
 /// Example:
 ///
@@ -64,7 +61,7 @@ pub struct FingerTip {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
     guarded("SendTip", || {
-        // SAFETY: the manual's contract: null, or the array of the synopsis.
+        // SAFETY: by the contract in the manual, null or the array of the synopsis.
         let tip = unsafe { load::<f64, 3>(Tip, "Tip") }?;
         default_hand::command(|hand| hand.send_tip(i, tip))
     })
@@ -75,8 +72,7 @@ pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
 ///     int GetTip(int i, struct FingerTip *Tip);
 ///
 ///   i     finger, 1 to 3
-///   Tip   Tip->Size is set by the caller, all else is filled in from the servo's last
-///         cycle. Written only if the call returns 0
+///   Tip   result, from the last cycle of the servo; set Tip->Size before the call
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -85,7 +81,7 @@ pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
 ///   EINVAL   Size is too small; no such finger
 ///   EIO      the finger is faulted
 ///
-/// Threads: any. Never waits for a servo; about 1 us.
+/// Threads: any. Never waits for a servo. Takes about 1 us.
 ///
 /// Example:
 ///
@@ -97,8 +93,8 @@ pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
 pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
     guarded("GetTip", || {
         let least = size_up_to!(FingerTip, Tensions: [f64; 4]);
-        // SAFETY: the manual's contract: null, or as much room as its first member says.
-        unsafe { fill(Tip, "Tip", least, |hand| hand.fingertip(i).map(|tip| told(&tip))) }
+        // SAFETY: by the contract in the manual, null or as many bytes as its first member gives.
+        unsafe { fill(Tip, "Tip", least, |hand| hand.fingertip(i).map(|tip| to_c(&tip))) }
     })
 }
 
@@ -109,21 +105,20 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 ///   i        finger, 1 to 3
 ///   D        dimensions of the contact (section 4.2 of the report):
 ///            1   frictionless point: a force along the normal
-///            3   hard finger with friction: three forces; SendContact (i, 3, Kx, 0) is
+///            3   hard finger with friction: three forces; SendContact (i, 3, Kx, 0) is the same as
 ///                SendKx (i, Kx)
 ///            4   soft finger: three forces and a moment about the normal
-///   K        K[D][D] or K[D * D], row by row. Rows and columns 0 to 2 of D = 3 and 4 are
-///            x, y, z of the finger's frame, N/cm; row and column 3 are the rotation
-///            about the normal: N cm/rad on the diagonal, N/rad beside it. For D = 1 N/cm
-///            along the normal
-///   Normal   Normal[3]: direction of the contact's normal in the finger's frame, of any
-///            length but zero. Not used for D = 3, and may be null there
+///   K        K[D][D] or K[D * D], row by row. Always double. For D = 1: N/cm along the normal. For
+///            D = 3 and 4, rows and columns 0 to 2 are x, y, z of the finger's frame, N/cm. For D = 4,
+///            row and column 3 are the rotation about the normal: N cm/rad on the diagonal, N/rad
+///            beside it
+///   Normal   Normal[3]: the contact normal in the finger's frame, of any length but zero. Always
+///            double. Not used for D = 3, and may be null there
 ///
-/// Always double. Read during the call only. The contact takes effect whole, without a jump
-/// in torque. It replaces the stiffness sent last, and a later SendKx replaces it. In the
-/// directions that a contact does not have, the finger is limp but still damped. K must be
-/// symmetric and without a negative eigenvalue, as for SendKx. For the bound a rotation
-/// counts by how far it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
+/// The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last,
+/// and a later SendKx replaces it. In directions that the contact does not have, the finger is limp
+/// but still damped. K must be symmetric and without a negative eigenvalue, as for SendKx. The bound
+/// counts a rotation by how far it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -131,12 +126,11 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; no such D; an entry is NaN or infinite
 ///   EDOM     K is not symmetric, or has a negative eigenvalue; Normal is zero
-///   ERANGE   K is stiffer than the bound (or it is clamped: hand.out_of_range)
+///   ERANGE   K is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
 ///   EIO      the finger is faulted
-///   ERANGE   K is too stiff for the ratio that SendDamping set (or the ratio is clamped:
-///            hand.out_of_range)
+///   ERANGE   K is too stiff for the ratio of SendDamping ("clamp" clamps the ratio instead)
 ///
-/// Threads: any. Never waits for a servo; a few us.
+/// Threads: any. Never waits for a servo. Takes a few us.
 ///
 /// Example, a soft finger:
 ///
@@ -146,9 +140,9 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: *const f64) -> c_int {
     guarded("SendContact", || {
-        // K has no size before D has a meaning.
+        // Checked before D, which determines the size of K.
         non_null(K, "K", Wanted::Matrix)?;
-        // SAFETY: the manual's contract, here and below: null, or the array of the synopsis for this D.
+        // SAFETY: here and below, by the contract in the manual, null or the array of the synopsis for this D.
         let normal = || unsafe { load::<f64, 3>(Normal, "Normal") }.map(Vector3::from);
         let contact = match D {
             1 => Contact::frictionless_point(unsafe { load::<f64, 1>(K, "K") }?[0], normal()?),
@@ -157,7 +151,7 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
             _ => return default_hand::command(|hand| hand.report(i).and(Err(SetPointError::NoSuchContact(D).into()))),
         };
         default_hand::command(|hand| -> Result<(), HandError> {
-            // The finger's number is looked at first.
+            // Reports a wrong finger number before an unusable contact.
             hand.report(i)?;
             hand.send_contact(i, contact.map_err(|source: ContactError| SetPointError::Contact { finger: i, source })?)
         })
@@ -169,31 +163,31 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 ///     int SendDamping(int i, double Ratio);
 ///
 ///   i       finger, 1 to 3
-///   Ratio   damping relative to what the controller chooses from the stiffness. After
-///           OpenHand it is 1
+///   Ratio   damping relative to what the controller chooses from the stiffness; 1 after OpenHand
 ///
-/// The ratio changes without a jump in torque and stays until it is sent again. The range
-/// depends on controller, rate and the largest eigenvalue k of the stiffness, N/cm, because
-/// a finger with much less or much more damping does not come to rest:
+/// The ratio changes without a jump in torque and stays until it is sent again. A finger with much
+/// less or much more damping does not come to rest. The range therefore depends on controller, rate
+/// and the largest eigenvalue k of the stiffness, N/cm:
 ///
-///                          1000 Hz and more            below 1000 Hz
+///                          1000 Hz and above           below 1000 Hz
 ///   state feedback         0.40 + 0.09 k to            0.70 + 0.07 k to
 ///                          2.50 - 0.22 k               2.00 - 0.20 k
 ///   figures 9, 10, 11      1 to 2.50 - 0.22 k          1 to 2.00 - 0.20 k
 ///
-/// On a finger with other links or tendons k is scaled by what its tendons carry. So the
-/// range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm by default. 1 is always in
-/// it. SendKx and SendContact refuse a stiffness that the ratio sent last does not go with.
+/// By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1.
+/// For a finger with other links or tendons, k is first divided by the stiffness of its tip with
+/// locked tendons and multiplied by that of the default finger. SendKx and SendContact refuse a
+/// stiffness whose range does not include the ratio sent last.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; Ratio is NaN or infinite
 ///   EIO      the finger is faulted
-///   ERANGE   Ratio is outside its range; HandError says which (or it is clamped:
-///            hand.out_of_range)
+///   ERANGE   Ratio is outside its range, which HandError gives (hand.out_of_range = "clamp" clamps it
+///            instead)
 ///
-/// Threads: any. Never waits for a servo; about 100 ns.
+/// Threads: any. Never waits for a servo. Takes about 100 ns.
 #[unsafe(no_mangle)]
 pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
     guarded("SendDamping", || default_hand::command(|hand| hand.send_damping(i, Ratio)))
@@ -204,32 +198,29 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 ///     int AdjustFinger(int i, const char *Keys);
 ///
 ///   i      finger, 1 to 3
-///   Keys   lines of TOML as they would stand under [finger.i] of the configuration file
-///          (chapter 8), in UTF-8. Read during the call only
+///   Keys   lines of TOML, in UTF-8, as under [finger.i] of the configuration file (chapter 8)
 ///
-/// All keys take effect together, within a cycle and without a jump in torque; what is
-/// not named stays. The change lasts until CloseHand: the file is not written. What a
-/// finger is opened with cannot change: port, baud, reconnect, address, thread, core,
-/// priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
-/// motor.torque_constant, stiffness.initial and simulation. controller.law counts from
-/// the next SendPos on.
+/// All keys take effect together, within a cycle and without a jump in torque; other keys stay as they
+/// are. The change lasts until CloseHand: the file is not written. controller.law applies from the
+/// next SendPos on. These keys cannot change while the hand is open: port, baud, reconnect, address,
+/// thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
+/// motor.torque_constant, stiffness.initial and simulation.
 ///
-/// A configured stiffness.bound was found for one controller. Under another
-/// controller.scheme it counts only if it is less than the default bound, or if Keys
-/// names it too.
+/// A configured stiffness.bound is valid for one controller. If controller.scheme changes, it applies
+/// only if it is less than the default bound, or if Keys includes it too.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
 ///   EFAULT   Keys is null
 ///   ENODEV   no hand is open
-///   EINVAL   no such finger; Keys are no TOML
+///   EINVAL   no such finger; Keys is not TOML
 ///   EBUSY    a key cannot change while the hand is open
-///   EINVAL   an unknown key; a configuration that cannot be used
-///   ERANGE   the position or stiffness sent last is outside the new limits (or it is
-///            clamped: hand.out_of_range)
+///   EINVAL   an unknown key; an unusable configuration
+///   ERANGE   the position or stiffness sent last is outside the new limits (hand.out_of_range =
+///            "clamp" clamps it instead)
 ///   EIO      the finger is faulted
 ///
-/// Threads: any. Never waits for a servo; about 200 us, and allocates.
+/// Threads: any. Never waits for a servo. Takes about 200 us, and allocates.
 ///
 /// Example:
 ///
@@ -238,7 +229,7 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
     delegated("AdjustFinger", MEMORY_OF_CALL, || {
         non_null(Keys, "Keys", Wanted::Text)?;
-        // SAFETY: not null, and a string by the manual's contract.
+        // SAFETY: checked for null above, and a C string by the contract in the manual.
         let keys = unsafe { CStr::from_ptr(Keys) }.to_owned();
         Ok(move || {
             default_hand::command(|hand| -> Result<(), HandError> {
@@ -256,9 +247,8 @@ pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
 ///     int PushFinger(int i, const double *Force);
 ///
 ///   i       finger, 1 to 3
-///   Force   Force[3]: force on the fingertip along x, y, z of the finger's frame, N,
-///           from now until the next call; zero lets go. Always double. Read during
-///           the call only
+///   Force   Force[3]: force on the fingertip along x, y, z of the finger's frame, N. Always double. It
+///           acts until the next call; zero ends it
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -272,15 +262,16 @@ pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn PushFinger(i: c_int, Force: *const f64) -> c_int {
     guarded("PushFinger", || {
-        // SAFETY: the manual's contract: null, or the array of the synopsis.
+        // SAFETY: by the contract in the manual, null or the array of the synopsis.
         let force = unsafe { load::<f64, 3>(Force, "Force") }?;
         default_hand::command(|hand| hand.push_simulated(i, force))
     })
 }
 
-fn told(tip: &hand::FingerTip) -> FingerTip {
+/// `Size` is set when the room of the caller is known.
+fn to_c(tip: &hand::FingerTip) -> FingerTip {
     FingerTip {
-        Size: 0,                 // until the caller's room is known
+        Size: 0,
         Felt: tip.felt as c_int, // 0 to 3
         Tip: tip.tip,
         Force: tip.force,

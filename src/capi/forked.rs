@@ -1,31 +1,30 @@
-//! Tells the process that has called OpenHand from the children that are forked from it.
+//! Distinguishes the process that has called OpenHand from the children forked from it.
 
 use std::sync::atomic::{AtomicPtr, AtomicU8, Ordering};
 
-/// The value of a mark in the process itself. A child finds 0.
+/// Value of the mark in the process itself. In a child it is 0.
 const OWN: u8 = 1;
 
 static BEFORE_OPENING: AtomicU8 = AtomicU8::new(OWN);
 static IN_CHILD: AtomicU8 = AtomicU8::new(0);
 
-/// Points to the mark of this process. From the first OpenHand on that is a byte which the system sets to 0 in every
-/// child: a child of fork, of _Fork and of a raw system call alike, and before any handler of pthread_atfork runs. A
-/// look at it costs a nanosecond, and asking for the process number 200.
+/// Points to the mark of this process. From the first OpenHand on the mark is a byte that the system sets to 0 in every
+/// child: of fork, of _Fork and of a raw system call, and before any handler of pthread_atfork runs. Reading it takes 1
+/// ns; a comparison of process numbers takes 200 ns.
 static MARK: AtomicPtr<AtomicU8> = AtomicPtr::new((&raw const BEFORE_OPENING).cast_mut());
 
 /// Whether this process was forked from one that has called OpenHand.
 pub(super) fn is_forked_child() -> bool {
-    // SAFETY: it points to an atomic that is there as long as the process, and that nobody writes to after it was
-    // published.
+    // SAFETY: the atomic exists as long as the process, and nothing writes to it after it was published.
     let mark = unsafe { &*MARK.load(Ordering::Acquire) };
     mark.load(Ordering::Relaxed) != OWN
 }
 
-/// Marks this process, to be called once. Linux before 4.14 has no such pages: there only the handler of pthread_atfork
-/// tells a child.
+/// Marks this process. Must be called once. Linux before 4.14 has no MADV_WIPEONFORK: there only the handler of
+/// pthread_atfork marks a child.
 pub(super) fn mark_this_process() {
     let protection = libc::PROT_READ | libc::PROT_WRITE;
-    // SAFETY: a new mapping of one byte, which the system makes a page. It is never given back.
+    // SAFETY: a new mapping of one byte, which the system rounds up to a page. A mark is never unmapped.
     let page =
         unsafe { libc::mmap(std::ptr::null_mut(), 1, protection, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS, -1, 0) };
     if page == libc::MAP_FAILED {
@@ -33,17 +32,17 @@ pub(super) fn mark_this_process() {
     }
     // SAFETY: the page of the mapping.
     if unsafe { libc::madvise(page, 1, libc::MADV_WIPEONFORK) } != 0 {
-        // SAFETY: the mapping, which nothing refers to.
+        // SAFETY: nothing refers to the mapping.
         unsafe { libc::munmap(page, 1) };
         return;
     }
     let mark = page.cast::<AtomicU8>();
-    // SAFETY: the mapping has room for a byte, and all zeros is a valid atomic.
+    // SAFETY: the mapping has room for a byte, and zero is a valid atomic.
     unsafe { &*mark }.store(OWN, Ordering::Relaxed);
     MARK.store(mark, Ordering::Release);
 }
 
-/// Takes this process for a forked child from now on.
+/// Treats this process as a forked child from now on.
 pub(super) fn mark_forked_child() {
     MARK.store((&raw const IN_CHILD).cast_mut(), Ordering::Release);
 }

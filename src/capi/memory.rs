@@ -1,4 +1,4 @@
-//! What a call reads from the caller's memory and writes there.
+//! Access to the memory of the caller.
 
 use crate::capi::default_hand;
 use crate::capi::refusal::{Refusal, Wanted};
@@ -10,29 +10,28 @@ pub(super) fn non_null<T>(pointer: *const T, name: &'static str, wanted: Wanted)
     if pointer.is_null() { Err(Refusal::Null { name, wanted }) } else { Ok(()) }
 }
 
-/// Copies an array of the caller's. Unaligned, because a planner may keep it in a
-/// packed message.
+/// Copies an array of the caller. It may be unaligned, because a planner may keep it in a packed message.
 ///
 /// # Safety
 /// `array` is null or points to `N` entries.
 pub(super) unsafe fn load<T, const N: usize>(array: *const T, name: &'static str) -> Result<[T; N], Refusal> {
     non_null(array, name, Wanted::Array(N))?;
-    // SAFETY: not null, and `N` entries by the contract of this function.
+    // SAFETY: checked for null above, and `N` entries by the contract of this function.
     Ok(unsafe { array.cast::<[T; N]>().read_unaligned() })
 }
 
-/// Copies a matrix of the caller's, row by row, as [`load`] copies an array.
+/// Copies a matrix of the caller, row by row, as [`load`] copies an array.
 ///
 /// # Safety
 /// `matrix` is null or points to three rows of three entries.
 pub(super) unsafe fn load_rows<T>(matrix: *const T, name: &'static str) -> Result<[[T; 3]; 3], Refusal> {
     non_null(matrix, name, Wanted::Array(9))?;
-    // SAFETY: not null, and nine entries by the contract of this function.
+    // SAFETY: checked for null above, and nine entries by the contract of this function.
     Ok(unsafe { matrix.cast::<[[T; 3]; 3]>().read_unaligned() })
 }
 
-/// The size of a struct up to and with a member: the smallest that a program can have been compiled with, where that
-/// member was the last of the first version.
+/// Size of a struct up to and including a member. If that member is the last of the first version, this is the smallest
+/// size with which a program can have been compiled.
 macro_rules! size_up_to {
     ($Struct:ty, $Member:ident: $Type:ty) => {
         std::mem::offset_of!($Struct, $Member) + size_of::<$Type>()
@@ -40,30 +39,29 @@ macro_rules! size_up_to {
 }
 pub(super) use size_up_to;
 
-/// Fills a struct of the caller's with what the open hand tells: at most as much as its first member, Size, says that
-/// there is room for, and leaves in Size how much that is. `least`: see [`size_up_to`].
+/// Fills a struct of the caller with values of the open hand. Its first member, Size, is the room that the caller has;
+/// the function writes at most that, and sets Size to the number of bytes written. For `least` see [`size_up_to`].
 ///
 /// # Safety
-/// `T` is `repr(C)` and begins with a Size of type `c_uint`. `out` is null, or points to a Size and to as many bytes as
-/// that says.
+/// `T` is `repr(C)` and begins with a Size of type `c_uint`. `out` is null, or points to a Size and to that many bytes.
 pub(super) unsafe fn fill<T>(
     out: *mut T,
     name: &'static str,
     least: usize,
-    tell: impl FnOnce(&Hand) -> Result<T, HandError>,
+    read: impl FnOnce(&Hand) -> Result<T, HandError>,
 ) -> Result<(), Refusal> {
-    // With the path of its module in front.
+    // The type name contains the path of its module.
     let of_type = type_name::<T>().rsplit("::").next().unwrap_or_default();
     non_null(out, name, Wanted::Struct(of_type))?;
-    // SAFETY: not null; the first member is there by the contract. Only it: a program may have less room.
+    // SAFETY: checked for null above, and the first member exists by the contract. The others may not.
     let size = unsafe { out.cast::<c_uint>().read_unaligned() } as usize;
     let mut whole = default_hand::with(|hand| match size < least {
         true => Err(Refusal::SmallStruct { name, size, least }),
-        false => Ok(tell(hand)?),
+        false => Ok(read(hand)?),
     })?;
     let filled = size.min(size_of::<T>());
     let from = (&raw mut whole).cast::<u8>();
-    // SAFETY: `whole` begins with its Size; `filled` is at most the caller's room and at most the size of `whole`.
+    // SAFETY: `whole` begins with its Size. `filled` exceeds neither the caller's room nor the size of `whole`.
     unsafe {
         from.cast::<c_uint>().write(filled as c_uint);
         from.copy_to_nonoverlapping(out.cast(), filled);

@@ -1,13 +1,13 @@
-//! The C face: the five calls of 1990 and what was added to them, on one default hand. It checks pointers, catches
-//! panics and turns refusals into errno; every other check is the hand's. `include/Sun2Xp.h` is generated from the
-//! files named `calls`.
+//! The C interface: the five calls of 1990 and later calls, on one default hand. It checks pointers, catches panics and
+//! converts refusals to errno; the hand makes all other checks. `include/Sun2Xp.h` is generated from the files named
+//! `calls`.
 //!
-//! Where several things are wrong with one call, it reports the first of this order: forked child (EPERM), null pointer
-//! (EFAULT), no hand (ENODEV), a struct with too small a Size (EINVAL), then what the hand finds: finger number,
-//! numbers that are not finite, symmetry and eigenvalues, limits, a faulted finger. The lists in the manual have the
-//! same order. A slow call looks for free memory (ENOMEM) after the first.
+//! If several reasons apply to a call, it reports the first of this order: forked child (EPERM), null pointer (EFAULT),
+//! no hand (ENODEV), a struct whose Size is too small (EINVAL), then those of the hand: finger number, numbers that are
+//! not finite, symmetry and eigenvalues, limits, faulted finger. The lists in the manual have the same order. A slow
+//! call checks for free memory (ENOMEM) after the forked child.
 
-// The boundary to C cannot be written without raw pointers.
+// A C interface needs raw pointers.
 #![allow(unsafe_code)]
 
 mod black_box_calls;

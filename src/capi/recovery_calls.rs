@@ -1,4 +1,4 @@
-//! The exported functions about stopping and going on; their comments are the C manual, as in `calls.rs`.
+//! The exported functions for stop and recovery. Their doc comments are the C manual, as in `calls.rs`.
 
 // The names of the header.
 #![allow(non_snake_case)]
@@ -12,20 +12,21 @@ use std::ffi::c_int;
 ///
 ///     int StopHand(void);
 ///
-/// Every finger faults (FAULT_EMERGENCY_STOP_CALL) at the beginning of its next cycle: its
-/// board is told to go to the configured end state, and its calls are refused with EIO.
-/// With hand.end_state = "release", the default, the torque goes to zero at once. With
-/// "hold" the motors keep their last torque, up to hand.hold_torque_limit, for
-/// hand.hold_time_ms, by default 2 s and at most a minute: who configures "hold" has
-/// something that must not be dropped. No call makes the finger limp earlier; the
-/// emergency stop input of the board does, whatever the end state, and so does its power.
-/// It stays so until RecoverHand, or CloseHand and OpenHand. Without a hand it does
-/// nothing, and a hand that is opened later knows nothing of it. It is no safety function:
-/// it needs this process, this machine and the cable.
+/// Every finger faults (FAULT_EMERGENCY_STOP_CALL) at the start of its next cycle. The servo commands
+/// its board to enter the configured end state, and calls for the finger are refused with EIO until
+/// RecoverHand, or CloseHand and OpenHand. If no hand is open, the call does nothing; a hand that is
+/// opened later is not affected.
+///
+/// With hand.end_state = "release", the default, the torque goes to zero at once. With "hold" the
+/// motors keep their last torque, up to hand.hold_torque_limit, for hand.hold_time_ms, by default 2 s
+/// and at most a minute. Configure "hold" only for objects that must not be dropped: no call releases
+/// the torque earlier. Only the emergency stop input of the board, or cutting the board's power, does.
+///
+/// StopHand is not a safety function: it needs this process, this machine and the cable.
 ///
 /// Returns 0.
 ///
-/// Threads: any, and signal handlers: it is async-signal-safe, sets no errno and waits for
+/// Threads: any, and signal handlers: it is async-signal-safe, does not set errno and waits for
 /// nothing. In a forked child it does nothing.
 ///
 /// Example, for Control-C:
@@ -49,26 +50,26 @@ pub extern "C" fn StopHand() -> c_int {
 ///
 ///   i        finger, 1 to 3
 ///
-/// Asks the finger's board who it is and configures it anew; opens the port anew where it
-/// has failed and finger.reconnect is true. Then the tendons are brought under tension,
-/// and the finger holds the pose that it is found in, at the configured initial stiffness.
-/// Fingers that share the port recover with it. A finger that is not faulted goes on as it
-/// is. Repair the cause of the fault first: GetFault and FaultText name it.
+/// Queries the identity of the finger's board and configures the board again. If the port has failed
+/// and finger.reconnect is true, reopens the port first. Then brings the tendons under tension. The
+/// finger holds its present pose at the configured initial stiffness. Fingers on the same port recover
+/// with it. A finger that is not faulted continues unchanged. Remove the cause of the fault
+/// first: GetFault and FaultText name it.
 ///
-/// Waits until the finger holds its pose or faults again: up to some seconds. Other calls
-/// go on meanwhile. CloseHand too, and this call is refused then.
+/// Waits until the finger holds its pose or faults again, up to some seconds. Other calls work
+/// meanwhile. CloseHand works too, and this call is then refused.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
-///   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and
-///            finger.reconnect is false
+///   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and finger.reconnect
+///            is false
 ///   EINVAL   no such finger
-///   EIO      the finger faults again, or its board is another one than at OpenHand or has
-///            lost its zero, or its servo thread has failed (FAULT_SERVO_PANIC), which only
-///            CloseHand and OpenHand mend; HandError says which
+///   EIO      the finger faults again; or its board is not the one of OpenHand, or has lost its zero;
+///            or its servo thread has failed (FAULT_SERVO_PANIC), which only CloseHand and OpenHand
+///            remedy. HandError says which
 ///   EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
-///   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: it is not there yet, or
-///            the board does not answer, or the servo does not run. Call again
+///   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
+///            does not answer, or the servo does not run. Call again
 ///
 /// Threads: any.
 ///

@@ -1,5 +1,5 @@
-//! What a refused call leaves behind: errno, a text for the calling thread, and at the first of its kind a line on
-//! standard error.
+//! The report of a refused call: errno, a text for the calling thread, and a line on standard error for the first
+//! refusal of its kind.
 
 use crate::capi::process;
 use crate::capi::text::Text;
@@ -13,7 +13,7 @@ use std::mem::{Discriminant, discriminant};
 use std::sync::atomic::{AtomicBool, Ordering};
 use thiserror::Error;
 
-/// Why a call is refused: by the boundary, or by the hand behind it.
+/// Why the C interface or the hand refuses a call.
 #[derive(Debug, Error)]
 pub(super) enum Refusal {
     #[error(
@@ -37,8 +37,8 @@ pub(super) enum Refusal {
     #[error("another thread is opening or closing the hand: wait until its call has returned")]
     Busy,
     #[error(
-        "memory is short, and this call needs some: nothing was changed. Free memory, or raise the limit of this process \
-         (ulimit -v), and call again"
+        "memory is short, and this call needs some: nothing was changed. Free memory, or raise the limit of this \
+         process (ulimit -v), and call again"
     )]
     NoMemory,
     #[error("the library failed ({0}): a defect of this library, please report it")]
@@ -47,10 +47,10 @@ pub(super) enum Refusal {
     Hand(#[from] hand::HandError),
 }
 
-/// What a pointer of a call leads to.
+/// What a pointer argument must point to.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Wanted {
-    /// So many numbers.
+    /// An array of this many numbers.
     Array(usize),
     /// A struct of this name in the header.
     Struct(&'static str),
@@ -101,17 +101,17 @@ thread_local! {
     static TEXT: RefCell<Text> = const { RefCell::new(Text::EMPTY) };
 }
 
-/// More than there are kinds of refusals.
+/// More than the number of kinds of refusals.
 const KINDS: usize = 64;
 
 static PRINT: AtomicBool = AtomicBool::new(true);
 static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
 
-/// Leaves errno, the text of the calling thread and, at the first of its kind, a line on standard error.
+/// Sets errno and the text of the calling thread, and prints the first refusal of its kind on standard error.
 pub(super) fn refuse(name: &str, refusal: &Refusal) {
     TEXT.with(|slot| {
-        // A signal handler may have broken into this very place and make a call that it may not make: errno still
-        // tells.
+        // The borrow fails if a signal handler has interrupted this function and makes a call that it may not make.
+        // errno still reports the refusal.
         let Ok(mut text) = slot.try_borrow_mut() else { return };
         text.compose(format_args!("{name}: {refusal}"));
         if PRINT.load(Ordering::Relaxed) && is_first_of_its_kind(refusal.kind()) {
@@ -122,24 +122,24 @@ pub(super) fn refuse(name: &str, refusal: &Refusal) {
 }
 
 fn is_first_of_its_kind(kind: Kind) -> bool {
-    // Never waits: in a forked child the lock may have been held by a thread that was not forked with it.
+    // Does not wait: in a forked child nothing releases a lock that another thread of the parent held.
     let Some(mut printed) = PRINTED.try_lock() else { return false };
     let first = !printed.contains(&kind);
-    // Where there is no memory to remember it, it is printed again.
+    // Without memory to store the kind, it is printed again next time.
     if first && printed.try_reserve(1).is_ok() {
         printed.push(kind);
     }
     first
 }
 
-/// Whether refusals are printed from now on: the configuration of the hand that was opened last.
+/// Sets whether refusals are printed, as configured for the hand that is being opened.
 pub(super) fn set_printing(on: bool) {
     PRINT.store(on, Ordering::Relaxed);
-    // So that a refusal allocates nothing.
+    // Reserved here so that no refusal allocates.
     PRINTED.lock().reserve(KINDS);
 }
 
-/// The text of the calling thread's last refused call; empty when none was refused.
+/// Returns the text of the calling thread's last refused call; empty if none was refused.
 pub(super) fn text() -> *const c_char {
     TEXT.with(|slot| slot.try_borrow().map_or(c"".as_ptr(), |text| text.as_c_string()))
 }
@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn kinds_are_told_apart_by_the_refusal_of_the_hand() {
+    fn refusals_of_the_hand_have_different_kinds() {
         let no_finger = Refusal::Hand(hand::HandError::NoSuchFinger(7));
         let not_simulated = Refusal::Hand(hand::HandError::NotSimulated(1));
         assert_ne!(no_finger.kind(), not_simulated.kind());

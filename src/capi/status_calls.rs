@@ -1,7 +1,6 @@
-//! The exported function that tells how the servo of a finger is doing. As in `calls.rs`, its comments are the C
-//! manual.
+//! The exported function for the status of a finger's servo. Its doc comment is the C manual, as in `calls.rs`.
 
-// Named like the calls of 1990.
+// The names of the header.
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::guarded;
@@ -10,81 +9,71 @@ use crate::finger::Stage;
 use crate::hand;
 use std::ffi::{c_int, c_uint, c_ulong};
 
-/// FingerStatus.State: the fingertip is the spring that it was told to be.
+/// The fingertip is the spring that the planner has commanded.
 pub const FINGER_RUNNING: c_int = 1;
 
-/// FingerStatus.State: the finger has stopped by itself, its motors are in the
-/// configured end state, and its calls are refused with EIO and the reason. RecoverHand,
-/// or CloseHand and OpenHand, start again.
+/// The finger has stopped by itself, and its motors are in the configured end state. Its calls are refused
+/// with EIO and the reason until RecoverHand, or CloseHand and OpenHand.
 pub const FINGER_FAULTED: c_int = 2;
 
-/// FingerStatus.State: the motors are off, after a calibration that was refused (which
-/// says why). Set points have no effect. Another calibration, or CloseHand and OpenHand,
-/// make it a spring again.
+/// The motors are off after a refused calibration, which reported the reason. Set points have no effect. Another
+/// calibration, or CloseHand and OpenHand, make the finger a spring again.
 pub const FINGER_LIMP: c_int = 3;
 
-/// FingerStatus.State: ZeroFinger or IdentifyFinger moves the finger. Set points have no
-/// effect.
+/// ZeroFinger or IdentifyFinger moves the finger. Set points have no effect.
 pub const FINGER_CALIBRATING: c_int = 4;
 
-/// FingerStatus.State: the tendons are being brought under tension, by RecoverHand or at
-/// the end of a calibration. Set points have no effect.
+/// RecoverHand or the end of a calibration brings the tendons under tension. Set points have no effect.
 pub const FINGER_TENSIONING: c_int = 5;
 
-/// FingerStatus.State: the finger goes to its configured end state, or is there, because
-/// the planner has called exit or returned from main without CloseHand. Only exit handlers
-/// and threads that are left see it.
+/// The process exits without CloseHand, and the finger goes to its configured end state or is in it. Only exit
+/// handlers and remaining threads see this state.
 pub const FINGER_CLOSED: c_int = 6;
 
-/// What GetStatus tells of a finger. Set Size = sizeof (struct FingerStatus) before the
-/// call: later versions add members at the end, and a program never gets more than it
-/// has room for.
+/// Result of GetStatus.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct FingerStatus {
-    /// In: bytes of room, sizeof *Status. Out: bytes that were filled, never more.
+    /// In: sizeof (struct FingerStatus). Out: bytes written, at most that.
     pub Size: c_uint,
-    /// FINGER_RUNNING, FINGER_FAULTED, FINGER_LIMP, FINGER_CALIBRATING, FINGER_TENSIONING or
-    /// FINGER_CLOSED.
+    /// FINGER_RUNNING to FINGER_CLOSED.
     pub State: c_int,
-    /// 1: every servo thread of the hand runs under SCHED_FIFO. 0: one does not, and shares
-    /// its core with everybody.
+    /// 1: every servo thread of the hand runs under SCHED_FIFO. 0: at least one is an ordinary thread.
     pub Realtime: c_int,
     /// Configured servo rate, Hz.
     pub Rate: f64,
-    /// Measured servo rate since OpenHand, Hz. While the servo does not run, the periods that
-    /// are missing up to now count too, so the rate falls.
+    /// Measured servo rate since OpenHand, Hz. It falls while the servo does not run: the periods missing up to now
+    /// count.
     pub MeasuredRate: f64,
-    /// How late cycles began since OpenHand or ResetTiming, microseconds: half of them no
-    /// later than this. The servo's jitter.
+    /// Jitter: how late cycles began since OpenHand or ResetTiming, us; median.
     pub WakeUpMedian: f64,
-    /// The same, microseconds: 99 of 100 cycles no later than this.
+    /// The same, us; 99 of 100 cycles began no later.
     pub WakeUp99: f64,
-    /// The same, microseconds: the latest.
+    /// The same, us; maximum.
     pub WakeUpMaximum: f64,
-    /// The part of the joint torque that the tension limits let through in the last cycle,
-    /// 0 to 1. Its direction is kept.
+    /// Fraction of the joint torque that the tension limits admitted in the last cycle, 0 to 1. The direction of the
+    /// torque is kept.
     pub TorqueScale: f64,
     /// Cycles since OpenHand.
     pub Cycles: c_ulong,
-    /// Whole periods in which no cycle began, because the cycle before was not over or the
-    /// servo thread did not run, up to now. One such cycle may skip many.
+    /// Whole periods in which no cycle began because the previous cycle was not over or the servo thread did not run,
+    /// up to now. One late cycle may skip many periods.
     pub SkippedPeriods: c_ulong,
     /// Cycles without a valid reply in time.
     pub LostReplies: c_ulong,
-    /// Pieces of bytes on the finger's port that were no frame: damaged, cut short, noise.
-    /// FingerTiming.ForeignFrames counts whole frames that nobody waited for.
+    /// Pieces of data on the finger's port that are no frame: damaged, truncated, noise. Whole frames that nobody
+    /// expected are in FingerTiming.ForeignFrames.
     pub DamagedFrames: c_ulong,
-    /// How much of a calibration is done, 0 to 1. 0 if the finger is not being calibrated.
+    /// Progress of a calibration, 0 to 1. 0 without a calibration.
     pub Calibration: f64,
-    /// 1: OpenHand has locked the memory of every servo thread, so that it never waits for a
-    /// page. 0: one is not locked. If the planner calls munlockall later, this memory is
-    /// unlocked too, and this member stays 1. CloseHand and OpenHand lock it again.
+    /// 1: OpenHand has locked the memory of every servo thread, so that it never waits for a page. 0: at least one is
+    /// not locked. If the planner calls munlockall later, this memory is unlocked too, and this member stays 1.
+    /// CloseHand and OpenHand lock it again.
     pub MemoryLocked: c_int,
-    /// 1: every servo thread runs on its configured core, or has none. 0: one does not.
+    /// 1: every servo thread with a configured core runs on it. 0: at least one does not.
     pub OnCore: c_int,
-    /// The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where
-    /// its tendons carry no more in this pose, for example near the straight one.
+    /// Fraction of Kx in force in the last cycle, 0 to 1. It is below 1 where the tendons cannot carry more in this
+    /// pose, for example near the straight pose.
     pub StiffnessScale: f64,
 }
 
@@ -93,15 +82,14 @@ pub struct FingerStatus {
 ///     int GetStatus(int i, struct FingerStatus *Status);
 ///
 ///   i        finger, 1 to 3
-///   Status   Status->Size is set by the caller, all else is filled in. Written only if
-///            the call returns 0
+///   Status   result; set Status->Size before the call
 ///
 /// Works on a faulted finger too.
 ///
-/// A servo thread does not run while a thread with a higher priority occupies its core, or
-/// while a debugger holds it. Then State is that of its last cycle and Cycles stands still.
-/// SkippedPeriods grows with every period, so a planner that compares it with an earlier
-/// value knows how old the pose of GetPos is.
+/// A servo thread does not run while a thread with a higher priority occupies its core, or while a
+/// debugger stops it. Then State stays that of the last cycle, and Cycles does not grow.
+/// SkippedPeriods grows with every period, so a planner can compare it with an earlier value to
+/// compute how old the pose of GetPos is.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -121,14 +109,15 @@ pub struct FingerStatus {
 pub unsafe extern "C" fn GetStatus(i: c_int, Status: *mut FingerStatus) -> c_int {
     guarded("GetStatus", || {
         let least = size_up_to!(FingerStatus, DamagedFrames: c_ulong);
-        // SAFETY: the manual's contract: null, or as much room as its first member says.
-        unsafe { fill(Status, "Status", least, |hand| hand.status(i).map(|status| told(&status))) }
+        // SAFETY: by the contract in the manual, null or as many bytes as its first member gives.
+        unsafe { fill(Status, "Status", least, |hand| hand.status(i).map(|status| to_c(&status))) }
     })
 }
 
-fn told(status: &hand::FingerStatus) -> FingerStatus {
+/// `Size` is set when the room of the caller is known.
+fn to_c(status: &hand::FingerStatus) -> FingerStatus {
     FingerStatus {
-        Size: 0, // until the caller's room is known
+        Size: 0,
         State: state(&status.stage),
         Realtime: status.realtime.into(),
         Rate: status.rate,
@@ -148,7 +137,7 @@ fn told(status: &hand::FingerStatus) -> FingerStatus {
     }
 }
 
-/// FINGER_...
+/// One of the constants FINGER_RUNNING to FINGER_CLOSED.
 pub(super) fn state(stage: &Stage) -> c_int {
     match stage {
         Stage::Faulted(_) => FINGER_FAULTED,
@@ -160,7 +149,7 @@ pub(super) fn state(stage: &Stage) -> c_int {
     }
 }
 
-/// Where `unsigned long` has 32 bits a count stops at its largest value.
+/// A count stops at the largest value of an `unsigned long`, which has 32 bits on some machines.
 pub(super) fn count(count: u64) -> c_ulong {
     c_ulong::try_from(count).unwrap_or(c_ulong::MAX)
 }
@@ -172,7 +161,7 @@ mod tests {
     use crate::realtime::Distribution;
 
     #[test]
-    fn only_a_spring_reads_running_and_only_a_calibration_reads_calibrating() {
+    fn every_stage_has_its_state() {
         let faulted = Stage::Faulted(Fault::new(FaultKind::Watchdog));
         for (stage, constant) in [
             (Stage::Opening, FINGER_TENSIONING),
@@ -188,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn foreign_frames_are_no_damaged_ones_and_periods_no_cycles() {
+    fn damaged_frames_exclude_foreign_ones_and_skipped_periods_are_not_overruns() {
         let losses =
             Losses { overruns: 1, skipped_periods: 20, damaged_frames: 300, foreign_frames: 4000, ..Losses::default() };
         let status = hand::FingerStatus {
@@ -204,7 +193,7 @@ mod tests {
             stiffness_scale: 1.0,
             calibration: 0.0,
         };
-        let told = told(&status);
-        assert_eq!((told.SkippedPeriods, told.DamagedFrames), (20, 300));
+        let converted = to_c(&status);
+        assert_eq!((converted.SkippedPeriods, converted.DamagedFrames), (20, 300));
     }
 }

@@ -1,13 +1,13 @@
-//! The text of a refused call, in memory that every thread has from its beginning: a refusal allocates nothing.
+//! The text of a refused call. It is in thread-local memory, so that a refusal allocates nothing.
 
 use crate::model::OneLine;
 use std::ffi::c_char;
 use std::fmt::{self, Write};
 
-/// Longer texts are cut. Those of the library are shorter: what they quote is shortened before.
+/// Longer texts are truncated. Texts of the library are shorter, because they abbreviate what they quote.
 const CAPACITY: usize = 2048;
 
-/// One line of text with a zero byte behind it.
+/// One line of text, terminated by a zero byte.
 pub(super) struct Text {
     bytes: [u8; CAPACITY],
     /// Without the zero byte.
@@ -17,16 +17,16 @@ pub(super) struct Text {
 impl Text {
     pub const EMPTY: Self = Self { bytes: [0; CAPACITY], length: 0 };
 
-    /// Replaces the text by these arguments on one line.
+    /// Replaces the text by the formatted arguments, on one line.
     pub fn compose(&mut self, arguments: fmt::Arguments<'_>) {
         self.length = 0;
-        // Where it is cut the rest is left out.
+        // An error means only that the text was truncated.
         let _ = OneLine(self).write_fmt(arguments);
         self.bytes[self.length] = 0;
     }
 
     pub fn as_str(&self) -> &str {
-        // Only whole characters are in it.
+        // The text contains only whole characters.
         std::str::from_utf8(&self.bytes[..self.length]).unwrap_or_default()
     }
 
@@ -38,7 +38,7 @@ impl Text {
 
 impl Write for Text {
     fn write_str(&mut self, part: &str) -> fmt::Result {
-        // The last byte is for the zero.
+        // The last byte is reserved for the zero.
         let room = CAPACITY - 1 - self.length;
         let whole = part.len() <= room;
         let end = room.min(part.len());
@@ -54,28 +54,28 @@ mod tests {
     use super::*;
     use std::ffi::CStr;
 
-    fn kept(text: &Text) -> &str {
-        // SAFETY: composed before, and not changed meanwhile.
+    fn read_back(text: &Text) -> &str {
+        // SAFETY: the text was composed before and does not change meanwhile.
         unsafe { CStr::from_ptr(text.as_c_string()) }.to_str().expect("UTF-8")
     }
 
     #[test]
-    fn it_is_one_line_and_the_newest() {
+    fn a_text_is_one_line_and_replaces_the_previous_one() {
         let mut text = Text::EMPTY;
         text.compose(format_args!("{}: two\nlines", "a longer text than the next"));
-        assert_eq!(kept(&text), "a longer text than the next: two\\nlines");
+        assert_eq!(read_back(&text), "a longer text than the next: two\\nlines");
         text.compose(format_args!("short"));
-        assert_eq!((kept(&text), text.as_str()), ("short", "short"));
+        assert_eq!((read_back(&text), text.as_str()), ("short", "short"));
     }
 
     #[test]
-    fn a_long_text_is_cut_between_characters() {
+    fn a_long_text_is_truncated_between_characters() {
         let mut text = Text::EMPTY;
-        // Two bytes each, from an odd place on.
+        // Two bytes each, from an odd offset on.
         text.compose(format_args!("a{}", "\u{e9}".repeat(CAPACITY)));
-        assert_eq!(kept(&text).len(), CAPACITY - 1);
+        assert_eq!(read_back(&text).len(), CAPACITY - 1);
         text.compose(format_args!("{}", "\u{e9}".repeat(CAPACITY)));
-        assert_eq!(kept(&text).len(), CAPACITY - 2);
-        assert_eq!(kept(&text), text.as_str());
+        assert_eq!(read_back(&text).len(), CAPACITY - 2);
+        assert_eq!(read_back(&text), text.as_str());
     }
 }

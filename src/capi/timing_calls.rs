@@ -1,7 +1,6 @@
-//! The exported functions that tell where the time of a finger's cycles goes. As in `calls.rs`, their comments are the
-//! C manual.
+//! The exported functions for the timing of a finger's cycles. Their doc comments are the C manual, as in `calls.rs`.
 
-// Named like the calls of 1990.
+// The names of the header.
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::guarded;
@@ -14,75 +13,68 @@ use crate::model::configuration::FINGERS;
 use crate::realtime::{CycleStage, Distribution};
 use std::ffi::{c_int, c_uint, c_ulong};
 
-/// Stage for GetTiming: from the scheduled beginning of a cycle to the thread's first
-/// instruction.
+/// From the scheduled start of a cycle to the thread's first instruction.
 pub const TIMING_WAKE_UP: c_int = 0;
 
-/// Stage for GetTiming: handing the commands of the port to the system.
+/// Passing the commands of the port to the system.
 pub const TIMING_WRITE: c_int = 1;
 
-/// Stage for GetTiming: from there until the reply can be read: both ways on the line, and
-/// the board.
+/// From there until the reply can be read: the line in both directions, and the board.
 pub const TIMING_WIRE: c_int = 2;
 
-/// Stage for GetTiming: reading the reply.
+/// Reading the reply.
 pub const TIMING_READ: c_int = 3;
 
-/// Stage for GetTiming: from bytes to the finger's reply, checks included.
+/// From bytes to the finger's reply, including all checks.
 pub const TIMING_DECODE: c_int = 4;
 
-/// Stage for GetTiming: the controller.
+/// The controller.
 pub const TIMING_COMPUTE: c_int = 5;
 
-/// Stage for GetTiming: from the scheduled beginning of a cycle to the end of its
-/// computation.
+/// From the scheduled start of a cycle to the end of its computation.
 pub const TIMING_CYCLE: c_int = 6;
 
-/// Stage for GetTiming: how old the newest measurement is when the command that was
-/// computed from it takes effect, by the board's clock. One period where nothing is late.
+/// Age of the newest measurement when the command computed from it takes effect, by the board's clock. One period
+/// if nothing is late.
 pub const TIMING_AGE: c_int = 7;
 
-/// What GetTiming tells of a stage of a finger's cycle. Set Size = sizeof (struct
-/// FingerTiming) before the call: later versions add members at the end, and a program
-/// never gets more than it has room for.
-///
-/// All times are ns, within 1 %, at most 4.29e9, and 0 where nothing was counted. All
-/// numbers are since OpenHand or the finger's last ResetTiming.
+/// Result of GetTiming. All times are in ns, within 1 %, at most 4.29e9, and 0 if nothing was counted.
+/// All values are since OpenHand or the last ResetTiming of the finger.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct FingerTiming {
-    /// In: bytes of room, sizeof *Timing. Out: bytes that were filled, never more.
+    /// In: sizeof (struct FingerTiming). Out: bytes written, at most that.
     pub Size: c_uint,
-    /// The stage that was asked for.
+    /// The requested stage.
     pub Stage: c_int,
     /// Cycles that had this stage.
     pub Count: c_ulong,
-    /// The shortest.
+    /// Shortest time of the stage.
     pub Minimum: c_ulong,
-    /// Half of them took no longer.
+    /// Half of the cycles took no longer.
     pub Median: c_ulong,
-    /// 99 of 100 took no longer.
+    /// 99 of 100 cycles took no longer.
     pub P99: c_ulong,
-    /// 999 of 1000 took no longer.
+    /// 999 of 1000 cycles took no longer.
     pub P999: c_ulong,
-    /// The longest.
+    /// Longest time of the stage.
     pub Maximum: c_ulong,
-    /// The finger's cycles, with or without this stage, like all that follows.
+    /// Cycles of the finger. This member and all below count cycles with and without this stage.
     pub Cycles: c_ulong,
-    /// Cycles that were not over when the next one should have begun.
+    /// Cycles that were not over when the next one was due.
     pub Overruns: c_ulong,
-    /// Whole periods in which no cycle began, because the cycle before was not over or the
-    /// servo thread did not run, up to the last cycle.
+    /// Whole periods in which no cycle began because the previous cycle was not over or the servo thread did not run,
+    /// up to the last cycle.
     pub SkippedPeriods: c_ulong,
     /// Cycles without a valid reply in time.
     pub LostReplies: c_ulong,
-    /// Replies that came when their cycle was over.
+    /// Replies that arrived after the end of their cycle.
     pub LateReplies: c_ulong,
-    /// Pieces of bytes on the finger's port that were no frame: damaged, cut short, noise.
+    /// Pieces of data on the finger's port that are no frame: damaged, truncated, noise.
     pub CorruptReplies: c_ulong,
-    /// Replies that came once more.
+    /// Replies that arrived a second time.
     pub DuplicateReplies: c_ulong,
-    /// Whole frames on the finger's port that nobody waited for.
+    /// Whole frames on the finger's port that nobody expected.
     pub ForeignFrames: c_ulong,
 }
 
@@ -92,8 +84,7 @@ pub struct FingerTiming {
 ///
 ///   i        finger, 1 to 3
 ///   Stage    TIMING_WAKE_UP to TIMING_AGE
-///   Timing   Timing->Size is set by the caller, all else is filled in. Written only if
-///            the call returns 0
+///   Timing   result; set Timing->Size before the call
 ///
 /// Works while the servo runs, and on a faulted finger too.
 ///
@@ -103,7 +94,7 @@ pub struct FingerTiming {
 ///   ENODEV   no hand is open
 ///   EINVAL   Size is too small; no such finger; no such Stage
 ///
-/// Threads: any. Never waits for a servo; some us.
+/// Threads: any. Never waits for a servo. Takes a few us.
 ///
 /// Example:
 ///
@@ -115,16 +106,16 @@ pub struct FingerTiming {
 pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTiming) -> c_int {
     guarded("GetTiming", || {
         let least = size_up_to!(FingerTiming, CorruptReplies: c_ulong);
-        let tell = |hand: &Hand| {
-            // The finger's number is looked at first.
+        let read = |hand: &Hand| {
+            // Reports a wrong finger number before a wrong stage.
             hand.report(i)?;
-            // Times first: then there are no more of them than cycles.
+            // Times are read first, so that there are never more of them than cycles.
             let times = hand.timing(i, stage(Stage).ok_or(HandError::NoSuchStage(Stage))?)?;
             let losses = hand.losses(i)?;
-            Ok(told(Stage, &times, &losses))
+            Ok(to_c(Stage, &times, &losses))
         };
-        // SAFETY: the manual's contract: null, or as much room as its first member says.
-        unsafe { fill(Timing, "Timing", least, tell) }
+        // SAFETY: by the contract in the manual, null or as many bytes as its first member gives.
+        unsafe { fill(Timing, "Timing", least, read) }
     })
 }
 
@@ -134,7 +125,7 @@ pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTi
 ///
 ///   i        finger, 1 to 3; 0: all
 ///
-/// The counts of GetStatus go on, except the wake-up times, which are those of GetTiming.
+/// The counts of GetStatus continue, except its wake-up times, which are those of GetTiming.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -166,10 +157,11 @@ fn stage(number: c_int) -> Option<CycleStage> {
     }
 }
 
-fn told(stage: c_int, times: &Distribution, losses: &Losses) -> FingerTiming {
+/// `Size` is set when the room of the caller is known.
+fn to_c(stage: c_int, times: &Distribution, losses: &Losses) -> FingerTiming {
     let ns = |microseconds: f64| (microseconds * 1e3).round() as c_ulong;
     FingerTiming {
-        Size: 0, // until the caller's room is known
+        Size: 0,
         Stage: stage,
         Count: count(times.count),
         Minimum: ns(times.minimum),

@@ -35,7 +35,7 @@ fn the_keys_that_cannot_change_are_named() {
     let manual = Manual::read();
     let entry = manual.entries.iter().find(|entry| entry.call == "AdjustFinger").expect("the entry");
     let text = in_one_line(&entry.text);
-    let (_, rest) = text.split_once("opened with cannot change: ").expect("a sentence that names them");
+    let (_, rest) = text.split_once("cannot change while the hand is open: ").expect("a sentence that names them");
     let named = listed(rest.split_once(". ").expect("the sentence ends").0);
     let hand = Hand::open(Configuration::default()).expect("the simulated hand");
     let keys = keys_of_a_finger();

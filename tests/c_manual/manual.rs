@@ -72,12 +72,12 @@ impl Manual {
         stray
     }
 
-    /// The comment above a member of a struct, in one line.
+    /// The comment beside a member of a struct, in one line.
     pub fn member(&self, structure: &str, member: &str) -> String {
         let (_, rest) = self.header.split_once(&format!("\nstruct {structure} {{\n")).expect("the struct");
         let (members, _) = rest.split_once("\n};\n").expect("every struct ends");
-        let (before, _) = members.split_once(&format!(" {member};\n")).expect("the member");
-        let (_, comment) = before.rsplit_once("/*\n").expect("every member has a comment");
+        let (_, after) = members.split_once(&format!(" {member};")).expect("the member");
+        let comment = after.trim_start().strip_prefix("/*").expect("every member has a comment");
         in_one_line(comment.split_once("*/").expect("every comment ends").0)
     }
 }

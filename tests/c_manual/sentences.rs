@@ -19,7 +19,7 @@ fn the_calls_that_return_no_int_are_named() {
     let chapter = manual.chapter(2);
     let others = manual.entries.iter().filter(|entry| !entry.declaration.starts_with("int "));
     let others = others.map(|entry| entry.call.as_str()).collect();
-    assert_eq!(sorted(between(&chapter, "Every call but ", " returns an int")), sorted(others));
+    assert_eq!(sorted(between(&chapter, "Every call except ", " returns an int")), sorted(others));
 }
 
 #[test]
