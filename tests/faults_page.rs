@@ -1,4 +1,4 @@
-//! The table of `docs/faults.md` is the one of the library.
+//! Compares the table of `docs/faults.md` with the library's.
 
 use std::path::Path;
 use std::{env, fs};
@@ -51,7 +51,7 @@ fn the_page_has_the_table_of_the_library() {
 #[test]
 fn there_are_thirty_and_more_and_old_numbers_stand() {
     assert!(FaultKind::ALL.len() >= 30);
-    // Some that programs may have been compiled with; the page and the header pin the others.
+    // Some of the numbers that compiled programs may contain. The page and the header fix the others.
     for (kind, number) in [(FaultKind::BrokenTendon, 2), (FaultKind::Watchdog, 16), (FaultKind::WarmMotor, 45)] {
         assert_eq!(kind.number(), number);
     }

@@ -1,4 +1,4 @@
-//! A hand on simulated boards: real threads, real pseudo terminals, real time.
+//! A hand on simulated boards: real threads, real pseudo-terminals, real time.
 
 #[allow(dead_code)]
 #[path = "common/pauses.rs"]
@@ -21,7 +21,7 @@ fn farthest(hand: &Hand, finger: i32, target: [f64; 3]) -> f64 {
     position.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max)
 }
 
-/// Until the finger has been within `tolerance` of `target` for 100 ms.
+/// Waits until the finger has been within `tolerance` of `target` for 100 ms.
 fn settles(hand: &Hand, finger: i32, target: [f64; 3], tolerance: f64) -> bool {
     let limit = Instant::now() + Duration::from_secs(10);
     let mut since = Instant::now();
@@ -113,7 +113,7 @@ fn refusals_change_nothing() {
     let errnos = refused.map(|result| result.expect_err("refused").errno());
     use libc::{EDOM, EINVAL, ERANGE};
     assert_eq!(errnos, [EINVAL, EINVAL, EINVAL, ERANGE, ERANGE, EDOM]);
-    // A cycle that would have taken a set point is long over.
+    // A cycle that would have used a set point is certainly over.
     let cycles = hand.report(3).expect("report").losses.cycles;
     while hand.report(3).expect("report").losses.cycles < cycles + 5 {
         std::thread::yield_now();

@@ -1,4 +1,4 @@
-//! Calibration of an open hand on a simulated board: real threads, a real pseudo terminal, real time.
+//! Calibration of an open hand on a simulated board: real threads, a real pseudo-terminal, real time.
 
 use std::fs;
 use sun2xp::calibration::{Findings, Obstacle, Step, Zeros};
@@ -26,8 +26,8 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     assert!(steps.contains(&Step::TryingMotors));
     assert_eq!(stage(2), Stage::Limp);
 
-    // Against its stops: a simulated finger has some, and no other method is configured. Its controller believes the
-    // true zeros.
+    // Zeroes against the stops: a simulated finger has stops, and no other method is configured. Its controller already
+    // has the true zeros.
     let zeros = hand.zero(2, |_| {}).expect("zeros");
     let Findings::Zeros(zeros) = zeros else { panic!("{zeros:?}") };
     for tendon in 0..4 {
@@ -40,7 +40,7 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     let joints = hand.position(2).expect("position");
     hand.send_position(2, joints).expect("a finger that is zeroed takes set points");
 
-    // Meanwhile another process has found the zeros of finger 1.
+    // Meanwhile another process has stored zeros of finger 1.
     let other = Zeros { encoder: [5, 6, 7, 8], gauge: [0.0; 4], joint_error: Default::default(), range_error: None };
     let other = Found::by_calibration(&Findings::Zeros(other), 1, &read_configuration(&path).expect("usable"))
         .expect("a finger");
@@ -86,21 +86,21 @@ fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
     assert!(matches!(hand.zero(4, |_| {}), Err(HandError::NoSuchFinger(4))));
 }
 
-/// Two fingers at once: one is zeroed against its stops, the other, whose tendons are not as stiff as configured,
+/// Two fingers at once: one is zeroed against its stops, the other, whose tendons are not as stiff as configured, is
 /// identified.
 #[test]
 fn fingers_are_zeroed_against_their_stops_and_identified() {
     let mut configuration = read_default();
     configuration.hand.rate = 500.0;
     for finger in &mut configuration.fingers {
-        // Soon done: little way, little tension.
+        // Completes quickly: a short way and little tension.
         finger.zeroing.method = Some(sun2xp::model::configuration::ZeroingMethod::Stops);
         finger.zeroing.speed = 1.5;
         finger.joints.minimum_degrees = [-30.0, -10.0, 30.0];
         finger.joints.maximum_degrees = [30.0, 50.0, 90.0];
         finger.tendon.maximum = 35.0;
     }
-    // Noise below zero would be clipped.
+    // Noise below a zero of 0 would be clipped.
     configuration.fingers[0].gauge.zero = [204.0; 4];
     configuration.fingers[1].simulation.tendon_stiffness = [330.0, 270.0, 315.0, 285.0];
     let hand = Hand::open(configuration).expect("open");
@@ -112,7 +112,7 @@ fn fingers_are_zeroed_against_their_stops_and_identified() {
     });
     let Ok(Findings::Zeros(zeros)) = zeros else { panic!("{zeros:?}") };
     assert!(sought.contains(&Step::ZeroingGauges) && sought.contains(&Step::SeekingStops), "{sought:?}");
-    // The simulated encoders have their zero where the configuration says, and the stops are where it says.
+    // The zeros of the simulated encoders and the stops are where the configuration says.
     for tendon in 0..4 {
         assert!(zeros.encoder[tendon].abs() <= 8 && (zeros.gauge[tendon] - 204.0).abs() < 1.0, "{zeros:?}");
     }
@@ -122,7 +122,7 @@ fn fingers_are_zeroed_against_their_stops_and_identified() {
     for (tendon, truth) in [330.0, 270.0, 315.0, 285.0].into_iter().enumerate() {
         assert!((found.tendon_stiffness[tendon] / truth - 1.0).abs() < 0.02, "{found:?}");
     }
-    // In force at once, for that finger only, and both are under control.
+    // The findings are in force at once, for that finger only, and both fingers are under control.
     assert_eq!(hand.calibrated(2).expect("there").tendon.stiffness, <[f64; 4]>::from(found.tendon_stiffness));
     assert_eq!(hand.calibrated(1).expect("there").tendon.stiffness, [300.0; 4]);
     assert_eq!([1, 2, 3].map(|finger| hand.report(finger).expect("a report").stage), [Stage::Running; 3]);

@@ -1,4 +1,4 @@
-//! A hand of which some fingers are opened: the ports of the others are not touched.
+//! A hand that opens only some fingers: the ports of the others are not touched.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -8,7 +8,7 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
-/// Nothing is there.
+/// A port that does not exist.
 const NOWHERE: &str = "/dev/sun2xp-no-such-port";
 
 fn slow() -> Configuration {
@@ -35,7 +35,7 @@ fn a_finger_is_opened_without_the_ports_of_the_others() {
             hand.status(finger).expect("a status").rate > 0.0 && hand.push_simulated(finger, [0.1, 0.0, 0.0]).is_ok()
         );
     }
-    // The finger with the number that was asked for, not the one in its place.
+    // The finger with the requested number, not the finger at that index.
     hand.find_signs(3, |_| {}).expect("signs");
     assert!(hand.report(3).expect("a report").calibration.is_some());
     assert!(hand.report(1).expect("a report").calibration.is_none());
@@ -65,7 +65,7 @@ fn one_of_three_fingers_on_a_port() {
     }
     let hand = Hand::open_limp(configuration, Some(PathBuf::from("hand.toml")), fingers(&[2])).expect("open");
     assert!(matches!(hand.report(1), Err(HandError::NotOpened(1))));
-    // A busy machine may lose its replies before long; it has had some.
+    // A busy machine may lose its replies soon, but the board has obeyed some commands.
     let obeyed = |finger| port.with_finger(finger, |finger| finger.commanded_at()).expect("the board has it");
     let patience = Instant::now() + Duration::from_secs(10);
     while obeyed(2).is_none() {
@@ -73,7 +73,7 @@ fn one_of_three_fingers_on_a_port() {
         std::thread::yield_now();
     }
     assert!(obeyed(1).is_none() && obeyed(3).is_none());
-    // Nothing was found, and of a finger that is not open nothing can be.
+    // Nothing was found for finger 2, and nothing can be found for a finger that is not open.
     assert!(!hand.store_calibration(2).expect("nothing to store"));
     assert!(matches!(hand.store_calibration(1), Err(HandError::NotOpened(1))));
 }

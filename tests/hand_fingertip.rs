@@ -28,7 +28,7 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
     }
 }
 
-/// A cycle that takes in what was sent is over.
+/// Waits until a cycle that uses the last set point is over.
 fn taken_in(hand: &Hand, finger: i32) {
     let cycles = hand.report(finger).expect("report").losses.cycles;
     until("cycles", || hand.report(finger).expect("report").losses.cycles > cycles + 3);
@@ -47,10 +47,10 @@ fn a_tip_goes_where_it_is_sent_and_tells_what_it_presses() {
         let tip = tip(&hand, 2);
         (Vector3::from(tip.force) - Vector3::new(0.0, -1.0, 0.0)).amax() < 0.3 && tip.felt == 3
     });
-    // By the spring's own law, within the dead band of the joints' friction.
+    // Compares by the spring's own law, within the dead band of the joint friction.
     let given_way = || Vector3::from(tip(&hand, 2).tip) - wanted;
     until("the spring gives way", || (given_way() - Vector3::new(0.0, 1.0 / 3.0, 0.0)).amax() < 0.08);
-    // The angles of the joints have the configured law again.
+    // Joint set points use the configured law again.
     hand.send_position(2, [0.2, 0.6, 1.1]).expect("sent");
     taken_in(&hand, 2);
     assert_eq!(hand.report(2).expect("report").set_point.law, Law::Report);
@@ -78,7 +78,7 @@ fn contacts_and_damping_arrive_at_the_servo() {
     taken_in(&hand, 3);
     let set_point = hand.report(3).expect("report").set_point;
     assert_eq!((&set_point.stiffness, set_point.damping), (soft.stiffness(), 1.5));
-    // Kx takes the place of the contact, and leaves the damping.
+    // Kx replaces the contact and leaves the damping as it is.
     hand.send_stiffness(3, [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]).expect("sent");
     taken_in(&hand, 3);
     let set_point = hand.report(3).expect("report").set_point;
@@ -92,13 +92,13 @@ fn an_adjustment_is_taken_over_whole_or_not_at_all() {
     until("the tendons have the new tension", || tip(&hand, 1).tensions.iter().all(|&tension| tension > 8.0));
     let before = hand.report(1).expect("report");
     let refused = [
-        // A good key beside one that is not.
+        // A valid key beside an invalid one.
         hand.adjust(1, "tendon.minimum = 4\ntendon.maximum = 5"),
         hand.adjust(1, "tendon.minimum = 4\ncontroller.rate_time = 7"),
         hand.adjust(1, "tendon.minimum = 4\nbaud = 9600"),
-        // Together with what was adjusted before: Figure 9 has no proportional term.
+        // Invalid together with the earlier adjustment: Figure 9 has no proportional term.
         hand.adjust(1, "controller.tension_gain = 3"),
-        // What was sent last would be outside.
+        // The last set point would be out of range.
         hand.adjust(1, "joints.maximum_degrees = [60, 20, 120]"),
     ];
     let errnos = refused.map(|result| result.expect_err("refused").errno());
@@ -106,13 +106,13 @@ fn an_adjustment_is_taken_over_whole_or_not_at_all() {
     taken_in(&hand, 1);
     assert_eq!(hand.report(1).expect("report").set_point, before.set_point);
     assert!(hand.report(1).expect("report").cycle.desired_tensions.min() > 9.0 - 1e-9);
-    // Softer tendons carry the stiffness sent last with less damping only.
+    // Softer tendons support the present stiffness with less damping only.
     hand.adjust(1, "controller.scheme = 'state feedback'").expect("adjusted");
     hand.send_damping(1, 1.8).expect("sent");
     let damped = hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]");
     assert!(matches!(damped, Err(HandError::SetPoint(SetPointError::Damping { .. }))), "{damped:?}");
     hand.send_damping(1, 1.0).expect("sent");
-    // New limits are in force at once; the other fingers keep theirs.
+    // New limits are in force at once. The other fingers keep theirs.
     hand.adjust(1, "joints.maximum_degrees = [60, 40, 120]").expect("adjusted");
     assert!(matches!(
         hand.send_position(1, [0.0, 0.8, 1.0]),

@@ -1,4 +1,4 @@
-//! What is injected, what it is to be called, and from when on it can be known.
+//! The injected faults: the expected name of each, and when it becomes detectable.
 
 use crate::rig::{Bench, MICROSECOND, MILLISECOND, Truth};
 use nalgebra::{Vector3, Vector4};
@@ -7,28 +7,28 @@ use sun2xp::finger::FaultKind;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::simulated::{Defect, LineFault};
 
-/// Something that goes wrong.
+/// A fault or a warning to provoke.
 pub struct Case {
     pub what: &'static str,
-    /// What it is to be called.
+    /// The expected fault or warning.
     pub called: FaultKind,
-    /// Makes it happen; which part it happens to, where the fault names it.
+    /// Provokes the fault. Returns the affected part if the fault names one.
     pub inject: fn(&mut Bench) -> Injected,
-    /// What is configured otherwise.
+    /// Changes to the default configuration.
     pub configure: fn(&mut Configuration),
-    /// From when on it can be known; none: from the injection on.
+    /// When the fault becomes detectable. `None` means at once.
     pub knowable: Option<Knowable>,
 }
 
-/// To which part, where the fault names it, and how fast something drifts, N/s.
+/// The affected part, if the fault names one, and the speed of a drift, N/s.
 #[derive(Clone, Copy, Default)]
 pub struct Injected {
     pub part: Option<u8>,
     pub drift: Vector4<f64>,
 }
 
-/// A fault can be known from the beginning of the first stretch of so many ms on during which this holds for what the
-/// finger truly is.
+/// A fault is detectable from the beginning of the first stretch of `lasts_ms` during which `holds` is true of the
+/// finger's true state.
 #[derive(Clone, Copy)]
 pub struct Knowable {
     pub holds: fn(&Truth, &Injected, &ConfiguredFinger) -> bool,
@@ -44,7 +44,7 @@ fn at(part: u8) -> Injected {
     Injected { part: Some(part), ..Default::default() }
 }
 
-/// Frames from the board, each with this probability, for so many ms.
+/// Disturbs frames from the board, each with this probability, for the given time.
 pub fn line(bench: &mut Bench, fault: LineFault, probability: f64, milliseconds: u64) -> Injected {
     let until = bench.now() + milliseconds * MILLISECOND;
     let seed = bench.random(0.0, 1e9) as u64;
@@ -71,9 +71,9 @@ impl Case {
     }
 }
 
-/// Of the finger itself.
+/// Faults of the finger itself.
 pub fn of_the_finger() -> Vec<Case> {
-    // The order decides the seed of each case.
+    // The order determines the seed of each case.
     of_the_tendons().into_iter().chain(of_the_motors()).chain(of_the_board()).collect()
 }
 
@@ -95,7 +95,7 @@ fn of_the_tendons() -> Vec<Case> {
             suffer(bench, Defect::DeadGauge { gauge, count: None });
             at(gauge)
         })
-        // With this noise one count in five is the one before: so often in a row once in 10^11 samples.
+        // With this noise one count in five equals the previous one. A run of this length occurs once in 10^11 samples.
         .from(0.0, |truth, _, _| truth.time > 0.0165),
         case("dead gauge, at nothing", GaugeStuck, |bench| {
             let gauge = bench.part();
@@ -149,7 +149,7 @@ fn of_the_board() -> Vec<Case> {
     ]
 }
 
-/// Of the line between finger and servo, at its best at any rate.
+/// Faults of the line between finger and servo. They are detectable at once at any rate.
 pub fn of_the_line() -> Vec<Case> {
     use FaultKind::*;
     vec![
@@ -168,7 +168,7 @@ pub fn of_the_line() -> Vec<Case> {
     ]
 }
 
-/// What the finger is only warned of.
+/// Conditions that only cause a warning.
 pub fn warnings() -> Vec<Case> {
     use FaultKind::*;
     vec![
@@ -178,7 +178,7 @@ pub fn warnings() -> Vec<Case> {
         case("joint at its stop", JointAtStop, |bench| push(bench, [-6.0, 0.0, 0.0])).from(0.0, |truth, _, finger| {
             let ((low, high), (lower, upper)) = (finger.joint_limits(), finger.stops());
             let (low, high) = (low.lerp(&lower, 0.8), high.lerp(&upper, 0.8));
-            // Where the joints are, tendons that hang do not say.
+            // Slack tendons give no information about the joints.
             truth.tensions.min() > 0.5 && (0..3).any(|joint| !(low[joint]..=high[joint]).contains(&truth.joints[joint]))
         }),
         case("line noise (drop 30 %)", LineNoise, |bench| line(bench, LineFault::Drop, 0.3, 1000))
@@ -191,13 +191,13 @@ pub fn warnings() -> Vec<Case> {
     ]
 }
 
-/// Motors that a push makes hot in no time, and that hold the finger all the same.
+/// Motors that a push heats up quickly but that can still hold the finger.
 fn with_small_motors(configuration: &mut Configuration) {
     let motor = &mut configuration.fingers[0].motor;
     (motor.continuous_torque, motor.thermal_time) = ([0.8; 4], 0.3);
 }
 
-/// Interference that the line and the counters meet together, so that nobody sees the counters jump.
+/// Interference that hits the line and the counters together, so the servo cannot see the counters jump.
 fn turn_encoders_unseen(bench: &mut Bench) -> Injected {
     line(bench, LineFault::Drop, 1.0, 12);
     let finger = bench.finger();
@@ -216,22 +216,22 @@ fn drift(bench: &mut Bench) -> Injected {
     suffer(bench, Defect::DriftingGauge { gauge, speed: 20.0 * way });
     let mut drift = Vector4::zeros();
     drift[usize::from(gauge) - 1] = 20.0 * way;
-    // One equation does not say which of four gauges it is.
+    // One equation cannot tell which of four gauges is wrong.
     Injected { part: None, drift }
 }
 
-/// The gauge is off by more than what a tendon stiffness known so well explains.
+/// Whether the gauge error exceeds what the uncertainty of the tendon stiffness explains.
 fn disagrees(truth: &Truth, injected: &Injected, finger: &ConfiguredFinger) -> bool {
     let null: Vector4<f64> = finger.tendons().expect("tendons").q.column(3).into_owned();
     let per_stiffness = null.component_div(&Vector4::from(finger.tendon.stiffness));
     let shares = per_stiffness / per_stiffness.sum();
     let off = injected.drift * truth.time;
     let changed = (truth.tensions + off - truth.tensions_at_first).abs();
-    // 0.5 N, and what the last bits of the encoders and the noise of the gauges hide.
+    // 0.5 N, plus the resolution of the encoders and the noise of the gauges.
     shares.dot(&off).abs() > 0.6 + finger.tendon.stiffness_tolerance * shares.dot(&changed)
 }
 
-/// A motor is asked to turn by more than its friction may hold.
+/// Whether the command exceeds what the motor's friction may hold.
 fn stands(truth: &Truth, injected: &Injected, finger: &ConfiguredFinger) -> bool {
     let motor = usize::from(injected.part.expect("a motor")) - 1;
     let (pull, tension) = (truth.pulls[motor], truth.tensions[motor]);

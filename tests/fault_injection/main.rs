@@ -1,5 +1,5 @@
-//! Faults injected into a finger in motion, at random moments: each is named as it should be, the motors come to the
-//! end state in time, and the finger recovers. `docs/faults.md` has the figures of the long run.
+//! Faults injected into a moving finger at random moments. Each must get the right name, the motors must reach the end
+//! state in time, and the finger must recover. `docs/faults.md` has the figures of the long run.
 
 mod cases;
 #[allow(dead_code)]
@@ -13,20 +13,20 @@ use sun2xp::finger::Losses;
 use sun2xp::model::configuration::{Configuration, Scheme};
 use sun2xp::simulated::LineFault;
 
-/// The motors are in their end state so long, ms, after a fault can be known.
+/// Longest time until the motors reach their end state, ms, after a fault becomes detectable.
 const WITHIN: f64 = 20.0;
 
-/// Nothing takes so long, s.
+/// Time limit of each trial, s.
 const PATIENCE: f64 = 10.0;
 
-/// When something happened, ms.
+/// Times of one trial, ms.
 #[derive(Clone, Copy)]
 struct Outcome {
-    /// When it could be known, after the injection.
+    /// From the injection until the fault becomes detectable.
     knowable: f64,
-    /// When it was named, after that.
+    /// From then until the fault is named.
     found: f64,
-    /// When the motors were off, after that; 0 of a warning.
+    /// From then until the motors are off; 0 for a warning.
     ended: f64,
 }
 
@@ -60,7 +60,7 @@ fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, Stri
         if let Some(knowable) = case.knowable.filter(|_| known.is_none()) {
             let holds = (knowable.holds)(&bench.truth, &injected, bench.finger());
             since = since.filter(|_| holds).or(holds.then_some(now));
-            // Where it was named a moment before the stretch was over, it was the same stretch.
+            // A fault that is named shortly before the stretch is over belongs to that stretch.
             known = since.filter(|since| now - since >= knowable.lasts_ms || named);
         }
         found = found.or(named.then_some(now));
@@ -79,7 +79,7 @@ fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, Stri
     }
     let found = found.unwrap_or(f64::INFINITY);
     let ended = if warns { 0.0 } else { bench.ended().unwrap_or(f64::INFINITY) };
-    // The servo knows its own command before the motors do.
+    // The servo knows its own command before the motors do, so it may name a fault earlier.
     let knowable = known.unwrap_or(found).min(found);
     bench.mend();
     if !warns {
@@ -99,7 +99,7 @@ fn median_and_worst(outcomes: &[Outcome], of: fn(&Outcome) -> f64) -> String {
     format!("{:.1}, {:.1}", at(figures.len() / 2), at(figures.len().saturating_sub(1)))
 }
 
-/// Every case so many times, with a row of the table each. What went wrong.
+/// Injects every case the given number of times and prints a row of the table for each. Returns the failures.
 fn inject_all(cases: &[Case], rate: f64, times: u64, warns: bool) -> Vec<String> {
     let mut wrong = Vec::new();
     for (index, case) in cases.iter().enumerate() {
@@ -152,13 +152,13 @@ fn every_fault_is_named_ends_in_time_and_recovers() {
     inject_everything(3);
 }
 
-/// What the controller takes in is never another sample than this cycle's. What a thousand cycles have lost.
+/// Checks for a thousand cycles that the controller never uses a sample of another cycle. Returns the losses.
 fn survive(fault: LineFault, probability: f64, seed: u64) -> Losses {
     let mut bench = Bench::new(Configuration::default(), seed);
     let before = 300 + bench.random(0.0, 1500.0) as u64;
     bench.run(before);
     let before = bench.report().losses;
-    // The last of a thousand cycles begins when these are over.
+    // The last of a thousand cycles begins after these milliseconds.
     line(&mut bench, fault, probability, 1001);
     let mut lost = before.lost_replies;
     for _ in 0..1000 {
@@ -183,7 +183,8 @@ fn survive_all(times: u64) {
             let Losses { lost_replies, late_replies, duplicate_replies, .. } = survive(fault, probability, seed);
             match fault {
                 LineFault::Duplicate => assert_eq!((lost_replies, late_replies, duplicate_replies), (0, 0, 1000)),
-                // What comes after the next one is known by its number: lost for its own cycle, late for the next.
+                // A reply that arrives after the next one is recognised by its number: it is lost for its own cycle and
+                // late for the next.
                 _ => assert!(lost_replies == late_replies && lost_replies > 200 && duplicate_replies == 0),
             }
             (lost, late, doubled) = (lost + lost_replies, late + late_replies, doubled + duplicate_replies);
@@ -207,7 +208,7 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
             let mut configuration = Configuration::default();
             configuration.fingers[0].controller.scheme = Some(scheme);
             configuration.fingers[0].simulation.joint_coulomb_friction = [2e-3; 3];
-            // The simulated stiffness is the configured one: what was identified must not be a cause of alarms either.
+            // The simulated stiffness equals the configured one: an identified stiffness must not cause alarms either.
             configuration.fingers[0].tendon.stiffness_tolerance = 0.03;
             let mut bench = Bench::new(configuration, 7);
             bench.with_cable(|cable| cable.inject(fault, 0.05, u64::MAX, 7));
@@ -223,7 +224,7 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
     }
 }
 
-/// A thread that does not run cannot help it; what it predicted meanwhile must not be believed when it runs again.
+/// A thread that does not run is not at fault. Predictions from before the pause must not be used after it.
 #[test]
 fn a_servo_that_now_and_then_does_not_run_for_twelve_milliseconds_keeps_its_finger() {
     for seed in 0..10 {
@@ -238,7 +239,7 @@ fn a_servo_that_now_and_then_does_not_run_for_twelve_milliseconds_keeps_its_fing
     }
 }
 
-/// The table of `docs/faults.md`: `cargo test --test fault_injection -- --ignored --nocapture`.
+/// Prints the table of `docs/faults.md`: `cargo test --test fault_injection -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn every_fault_a_hundred_times() {

@@ -1,4 +1,4 @@
-//! A finger with its servo, its link and its board in memory, on simulated time: what happens is the same in every run.
+//! A finger with its servo, its link and its board in memory, on simulated time: every run is identical.
 
 use crate::finger_on_a_cable::{Hooks, ServedFinger, World};
 use nalgebra::{Vector3, Vector4};
@@ -14,15 +14,15 @@ use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
 pub const MICROSECOND: u64 = 1000;
 pub const MILLISECOND: u64 = 1000 * MICROSECOND;
 
-/// How often the end state is looked at, ns.
+/// Period at which the end state is checked, ns.
 const LOOK: u64 = MILLISECOND / 10;
 
-/// Looks at the motors all the time, and wakes the servo up late.
+/// Observes the motors all the time, and delays the servo's wake-ups.
 #[derive(Default)]
 struct Watch {
-    /// When the motors were first seen without torque since this was asked for, ns.
+    /// When the motors were first without torque since the last mark, ns.
     ended: Option<u64>,
-    /// By so much, ns, the servo wakes up late every eighth time.
+    /// Delay of every eighth wake-up of the servo, ns.
     late: u64,
     wake_ups: u32,
 }
@@ -66,21 +66,22 @@ impl Hooks for Watch {
     }
 }
 
-/// What a finger truly is at the end of a cycle.
+/// The true state of a finger at the end of a cycle.
 #[derive(Clone, Copy, Default)]
 pub struct Truth {
-    /// Since the injection, s.
+    /// Time since the injection, s.
     pub time: f64,
     pub joints: Vector3<f64>,
     pub tensions: Vector4<f64>,
-    /// Mean tensions of the first cycles as a spring.
+    /// Mean tensions in the first cycles as a spring.
     pub tensions_at_first: Vector4<f64>,
-    /// What the motors are told to pull, N.
+    /// Commanded pulls of the motors, N.
     pub pulls: Vector4<f64>,
-    /// Part of the heat that each motor bears for ever, by I^2 t, and for how long it has been beyond 0.95, s.
+    /// Heat of each motor as a fraction of what it withstands continuously, by I^2 t, and for how long it has been
+    /// above 0.95, s.
     pub heat: Vector4<f64>,
     pub hot_for: Vector4<f64>,
-    /// Shares of the cycles of the last second without a reply, and that skipped periods.
+    /// Fractions of the cycles of the last second without a reply, and of those that skipped periods.
     pub lost: f64,
     pub skipping: f64,
 }
@@ -94,10 +95,10 @@ pub struct Bench {
     pub configuration: Configuration,
     next_target: u64,
     pub truth: Truth,
-    /// Of the cycles so far as a spring.
+    /// Cycles so far as a spring.
     cycles: u32,
     injected: u64,
-    /// In all.
+    /// Lost replies in total.
     lost: u64,
     skipped: u64,
 }
@@ -105,9 +106,9 @@ pub struct Bench {
 impl Bench {
     /// Opens the finger and waits until it is a spring.
     pub fn new(mut configuration: Configuration, seed: u64) -> Self {
-        // With the patience of a real port.
+        // Uses the time limits of a real port.
         configuration.fingers[0].port = "in memory".into();
-        // After a blow a tendon may hang by centimetres, and it is wound in slowly.
+        // A blow can leave a tendon slack by centimetres, and slack is taken up slowly.
         configuration.hand.open_timeout_ms = 30_000;
         let world = World::new(&configuration, Watch::default());
         let served = ServedFinger::new(&world, &configuration);
@@ -162,27 +163,27 @@ impl Bench {
         self.with_cable(|cable| act(cable.board().finger(1).expect("the board has finger 1")))
     }
 
-    /// Uniform, `low` to `high`.
+    /// A random number, uniform from `low` to `high`.
     pub fn random(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * f64::from(self.random.next_u32()) / 4_294_967_296.0
     }
 
-    /// 1 to 4.
+    /// A random number from 1 to 4.
     pub fn part(&mut self) -> u8 {
         1 + (self.random.next_u32() % 4) as u8
     }
 
-    /// From now on the servo wakes up so much late, ns, every eighth time.
+    /// Delays every eighth wake-up of the servo by this time from now on, ns.
     pub fn wake_late(&self, by: u64) {
         self.world.place().hooks.late = by;
     }
 
-    /// The servo does not run for so long, ns.
+    /// Keeps the servo from running for this time, ns.
     pub fn pause(&self, time: u64) {
         self.world.sleep_until(self.now() + time);
     }
 
-    /// Something is injected now.
+    /// Marks the moment of the injection.
     pub fn mark(&mut self) {
         self.injected = self.now();
         self.world.place().hooks.ended = None;
@@ -193,7 +194,7 @@ impl Bench {
         self.world.place().hooks.ended.map(|ended| (ended - self.injected) as f64 * 1e-6)
     }
 
-    /// One period of a finger that is led from pose to pose, with pauses.
+    /// One period of a finger that moves from pose to pose, with pauses.
     pub fn cycle(&mut self) {
         if self.now() >= self.next_target {
             let within = |bench: &mut Self, low: f64, high: f64| bench.random(low, high).to_radians();
@@ -223,12 +224,12 @@ impl Bench {
         truth.heat += (square - truth.heat) * -(-1.0 / (hand.rate * motor.thermal_time)).exp_m1();
         let (heat, period) = (truth.heat, 1.0 / hand.rate);
         truth.hot_for = truth.hot_for.zip_map(&heat, |time, heat| if heat > 0.95 { time + period } else { 0.0 });
-        // One that forgets, 1/e in a second.
+        // A moving average with a time constant of one second.
         let note = |share: &mut f64, wrong: bool| *share += (f64::from(u8::from(wrong)) - *share) / hand.rate;
         note(&mut truth.lost, report.losses.lost_replies > self.lost);
         note(&mut truth.skipping, report.losses.skipped_periods > self.skipped);
         (self.lost, self.skipped) = (report.losses.lost_replies, report.losses.skipped_periods);
-        // As many as the library's own zero has.
+        // As many cycles as the library averages for its own zero.
         self.cycles += 1;
         if self.cycles <= 32 {
             truth.tensions_at_first += (tensions - truth.tensions_at_first) / f64::from(self.cycles);
@@ -242,7 +243,7 @@ impl Bench {
         }
     }
 
-    /// What has stopped the finger.
+    /// The fault that has stopped the finger.
     pub fn fault(&self) -> Option<Fault> {
         match self.report().stage {
             Stage::Faulted(fault) => Some(fault),
@@ -250,12 +251,12 @@ impl Bench {
         }
     }
 
-    /// What the finger is warned of.
+    /// The present warning of the finger.
     pub fn warning(&self) -> Option<Fault> {
         self.report().warnings.newest()
     }
 
-    /// Nothing is wrong any more: with the line, the finger, or what is around it.
+    /// Removes every disturbance: of the line, of the finger and of its surroundings.
     pub fn mend(&mut self) {
         self.wake_late(0);
         self.with_cable(|cable| {
@@ -268,11 +269,11 @@ impl Bench {
         });
     }
 
-    /// Does what RecoverHand does with a finger that has faulted: takes the link that the servo lends, or a new one,
-    /// shakes hands, gives it back, and waits until the finger is a spring.
+    /// Does what RecoverHand does with a faulted finger: takes the link from the servo, or a new one, shakes hands,
+    /// returns the link, and waits until the finger is a spring.
     pub fn recover(&mut self) {
         let before = self.report().recoveries;
-        // What was on its way comes.
+        // Lets delayed frames arrive.
         self.pause(200 * MILLISECOND);
         let released = (0..10).find_map(|_| {
             self.served.servo.cycle();

@@ -1,4 +1,5 @@
-//! A finger that is zeroed at a pose: held as it was while it is read, and as it was afterwards where that is refused.
+//! Zeroing a finger at a pose: the finger is held as it was while it is read, and remains the same spring if the
+//! zeroing is refused.
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
@@ -17,7 +18,7 @@ fn configuration(scheme: Scheme) -> Configuration {
     configuration
 }
 
-/// A finger that stands at [`TARGET`].
+/// A finger at rest at [`TARGET`].
 fn standing(scheme: Scheme) -> Bench {
     let mut bench = Bench::with(|is| *is = configuration(scheme));
     bench.goes(TARGET);
@@ -48,7 +49,7 @@ fn a_finger_that_stands_still_is_zeroed() {
         let off = bench.with_finger(|finger| finger.plant().joints()) - TARGET;
         order(&bench, scheme);
         let Verdict::Found(Findings::Zeros(zeros)) = verdict(&mut bench) else { panic!("{:?}", bench.report()) };
-        // What the finger was believed to be in was right, and it stood beside the pose by so much.
+        // The controller's joint angles were correct, so the reported error is the finger's distance from the pose.
         assert!((zeros.joint_error - off).amax() < 0.005, "{scheme:?}: {zeros:?}, {off}");
         assert_eq!(bench.stage(), Stage::Limp);
     }
@@ -64,7 +65,7 @@ fn a_push_is_refused_and_the_finger_stays_the_spring_that_it_was() {
         let push =
             |force| move |finger: &mut sun2xp::simulated::SimulatedFinger| finger.plant().set_external_force(force);
         bench.with_finger(push(Vector3::new(1.0, 0.0, 0.0)));
-        // Sent while it is calibrated: without effect, now and later.
+        // A set point sent during the calibration has no effect, neither now nor later.
         bench.mailbox.send(|set_point| set_point.joints = Vector3::new(0.0, 0.5, 0.5)).expect("not faulted");
         let refused = verdict(&mut bench);
         assert!(matches!(refused, Verdict::Refused(Obstacle::Moved { .. })), "{scheme:?}: {refused:?}");
@@ -75,7 +76,7 @@ fn a_push_is_refused_and_the_finger_stays_the_spring_that_it_was() {
         let report = bench.report();
         assert_eq!((report.set_point.joints, report.set_point.damping), (TARGET, 1.1));
         assert!((report.cycle.joints - TARGET).amax() < 0.03, "{report:?}");
-        // It takes orders.
+        // The finger accepts another order.
         order(&bench, scheme);
         assert!(matches!(verdict(&mut bench), Verdict::Found(_)));
     }

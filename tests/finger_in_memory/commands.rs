@@ -1,4 +1,4 @@
-//! Commands that do not reach the board whole: none is ever executed, each costs its own period.
+//! Commands that are damaged on the way to the board: none is ever executed, and each costs its own period.
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::{Vector3, Vector4};
@@ -6,15 +6,15 @@ use sun2xp::finger::Stage;
 use sun2xp::simulated::LineFault;
 
 impl Bench {
-    /// N cm.
+    /// Torques that the motors give, N cm.
     fn executed(&self) -> Vector4<f64> {
         self.with_finger(|finger| finger.motor_torques())
     }
 
-    /// A period: whether it was answered. Then the board does what it was told in this period, else what it did before.
-    /// `lost`: periods before this one that were not answered.
+    /// Runs one period and returns whether it was answered. If so, the board must execute this period's command, else
+    /// the previous one. `lost` is the number of periods before this one that were not answered.
     fn exchanges(&mut self, lost: u32) -> bool {
-        // After three the command is on its way to rest, which it reaches after ten.
+        // After three lost periods the command decreases, and it reaches zero after ten.
         let left = f64::from(10 - lost.max(3)) / 7.0;
         let (told, before) = (self.report().cycle.motor_torques * left, self.executed());
         let losses = self.report().losses.lost_replies;
@@ -22,7 +22,7 @@ impl Bench {
         assert_eq!(self.stage(), Stage::Running);
         let (executed, answered) = (self.executed(), self.report().losses.lost_replies == losses);
         let expected = if answered { told } else { before };
-        // A count of torque is 1.6e-4 N cm.
+        // A torque unit is 1.6e-4 N cm.
         assert!((executed - expected).amax() < 2e-4, "answered: {answered}, executed {executed}, expected {expected}");
         answered
     }
@@ -33,20 +33,20 @@ fn a_damaged_command_is_not_executed_and_costs_its_own_period() {
     let mut bench = Bench::new();
     let mut next_too = 0;
     for seed in 0..1000 {
-        // On its way, so that no command is like the one before.
+        // The finger is moving, so no two commands are equal.
         let aside = if seed % 100 < 50 { 0.3 } else { -0.3 };
         bench.mailbox.send(|set_point| set_point.joints = TARGET + Vector3::new(aside, 0.0, 0.0)).expect("not faulted");
         bench.with_cable(|cable| cable.inject_to_board(LineFault::Corrupt, 1.0, u64::MAX, seed));
         assert!(!bench.exchanges(0), "seed {seed}");
         bench.with_cable(|cable| cable.clear());
-        // The damage of a delimiter makes one frame of two.
+        // A damaged delimiter joins two frames, so the next one is lost too.
         if !bench.exchanges(1) {
             next_too += 1;
             assert!(bench.exchanges(2), "seed {seed}");
         }
         assert!((0..8).all(|_| bench.exchanges(0)), "seed {seed}");
     }
-    // 8 of the 136 bits of a Command.
+    // The delimiter has 8 of the 136 bits of a Command.
     assert!((20..100).contains(&next_too), "{next_too}");
 }
 

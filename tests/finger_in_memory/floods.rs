@@ -1,5 +1,4 @@
-//! A board that sends valid frames without end: its finger faults in time, is stopped, and recovers when the flood is
-//! over.
+//! A board that sends valid frames without end: its finger faults in time, is stopped, and recovers after the flood.
 
 use crate::rig::{Bench, MILLISECOND, TARGET};
 use sun2xp::board::Transport;
@@ -19,7 +18,7 @@ fn a_flood_stops_its_finger_in_the_watchdogs_time() {
         let begun = bench.world.now();
         bench.faults(FaultKind::LostReplies);
         bench.cycles(1);
-        // It may have begun just after a good reply.
+        // The flood may have begun just after a good reply.
         let milliseconds = (bench.world.now() - begun) as f64 / MILLISECOND as f64;
         assert!(milliseconds <= 19.0, "{frame:?}: {milliseconds} ms");
         assert!(ended(&bench), "{frame:?}: the board was not told to stop");
@@ -40,7 +39,7 @@ fn a_flood_does_not_keep_a_finger_from_being_closed() {
         bench.servo.run();
         assert!(matches!(bench.stage(), Stage::Closed | Stage::Faulted(_)), "{:?}", bench.stage());
         assert!(ended(&bench), "{frame:?}: the board was not told to stop");
-        // The watchdog's time, and as long as a board may take to confirm that it has stopped.
+        // The time of the watchdog, plus the time that a board may take to confirm that it has stopped.
         let milliseconds = (bench.world.now() - begun) / MILLISECOND;
         assert!(milliseconds <= 18 + 2 + 100, "{frame:?}: {milliseconds} ms");
     }

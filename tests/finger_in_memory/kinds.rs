@@ -1,5 +1,5 @@
-//! Faults and warnings that the finger's servo names itself, each made to happen. Those of tendons, gauges, encoders
-//! and motors are in tests/fault_injection, those of opening a port in tests/hand_ports.
+//! Faults and warnings that the finger's servo detects itself, each provoked once. Those of tendons, gauges, encoders
+//! and motors are tested in tests/fault_injection, and those of opening a port in tests/hand_ports.
 
 use crate::rig::{Bench, MILLISECOND, TARGET};
 use nalgebra::Vector3;
@@ -15,7 +15,7 @@ use sun2xp::simulated::{Defect, LineFault};
 #[test]
 fn a_joint_that_is_pushed_beyond_its_limit_is_said_to_be_at_its_stop() {
     let mut bench = Bench::with(|configuration| {
-        // A stop that is near: it is at 12 degrees.
+        // The stop is close, at 12 degrees.
         (configuration.fingers[0].joints.minimum_degrees[0], configuration.fingers[0].joints.maximum_degrees[0]) =
             (-60.0, 5.0);
     });
@@ -98,7 +98,7 @@ fn a_servo_that_comes_late_says_so() {
     let mut bench = Bench::new();
     for _ in 0..100 {
         bench.cycles(19);
-        // What else runs on the machine takes three periods and a half.
+        // Other work on the machine takes three and a half periods.
         bench.with_cable(|cable| {
             let later = cable.now() + 7 * MILLISECOND / 2;
             cable.advance_to(later);
@@ -106,7 +106,7 @@ fn a_servo_that_comes_late_says_so() {
     }
     let warning = bench.warns(FaultKind::Overrun);
     assert!((2.0..10.0).contains(&warning.value), "{warning}");
-    // The last is counted with the next cycle.
+    // The last skipped period is counted in the next cycle.
     assert!(bench.report().losses.skipped_periods >= 99, "{}", bench.report().losses.skipped_periods);
 }
 
@@ -140,7 +140,7 @@ fn a_calibration_that_gives_up_leaves_its_warning() {
     let adjustable = Adjustable { number: 1, ..Adjustable::new(&configuration, 0).expect("a controller") };
     let order = Order::Calibrate(CalibrationRun { calibration, adjustable });
     assert_eq!(bench.mailbox.order(order), Ok(Some(1)));
-    // Until then it is a spring, whose monitors would find it.
+    // Before that, the finger is a spring whose monitors would detect the fault.
     bench.until("taken over", |bench| bench.report().cycle.desired_tensions.min() < 0.0);
     bench.with_finger(|finger| finger.suffer(&Defect::DeadGauge { gauge: 2, count: Some(2000) }));
     bench.warns(FaultKind::CalibrationFailed);
@@ -153,7 +153,7 @@ fn a_calibration_that_gives_up_leaves_its_warning() {
     );
 }
 
-/// By the library's own count of torque and time; the board says nothing.
+/// Detected by the library's own count of torque and time. The board reports nothing.
 #[test]
 fn a_motor_that_gives_more_than_it_can_for_ever_is_limited_and_then_stopped() {
     let mut bench = Bench::with(|configuration| {

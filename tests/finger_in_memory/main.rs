@@ -1,4 +1,5 @@
-//! One finger from planner to board in memory, on simulated time: what it holds, what it is stopped by and warned of.
+//! One finger from planner to board in memory, on simulated time: the set points that it holds, its faults and its
+//! warnings.
 
 mod calibrating;
 mod commands;

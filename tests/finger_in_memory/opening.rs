@@ -1,4 +1,4 @@
-//! How long a finger may take to come under tension, and what is said of one that takes longer.
+//! Limits the time that a finger may take to come under tension, and tests the fault that names the reason.
 
 use crate::rig::{Bench, MILLISECOND};
 use sun2xp::board::Transport;
@@ -12,8 +12,8 @@ fn impatient(configuration: &mut Configuration) {
     configuration.hand.open_timeout_ms = TIMEOUT_MS;
 }
 
-/// Cycles until the finger no longer opens; everything else on the machine takes so long after each, ms. What stopped
-/// it, and when, ms.
+/// Runs cycles until the finger is no longer opening. After each, other work on the machine takes `pause`, ms. Returns
+/// the fault and when it came, ms.
 fn opens_on_a_machine_with(bench: &mut Bench, pause: u64) -> (Fault, f64) {
     let begun = bench.world.now();
     while bench.stage() == Stage::Opening {
@@ -41,7 +41,7 @@ fn an_overloaded_machine_is_told_of_when_the_time_is_over() {
 
 #[test]
 fn a_slack_tendon_is_told_of_when_the_time_is_over() {
-    // Pays its tendon out where it should wind it in. Its machine has a good day, and a bad one.
+    // The motor unwinds its tendon instead of winding it. The machine is idle in the first run and busy in the second.
     for pause in [0, 3] {
         let mut bench = Bench::believing(impatient, |belief| belief.fingers[0].motor.sign = [1, 1, 1, -1]);
         let (fault, lasted) = opens_on_a_machine_with(&mut bench, pause);
@@ -52,7 +52,7 @@ fn a_slack_tendon_is_told_of_when_the_time_is_over() {
     }
 }
 
-/// The time begins anew with each recovery, and not with a pause before it.
+/// The time starts again with each recovery. A wait before the recovery does not count.
 #[test]
 fn a_finger_that_recovers_has_as_much_time_again() {
     let mut bench = Bench::with(impatient);

@@ -16,25 +16,25 @@ pub const TARGET: Vector3<f64> = Vector3::new(0.2, 0.6, 1.1);
 
 type Read = Result<Vec<u8>, PortError>;
 
-/// What the host reads instead of the board's answers.
+/// Replaces the board's answers in what the host reads.
 #[derive(Default)]
 pub struct Line {
-    /// What the next read finds instead of what the board has sent.
+    /// The result of the next read, instead of the board's answer.
     instead: Option<Read>,
-    /// What every read finds before what the board has sent.
+    /// Frames that every read returns before the board's answers.
     flood: Option<Flood>,
 }
 
-/// A frame that comes without end.
+/// A frame that is repeated without end.
 struct Flood {
     wire: Vec<u8>,
     reads: u32,
 }
 
-/// What a read of the flood takes, ns.
+/// Duration of a read during the flood, ns.
 const FLOODED_READ: u64 = 10_000;
 
-/// More reads of the flood than any test needs; without this bound a test that fails would never end.
+/// More reads of the flood than any test needs. Without this bound a failing test would never end.
 const MOST_FLOODED_READS: u32 = 1_000_000;
 
 impl Hooks for Line {
@@ -57,13 +57,13 @@ impl Hooks for Line {
     }
 }
 
-/// Finger 1 with all that it needs.
+/// Finger 1 with its servo, link and board.
 pub struct Bench {
     pub world: World<Line>,
     pub servo: Servo<World<Line>, World<Line>>,
     pub mailbox: Mailbox,
     repair_end: LinkRepairEnd<World<Line>>,
-    /// As the board has it.
+    /// The configuration of the board.
     configuration: Configuration,
 }
 
@@ -80,10 +80,10 @@ impl Bench {
         bench
     }
 
-    /// A finger that begins to open, and of which the servo believes something else than is so.
+    /// A finger that begins to open, with a servo whose configuration differs from the board's.
     pub fn believing(is: impl FnOnce(&mut Configuration), believed: impl FnOnce(&mut Configuration)) -> Self {
         let mut configuration = Configuration::default();
-        // Not "simulated": a built-in board is waited for patiently.
+        // The port must not be "simulated": the time limits of a built-in board are longer.
         configuration.fingers[0].port = "in memory".into();
         is(&mut configuration);
         let mut belief = configuration.clone();
@@ -101,7 +101,7 @@ impl Bench {
         self.report().stage
     }
 
-    /// What has stopped the finger.
+    /// The fault that has stopped the finger.
     pub fn fault(&self) -> Option<Fault> {
         match self.stage() {
             Stage::Faulted(fault) => Some(fault),
@@ -109,7 +109,7 @@ impl Bench {
         }
     }
 
-    /// What the finger is warned of.
+    /// The present warning of the finger.
     pub fn warning(&self) -> Option<Fault> {
         self.report().warnings.newest()
     }
@@ -122,18 +122,18 @@ impl Bench {
         self.with_cable(|cable| act(cable.board().finger(1).expect("the board has finger 1")))
     }
 
-    /// The next read of the port meets this.
+    /// The next read of the port fails with this error.
     pub fn fail_port(&self, failure: PortError) {
         self.world.place().hooks.instead = Some(Err(failure));
     }
 
-    /// The board's next answer is this.
+    /// Replaces the board's next answer.
     pub fn answer_with(&self, frame: Frame) {
         let wire = WireFrame::new(&Message { address: 1, sequence: 200, frame });
         self.world.place().hooks.instead = Some(Ok(wire.as_bytes().to_vec()));
     }
 
-    /// From now on the board's answers are lost in this frame, which comes without end.
+    /// From now on this frame arrives without end, and the board's answers are lost in it.
     pub fn flood_with(&self, frame: Frame) {
         let wire = WireFrame::new(&Message { address: 1, sequence: 200, frame }).as_bytes().to_vec();
         self.world.place().hooks.flood = Some(Flood { wire, reads: 0 });
@@ -143,20 +143,20 @@ impl Bench {
         self.world.place().hooks.flood = None;
     }
 
-    /// Another program at the same port sends this to the finger's board, and leaves the answer to whoever reads first.
+    /// Another program on the same port sends this to the finger's board. The answer goes to whoever reads first.
     pub fn another_program_sends(&mut self, frame: Frame) {
         let message = Message { address: 1, sequence: 200, frame };
         self.world.write(WireFrame::new(&message).as_bytes()).expect("written");
     }
 
-    /// Periods.
+    /// Runs the given number of periods.
     pub fn cycles(&mut self, count: usize) {
         for _ in 0..count {
             self.servo.cycle();
         }
     }
 
-    /// Periods until it is so, 10 000 at most.
+    /// Runs periods until the condition holds, at most 10 000.
     pub fn until(&mut self, what: &str, wanted: impl Fn(&Self) -> bool) {
         for _ in 0..10_000 {
             if wanted(self) {
@@ -167,7 +167,7 @@ impl Bench {
         panic!("not {what}: {:?}, warned of {:?}", self.stage(), self.warning());
     }
 
-    /// Until the finger is a spring.
+    /// Runs periods until the finger is a spring.
     pub fn opens(&mut self) {
         self.until("a spring", |bench| bench.stage() != Stage::Opening);
         assert_eq!(self.stage(), Stage::Running);
@@ -181,7 +181,7 @@ impl Bench {
         assert!(off < 0.03, "off by {off} rad");
     }
 
-    /// Until the finger is stopped by this.
+    /// Runs periods until this fault stops the finger.
     pub fn faults(&mut self, kind: FaultKind) -> Fault {
         self.until("faulted", |bench| bench.fault().is_some());
         let fault = self.fault().expect("faulted");
@@ -189,7 +189,7 @@ impl Bench {
         fault
     }
 
-    /// Until the finger is warned of this, and goes on.
+    /// Runs periods until the finger has this warning. It must keep running.
     pub fn warns(&mut self, kind: FaultKind) -> Fault {
         self.until(&format!("warned of {kind:?}"), |bench| {
             assert_eq!(bench.fault(), None);
@@ -198,7 +198,7 @@ impl Bench {
         self.warning().expect("warned")
     }
 
-    /// The link in other hands, which shake hands with the board and give it back: the finger takes up slack.
+    /// Takes the link from the servo, shakes hands with the board and returns the link. The finger then takes up slack.
     pub fn mend(&mut self) {
         self.until("at rest", |bench| !bench.repair_end.released.is_empty());
         let mut link = self.repair_end.released.pop().expect("released").link;

@@ -1,5 +1,5 @@
-//! Which set point a finger holds after open, after a fault and after a calibration: its own, until a planner sends
-//! another.
+//! The set point that a finger holds after opening, after a fault and after a calibration: its own, until the planner
+//! sends another.
 
 use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
@@ -8,7 +8,7 @@ use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
 use sun2xp::model::configuration::{Configuration, ZeroingMethod};
 use sun2xp::simulated::Defect;
 
-/// What SendKx sends.
+/// Sends a softer Kx, as SendKx does.
 fn soften(bench: &Bench) {
     bench.mailbox.send(|set_point| set_point.stiffness *= 0.5).expect("not faulted");
 }
@@ -19,7 +19,7 @@ fn stop(bench: &mut Bench) {
     bench.with_finger(|finger| finger.mend());
 }
 
-/// The finger holds these joints, with half of its initial stiffness.
+/// Checks that the finger holds these joint angles, with half of its initial stiffness.
 fn holds(bench: &mut Bench, joints: Vector3<f64>) {
     bench.cycles(1);
     let held = bench.report().set_point;
@@ -47,12 +47,12 @@ fn what_was_sent_before_a_fault_is_gone() {
     bench.cycles(20);
     stop(&mut bench);
     bench.mend();
-    // Nor does a set point count that was sent while slack is taken up.
+    // A set point that is sent while slack is taken up does not count either.
     bench.mailbox.send(|set_point| set_point.joints = far).expect("not faulted");
     bench.opens();
     let found = bench.report().set_point.joints;
     assert!((found - far).amax() > 0.1, "the case must be one of another pose");
-    // The first thing that is sent, before anybody has looked at the finger.
+    // The first call, before anything has read the finger's state.
     soften(&bench);
     holds(&mut bench, found);
 }
@@ -77,7 +77,7 @@ fn what_is_on_its_way_when_a_finger_faults_is_not_carried_out_after_recovery() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
     bench.with_finger(|finger| finger.suffer(&Defect::EmergencyStop));
-    // The servo has not told of the fault yet.
+    // The servo has not reported the fault yet.
     let configuration = Configuration::default();
     let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
     let adjustable = Adjustable { number: 1, ..Adjustable::new(&configuration, 0).expect("a controller") };
@@ -89,7 +89,7 @@ fn what_is_on_its_way_when_a_finger_faults_is_not_carried_out_after_recovery() {
     bench.opens();
     bench.cycles(10);
     assert_eq!((bench.stage(), bench.report().orders), (Stage::Running, 1));
-    // The next one is taken.
+    // The next one is accepted.
     assert_eq!(bench.mailbox.order(Order::Restart { limp: true }), Ok(Some(2)));
     bench.cycles(1);
     assert_eq!(bench.stage(), Stage::Limp);

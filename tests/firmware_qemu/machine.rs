@@ -1,4 +1,4 @@
-//! The reference firmware on an emulated Cortex-M3, and the physics that stands in for its motors and sensors.
+//! The reference firmware on an emulated Cortex-M3, and the physics that replaces its motors and sensors.
 
 use std::ffi::CString;
 use std::fs::{File, OpenOptions};
@@ -19,7 +19,7 @@ use tempfile::TempDir;
 
 const FIRMWARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/firmware");
 
-/// Compiles the image.
+/// Compiles the firmware image.
 pub fn build(folder: &Path) -> PathBuf {
     let output = Command::new("make")
         .args(["-C", FIRMWARE, "lm3s6965"])
@@ -30,13 +30,13 @@ pub fn build(folder: &Path) -> PathBuf {
     folder.join("lm3s6965.elf")
 }
 
-/// Ends with the test, also with one that fails.
+/// The running emulator. It is ended with the test, even with one that fails.
 pub struct Machine {
     process: Child,
-    /// One for all three fingers.
+    /// One port for all three fingers.
     pub port: PathBuf,
-    /// Keeps the terminal's host end open: the emulator throws away what it sends to a closed one, and looks only once
-    /// a second whether it was opened.
+    /// Keeps the host end of the terminal open. The emulator discards what it sends to a closed one, and checks only
+    /// once a second whether it was opened.
     _end: File,
     _folder: TempDir,
     requests: File,
@@ -53,13 +53,13 @@ impl Machine {
             .args(["-M", "lm3s6965evb", "-display", "none", "-monitor", "none", "-serial", "pty"])
             .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
             .arg(image)
-            // The firmware opens the plant's pipes by their names.
+            // The firmware opens the plant's pipes by name, so they are in the working directory.
             .current_dir(folder.path())
             .stdout(Stdio::piped())
             .spawn()
             .expect("the emulator starts");
         let lines = BufReader::new(process.stdout.take().expect("the emulator's output is a pipe")).lines();
-        // "char device redirected to /dev/pts/3 (label serial0)"
+        // Example: "char device redirected to /dev/pts/3 (label serial0)".
         let port: PathBuf = lines
             .map(|line| line.expect("the emulator's output is text"))
             .find_map(|line| Some(line.split_whitespace().find(|word| word.starts_with("/dev/"))?.into()))
@@ -73,7 +73,7 @@ impl Machine {
                 run_first();
                 serve(to_plant, from_plant, &plants);
             };
-            // The name by which the watch over pauses knows boards.
+            // The watch over pauses recognises board threads by this name.
             std::thread::Builder::new().name("sun2xp board".into()).spawn(serving).expect("a thread")
         };
         Self {
@@ -87,12 +87,12 @@ impl Machine {
         }
     }
 
-    /// The emulator.
+    /// Process number of the emulator.
     pub fn process(&self) -> u32 {
         self.process.id()
     }
 
-    /// 0 to 2. The physics stands still meanwhile, so be brief.
+    /// Locks finger 0 to 2. The physics stands still meanwhile, so the lock must be brief.
     pub fn finger(&self, index: usize) -> MutexGuard<'_, Finger> {
         self.plants[index].lock().expect("no panic holding it")
     }
@@ -107,16 +107,16 @@ impl Drop for Machine {
     }
 }
 
-/// What the firmware asked last, in its own time, us.
+/// The firmware's last request, in its own time, us.
 #[derive(Clone, Copy, Default)]
 pub struct Asked {
-    /// Requests that a host's Command or Configure led to.
+    /// Number of requests that a host's Command or Configure caused.
     pub samples: u32,
-    /// When the last of them had arrived. A processor that was paused may get to it much later.
+    /// Arrival of the last of them. A processor that was paused may handle it much later.
     pub arrived_at: u32,
-    /// When the currents were last set, by a command or by the firmware itself.
+    /// When a command or the firmware itself last set the currents.
     pub set_at: u32,
-    /// When it asked.
+    /// Time of the request.
     pub now: u32,
     /// uA.
     pub currents: [i32; 4],
@@ -128,19 +128,19 @@ pub struct Finger {
     sensors: Sensors,
     /// N m/A.
     torque_constants: [f64; 4],
-    /// Where its physics has got to in the firmware's time, us.
+    /// Time of the physics on the firmware's clock, us.
     time: Option<u32>,
-    /// Time that is not a whole step yet, s.
+    /// Remaining time of less than a step, s.
     rest: f64,
-    /// How much further it may move before the next sample, s. No real finger waits, but on a busy machine planner,
-    /// emulator and plant are all later than any loop can bear.
+    /// How much longer the finger may move before the next sample, s. A real finger does not wait. On a busy machine,
+    /// however, planner, emulator and plant are all delayed by more than any control loop tolerates.
     motion_left: f64,
-    /// Present from now on.
+    /// Faults that are present from now on.
     pub faults: Status,
     pub asked: Asked,
 }
 
-/// A period at 500 Hz, s.
+/// One period at 500 Hz, s.
 const LONGEST_MOTION: f64 = 0.002;
 
 impl Finger {
@@ -202,10 +202,10 @@ impl Finger {
 /// As in firmware/lm3s6965/plant.h.
 const REQUEST_LENGTH: usize = 32;
 
-/// In place of a finger: the machine is being taken down.
+/// Sent in place of a finger's number when the machine is shut down.
 const END: u8 = 0xFF;
 
-/// Both ends at once, so that neither opening nor reading depends on who came first.
+/// Opens both ends at once, so that opening and reading do not depend on which side is first.
 fn pipe(path: &Path) -> File {
     let name = CString::new(path.as_os_str().as_bytes()).expect("a path without zeros");
     // SAFETY: the name is a C string.

@@ -1,4 +1,4 @@
-//! The library against the reference firmware on an emulated Cortex-M3: the same protocol core that a lab ports,
+//! The library against the reference firmware on an emulated Cortex-M3: the protocol core that laboratories port,
 //! compiled for a microcontroller, with its own interrupts and its own time.
 
 #[path = "../common/attempts.rs"]
@@ -27,18 +27,19 @@ use sun2xp::hand::{Hand, HandError, read_configuration};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 
-/// One machine at a time: two share no processor well. None without an emulator, or without a compiler for it.
+/// Allows one emulator at a time, because two would compete for the processor. Returns `None` if the emulator or its
+/// compiler is missing.
 fn alone() -> Option<MutexGuard<'static, ()>> {
     static ONE: Mutex<()> = Mutex::new(());
     let usable = ["arm-none-eabi-gcc", "qemu-system-arm"].iter().all(|tool| tools::available(tool, "the whole test"));
     usable.then(|| ONE.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// `keys` are of the table `[hand]`.
+/// `keys` are added to the table `[hand]`.
 fn configuration(port: &Path, keys: &str) -> Configuration {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let path = folder.path().join("sun2xp.toml");
-    // The fingers live in the emulated time, which a busy machine makes slow; so opening may take long.
+    // The fingers move in the emulated time, which is slow on a busy machine, so opening may take long.
     let text =
         format!("[hand]\nopen_timeout_ms = 60000\n{keys}\n[finger]\nthread = 1\nport = \"{}\"\n", port.display());
     std::fs::write(&path, text).expect("the configuration is written");
@@ -47,10 +48,10 @@ fn configuration(port: &Path, keys: &str) -> Configuration {
 
 const TARGETS: [[f64; 3]; 3] = [[0.1, 0.4, 0.9], [-0.1, 0.6, 1.1], [0.0, 0.7, 0.8]];
 
-/// rad.
+/// Largest distance of a finger from its target, rad.
 const CLOSE: f64 = 0.02;
 
-/// A busy machine moves the finger more slowly than time passes.
+/// On a busy machine the finger moves more slowly than real time.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn farthest(found: [[f64; 3]; 3], wanted: [[f64; 3]; 3]) -> f64 {
@@ -62,7 +63,7 @@ fn told(error: HandError) -> String {
     error.to_string()
 }
 
-/// Sends all fingers to their targets, and says where they are when they have stood there for a while.
+/// Sends all fingers to their targets, and returns their positions when they have been at rest for a while.
 fn settled(hand: &Hand) -> Result<[[f64; 3]; 3], String> {
     for (finger, target) in (1..).zip(TARGETS) {
         hand.send_position(finger, target).map_err(told)?;
@@ -86,8 +87,8 @@ fn settled(hand: &Hand) -> Result<[[f64; 3]; 3], String> {
     }
 }
 
-/// Attempts to open a hand on the firmware and to do something with it, each with a new machine. An emulator gets what
-/// its machine leaves it.
+/// Attempts to open a hand on the firmware and to work with it, each time on a new emulator. A busy machine may slow
+/// the emulator down too much.
 fn with_hand(what: &str, work: impl Fn(&Machine, &Hand) -> Result<(), String>) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let image = build(folder.path());
@@ -102,7 +103,7 @@ fn with_hand(what: &str, work: impl Fn(&Machine, &Hand) -> Result<(), String>) {
     });
 }
 
-/// A servo that hears nothing for 10 ms lets its motors go and begins anew (docs/architecture.md). A hand survives
+/// A servo that receives nothing for 10 ms lets the motors go and starts again (docs/architecture.md). A hand survives
 /// that.
 const BEARS: Duration = Duration::from_millis(50);
 
@@ -141,19 +142,19 @@ fn its_emergency_stop_stops_the_hand() {
             error => return Err(told(error)),
         }
         assert_eq!(machine.finger(1).asked.currents, [0; 4]);
-        // The input is finger 2's.
+        // The fault input belongs to finger 2.
         [1, 3].into_iter().try_for_each(|finger| hand.position(finger).map(drop).map_err(told))
     });
 }
 
-/// In the environment of a process that is this test as a planner: the port, and the keys of `[hand]`.
+/// Name of the environment variable that makes this test program a planner: it holds the port and the keys of `[hand]`.
 const PLANNER: &str = "SUN2XP_TEST_PLANNER";
 
-/// A planner that holds the hand where it is, until it is killed.
+/// A planner that holds the hand in its pose until it is killed.
 fn plan(port_and_keys: &str) -> ! {
     let (port, keys) = port_and_keys.split_once('\n').expect("a port and keys");
     loop {
-        // A pause of the machine may trip the short watchdog; then it begins again.
+        // A pause of the machine may trip the short watchdog. The planner then opens the hand again.
         let Ok(hand) = Hand::open(configuration(Path::new(port), keys)) else { continue };
         while (1..=3).all(|finger| hand.position(finger).is_ok()) {
             std::thread::sleep(Duration::from_millis(1));
@@ -176,7 +177,7 @@ impl Planner {
         Self(process)
     }
 
-    /// With SIGKILL.
+    /// Kills the planner with SIGKILL.
     fn kill(&mut self) {
         self.0.kill().expect("the planner lives");
         self.0.wait().expect("the planner is ours");
@@ -190,7 +191,7 @@ impl Drop for Planner {
     }
 }
 
-/// Until it holds; false after a while in vain.
+/// Waits until a condition holds. Returns false after `patience`.
 fn wait_until(patience: Duration, mut holds: impl FnMut() -> bool) -> bool {
     let begin = Instant::now();
     while begin.elapsed() < patience {
@@ -202,12 +203,12 @@ fn wait_until(patience: Duration, mut holds: impl FnMut() -> bool) -> bool {
     false
 }
 
-/// Whether the firmware says that its watchdog ended all fingers. A pause of the machine can end them otherwise: the
-/// planner meets a fault then and stops the fingers itself, with frames that may reach the firmware after the planner
-/// was killed.
+/// Returns whether the firmware reports that its watchdog ended all fingers. A pause of the machine can end them in
+/// another way: the planner then detects a fault and stops the fingers itself, with frames that may reach the firmware
+/// after the planner was killed.
 fn ended_by_watchdog(machine: &Machine) -> bool {
     let mut link = Link::open(&machine.port, 1_000_000).expect("nobody else holds the port");
-    // What the killed planner did not read any more.
+    // Discards what the killed planner did not read.
     while link.receive(now() + 100_000_000).expect("the port is there").is_some() {}
     (1..=3).all(|address| {
         let mut status = None;
@@ -223,8 +224,8 @@ fn ended_by_watchdog(machine: &Machine) -> bool {
     })
 }
 
-/// Kills a planner: how long after the arrival of its last command each finger's watchdog set the currents, us in the
-/// firmware's time.
+/// Kills a planner. Returns how long after the arrival of its last command each finger's watchdog set the currents, us
+/// in the firmware's time.
 fn kill_a_planner(
     machine: &Machine,
     planner: &mut Planner,
@@ -237,7 +238,7 @@ fn kill_a_planner(
     let ran = wait_until(PATIENCE / 2, || moved_on() && running());
     planner.kill();
     let ran = ran && running();
-    // Commands that are under way arrive yet, and the slowest watchdog takes its time.
+    // Commands in transit still arrive, and the slowest watchdog has time to trip.
     let long_ago = |asked: Asked| asked.now.saturating_sub(asked.arrived_at) > 400_000;
     assert!(wait_until(PATIENCE, || (0..3).all(|finger| long_ago(machine.finger(finger).asked))), "commands go on");
     let asked = [0, 1, 2].map(|finger| machine.finger(finger).asked);
@@ -250,7 +251,7 @@ fn kill_a_planner(
     assert!(asked.iter().all(|asked| in_end_state(asked.currents)), "motors go on");
     match asked.map(|asked| asked.set_at.checked_sub(asked.arrived_at)) {
         [Some(one), Some(two), Some(three)] => Ok([one, two, three]),
-        // It is of a planner that had not noticed the end yet.
+        // The command came from a planner that had not yet noticed the end.
         _ => Err("a command came after the end".into()),
     }
 }
@@ -264,7 +265,7 @@ fn a_killed_planner_leaves_the_motors_in_their_end_state() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let machine = Machine::start(&build(folder.path()));
     let none = |currents: [i32; 4]| currents == [0; 4];
-    // 0.1 N cm over 2.34 N cm/A are 42 735 uA; a tendon's least tension asks for more.
+    // 0.1 N cm over 2.34 N cm/A is 42 735 uA. The least tension of a tendon needs more.
     let held = |currents: [i32; 4]| !none(currents) && currents.iter().all(|current| current.abs() <= 42_736);
     let release = "end_state = \"release\"";
     let hold = "end_state = \"hold\"\nhold_torque_limit = 0.1\nhold_time_ms = 1500";
@@ -288,5 +289,5 @@ fn a_killed_planner_leaves_the_motors_in_their_end_state() {
 
 const WATCHDOG_MS: u32 = 18;
 
-/// Two periods less: the servo gives a finger up one period before its watchdog does.
+/// Two periods less than the watchdog: the servo stops a finger one period before its watchdog does.
 const WATCHDOG_BEARS: Duration = Duration::from_millis(14);

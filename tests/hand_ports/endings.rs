@@ -15,7 +15,7 @@ const HOLD_TIME: Duration = Duration::from_millis(1500);
 /// N cm, as in [`HOLD`].
 const MOST_HELD: f64 = 0.3;
 
-/// A C planner that has sent every finger somewhere; then it does what `ending` says.
+/// A C planner that has sent every finger to a pose and then does what `ending` says.
 struct Planner {
     process: Child,
     _bench: Bench,
@@ -36,12 +36,12 @@ impl Planner {
         Self { process, _bench: bench }
     }
 
-    /// Until it has ended with status 3.
+    /// Waits until the planner has ended with status 3.
     fn ends(mut self) {
         assert_eq!(self.process.wait().expect("it ends").code(), Some(3));
     }
 
-    /// SIGKILL.
+    /// Kills the planner with SIGKILL.
     fn dies(mut self) {
         self.process.kill().expect("killed");
         self.process.wait().expect("gone");
@@ -139,8 +139,8 @@ fn a_planner_that_leaves_past_every_handler_is_left_to_the_watchdogs() {
     }
 }
 
-/// Who configures *hold* has something that must not fall, and that counts for StopHand too: bounded in torque and
-/// time.
+/// A user who configures *hold* has something that must not fall. This applies to StopHand too, which holds with
+/// limited torque for a limited time.
 #[test]
 fn an_emergency_stop_releases_at_once_or_holds_for_a_while_as_configured() {
     let _turn = turn();

@@ -1,4 +1,5 @@
-//! Every configuration that the documentation prints, as it is printed: opened on boards, and all fingers moved.
+//! Every configuration that the documentation prints, exactly as printed: it is opened on boards, and all fingers are
+//! moved.
 
 use crate::rig::{Board, PATIENT, close, settles, turn};
 use std::collections::BTreeMap;
@@ -8,10 +9,10 @@ use sun2xp::hand::{Configured, Hand, read_configuration};
 const PAGE: &str = include_str!("../../docs/configurations.md");
 const README: &str = include_str!("../../README.md");
 
-/// Within the limits of every example, and before every surface.
+/// Within the limits of every example, and clear of every surface.
 const POSE: [f64; 3] = [0.2, 0.5, 1.0];
 
-/// The examples of the page by their headings.
+/// The examples of the page with their headings.
 fn examples() -> Vec<(&'static str, &'static str)> {
     PAGE.split("\n## ")
         .skip(1)
@@ -25,7 +26,8 @@ fn examples() -> Vec<(&'static str, &'static str)> {
         .collect()
 }
 
-/// Opens what the text configures, with boards for its ports and a folder for its black boxes, and moves every finger.
+/// Opens the configuration in the text, with boards for its ports and a folder for its black boxes, and moves every
+/// finger.
 fn works(what: &str, text: &str) {
     let _turn = turn();
     let folder = tempfile::tempdir().expect("a folder");
@@ -53,7 +55,7 @@ fn works(what: &str, text: &str) {
     moves(what, &folder.path().join("sun2xp.toml"), &text);
 }
 
-/// The text with another path in the place of one.
+/// Replaces a path in the text.
 fn replaced(text: &str, path: &str, other: &str) -> String {
     let (quoted, other) = (format!("\"{path}\""), format!("\"{other}\""));
     assert!(text.contains(&quoted), "{path} is not in {text}");
@@ -63,7 +65,7 @@ fn replaced(text: &str, path: &str, other: &str) -> String {
 fn moves(what: &str, file: &Path, text: &str) {
     std::fs::write(file, text).expect("written");
     let mut configured = Configured::read(file).unwrap_or_else(|error| panic!("{what}: {error}"));
-    // A busy machine carries the bytes of a pseudo-terminal some ms late, as no cable does.
+    // A busy machine delays the bytes of a pseudo-terminal by several ms, as no cable does.
     configured.configuration.hand.watchdog_ms = 1000;
     let hand = Hand::open_as(configured).unwrap_or_else(|error| panic!("{what}: {error}"));
     for finger in 1..=3 {
@@ -82,7 +84,7 @@ fn every_example_of_the_page_works_as_printed() {
     }
 }
 
-/// The indented blocks of a section of README, in their order.
+/// The indented blocks of a section of the README, in order.
 fn blocks(heading: &str) -> Vec<String> {
     let (_, section) = README.split_once(&format!("\n{heading}\n")).expect("the heading");
     let section = section.split("\n#").next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Boards that fail while the hand is open: the finger faults and says why, the others go on.
+//! Boards that fail while the hand is open: the finger faults with a reason, and the others keep running.
 
 use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three_boards, turn, wait_until};
 use sun2xp::board::protocol::Status;
@@ -8,7 +8,7 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedFinger, SimulatedPort};
 
-/// Waits for the fault of a finger, and returns what its calls say then.
+/// Waits for the fault of a finger, and returns the error text of its calls.
 fn fault_text(hand: &Hand, finger: i32) -> String {
     wait_until("faulted", || hand.position(finger).is_err());
     let refused = [
@@ -64,11 +64,11 @@ fn a_board_that_falls_silent_faults_its_finger_and_its_watchdog_ends_it() {
     close(hand);
     boards[0].signal(libc::SIGCONT);
     boards[0].wait_for(1, "ended", |state| state.has(Status::ENDED) && state.limp());
-    // Nothing stale is left in the line.
+    // No old bytes are left in the line.
     goes(&open(on_boards(&boards)), 1, START);
 }
 
-/// A board in this process, so that things can happen to it that the program has no order for.
+/// A board in this process, for disturbances that the program has no order for.
 fn own_board() -> (SimulatedPort, Hand) {
     let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
     let port = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None })
@@ -109,7 +109,7 @@ fn an_emergency_stop_faults_the_finger_with_its_status_bits() {
     goes(&hand, 1, TARGET);
     close(hand);
 
-    // As long as it is pressed, the hand does not open; then it does.
+    // The hand does not open while the emergency stop is pressed, and opens afterwards.
     let port = board.path().to_string_lossy().into_owned();
     let error = Hand::open(on_one_port(&port, 2_000_000)).err().expect("refused").to_string();
     assert!(error.contains("finger 3") && error.contains("emergency stop"), "{error}");

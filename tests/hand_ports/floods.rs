@@ -1,4 +1,4 @@
-//! A board that sends valid frames without end: OpenHand refuses it, its finger faults, and nobody else is held up.
+//! A board that sends valid frames without end: OpenHand refuses it, its finger faults, and no other finger is delayed.
 
 use crate::priority::run_first;
 use crate::rig::{TARGET, close, goes, on_ports, open, three_boards, turn, wait_until};
@@ -15,11 +15,11 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
 
-/// No call may take longer because a board sends without end. A busy machine needs most of this; before reads had a
-/// bound, a flood held a servo for longer.
+/// A board that sends without end must not delay any call. A busy machine needs most of this time. Before reads were
+/// bounded, a flood blocked a servo for longer.
 const PROMPT: Duration = Duration::from_secs(1);
 
-/// A board with finger 2 that sends one frame again and again while it is told to, and has no room for answers then.
+/// A board with finger 2 that repeats one frame while it is told to, and discards its answers meanwhile.
 struct FloodingBoard {
     port: String,
     flooding: Arc<AtomicBool>,
@@ -33,18 +33,18 @@ impl FloodingBoard {
         device.set_timeout(Duration::from_millis(1)).expect("set");
         let name = port.name().expect("its name");
         let [flooding, ended] = [flooding, false].map(|set| Arc::new(AtomicBool::new(set)));
-        // Of another finger: a Reply of this one would be the answer to a Command now and then.
+        // The frame is of another finger, because a Reply of finger 2 could match a Command by chance.
         let wire = WireFrame::new(&Message { address: 9, sequence: 200, frame }).as_bytes().repeat(100);
         let thread = {
             let (flooding, ended) = (flooding.clone(), ended.clone());
             std::thread::spawn(move || {
                 run_first();
-                // Open here too, so that the host may come and go.
+                // Open here too, so that the host may open and close it.
                 let _port = port;
                 let mut board = SimulatedBoard::new(&Configuration::default(), &[1]).expect("a board");
                 let mut clock = PacedTime::new(Pace::patient(500.0), now());
                 let mut input = [0; 512];
-                // Where the flood goes on after a write that did not take all of it: every frame is whole.
+                // Position at which the flood continues after a partial write, so that every frame is whole.
                 let mut place = 0;
                 while !ended.load(Ordering::Relaxed) {
                     let flooding = flooding.load(Ordering::Relaxed);
@@ -58,7 +58,7 @@ impl FloodingBoard {
                     if flooding || place > 0 {
                         place = (place + device.write(&wire[place..]).unwrap_or(0)) % wire.len();
                     } else {
-                        // What finds no room is lost, as in a UART.
+                        // Bytes that find no room are lost, as in a UART.
                         let _ = device.write(&answers);
                     }
                 }
@@ -80,7 +80,7 @@ impl Drop for FloodingBoard {
     }
 }
 
-/// Replies are what a servo waits for, everything else is dropped by the link.
+/// A servo waits for replies. The link discards everything else.
 fn floods() -> [Frame; 2] {
     [Frame::Reply(Reply::default()), Frame::Stopped(Stopped::default())]
 }
@@ -140,7 +140,7 @@ fn a_board_that_begins_to_flood_faults_its_finger_only() {
             wait_until("recovered", || hand.recover(2).is_ok());
             goes(&hand, 2, TARGET);
 
-            // Stopped while it floods.
+            // The hand is stopped during the flood.
             board.flood(true);
             let begun = Instant::now();
             stop_all();

@@ -1,4 +1,4 @@
-//! SIGKILL for a planner: how long its boards' motors go on, by the boards' own clocks.
+//! SIGKILL of a planner: how long the motors of its boards keep running, by the boards' own clocks.
 
 use crate::attempts::attempts;
 use crate::c::{Bench, STRICT, c_compiler};
@@ -12,16 +12,16 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
 
-/// Two periods less than the watchdog's 18 ms: the servo gives a finger up one period before its watchdog does.
+/// Two periods less than the watchdog's 18 ms: the servo stops a finger one period before its watchdog does.
 const BEARS: Duration = Duration::from_millis(16);
 
-/// Within so many ms of the kill, and of the last good reply, motors are to be in their end state.
+/// Longest time to the motors' end state, ms, from the kill and from the last good reply.
 const WITHIN: f64 = 20.0;
 
 struct Planner(Child);
 
 impl Planner {
-    /// A C planner that sends every finger somewhere and waits.
+    /// A C planner that sends every finger to a pose and waits.
     fn start(folder: &Path, program: &Path, boards: &[Board; 3], hand: &str) -> Self {
         let mut configuration = format!("[hand]\n{hand}");
         for (index, board) in boards.iter().enumerate() {
@@ -34,7 +34,7 @@ impl Planner {
         Self(planner.spawn().expect("a planner"))
     }
 
-    /// Waits until every finger is there; an error where one has faulted.
+    /// Waits until every finger has arrived. Returns an error if one has faulted.
     fn arrives(&mut self) -> Result<(), String> {
         let mut line = String::new();
         let output = self.0.stdout.take().expect("its output");
@@ -50,8 +50,8 @@ impl Drop for Planner {
     }
 }
 
-/// Kills the planner of three boards while all its fingers run. Of each finger: ms from its last command to its end
-/// state, and at most so many from when the planner was gone.
+/// Kills the planner of three boards while all its fingers run. Returns for each finger the ms from its last command to
+/// its end state, and an upper bound of the ms since the end of the planner.
 fn kill_planner(
     mut planner: Planner,
     boards: &mut [Board; 3],
@@ -59,7 +59,7 @@ fn kill_planner(
 ) -> Result<[(f64, f64); 3], String> {
     planner.arrives()?;
     let asked = [0, 1, 2].map(|index: usize| (boards[index].state(index + 1), Instant::now()));
-    // It is killed and waited for.
+    // Dropping the planner kills it and waits for its end.
     drop(planner);
     let killed = Instant::now();
     if !asked.iter().all(|(state, _)| state.has(Status::ENABLED)) {
@@ -78,7 +78,7 @@ fn kill_planner(
     Ok(figures)
 }
 
-/// `SUN2XP_ROUNDS=20 cargo test --test hand_ports the_watchdogs_time -- --nocapture` for more rounds.
+/// `SUN2XP_ROUNDS=20 cargo test --test hand_ports the_watchdogs_time -- --nocapture` runs more rounds.
 #[test]
 fn a_killed_planners_motors_are_in_their_end_state_after_the_watchdogs_time() {
     let _turn = turn();

@@ -1,5 +1,5 @@
-//! Everything that can happen to a finger on a port, again and again: it recovers every time, and the process holds no
-//! more than before.
+//! Everything that can happen to a finger on a port, repeatedly: it recovers every time, and the process holds no more
+//! resources than before.
 
 use crate::pauses::name_pauses;
 use crate::recovery::{fault, held};
@@ -20,17 +20,17 @@ static ALLOCATED: AtomicI64 = AtomicI64::new(0);
 
 struct Counting;
 
-// SAFETY: the system's allocator, with a count beside it.
+// SAFETY: the system's allocator with a count.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATED.fetch_add(layout.size() as i64, Ordering::Relaxed);
-        // SAFETY: as the caller promised.
+        // SAFETY: the caller satisfies the contract of this same function.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         ALLOCATED.fetch_sub(layout.size() as i64, Ordering::Relaxed);
-        // SAFETY: as the caller promised.
+        // SAFETY: the caller satisfies the contract of this same function.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -38,7 +38,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-/// Black boxes make room for a few states more where recoveries come close together.
+/// Variation of the heap, bytes: black boxes make room for a few more states if recoveries follow closely.
 const COMES_AND_GOES: i64 = 128 * 1024;
 
 #[derive(Debug)]
@@ -88,7 +88,7 @@ impl Bench {
     }
 
     fn name(&self) {
-        // There is none the first time.
+        // There is no link the first time.
         let _ = remove_file(&self.link);
         symlink(self.port.path(), &self.link).expect("a link");
     }
@@ -113,18 +113,18 @@ impl Bench {
     }
 }
 
-/// Three fingers at a time suffer one trouble each while they move, and recover.
+/// Provokes one trouble on each of three moving fingers at the same time. All must recover.
 fn suffer(hand: &Hand, benches: &[Bench], troubles: &[Trouble]) {
     for (bench, trouble) in benches.iter().zip(troubles) {
         bench.happen(trouble);
     }
     let (mut sent, mut there) = (Instant::now(), false);
     wait_until(&format!("faulted by {troubles:?}"), || {
-        // A motor that jams is known when something wants it to turn.
+        // A jammed motor is detected only when a command makes it turn.
         if sent.elapsed() > Duration::from_millis(300) {
             (sent, there) = (Instant::now(), !there);
             for bench in benches {
-                // Faulted ones refuse.
+                // Faulted fingers refuse the call.
                 let _ = hand.send_position(bench.finger, if there { TARGET } else { START });
             }
         }
@@ -136,7 +136,7 @@ fn suffer(hand: &Hand, benches: &[Bench], troubles: &[Trouble]) {
     }
 }
 
-/// `SUN2XP_ROUNDS=100 cargo test --test hand_ports nothing_leaks -- --nocapture` for more rounds.
+/// `SUN2XP_ROUNDS=100 cargo test --test hand_ports nothing_leaks -- --nocapture` runs more rounds.
 #[test]
 fn everything_that_happens_to_a_finger_is_recovered_from_and_nothing_leaks() {
     let _turn = turn();
@@ -149,7 +149,7 @@ fn everything_that_happens_to_a_finger_is_recovered_from_and_nothing_leaks() {
     configuration.fingers.iter_mut().for_each(|finger| finger.reconnect = true);
     let hand = open(configuration);
     let all = || TROUBLES.chunks(3).for_each(|troubles| suffer(&hand, &benches, troubles));
-    // What is made once is made now.
+    // Makes every allocation that happens only once.
     all();
     // Black boxes are full after two seconds.
     let cycles = |finger: i32| hand.report(finger).expect("a report").losses.cycles;

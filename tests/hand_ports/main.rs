@@ -1,4 +1,4 @@
-//! The library against `sun2xp board`, a program of its own, through configured ports.
+//! The library against `sun2xp board`, a separate program, through configured ports.
 
 #[path = "../common/attempts.rs"]
 mod attempts;

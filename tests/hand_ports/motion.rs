@@ -25,7 +25,7 @@ fn tip(hand: &Hand, finger: i32) -> Vector3<f64> {
     ConfiguredFinger::default().links().tip(&hand.position(finger).expect("position").into())
 }
 
-/// The fingertip over 200 ms in which it moved by less than 0.02 cm.
+/// The position of the fingertip over 200 ms in which it moved by less than 0.02 cm.
 fn resting_tip(hand: &Hand, finger: i32) -> Vector3<f64> {
     let (mut from, mut since) = (tip(hand, finger), Instant::now());
     wait_until("at rest", || {
@@ -53,7 +53,7 @@ fn three_boards_on_three_ports() {
     }
     close(hand);
     for (index, board) in boards.iter_mut().enumerate() {
-        // The board has confirmed its end state before the hand is closed: no watchdog had to see to it.
+        // The board has confirmed its end state before the hand is closed, so no watchdog was needed.
         let state = board.state(index + 1);
         assert!(state.has(Status::ENDED) && !state.has(Status::WATCHDOG_TRIPPED) && state.limp(), "{state:?}");
     }
@@ -82,7 +82,7 @@ fn slack_tendons_are_taken_up_when_the_hand_is_opened_again() {
     goes(&hand, 2, TARGET);
     close(hand);
 
-    // Nothing winds the tendons now: a finger that is pushed by hand loosens those on its other side.
+    // No motor winds the tendons now, so a finger that is pushed by hand slackens the tendons on its other side.
     let off = |state: &State| (Vector3::from_column_slice(&state.joints) - Vector3::from(TARGET)).amax();
     let at_rest = |board: &mut Board| {
         let mut last = board.state(2);
@@ -93,7 +93,7 @@ fn slack_tendons_are_taken_up_when_the_hand_is_opened_again() {
         });
         last
     };
-    // One that is pushed for long may bounce back from a stop, to where it was.
+    // A finger that is pushed for long may bounce back from a stop to its old pose.
     let found = (0..10).find_map(|_| {
         boards[1].order("force 2 2 0 0");
         boards[1].wait_for(2, "pushed", |state| off(state) > 0.2);
@@ -105,11 +105,11 @@ fn slack_tendons_are_taken_up_when_the_hand_is_opened_again() {
     let hand = open(on_boards(&boards));
     let tight = boards[1].state(2);
     assert!(tight.tensions.iter().all(|&tension| tension > 3.0), "{tight:?}");
-    // It holds the pose that it was found in, and goes on from there.
+    // The finger holds the pose in which it was found, and continues from there.
     let held = hand.report(2).expect("report").set_point.joints;
     assert!((Vector3::from(hand.position(2).expect("position")) - held).amax() < 0.02);
-    // Here every tendon hangs, and the first one that is tight turns the joints: by 0.09 to 0.13 rad, as the push has
-    // left the motors.
+    // Every tendon is slack here, and the first one that becomes tight turns the joints by 0.09 to 0.13 rad, depending
+    // on how the push has left the motors.
     assert!((held - Vector3::from_column_slice(&found.joints)).amax() < 0.16, "found at {found:?}, held at {held}");
     goes(&hand, 2, TARGET);
     goes(&hand, 2, START);

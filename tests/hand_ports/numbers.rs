@@ -1,4 +1,4 @@
-//! The unique numbers of boards: no two ports of a hand have the same.
+//! The unique numbers of boards: no two ports of a hand may have the same.
 
 use crate::rig::{START, TARGET, close, goes, on_ports, open, turn};
 use sun2xp::hand::Hand;
@@ -10,7 +10,7 @@ fn start(board: SimulatedBoard) -> SimulatedPort {
     SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a pseudo-terminal")
 }
 
-/// Finger 1, as often as there are numbers: boards that differ in their numbers only.
+/// Boards with finger 1 that differ in nothing but these numbers.
 fn copies(numbers: [u32; 3]) -> [SimulatedPort; 3] {
     let board = || SimulatedBoard::new(&Configuration::default(), &[0]).expect("a board");
     numbers.map(|number| start(board().numbered(number)))

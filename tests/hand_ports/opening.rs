@@ -1,4 +1,4 @@
-//! What is refused when a hand is opened, and what the refusal says.
+//! Refusals of OpenHand and their texts.
 
 use crate::rig::{Board, TARGET, close, goes, on_boards, on_one_port, on_ports, open, three_boards, turn};
 use serialport::{SerialPort, TTYPort};
@@ -16,7 +16,7 @@ fn refusal(configuration: Configuration) -> HandError {
     }
 }
 
-/// The refusal of a hand whose finger 2 is on a port that does not serve.
+/// The refusal of a hand whose finger 2 is on an unusable port.
 fn refusal_of_finger_2(port: &str) -> HandError {
     let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
     let mut configuration = on_ports([&first.port, port, &third.port]);
@@ -40,7 +40,7 @@ fn a_rate_that_one_port_cannot_carry_for_three_fingers() {
     configuration.hand.rate = 1000.0;
     let error = refusal(configuration.clone());
     assert_names(&error, libc::EINVAL, &["baud", "1110 us in all", "800 us", "baud = 2000000", "hand.rate = 720"]);
-    // The remedy that it names.
+    // The remedy that the refusal names.
     configuration.hand.rate = 720.0;
     goes(&open(configuration), 3, TARGET);
 }
@@ -52,11 +52,11 @@ fn a_port_in_use() {
     let first = open(on_boards(&boards));
     goes(&first, 1, TARGET);
     let own = Board::start(&["1"]);
-    // Half-way through: finger 1 of the second hand has been reached by then.
+    // The refusal comes half-way: finger 1 of the second hand has already been reached.
     let error = refusal(on_ports([&own.port, &boards[1].port, &boards[2].port]));
     assert_names(&error, libc::EBUSY, &["finger 2", &boards[1].port, "in use"]);
     goes(&first, 2, TARGET);
-    // The half-opened hand has let go of its port.
+    // The hand that opened only partly has released its port.
     drop(first);
     goes(&open(on_ports([&own.port, &boards[1].port, &boards[2].port])), 1, TARGET);
     assert!(boards[0].state(1).has(Status::ENDED));
@@ -90,7 +90,7 @@ fn a_device_that_speaks_something_else() {
     let error = std::thread::scope(|scope| {
         scope.spawn(|| {
             while !ended.load(Ordering::Relaxed) {
-                // As a GPS receiver or a modem would. Nobody may be there to read it.
+                // A device like a GPS receiver or a modem. Perhaps nothing reads its bytes.
                 let _ = device.write(b"$GPGGA,123519,4807.038,N,01131.000,E*47\r\n\0");
                 std::thread::sleep(Duration::from_millis(2));
             }
@@ -119,7 +119,7 @@ fn a_tendon_that_stays_slack_closes_the_whole_hand_again() {
     let mut configuration = on_boards(&boards);
     // Long enough for a busy machine to run most of the cycles.
     configuration.hand.open_timeout_ms = 3000;
-    // Pays its tendon out where it should wind it in.
+    // The motor unwinds its tendon instead of winding it.
     configuration.fingers[2].motor.sign = [1, 1, 1, -1];
     let error = refusal(configuration);
     assert_names(&error, libc::EIO, &["finger 3", "tendon 4", "sign or zero of motor or gauge"]);
@@ -128,7 +128,7 @@ fn a_tendon_that_stays_slack_closes_the_whole_hand_again() {
         assert!(state.has(Status::ENDED) && state.limp(), "finger {}: {state:?}", index + 1);
         assert!(!state.has(Status::WATCHDOG_TRIPPED), "finger {} left to the watchdog: {state:?}", index + 1);
     }
-    // Its ports are free again.
+    // The ports of the refused hand are free again.
     boards[2] = Board::start(&["3"]);
     let hand = open(on_boards(&boards));
     goes(&hand, 1, TARGET);

@@ -1,4 +1,4 @@
-//! A port that went away comes back: a finger recovers on its own board only, and only when somebody asks.
+//! A port that disappeared returns: a finger recovers on its own board only, and only on request.
 
 use crate::pauses::name_pauses;
 use crate::recovery::{fault, faults, held, recovers};
@@ -9,13 +9,13 @@ use sun2xp::board::protocol::Status;
 use sun2xp::finger::FaultKind;
 use sun2xp::hand::HandError;
 
-/// A board that is another one, or has lost its zero, is not taken for the finger's.
+/// Another board, or a board that has lost its zero, is not accepted as the finger's.
 #[test]
 fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     let _turn = turn();
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("other.toml");
-    // Of the same kind and with the same number, but with other encoders.
+    // The same kind and the same number, but other encoders.
     fs::write(&file, "[finger]\nencoder.counts_per_revolution = [4096, 4096, 4096, 4096]\n").expect("written");
     let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
     let mut second = Board::start_at(&at(folder.path()), &["2"]);
@@ -24,7 +24,7 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     let hand = open(configuration);
     let refused = |kind: FaultKind| {
         let mut told = None;
-        // At first the port may not be there yet.
+        // At first the port may not exist yet.
         wait_until("refused for a fault", || match hand.recover(2) {
             Err(HandError::Faulted { finger: 2, fault }) => {
                 told = Some(fault.kind);
@@ -69,7 +69,7 @@ fn at(folder: &Path) -> String {
     folder.join("board-2").to_string_lossy().into_owned()
 }
 
-/// `SUN2XP_ROUNDS=100 cargo test --test hand_ports unplugged -- --nocapture` for more rounds.
+/// `SUN2XP_ROUNDS=100 cargo test --test hand_ports unplugged -- --nocapture` runs more rounds.
 #[test]
 fn a_board_that_is_unplugged_again_and_again_recovers_and_nothing_leaks() {
     let _turn = turn();
@@ -88,7 +88,7 @@ fn a_board_that_is_unplugged_again_and_again_recovers_and_nothing_leaks() {
         assert_eq!(faults(&hand, 2), FaultKind::PortVanished);
         let error = hand.recover(2).expect_err("nobody is there");
         assert!([libc::ENOENT, libc::EIO, libc::ENOTTY].contains(&error.errno()), "{error}");
-        // Its port is a new device behind the old name.
+        // The port is a new device behind the old name.
         second = Board::start_at(&at(folder.path()), &["2"]);
         wait_until("recovered", || hand.recover(2).is_ok());
         assert_eq!(hand.report(2).expect("a report").recoveries, round + 1);
@@ -112,7 +112,7 @@ fn nobody_recovers_a_finger_but_who_asks() {
     second.kill();
     faults(&hand, 2);
     let mut second = Board::start_at(&at(folder.path()), &["2"]);
-    // The library has found the board and configured it, and that is all.
+    // The library has found and configured the board, but has not moved it.
     let state = second.wait_for(2, "configured", |state| state.has(Status::CONFIGURED));
     assert!(!state.has(Status::ENABLED) && state.limp(), "{state:?}");
     assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished));

@@ -1,4 +1,4 @@
-//! Stopped, unplugged, powered down: nothing goes on by itself, everything goes on when it is told to.
+//! Stopped, unplugged, powered down: nothing resumes without a call, and everything resumes after one.
 
 use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three_boards, turn, wait_until};
 use std::fs::read_dir;
@@ -33,7 +33,7 @@ fn one_port() -> (SimulatedPort, Hand) {
     (board, hand)
 }
 
-/// Open descriptors and threads of this process.
+/// Number of open descriptors and of threads of this process.
 pub fn held() -> (usize, usize) {
     let count = |folder: &str| read_dir(folder).expect("a folder").count();
     (count("/proc/self/fd"), count("/proc/self/task"))
@@ -57,16 +57,16 @@ fn an_emergency_stop_stops_every_finger_until_it_recovers() {
         }
         for finger in 1..=3 {
             recovers(&hand, finger);
-            // One recovers, the next is as it was.
+            // One finger recovers, and the next is unchanged.
             assert_eq!(fault(&hand, 3).is_some(), finger < 3);
         }
         goes(&hand, 2, START);
         goes(&hand, 3, TARGET);
     }
-    // Nothing is to be done.
+    // There is nothing to recover.
     recovers(&hand, 1);
     assert_eq!(hand.recover(4).expect_err("no such finger").errno(), libc::EINVAL);
-    // Closed while it is stopped; a hand that is opened afterwards knows nothing of it.
+    // The hand is closed while it is stopped. A hand that is opened afterwards is not affected.
     stop_all();
     faults(&hand, 1);
     close(hand);
@@ -92,7 +92,7 @@ fn fingers_that_stop_together_recover_one_by_one() {
     let error = hand.recover(2).expect_err("nobody answers");
     assert_eq!(error.errno(), libc::ETIMEDOUT, "{error}");
     boards[1].signal(libc::SIGCONT);
-    // It answers what it was asked while it stood, first.
+    // The board first answers the requests that arrived while it was stopped.
     wait_until("recovered", || hand.recover(2).is_ok());
     recovers(&hand, 3);
     for finger in 1..=3 {
@@ -130,7 +130,7 @@ fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found()
     let _turn = turn();
     let (board, hand) = one_port();
     goes(&hand, 2, START);
-    // On its way when it is stopped.
+    // The finger is moving when it is stopped.
     hand.send_position(2, TARGET).expect("sent");
     stop_all();
     (1..=3).for_each(|finger| assert_eq!(faults(&hand, finger), FaultKind::EmergencyStopCall));
@@ -155,7 +155,7 @@ fn two_that_recover_fingers_of_one_port_at_once_both_succeed() {
     let (_board, hand) = one_port();
     stop_all();
     (1..=3).for_each(|finger| assert_ne!(faults(&hand, finger), FaultKind::Companion));
-    // Both have begun before one of them has mended the port.
+    // Both recoveries have begun before one of them has restored the port.
     let recovering = [1, 2].map(|finger| Recovering::begin(&hand, finger).expect("begun"));
     for recovering in &recovering {
         recovering.mend().unwrap_or_else(|error| panic!("{error}"));
@@ -167,7 +167,8 @@ fn two_that_recover_fingers_of_one_port_at_once_both_succeed() {
     close(hand);
 }
 
-/// A finger shows its fault until its servo has taken the mended port back: who recovers it in this moment only waits.
+/// A finger shows its fault until its servo has received the restored port. A caller that recovers it at this moment
+/// only waits.
 #[test]
 fn who_recovers_a_finger_that_was_just_mended_is_not_told_that_it_shares_its_port() {
     let _turn = turn();
@@ -186,7 +187,7 @@ fn who_recovers_a_finger_that_was_just_mended_is_not_told_that_it_shares_its_por
     close(hand);
 }
 
-/// The line stays with a finger whose board is not the right one yet.
+/// The line stays with a finger whose board is not yet the right one.
 #[test]
 fn a_finger_that_was_refused_for_its_lost_zero_recovers_when_it_is_back() {
     let _turn = turn();
@@ -212,15 +213,15 @@ fn a_hand_is_closed_and_its_ports_free_while_somebody_recovers_a_finger() {
     boards[1].signal(libc::SIGSTOP);
     assert_eq!(faults(&hand, 2), FaultKind::LostReplies);
     let [mending, late] = [(); 2].map(|()| Recovering::begin(&hand, 2).expect("begun"));
-    // It has the link of the finger, and nobody answers there.
+    // The recovery has the finger's link, but no board answers there.
     assert_eq!(mending.mend().expect_err("nobody answers").errno(), libc::ETIMEDOUT);
     hand.close();
     let error = late.mend().expect_err("closed");
     assert!(error.to_string().contains("was closed"), "{error}");
     boards[1].signal(libc::SIGCONT);
-    // It carries out what it was told while it stood, first.
+    // The board first carries out the requests that arrived while it was stopped.
     boards[1].wait_for(2, "at rest", |state| !state.has(Status::ENABLED));
-    // Both recoveries are still there, and keep no port.
+    // Both recoveries still exist, but hold no port.
     let hand = open(on_boards(&boards));
     goes(&hand, 2, TARGET);
     drop((mending, late));

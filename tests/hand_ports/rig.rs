@@ -1,4 +1,4 @@
-//! Board programs, and a hand that is configured for their ports.
+//! Board programs, and hands that are configured for their ports.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -9,27 +9,28 @@ use sun2xp::board::protocol::Status;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 
-/// A pose of joint 2 at more than 0.8 rad.
+/// A pose with joint 2 at more than 0.8 rad.
 pub const TARGET: [f64; 3] = [0.2, 0.6, 1.1];
 
-/// The simulated fingers' start pose.
+/// The start pose of the simulated fingers.
 pub const START: [f64; 3] = [0.0, 30.0 * std::f64::consts::PI / 180.0, 60.0 * std::f64::consts::PI / 180.0];
 
-/// Longer than any wait of a test should be on a busy machine.
+/// Longer than any wait of a test should take on a busy machine.
 const LIMIT: Duration = Duration::from_secs(20);
 
-/// One hand at a time: its servos and boards want the machine. To be kept for the length of a test.
+/// Allows one hand at a time, because its servos and boards need the machine. The guard must be kept for the length of
+/// the test.
 pub fn turn() -> MutexGuard<'static, ()> {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     crate::pauses::name_pauses();
-    // A test that failed has left nothing behind.
+    // A failed test leaves nothing behind.
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// It stands still while a busy machine keeps its host's commands.
+/// Makes the board's finger stand still while a busy machine delays its host's commands.
 pub const PATIENT: [&str; 2] = ["--patient", "500"];
 
-/// `sun2xp board` with its orders.
+/// The program `sun2xp board` and its standard streams.
 pub struct Board {
     process: Child,
     orders: ChildStdin,
@@ -44,24 +45,23 @@ pub struct State {
     pub tensions: Vec<f64>,
     /// N cm.
     pub torques: Vec<f64>,
-    /// By the board's clock, ms: now, of the last Command that was obeyed, of the end state.
+    /// By the board's clock, ms: now, the last Command that was obeyed, the end state.
     pub times: Vec<f64>,
     pub status: Status,
 }
 
 impl Board {
-    /// A board with these fingers. It asks for the priority that simulated boards have in the library, and is as
-    /// patient.
+    /// Starts a board with these fingers. It gets the priority and the patience of the library's simulated boards.
     pub fn start(fingers: &[&str]) -> Self {
         Self::start_with(&PATIENT, fingers)
     }
 
-    /// The same with a link to its port.
+    /// The same with a symbolic link to its port.
     pub fn start_at(link: &str, fingers: &[&str]) -> Self {
         Self::start_with(&[&PATIENT[..], &["--link", link]].concat(), fingers)
     }
 
-    /// One whose time passes as on the wall.
+    /// A board whose time is real time.
     pub fn start_impatient(fingers: &[&str]) -> Self {
         Self::start_with(&[], fingers)
     }
@@ -79,7 +79,7 @@ impl Board {
         Self { process, orders, answers, port }
     }
 
-    /// Its number as a process.
+    /// The process number.
     pub fn process(&self) -> u32 {
         self.process.id()
     }
@@ -106,7 +106,7 @@ impl Board {
         }
     }
 
-    /// Asks for the state of a finger until it is as wanted.
+    /// Queries the state of a finger until the condition holds.
     pub fn wait_for(&mut self, finger: usize, what: &str, wanted: impl Fn(&State) -> bool) -> State {
         let begun = Instant::now();
         loop {
@@ -119,13 +119,13 @@ impl Board {
         }
     }
 
-    /// SIGKILL.
+    /// Kills the board with SIGKILL.
     pub fn kill(&mut self) {
         self.process.kill().expect("killed");
         self.process.wait().expect("gone");
     }
 
-    /// SIGSTOP and SIGCONT: the port stays, and nobody is behind it.
+    /// Sends SIGSTOP or SIGCONT. The port of a stopped board stays open, but nothing answers.
     pub fn signal(&self, signal: libc::c_int) {
         // SAFETY: the process has not been waited for, so the number is still its own.
         assert_eq!(unsafe { libc::kill(self.process.id() as libc::pid_t, signal) }, 0);
@@ -160,14 +160,14 @@ fn line(answers: &mut BufReader<ChildStdout>) -> String {
     line.trim_end().to_owned()
 }
 
-/// Three boards with a finger each.
+/// Three boards with one finger each.
 pub fn three_boards() -> [Board; 3] {
     ["1", "2", "3"].map(|finger| Board::start(&[finger]))
 }
 
-/// A hand on these ports. A busy machine carries the bytes of a pseudo-terminal some ms late, and now and then many:
-/// periods are twice as long as by default, watchdogs as patient as they can be, and set points move slowly, so that a
-/// finger that the servo does not see for a moment does not run far.
+/// A hand on these ports. A busy machine delays the bytes of a pseudo-terminal by some ms, and occasionally by many. So
+/// periods are twice the default, watchdogs are as long as possible, and set points move slowly, so that a finger does
+/// not run far while the servo receives nothing.
 pub fn on_ports(ports: [&str; 3]) -> Configuration {
     let mut configuration = Configuration::default();
     (configuration.hand.rate, configuration.hand.watchdog_ms) = (500.0, 1000);
@@ -202,7 +202,7 @@ pub fn farthest(hand: &Hand, finger: i32, target: [f64; 3]) -> f64 {
     position.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max)
 }
 
-/// Sends a finger somewhere and waits until it has been within 0.02 rad for 100 ms.
+/// Sends a finger to a pose and waits until it has been within 0.02 rad for 100 ms.
 pub fn goes(hand: &Hand, finger: i32, target: [f64; 3]) {
     hand.send_position(finger, target).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
     settles(hand, finger, target);
@@ -221,7 +221,7 @@ pub fn settles(hand: &Hand, finger: i32, target: [f64; 3]) {
     }
 }
 
-/// Waits for something.
+/// Waits until a condition holds.
 pub fn wait_until(what: &str, mut wanted: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !wanted() {
@@ -230,7 +230,7 @@ pub fn wait_until(what: &str, mut wanted: impl FnMut() -> bool) {
     }
 }
 
-/// Closes a hand; one that never ends fails the test instead of stopping it.
+/// Closes a hand. If that never ends, the test fails instead of hanging.
 pub fn close(hand: Hand) {
     let (closed, hear) = std::sync::mpsc::channel();
     std::thread::spawn(move || {
@@ -240,7 +240,7 @@ pub fn close(hand: Hand) {
     hear.recv_timeout(LIMIT).expect("the hand closes");
 }
 
-/// Writes a configuration file with what [`on_ports`] configures, and more keys of `[hand]`.
+/// Writes a configuration file with the values of [`on_ports`], and more keys of `[hand]`.
 pub fn write_configuration(file: &Path, boards: &[Board; 3], hand: &str) {
     let mut text = format!(
         "[hand]\nrate = 500\nwatchdog_ms = 1000\nopen_timeout_ms = 20000\n\
