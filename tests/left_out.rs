@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::{Mutex, PoisonError};
 
-/// In the environment of a process that is this test program on a machine without tools.
+/// Environment variable of a process that runs this test program as if on a machine without tools.
 const BARE: &str = "SUN2XP_TEST_BARE";
 
 /// The user `nobody`.
@@ -24,11 +24,11 @@ fn a_test_that_needs_clang() {
     }
 }
 
-/// A program cannot be started while a process that was forked in between still has it open for writing, so tests take
-/// turns.
+/// A program cannot be started while a process that was forked meanwhile still has it open for writing, so the tests
+/// take turns.
 static TURN: Mutex<()> = Mutex::new(());
 
-/// Runs `a_test_that_needs_clang` where there is no program at all.
+/// Runs `a_test_that_needs_clang` in an environment without any program.
 fn run_without_tools(ci: &str) -> Output {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let mut test = Command::new(std::env::current_exe().expect("the test's own program"));
@@ -47,7 +47,7 @@ fn without_a_tool_a_test_passes_and_is_listed_and_with_ci_it_fails() {
     assert!(run.status.success() && said(&run).contains(expected), "{}", said(&run));
     run_without_tools("false");
 
-    // This process was the parent of both, and lists them once.
+    // This process is the parent of both and lists them once.
     let listed = tools::take_left_out(std::process::id());
     assert!(listed.len() == 1 && listed[0].starts_with(expected), "{listed:?}");
     assert!(listed[0].contains("apt-get install --no-install-recommends clang"), "{listed:?}");
@@ -59,7 +59,7 @@ fn without_a_tool_a_test_passes_and_is_listed_and_with_ci_it_fails() {
     assert_eq!(tools::take_left_out(std::process::id()), Vec::<String>::new());
 }
 
-/// Runs `tests/run` in a copy of its own, with these programs as the only ones beside a few of the system's.
+/// Runs `tests/run` in a copy of its own. Only these programs and a few of the system's are available.
 fn run_script(programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = tempfile::tempdir().expect("a scratch folder");
@@ -95,7 +95,7 @@ const CARGO: (&str, &str) = ("cargo", "echo CI=$CI: cargo $*");
 const APT: (&str, &str) = ("apt-get", "echo apt-get $*");
 const SUDO: (&str, &str) = ("sudo", "echo sudo; exec \"$@\"");
 
-/// A probe that fails at first, and succeeds from the second time on: after packages were installed.
+/// A probe that fails the first time and succeeds afterwards, as it does once packages are installed.
 const CLANG_AFTER_APT: (&str, &str) =
     ("looks-for-clang", "if [ -e \"$0.asked\" ]; then exit 0; fi; : > \"$0.asked\"; exit 1");
 
@@ -137,7 +137,7 @@ fn what_cannot_be_installed_is_told_with_the_remedy() {
 
 #[test]
 fn an_ordinary_user_needs_sudo() {
-    // SAFETY: no arguments and no conditions.
+    // SAFETY: takes no arguments and has no preconditions.
     let user = if unsafe { libc::getuid() } == 0 { Some(NOBODY) } else { None };
     let never = ("looks-for-clang", "exit 1");
     let (passed, told) = run_script(&[CARGO, APT, SUDO, never], user);

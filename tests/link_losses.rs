@@ -1,4 +1,4 @@
-//! Lost, damaged, late, doubled and foreign bytes on the cable of a finger, on simulated time: what each costs.
+//! Lost, damaged, late, doubled and foreign bytes on the cable of a finger, on simulated time: the cost of each.
 //!
 //! `SUN2XP_SECONDS=60 cargo test --release --test link_losses -- --nocapture` prints the table of docs/measurements.md.
 
@@ -33,18 +33,18 @@ impl Mishap {
     const ALL: [Mishap; 6] =
         [Mishap::Dropped, Mishap::Damaged, Mishap::CutShort, Mishap::Late, Mishap::Doubled, Mishap::AmongRubbish];
 
-    /// The reply does not come in its period.
+    /// Whether the reply does not arrive in its period.
     fn costs(self) -> bool {
         !matches!(self, Mishap::Doubled | Mishap::AmongRubbish)
     }
 }
 
-/// What the cable does to replies.
+/// The effect of the cable on replies.
 struct Line {
     random: Pcg64,
-    /// Part of the replies that something happens to.
+    /// Fraction of the replies that are affected.
     share: f64,
-    /// The board does not answer any more.
+    /// Whether the board has stopped answering.
     silent: bool,
     arriving: VecDeque<u8>,
     late: Vec<u8>,
@@ -67,7 +67,7 @@ impl Line {
     fn spoil(&mut self, mut reply: Vec<u8>) {
         let place = self.random.next_u64() as usize % reply.len();
         let other = self.random.next_u64();
-        // What was late comes before what is in time.
+        // Delayed bytes arrive before those that are in time.
         let mut bytes = std::mem::take(&mut self.late);
         match self.mishap() {
             None => bytes.extend(&reply),
@@ -129,7 +129,7 @@ struct Rig {
 impl Rig {
     /// Finger 1 on a cable, running.
     fn new(configuration: &mut Configuration) -> Self {
-        // Not "simulated": a built-in board is waited for patiently.
+        // The port must not be "simulated": the time limits of a built-in board are longer.
         configuration.fingers[0].port = "/dev/cable".into();
         let line = Line {
             random: Pcg64::seed_from_u64(11),
@@ -197,7 +197,7 @@ fn each_mishap_costs_its_own_period_and_no_more() {
         assert_eq!(report.losses.lost_replies, line.cost, "{percent} %");
         assert!(line.happened.iter().all(|&count| count > 0), "{:?}", line.happened);
         assert!(!faultless || report.stage == Stage::Running, "{percent} %: {:?}", report.stage);
-        // What comes late or twice is known by its number; the last may still be on its way.
+        // A late or doubled reply is recognised by its number. The last one may still be in transit.
         let of = |mishap: Mishap| line.happened[mishap as usize];
         let near = |counted: u64, happened: u64| counted <= happened && counted + 1 >= happened;
         assert!(near(report.losses.late_replies, of(Mishap::Late)), "{percent} %: {report:?}");
@@ -209,7 +209,7 @@ fn each_mishap_costs_its_own_period_and_no_more() {
     }
 }
 
-/// As after SIGKILL: from one moment to the next nobody commands the board.
+/// As after SIGKILL: the commands stop from one moment to the next.
 #[test]
 fn a_board_without_its_planner_is_in_its_end_state_within_the_watchdogs_time() {
     for (end_state, rest) in [(EndState::Release, 0.0), (EndState::Hold, 0.2)] {
@@ -228,7 +228,7 @@ fn a_board_without_its_planner_is_in_its_end_state_within_the_watchdogs_time() {
         }
         let strongest = cable.board().finger(1).expect("finger 1").motor_torques().amax();
         println!("{end_state:?}: in its end state {:.1} ms after the last command", (now - last) as f64 * 1e-6);
-        // The physics move on in steps of their own.
+        // The physics advances in steps of its own.
         assert!(now - last <= 18 * MS + MS / 2, "{} ns", now - last);
         assert!((strongest - rest).abs() < 1e-3, "{strongest} N cm");
     }
@@ -237,11 +237,11 @@ fn a_board_without_its_planner_is_in_its_end_state_within_the_watchdogs_time() {
 #[test]
 fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
     let mut configuration = Configuration::default();
-    // It holds; state feedback predicts.
+    // Figure 10 repeats its command, while state feedback would predict.
     configuration.fingers[0].controller.scheme = Some(Scheme::Figure10);
     let mut rig = Rig::new(&mut configuration);
     rig.cycles(200);
-    // The sample of the last good reply was taken with this cycle's command.
+    // The sample of the last good reply was taken when this cycle's command arrived.
     rig.finger.servo.cycle();
     let good = rig.report().last;
     rig.world.place().hooks.silent = true;

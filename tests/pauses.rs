@@ -1,4 +1,4 @@
-//! The watch that measures pauses of the machine, and what the tests excuse because of them.
+//! The watch that measures pauses of the machine, and the failures that the tests excuse because of them.
 
 #[path = "common/attempts.rs"]
 mod attempts;
@@ -20,12 +20,12 @@ const BEARS: Duration = Duration::from_millis(100);
 struct Process(Child);
 
 impl Process {
-    /// A shell that runs this, on the first core.
+    /// Runs a script in a shell on the first core.
     fn start(script: &str) -> Self {
         let mut command = Command::new("sh");
         command.args(["-c", script]).stdin(Stdio::null());
         let on_first_core = || {
-            // SAFETY: a set of cores is plain bits, of which zeros are none; the set outlives the call.
+            // SAFETY: a set of cores is plain bits, so all zeros is a valid value. The set outlives the call.
             unsafe {
                 let mut cores: libc::cpu_set_t = std::mem::zeroed();
                 libc::CPU_SET(0, &mut cores);
@@ -33,7 +33,7 @@ impl Process {
             }
             Ok(())
         };
-        // SAFETY: only a system call between fork and exec.
+        // SAFETY: makes only a system call between fork and exec.
         unsafe { command.pre_exec(on_first_core) };
         Self(command.spawn().expect("a shell"))
     }
@@ -46,7 +46,8 @@ impl Drop for Process {
     }
 }
 
-/// For how long a process waited for a core within any half second of two, while others of the same core ran this.
+/// The longest time that a process waited for a core within any half second of two seconds, while others ran `beside`
+/// on the same core.
 fn waited(script: &str, beside: &[&str], meanwhile: impl Fn(u32)) -> (Duration, String) {
     let process = Process::start(script);
     let _others: Vec<_> = beside.iter().map(|script| Process::start(script)).collect();
@@ -63,7 +64,7 @@ const SPINS: &str = "while :; do :; done";
 
 #[test]
 fn a_process_that_shares_its_core_is_found_waiting_and_one_that_sleeps_or_is_stopped_is_not() {
-    // Three share a core: each waits for about two thirds of the time.
+    // Three processes share a core, so each waits for about two thirds of the time.
     let (shared, told) = waited(SPINS, &[SPINS, SPINS], |_| {});
     assert!(shared > Duration::from_millis(150), "{told}");
     for (script, signal) in [("sleep 60", 0), (SPINS, libc::SIGSTOP)] {
@@ -82,7 +83,7 @@ fn a_failure_without_a_pause_is_not_excused() {
         let mut count = 0;
         attempts("a defect", Duration::from_secs(3600), |_| {
             count += 1;
-            // It shows in every second attempt.
+            // The defect shows in every second attempt.
             if count % 2 == 1 { Err("it shows".to_string()) } else { Ok(()) }
         })
     });
@@ -105,8 +106,8 @@ fn failures_are_excused_only_as_long_as_the_passed_attempts_outnumber_them() {
     assert_eq!(Tally::default().judge(false, BEARS / 2, BEARS), Verdict::Failed);
 }
 
-/// On a machine that never pauses a defect that shows in half of the attempts fails half of the runs. On one that
-/// always pauses for long enough it fails a quarter at least.
+/// A defect shows in half of the attempts. On a machine that never pauses it must fail half of the runs. On a machine
+/// that always pauses for long enough it must fail at least a quarter.
 #[test]
 fn a_defect_that_shows_in_half_of_the_attempts_does_not_stay_green() {
     let mut random = Pcg64::seed_from_u64(1);

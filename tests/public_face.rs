@@ -3,7 +3,7 @@
 use std::path::Path;
 use syn::{Item, UseTree, Visibility};
 
-/// Names that the crate exports without the feature `internals`, at most.
+/// Largest number of names that the crate exports without the feature `internals`.
 const NAMES: usize = 64;
 
 fn names(tree: &UseTree) -> usize {

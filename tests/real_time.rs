@@ -1,4 +1,4 @@
-//! Real time by configuration: what becomes of limits that are too small.
+//! The key `real_time`, and its behaviour when the limits of the process are too small.
 #![allow(unsafe_code)]
 
 #[allow(dead_code)]
@@ -14,7 +14,8 @@ use sun2xp::model::configuration::{Configuration, RealTime};
 
 #[test]
 fn without_an_attempt_nothing_is_had() {
-    // Its turn, and slow: a thread that is not real-time waits for all others of the machine.
+    // Takes the turn of a bench and a slow rate, because a thread without real time waits for all other threads of the
+    // machine.
     let _turn = Bench::new();
     let mut configuration = Configuration::default();
     (configuration.hand.real_time, configuration.hand.rate) = (RealTime::Ignore, 500.0);
@@ -30,7 +31,8 @@ const CAP_SYS_NICE: libc::c_ulong = 23;
 
 type Right = (libc::__rlimit_resource_t, libc::c_ulong);
 
-/// Runs `opens.c`, which opens and closes the hand, without a right: exit status, standard output, standard error.
+/// Runs `opens.c`, which opens and closes the hand, without a right. Returns exit status, standard output and standard
+/// error.
 fn opened_without(right: Right, configuration: &str) -> (Option<i32>, String, String) {
     run_without(right, configuration, "opens.c")
 }
@@ -42,14 +44,14 @@ fn run_without(right: Right, configuration: &str, program: &str) -> (Option<i32>
     let give_up = move || {
         let (limit, capability) = right;
         let nothing = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
-        // SAFETY: system calls on plain values. Who has no such capability cannot drop it, and need not.
+        // SAFETY: system calls on plain values. A process without the capability cannot drop it, and need not.
         unsafe {
             libc::setrlimit(limit, &nothing);
             libc::prctl(libc::PR_CAPBSET_DROP, capability, 0, 0, 0);
         }
         Ok(())
     };
-    // SAFETY: only system calls between fork and exec.
+    // SAFETY: makes only system calls between fork and exec.
     unsafe { command.pre_exec(give_up) };
     let run = bench.run(command);
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
@@ -85,7 +87,7 @@ fn enforced_real_time_is_had_or_refused_with_the_remedy() {
 
     let (status, told, _) = opened_without((libc::RLIMIT_MEMLOCK, CAP_IPC_LOCK), enforce);
     assert_eq!(status, Some(2), "{told}");
-    // Who may not have SCHED_FIFO either is told of that.
+    // A process that may not use SCHED_FIFO either gets that reason.
     assert!(told.contains("memlock") || told.contains("rtprio"), "{told}");
 
     let (status, told, _) =

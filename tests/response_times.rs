@@ -1,29 +1,29 @@
-//! The off-line analysis against a simulation of the scheduler that knows nothing of it: no simulated cycle may take
-//! longer than the bound, whatever the phases, and however much less than its worst case each part takes.
+//! Compares the off-line analysis with an independent simulation of the scheduler: no simulated cycle may take longer
+//! than the bound, whatever the phases, and however much each part falls short of its worst case.
 
 use proptest::prelude::*;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::realtime::{PeriodicThread, response_times};
 
-/// One thread in the simulation: what is left of the cycle it is in.
+/// A simulated thread: the rest of its present cycle.
 struct Running<'a> {
     thread: &'a PeriodicThread,
-    /// When the present cycle began, or the next one will.
+    /// Beginning of the present cycle, or of the next one.
     began: u64,
     doing: Doing,
-    /// When it became ready to compute: who was first goes first among equals.
+    /// When it became ready to compute. Threads of equal priority run in this order.
     ready_since: u64,
 }
 
 #[derive(Clone, Copy, PartialEq)]
 enum Doing {
-    /// Until it wakes up.
+    /// Until the wake-up.
     Sleeping(u64),
-    /// Left to compute, before the wait.
+    /// Time left to compute before the wait.
     Before(u64),
     Waiting(u64),
-    /// Left to compute, after the wait.
+    /// Time left to compute after the wait.
     After(u64),
 }
 
@@ -33,11 +33,11 @@ impl Running<'_> {
     }
 }
 
-/// The longest a cycle of each thread took, from its scheduled beginning, in so many ticks. One tick is 1 ns; every
+/// The longest time of a cycle of each thread, from its scheduled beginning, within `ticks`. One tick is 1 ns. Every
 /// core runs the ready thread of the highest priority.
 fn simulate(threads: &[PeriodicThread], cores: usize, ticks: u64, seed: u64) -> Vec<u64> {
     let mut random = Pcg64::seed_from_u64(seed);
-    // Mostly the worst case, sometimes anything below.
+    // Mostly the worst case, sometimes anything below it.
     let mut up_to =
         move |most: u64| if random.next_u32() % 4 > 0 { most } else { u64::from(random.next_u32()) % (most + 1) };
     let mut longest = vec![0; threads.len()];
@@ -49,7 +49,7 @@ fn simulate(threads: &[PeriodicThread], cores: usize, ticks: u64, seed: u64) -> 
         })
         .collect();
     for now in 0..ticks {
-        // What takes no time at all, possibly several things in a row.
+        // Handles everything that takes no time, possibly several steps in a row.
         for (index, it) in running.iter_mut().enumerate() {
             loop {
                 it.doing = match it.doing {
@@ -92,7 +92,7 @@ fn simulate(threads: &[PeriodicThread], cores: usize, ticks: u64, seed: u64) -> 
 
 fn thread() -> impl Strategy<Value = PeriodicThread> {
     let parts = (0..5u64, 0..8u64, 0..30u64, 0..12u64);
-    // Of one period mostly, as servo threads are.
+    // Mostly of the same period, as servo threads are.
     let period = prop_oneof![3 => Just(60u64), 1 => 25..90u64];
     (prop_oneof![4 => (0..2usize).prop_map(Some), 1 => Just(None)], 1..4u8, period, parts).prop_map(
         |(core, priority, period, (wake_up, before, waiting, after))| PeriodicThread {
@@ -127,8 +127,8 @@ proptest! {
     }
 }
 
-/// Without wake-up and waiting, and with all phases alike, the bound is what happens: an analysis that always says
-/// "late" fails.
+/// Without wake-up and waiting, and with equal phases, the bound is reached. This detects an analysis that is always
+/// too pessimistic.
 #[test]
 fn the_bound_is_reached() {
     let threads = [(3, 7, 3), (2, 12, 3), (1, 20, 5)].map(|(priority, period, after)| PeriodicThread {

@@ -1,5 +1,5 @@
-//! No allocation in the servo loop, nor in the thread that collects its reports: an allocator that counts what they ask
-//! for.
+//! The servo loop must not allocate, and neither may the thread that collects its reports. An allocator counts their
+//! requests.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -27,7 +27,7 @@ fn count() {
     counter.fetch_add(1, Relaxed);
 }
 
-// SAFETY: everything is passed on to the system's allocator.
+// SAFETY: every call is passed to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
@@ -40,7 +40,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 
     unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        // Giving back may take the allocator's lock: as bad as taking.
+        // A release may take the allocator's lock, so it counts too.
         count();
         unsafe { System.dealloc(block, layout) }
     }
@@ -51,15 +51,15 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     let hand = Hand::open(Configuration::default()).expect("the simulated hand");
     assert!(BY_SERVOS.load(Relaxed) > 0, "starting a thread allocates: the counter must see it");
     let before = BY_SERVOS.load(Relaxed);
-    // With the black boxes empty, and for longer than they need to fill: where memory has run out an allocation ends
-    // the process.
+    // Begins with empty black boxes and lasts until they are full: when memory has run out, an allocation would end the
+    // process.
     let reports_before = BY_REPORTS.load(Relaxed);
     assert!(reports_before > 0, "the counter must see the thread that collects reports");
     let cycles = |finger| hand.report(finger).expect("a report").losses.cycles;
     let end = cycles(1) + 3000;
     let mut others = BY_OTHERS.load(Relaxed);
     for step in 0u32.. {
-        // Commands and reports all the while, moving the finger and its stiffness.
+        // Sends commands and reads reports without a pause, changing pose and stiffness.
         let angle = 1.0 + 0.1 * f64::from(step % 7);
         hand.send_position(1, [0.1, 0.5, angle]).expect("sent");
         hand.send_stiffness(1, [[angle, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 2.0]]).expect("sent");
@@ -73,7 +73,7 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     assert_eq!(BY_REPORTS.load(Relaxed), reports_before, "allocations in the thread that collects reports");
     others = BY_OTHERS.load(Relaxed) - others;
     assert!(others < 100, "the planner's calls allocate: {others}");
-    // A new controller is made by the planner and only copied by the servo.
+    // The planner makes a new controller, and the servo only copies it.
     let end = cycles(1) + 200;
     for step in 0u32.. {
         hand.adjust(1, &format!("tendon.minimum = {}", 5 + step % 3)).expect("adjusted");
@@ -85,7 +85,7 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads while a finger is adjusted");
     assert!(cycles(2) > 500 && cycles(3) > 500, "all fingers ran");
 
-    // Nor while a finger is calibrated and its controller replaced.
+    // A finger must not allocate either while it is calibrated and its controller is replaced.
     hand.adjust(2, "zeroing.method = \"pose\"").expect("adjusted");
     hand.zero(2, |_| {}).expect("zeroed");
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads, calibrating");

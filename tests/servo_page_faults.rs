@@ -1,11 +1,11 @@
-//! No page fault in the servo loop. Alone in its process: where another test forks, the threads meet each of their
-//! pages once more.
+//! The servo loop must cause no page fault. The test has a process of its own: after a fork in another test, the
+//! threads would fault on each of their pages once more.
 
 use std::fs;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::{Configuration, RealTime};
 
-/// The page faults, minor and major, of each servo thread of this process so far.
+/// The number of page faults so far, minor and major, of each servo thread of this process.
 fn page_faults() -> Vec<(String, u64)> {
     let threads = fs::read_dir("/proc/self/task").expect("the threads of this process");
     let stat = threads.map(|thread| fs::read_to_string(thread.expect("a thread").path().join("stat")));
@@ -13,7 +13,7 @@ fn page_faults() -> Vec<(String, u64)> {
         .filter_map(|stat| {
             let stat = stat.ok()?;
             let (name, fields) = stat.split_once('(')?.1.rsplit_once(") ")?;
-            // From the state on, field 3 of proc(5): minflt is field 10, majflt field 12.
+            // The list begins with the state, field 3 of proc(5). minflt is field 10, and majflt is field 12.
             let fields: Vec<&str> = fields.split(' ').collect();
             let count = |field: usize| fields[field - 3].parse::<u64>().expect("a number");
             name.starts_with("sun2xp servo").then(|| (name.to_owned(), count(10) + count(12)))
@@ -25,7 +25,7 @@ fn page_faults() -> Vec<(String, u64)> {
 
 #[test]
 fn a_servo_thread_meets_no_page_fault() {
-    // Slow where it is not real-time: such threads wait for all others of the machine.
+    // Slower without real time, because such threads wait for all other threads of the machine.
     for (real_time, rate, periods) in [(RealTime::Try, 1000.0, 1000), (RealTime::Ignore, 500.0, 400)] {
         let mut configuration = Configuration::default();
         (configuration.hand.real_time, configuration.hand.rate) = (real_time, rate);
@@ -34,7 +34,7 @@ fn a_servo_thread_meets_no_page_fault() {
         let before = page_faults();
         assert_eq!(before.len(), 3, "{before:?}");
         if real_time == RealTime::Try {
-            // The threads of the second hand may find the stacks of the first.
+            // The threads of the second hand may reuse the stacks of the first.
             assert!(before.iter().all(|(_, faults)| *faults > 0), "starting a thread takes some: {before:?}");
         }
         let end = [1, 2, 3].map(|finger| cycles(finger) + periods);

@@ -1,4 +1,4 @@
-//! A servo that panics does not leave the last torque on the motors, and its thread does not end the process.
+//! A servo that panics must not leave the last torque on the motors, and its thread must not end the process.
 
 #[allow(dead_code)]
 #[path = "common/finger_on_a_cable.rs"]
@@ -14,10 +14,10 @@ use sun2xp::simulated::SimulatedCable;
 
 const PERIOD: u64 = 1_000_000;
 
-/// The time from which reading has a defect, ns.
+/// The time from which reads fail, ns.
 const DEFECTIVE: u64 = 300 * PERIOD;
 
-/// A driver with a defect, and how often it still panics.
+/// A driver with a defect, and the number of its remaining panics.
 struct Defect {
     panics: u32,
 }
@@ -34,7 +34,7 @@ impl Hooks for Defect {
 
 #[test]
 fn a_panic_in_a_cycle_stops_the_board_and_faults_the_finger() {
-    // Once; and again whatever is read, also while the board is told to stop.
+    // One panic, or a panic in every read, also while the board is being stopped.
     for panics in [1, u32::MAX] {
         let configuration = Configuration::default();
         let world = World::new(&configuration, Defect { panics });
@@ -45,7 +45,7 @@ fn a_panic_in_a_cycle_stops_the_board_and_faults_the_finger() {
         let pulling = world.place().cable.board().fingers()[0].motor_torques();
         assert!(pulling.amax() > 0.1, "nothing to let go: {pulling}");
 
-        // Returns: a panic that left it would fail this test.
+        // The call returns. A panic that escaped it would fail this test.
         finger.servo.run();
         assert!(world.place().hooks.panics < panics, "no panic");
         let stage = finger.mailbox.report().stage;

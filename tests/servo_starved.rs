@@ -1,4 +1,4 @@
-//! A servo and its simulated board on a machine that runs neither in time, nor what carries their bytes, on simulated
+//! A servo and its simulated board on a machine that delays both of them, and the carrier of their bytes, on simulated
 //! time.
 
 #[allow(dead_code)]
@@ -19,18 +19,18 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Clock;
 use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
 
-/// Nothing happens between two multiples of this, ns.
+/// Time grid of all events, ns.
 const STEP: u64 = 50_000;
 
-/// How often the board's thread looks, ns.
+/// Period of the board's thread, ns.
 const TICK: u64 = 1_000_000;
 
 const MILLISECOND: u64 = 1_000_000;
 
-/// How long the machine lets everybody wait: means of exponential distributions, ms.
+/// Waiting times on the machine: means of exponential distributions, ms.
 #[derive(Clone, Copy, Debug, Default)]
 struct Load {
-    /// What carries the bytes.
+    /// The carrier of the bytes.
     carrier: f64,
     board: f64,
     servo: f64,
@@ -47,7 +47,7 @@ struct World {
     carried: Vec<u8>,
     from_board: Vec<u8>,
     to_host: VecDeque<u8>,
-    /// When the carrier and the board's thread run next, ns.
+    /// Next run of the carrier, ns. The board's thread has one of its own.
     carrier_runs: u64,
     board_runs: u64,
 }
@@ -61,7 +61,7 @@ impl World {
         (milliseconds * MILLISECOND as f64) as u64
     }
 
-    /// The true joints, rad.
+    /// The true joint angles, rad.
     fn pose(&mut self) -> Vector3<f64> {
         self.board.fingers()[0].plant().joints()
     }
@@ -136,7 +136,7 @@ struct Rig {
 }
 
 impl Rig {
-    /// `open_timeout_ms`: how long the finger may take to come under tension, on the wall.
+    /// `open_timeout_ms` is the real time that the finger may take to come under tension.
     fn new(seed: u64, open_timeout_ms: u32) -> Self {
         let mut configuration = Configuration::default();
         configuration.hand.open_timeout_ms = open_timeout_ms;
@@ -157,7 +157,7 @@ impl Rig {
         Self { world, finger }
     }
 
-    /// Cycles for so many seconds of the wall.
+    /// Runs cycles for the given real time.
     fn run(&mut self, seconds: f64) {
         let end = self.world.borrow().now + (seconds * 1e9) as u64;
         while self.world.borrow().now < end {
@@ -165,7 +165,7 @@ impl Rig {
         }
     }
 
-    /// Cycles until the report is as wanted, for so many seconds of the wall at most.
+    /// Runs cycles until the report is as wanted, for at most the given real time.
     fn run_until(&mut self, seconds: f64, wanted: impl Fn(&FingerReport) -> bool) {
         let end = self.world.borrow().now + (seconds * 1e9) as u64;
         while !wanted(&self.finger.mailbox.report()) && self.world.borrow().now < end {
@@ -190,7 +190,7 @@ fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
             let mut rig = Rig::new(seed, 60_000);
             let start = rig.world.borrow_mut().pose();
             rig.world.borrow_mut().load = load;
-            // Its own time passes more slowly.
+            // The finger's own time passes more slowly.
             rig.run_until(60.0, |report| report.stage != Stage::Opening);
             let report = rig.finger.mailbox.report();
             assert_eq!(report.stage, Stage::Running, "{load:?}, {seed}: {report:?}");
@@ -209,7 +209,7 @@ fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
     }
 }
 
-/// What a planner asks while the servo does not run, and what the servo counts when it runs again.
+/// What GetStatus counts while the servo does not run, and what the servo counts when it runs again.
 #[test]
 fn periods_that_are_missing_are_known_before_the_servo_runs_again() {
     let mut rig = Rig::new(0, 60_000);
@@ -274,7 +274,7 @@ fn a_simulated_board_that_never_answers_again_faults_its_finger() {
 #[test]
 fn a_finger_that_a_machine_keeps_from_opening_faults_when_its_time_is_over() {
     let mut rig = Rig::new(0, 1500);
-    // Nothing is carried, or every wake-up is late.
+    // Either nothing is carried, or every wake-up is late.
     for load in [Load { carrier: 1e9, ..Load::default() }, Load { servo: 30.0, ..Load::default() }] {
         rig.world.borrow_mut().load = load;
         let begun = rig.world.borrow().now;

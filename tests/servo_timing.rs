@@ -1,5 +1,5 @@
-//! Periods of a servo on simulated time: what is late is counted and skipped, the age of the feedback, and the board's
-//! clock.
+//! Periods of a servo on simulated time: late periods are counted and skipped. Also tests the age of the feedback and
+//! the board's clock.
 
 #[allow(dead_code)]
 #[path = "common/finger_on_a_cable.rs"]
@@ -18,11 +18,11 @@ const PERIOD: u64 = 1_000_000;
 struct Clocks {
     now: u64,
     drift: f64,
-    /// How late the host's thread is woken next time, ns.
+    /// Delay of the next wake-up of the host's thread, ns.
     oversleep: u64,
     /// Beginnings of cycles on the board's clock, ns.
     beginnings: Vec<u64>,
-    /// Replies are kept back.
+    /// Whether replies are withheld.
     withheld: bool,
 }
 
@@ -41,7 +41,7 @@ impl Hooks for Clocks {
     fn read_until(&mut self, cable: &mut SimulatedCable, buffer: &mut [u8], deadline: u64) -> Result<usize, PortError> {
         let taken = match self.withheld {
             true => 0,
-            // No more than what is there: time passes here and not in the cable.
+            // Takes no more than what has arrived: time passes here, not in the cable.
             false => cable.read_until(buffer, self.board_time())?,
         };
         if taken == 0 {
@@ -71,7 +71,7 @@ struct Rig {
 impl Rig {
     fn new(drift: f64, follow: bool) -> Self {
         let mut configuration = Configuration::default();
-        // Not "simulated": a built-in finger stands still where replies stay away.
+        // The port must not be "simulated": a built-in finger stands still while replies are missing.
         configuration.fingers[0].port = "/dev/cable".into();
         let world = World::new(&configuration, Clocks { drift, ..Clocks::default() });
         let mut finger = ServedFinger::new(&world, &configuration);
@@ -86,7 +86,7 @@ impl Rig {
         (0..count).for_each(|_| self.finger.servo.cycle());
     }
 
-    /// Of the cycles since the last call.
+    /// The age of the feedback in the cycles since the last call.
     fn age(&mut self) -> Distribution {
         let mut histograms = Histograms::new();
         while let Some(timing) = self.finger.timings.pop() {
@@ -95,7 +95,7 @@ impl Rig {
         histograms.distribution(CycleStage::Age)
     }
 
-    /// When the cycles from number `cycle` on have begun, us after the first was due.
+    /// Beginnings of the cycles from number `cycle` on, us after the first was due.
     fn beginnings_from(&self, cycle: usize) -> Vec<u64> {
         self.world.place().hooks.beginnings[cycle..].iter().map(|at| (at - self.first) / 1000).collect()
     }
@@ -115,7 +115,7 @@ fn a_late_cycle_is_run_late_and_nothing_is_made_up() {
     let losses = rig.finger.mailbox.report().losses;
     assert_eq!((losses.cycles, losses.overruns, losses.skipped_periods, losses.lost_replies), (10, 0, 0, 0));
 
-    // 3.4 periods late: that cycle runs, three periods are gone, and the one after them begins at once.
+    // 3.4 periods late: this cycle runs, three periods are skipped, and the next one begins at once.
     rig.world.place().hooks.oversleep = 3 * PERIOD + 400_000;
     rig.cycles(6);
     let losses = rig.finger.mailbox.report().losses;
@@ -141,7 +141,7 @@ fn feedback_is_one_period_old_and_older_where_replies_stay_away() {
     let losses = rig.finger.mailbox.report().losses;
     assert_eq!((losses.lost_replies, losses.late_replies, losses.skipped_periods), (3, 3, 0));
 
-    // Longer than the board's clock can tell: not counted, rather than counted wrong.
+    // The delay exceeds the range of the board's clock. It is not counted, because the count would be wrong.
     rig.world.place().hooks.oversleep = 70 * PERIOD;
     rig.cycles(2);
     assert!(rig.age().count <= 1);

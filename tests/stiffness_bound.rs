@@ -1,5 +1,4 @@
-//! The bound of Kx: what the search finds, that it can fail, and that the default is right for every controller and
-//! rate.
+//! The bound of Kx: the search finds it, the search can fail, and the default is correct for every controller and rate.
 
 use nalgebra::{Matrix3, Vector3};
 use rand_pcg::Pcg64;
@@ -29,14 +28,15 @@ fn the_default_finger_carries_what_it_is_said_to() {
     }
 }
 
-/// Rates from 500 to 5000 Hz, most of them no divisor of 10 kHz and far from those that gains were found for.
+/// Rates from 500 to 5000 Hz. Most do not divide 10 kHz and are far from the rates for which gains were determined.
 const RATES: usize = 40;
 
-/// At each rate, beside the pose that carries least: tips 3 cm and more from the axis of joint 0, which holds nothing.
+/// Poses at each rate, besides the pose that supports least. Their tips are at least 3 cm from the axis of joint 0,
+/// which supports nothing.
 const POSES: usize = 4;
 
-/// At the Kx that a finger begins with and at its default bound, with the least, the controller's own and the most
-/// damping.
+/// Tests the initial Kx of a finger and its default bound, each with the least damping, the controller's own and the
+/// most damping.
 fn stable_at_every_rate(scheme: Scheme) {
     let finger = finger(scheme);
     let links = finger.links();
@@ -89,7 +89,7 @@ fn state_feedback_is_stable_at_every_rate() {
 
 #[test]
 fn the_map_is_that_of_the_rate_that_was_asked_for() {
-    // Not of the next lower one that the usual plant step divides.
+    // The map of a rate must not be that of the next lower rate that the usual plant step divides.
     let rest = Rest {
         joints: Vector3::new(0.1, 0.5, 1.0),
         deflection: Vector3::new(0.01, 0.01, 0.01),
@@ -116,7 +116,7 @@ fn a_loop_with_too_much_gain_or_no_damper_is_found_out() {
     assert_eq!(SEARCH.bound(&undamped, 1000.0).unwrap_err().key, "controller");
 }
 
-/// Fingers of another build: their masses, motors, tendons and lengths are those of the default finger times these.
+/// Fingers of another build: masses, motors, tendons and lengths are those of the default finger times these factors.
 fn other_fingers(scheme: Scheme) -> Vec<(&'static str, ConfiguredFinger)> {
     let scaled = |masses: f64, inertia: f64, tendons: f64, lengths: f64| {
         let mut finger = finger(scheme);
@@ -138,7 +138,7 @@ fn other_fingers(scheme: Scheme) -> Vec<(&'static str, ConfiguredFinger)> {
     ]
 }
 
-/// Each is limited by what its tendons carry, not by the loop: the numbers of state feedback follow from the
+/// Each finger is limited by its tendons, not by the loop, because the gains of state feedback follow from the
 /// configuration. The gains of the figures do not, and leave most of these fingers unstable.
 #[test]
 fn state_feedback_is_made_for_the_finger_that_is_configured() {

@@ -1,5 +1,5 @@
-//! The measuring instruments of `cargo bench --bench stiffness`, where they could lie: each against something known,
-//! and against fingers that must fail.
+//! Tests the measurements of `cargo bench --bench stiffness` where they could be wrong: against known results, and
+//! against fingers that must fail.
 
 #![allow(dead_code, reason = "the bench uses the rest of these files")]
 
@@ -33,7 +33,8 @@ fn case(scheme: Scheme) -> Case {
 fn a_known_spring_shows_its_stiffness_and_its_error() {
     let turn = Rotation3::from_euler_angles(0.3, -0.8, 1.1);
     let kx = turn * Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0)) * turn.inverse();
-    // 8 % too stiff in one principal direction: by the root of Kx, neither rotation nor anisotropy may change that.
+    // 8 % too stiff in one principal direction. Errors are scaled by the root of Kx, so rotation and anisotropy must
+    // not change the result.
     let soft = turn * Vector3::x();
     let true_stiffness = kx + soft * soft.transpose() * 0.08;
     let deflections = [Vector3::new(0.1, 0.0, 0.02), Vector3::new(0.03, 0.1, 0.0), Vector3::new(0.0, 0.05, 0.1)];
@@ -41,7 +42,7 @@ fn a_known_spring_shows_its_stiffness_and_its_error() {
     assert!((fits::apparent_stiffness(&forces, &deflections) - true_stiffness).amax() < 1e-12);
     assert!((fits::spring_error(&forces, &deflections, &kx) - 0.08).abs() < 1e-12);
     assert!(fits::spring_error(&forces, &deflections, &true_stiffness) < 1e-12);
-    // A tip that does not move, or that is lost, is no spring.
+    // A tip that does not move or has no valid position is no spring.
     assert_eq!(fits::spring_error(&forces, &[Vector3::zeros(); 3], &kx), f64::INFINITY);
     assert_eq!(fits::spring_error(&forces, &[Vector3::repeat(f64::NAN); 3], &kx), f64::INFINITY);
 }
@@ -50,13 +51,13 @@ fn a_known_spring_shows_its_stiffness_and_its_error() {
 fn a_line_shows_its_slope_and_a_hysteresis_its_mean() {
     let line: Vec<(f64, f64)> = (0..50).map(|i| (0.1 * f64::from(i), 4.0 - 0.3 * f64::from(i))).collect();
     assert!((fits::slope(&line) + 3.0).abs() < 1e-12);
-    // Up with an offset, down with the opposite one.
+    // Up with an offset, down with the opposite offset.
     let up = (-20..=20).map(|i| (f64::from(i), 2.0 * f64::from(i) + 5.0));
     let down = (-20..=20).map(|i| (f64::from(i), 2.0 * f64::from(i) - 5.0));
     assert!((fits::slope(&up.chain(down).collect::<Vec<_>>()) - 2.0).abs() < 1e-12);
 }
 
-/// x[k+1] = A x[k] with these modes, seen through a mixture.
+/// x[k+1] = A x[k] with these modes, observed through a mixture.
 fn decay(modes: &[(f64, f64)], count: usize) -> Vec<DVector<f64>> {
     let size = 2 * modes.len();
     let mut a = DMatrix::zeros(size, size);
@@ -80,12 +81,12 @@ fn decay(modes: &[(f64, f64)], count: usize) -> Vec<DVector<f64>> {
 fn a_known_decay_shows_its_slowest_mode() {
     for (modes, slowest) in [
         (&[(0.98, 0.4), (0.7, 1.0), (0.5, 2.0)][..], 0.98),
-        // Two close ones; a real one; one that grows; one that hardly decays.
+        // Two close modes, a real one, one that grows, and one that hardly decays.
         (&[(0.96, 0.2), (0.95, 0.5), (0.3, 0.0)], 0.96),
         (&[(0.99, 0.0), (0.9, 0.3)], 0.99),
         (&[(1.01, 0.3), (0.99, 0.1)], 1.01),
         (&[(0.9999, 0.05), (0.8, 1.0)], 0.9999),
-        // Gone long before the end.
+        // Modes that have decayed long before the end.
         (&[(0.5, 0.3), (0.4, 0.0)], 0.5),
     ] {
         let found = fits::growth(&decay(modes, 300));
@@ -98,7 +99,7 @@ fn a_known_decay_shows_its_slowest_mode() {
     assert!(fits::growth(&vec![DVector::zeros(3); 100]).is_nan());
 }
 
-/// Two motions of which one meets something that the other does not have no recurrence, and last digits have any.
+/// Two motions have no recurrence if only one of them meets an obstacle, and rounding errors satisfy any recurrence.
 #[test]
 fn a_decay_that_is_no_linear_one_does_not_grow() {
     let mut bent = decay(&[(0.97, 0.2), (0.9, 0.7)], 200);
@@ -109,7 +110,7 @@ fn a_decay_that_is_no_linear_one_does_not_grow() {
     }
     let found = fits::growth(&bent);
     assert!(found > 0.9 && found < 1.0, "{found}");
-    // The same, growing.
+    // The same motion in reverse, so that it grows.
     bent.reverse();
     assert!(fits::growth(&bent) > 1.0);
 }
@@ -122,7 +123,7 @@ fn what_is_not_a_number_is_the_worst() {
     assert_eq!(parallel::each(&items, |number, item| number + item), (0..200).step_by(2).collect::<Vec<_>>());
 }
 
-/// Without the compensation of tendon stretch the tip is softer by about a third at 3 N/cm and a half at 6.
+/// Without compensation of the tendon stretch the tip is softer by about a third at 3 N/cm, and by half at 6 N/cm.
 #[test]
 fn a_controller_blind_to_tendon_stretch_is_found_out() {
     let case = case(Scheme::Figure10);
@@ -142,7 +143,7 @@ fn a_controller_blind_to_tendon_stretch_is_found_out() {
     }
 }
 
-/// What the servo gives less than it was told to is reported, and told apart from being another spring than that.
+/// A servo that gives less than the commanded stiffness reports it. This must not count as a stiffness error.
 #[test]
 fn a_pose_that_carries_less_shows_its_scale_and_no_error() {
     let case = case(Scheme::StateFeedback);
@@ -154,8 +155,8 @@ fn a_pose_that_carries_less_shows_its_scale_and_no_error() {
     assert!(found.scale < 0.97 && found.error < 0.01, "{} of {}", found.error, found.scale);
 }
 
-/// A motor model that is believed 20 % wrong is no matter between tension and torque. In (RM)^-T, where M is geometry,
-/// it is: the joints are measured wrong by as much, and with them where the tip is held.
+/// A motor constant that is wrong by 20 % is harmless between tension and torque. It is harmful in (RM)^-T, where M is
+/// geometry: the joints, and with them the tip, are measured wrong by as much.
 #[test]
 fn a_motor_model_in_the_kinematics_is_found_out() {
     let case = case(Scheme::Figure11);
@@ -177,7 +178,7 @@ fn a_motor_model_in_the_kinematics_is_found_out() {
     }
 }
 
-/// R as it is printed has a sign wrong and no inverse.
+/// R as printed has one wrong sign and no inverse.
 #[test]
 fn the_printed_r_is_found_out() {
     let case = case(Scheme::StateFeedback);
@@ -206,7 +207,7 @@ fn a_controller_without_damping_is_found_out() {
     }
 }
 
-/// The decay that the eigenvalue foretells is the one of a finger that is let go, measured over a time of its own.
+/// The eigenvalue must predict the decay of a released finger, measured separately over time.
 #[test]
 fn the_largest_eigenvalue_foretells_how_a_finger_comes_to_rest() {
     let case = case(Scheme::Figure10);
@@ -222,7 +223,7 @@ fn the_largest_eigenvalue_foretells_how_a_finger_comes_to_rest() {
         run.push(load * 1.01);
         run.run(3.0);
         let rest = run.plant.tip();
-        // Nudged; once the fast modes have gone, the largest distances within two windows.
+        // Nudges the finger. After the fast modes have decayed, compares the largest distances in two windows.
         run.plant.turn_motor(0, 1e-2);
         run.run(0.2);
         let mut largest = |seconds| parallel::worst(run.tips(seconds).iter().map(|tip| (tip - rest).norm()));

@@ -1,4 +1,4 @@
-//! Findings of many processes and threads in one configuration file: each writes what it has found, and none is lost.
+//! Findings of many processes and threads in one configuration file: each stores its findings, and none is lost.
 
 use nalgebra::Vector3;
 use std::fs::{self, File, Permissions};
@@ -14,7 +14,7 @@ use tempfile::{TempDir, tempdir};
 const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500 # slow cable\n\n[finger.encoder]\n\
      zero = [1, 2, 3, 4]\n\n[finger.2.tendon]\nstiffness = [ 300.0, 300, # new\n  310.0, 300.0 ] # N/cm\n";
 
-/// Somebody who finds the same thing again and again, and nobody else finds it.
+/// A worker that stores the same kind of finding repeatedly. No two workers store the same kind.
 #[derive(Clone, Copy, Debug)]
 struct Worker {
     finger: i32,
@@ -28,7 +28,7 @@ enum What {
     Bound,
 }
 
-/// A bound of finger 1 or 3 would not hold with the friction that others find.
+/// A bound of finger 1 or 3 would become invalid with the friction that other workers store.
 const WORKERS: [Worker; 6] = [
     Worker { finger: 1, what: What::Zeros },
     Worker { finger: 1, what: What::Friction },
@@ -39,7 +39,7 @@ const WORKERS: [Worker; 6] = [
 ];
 
 impl Worker {
-    /// What the worker finds at a turn, with a configuration that it has read long ago.
+    /// The worker's finding in a turn, based on a configuration that it read long before.
     fn found(self, turn: i32, configuration: &Configuration) -> Found {
         let number = f64::from(turn + 1);
         let findings = match self.what {
@@ -64,7 +64,7 @@ impl Worker {
         Found::by_calibration(&findings, self.finger, configuration).expect("a finger")
     }
 
-    /// Whether the file has what was found at a turn.
+    /// Returns whether the file contains the finding of a turn.
     fn is_stored(self, turn: i32, path: &Path) -> bool {
         let hand = read_configuration(path).unwrap_or_else(|error| panic!("{self:?}, turn {turn}: {error}"));
         let index = self.finger as usize - 1;
@@ -77,7 +77,7 @@ impl Worker {
         }
     }
 
-    /// Stores at every turn and looks whether it is there. Prints a line for each.
+    /// Stores a finding in every turn and checks that it is in the file. Prints a line for each.
     fn work(self, path: &Path, turns: i32) {
         let configuration = read_configuration(path).expect("usable");
         for turn in 0..turns {
@@ -96,13 +96,12 @@ fn hand() -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// The environment variables that tell another process of this program which file to work on, as which worker, and how
-/// often.
+/// Environment variables that give another process of this program its file, its worker and the number of turns.
 const PATH: &str = "SUN2XP_TEST_FILE";
 const NUMBER: &str = "SUN2XP_TEST_WORKER";
 const TURNS: &str = "SUN2XP_TEST_TURNS";
 
-/// Another process of this program.
+/// Starts another process of this program.
 fn process(worker: usize, path: &Path, turns: i32) -> Child {
     Command::new(std::env::current_exe().expect("this program"))
         .args(["--exact", "threads_and_processes_store_at_once", "--nocapture"])
@@ -154,7 +153,8 @@ fn an_older_reading_reverts_nothing() {
     assert!(WORKERS[0].is_stored(0, &path) && worker.is_stored(5, &path) && WORKERS[3].is_stored(6, &path));
 }
 
-/// Kills a process while it stores: the file is whole, its lock is free, and what the process left behind does no harm.
+/// Kills a process while it stores: the file must be intact, its lock must be free, and leftovers of the process must
+/// do no harm.
 #[test]
 fn a_killed_process_leaves_a_whole_file_and_no_lock() {
     let (_folder, path) = hand();
@@ -178,7 +178,7 @@ fn a_store_waits_for_another_one() {
     lock.lock().expect("locked");
     std::thread::scope(|scope| {
         let storing = scope.spawn(|| WORKERS[0].work(&path, 1));
-        // It has come to the lock when it has the file open, as this thread has.
+        // A process that has the file open is waiting at the lock, as this thread is.
         while fs::read_dir("/proc/self/fd").expect("Linux").flatten().filter(|fd| links_to(&fd.path(), &path)).count()
             < 2
         {
@@ -201,7 +201,7 @@ fn as_nobody(body: impl FnOnce() + Send) {
         let thread = scope.spawn(|| {
             // SAFETY: the system call changes the user of the calling thread only, which ends after `body`.
             let changed = unsafe { libc::syscall(libc::SYS_setresuid, -1, 65_534, -1) };
-            // Who is not root already has no more rights than wanted.
+            // A user other than root already has no more rights than wanted.
             assert!(changed == 0 || unsafe { libc::geteuid() } != 0);
             body();
         });

@@ -1,13 +1,13 @@
-//! Lists what this run of `cargo test` has left out, because tools are missing. Test programs run in the order of the
-//! alphabet, so this one is the last. It is no libtest program: a filter of test names would keep it from running, and
-//! its output would be captured.
+//! Lists what this run of `cargo test` has left out because tools are missing. Test programs run in alphabetical order,
+//! so this one is the last. It does not use libtest: a filter of test names would skip it, and its output would be
+//! captured.
 
 #[allow(dead_code)]
 #[path = "common/tools.rs"]
 mod tools;
 
 fn main() {
-    // nextest asks every program for its tests. This one has none.
+    // nextest queries the tests of every program. This one has none.
     if std::env::args().any(|argument| argument == "--list") {
         return;
     }

@@ -1,5 +1,5 @@
-//! A finger with its servo, its link and its board in memory, on simulated time, and a link that can be repaired after a
-//! fault.
+//! A finger with its servo, its link and its board in memory, on simulated time, and a link that can be repaired after
+//! a fault.
 
 use crate::finger_on_a_cable::{Hooks, ServedFinger, World};
 use nalgebra::Vector3;
