@@ -47,8 +47,9 @@ struct World {
     carried: Vec<u8>,
     from_board: Vec<u8>,
     to_host: VecDeque<u8>,
-    /// Next run of the carrier, ns. The board's thread has one of its own.
+    /// Next run of the carrier, ns.
     carrier_runs: u64,
+    /// Next run of the board's thread, ns.
     board_runs: u64,
 }
 
