@@ -65,7 +65,7 @@ pub struct State {
     motor_angles: Vector4<f64>,
     /// Cycles since `motor_angles` were measured.
     age: u32,
-    /// Low-pass filtered, rad/s.
+    /// Low-pass filtered motor speeds, rad/s.
     motor_speeds: Vector4<f64>,
     /// Low-pass filtered tensions, N, for the stretch of the tendons.
     tensions: Vector4<f64>,
@@ -101,7 +101,8 @@ enum Doing {
 }
 
 impl Controller {
-    /// Returns the state before the first cycle of a finger at rest. The first command pulls as hard as the tendons do.
+    /// Returns the state before the first cycle of a finger at rest. Its first command pulls with the measured
+    /// tensions.
     pub fn start(&self, feedback: &Feedback) -> State {
         let measured = self.sensors.measured(feedback);
         let Measured { motor_angles, tensions } = measured;

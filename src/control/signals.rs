@@ -61,8 +61,8 @@ pub enum Activity {
     /// Brings every tendon to the pretension of eq. 20 at zero joint torque, from any amount of slack. The joints are
     /// held where they are.
     TakeUpSlack,
-    /// The same as `TakeUpSlack`, with gauges that show too much by the given tensions, N, and without gravity
-    /// compensation. For calibration.
+    /// The same as `TakeUpSlack`, but without gravity compensation, and with gauges whose readings exceed the true
+    /// tensions by the given values, N. For calibration.
     Tighten(Vector4<f64>),
     /// Makes the fingertip a spring.
     Follow(SetPoint),

@@ -52,7 +52,7 @@ pub(super) struct StateFeedback {
     /// Unit vector of the tensions that cause no joint torque.
     common: Vector4<f64>,
     /// R m R^T / alpha, kg m^2: the inertia of the motors that acts on the joints.
-    felt_motors: Matrix3<f64>,
+    apparent_motors: Matrix3<f64>,
     /// The inertia of the motors for which the damping is designed, kg m^2.
     damped_motors: Matrix3<f64>,
     /// Mass, kg, viscous friction, N s/m, and stiffness, N/m, all at the tendon.
@@ -94,8 +94,8 @@ pub(super) struct StateFeedbackState {
     jerk: Vector3<f64>,
     lost: u32,
     anchor: Vector3<f64>,
-    /// Remaining difference of the tensions at the start of the spring, which decays to zero. It is in tensions and not
-    /// in pulls, because pulls are noisy and the noise of one cycle must not persist.
+    /// Difference in tensions at the start of the spring, which decays to zero. It is in tensions and not in pulls,
+    /// because pulls are noisy and the noise of one cycle must not persist.
     transition: BumplessTransfer,
     reference: ReferenceState,
     /// Motion of the joints in addition to the reference, low-pass filtered, rad/s.
@@ -107,7 +107,7 @@ pub(super) struct StateFeedbackState {
 }
 
 impl StateFeedback {
-    /// Returns the state of a finger at rest, with the pull of its tendons.
+    /// Returns the state of a finger at rest, whose motors pull with the measured tensions.
     pub fn start(&self, measured: &Measured) -> StateFeedbackState {
         let (travel, tensions) = (self.travel(measured), measured.tensions);
         let estimates = std::array::from_fn(|tendon| self.observers[tendon].start(travel[tendon], tensions[tendon]));
@@ -136,7 +136,7 @@ impl StateFeedback {
         }
     }
 
-    /// Returns whether too many consecutive replies are lost to compute a command.
+    /// Returns whether so many consecutive replies were lost that no command can be computed.
     pub fn blind(&self, state: &StateFeedbackState) -> bool {
         state.lost > BLIND
     }

@@ -1,5 +1,5 @@
-//! The contact between a fingertip and an object, section 4.2. The D x D stiffness of every contact type becomes one 6
-//! x 6 stiffness.
+//! The contact between a fingertip and an object, section 4.2. The D x D stiffness of every contact type becomes one
+//! spatial stiffness, 6 x 6.
 
 use crate::model::direction;
 use nalgebra::allocator::Allocator;
@@ -15,8 +15,8 @@ const ROUNDING: f64 = 1e-3;
 /// between them are in N/rad.
 ///
 /// A contact with D dimensions has a D x D stiffness K and a D x 6 selection S of the tip's motion. The 6 x 6 stiffness
-/// is S^T K S. The D x 3 Jacobian of eq. 6 is S J with the 6 x 3 J of [`Links::spatial_jacobian`], and K_theta = (S
-/// J)^T K (S J).
+/// is S^T K S. With the 6 x 3 Jacobian J of [`Links::spatial_jacobian`], the D x 3 Jacobian of eq. 6 is S J, and
+/// K_theta is (S J)^T K (S J).
 ///
 /// [`Links::spatial_jacobian`]: crate::model::Links::spatial_jacobian
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,7 @@ impl Contact {
         let mut selection = SMatrix::<f64, 4, 6>::zeros();
         selection.fixed_view_mut::<3, 6>(0, 0).copy_from(&translation());
         selection.fixed_view_mut::<1, 3>(3, 3).copy_from(&normal.transpose());
-        Self::felt(&stiffness, &selection)
+        Self::selected(&stiffness, &selection)
     }
 
     /// Constructs a frictionless point, which transmits a force along `normal`, a vector of any length. `stiffness` is
@@ -83,7 +83,7 @@ impl Contact {
         let (stiffness, normal) = directed(&SMatrix::<f64, 1, 1>::new(stiffness), normal)?;
         let mut selection = SMatrix::<f64, 1, 6>::zeros();
         selection.fixed_view_mut::<1, 3>(0, 0).copy_from(&normal.transpose());
-        Self::felt(&stiffness, &selection)
+        Self::selected(&stiffness, &selection)
     }
 
     /// Constructs any contact from its stiffness K with D dimensions and its selection S. Row i of S converts the tip's
@@ -101,11 +101,11 @@ impl Contact {
     {
         finite(selection.as_slice())?;
         let (checked, _) = spring(stiffness)?;
-        Self::felt(&checked, selection)
+        Self::selected(&checked, selection)
     }
 
     /// Returns S^T K S for a K that is a spring.
-    fn felt<const D: usize>(
+    fn selected<const D: usize>(
         stiffness: &SMatrix<f64, D, D>,
         selection: &SMatrix<f64, D, 6>,
     ) -> Result<Self, ContactError> {
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn every_contact_feels_what_its_selection_says() {
+    fn every_contact_transmits_the_directions_of_its_selection() {
         let kx = Matrix3::new(3.0, 0.5, 0.1, 0.5, 2.0, 0.25, 0.1, 0.25, 1.0);
         let hard = Contact::hard_finger(kx).expect("a spring");
         assert_eq!(hard.stiffness().fixed_view::<3, 3>(0, 0), kx);
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_spring_is_refused() {
+    fn a_stiffness_that_is_not_a_spring_is_refused() {
         let skewed = Matrix3::new(3.0, 0.5, 0.0, 0.4, 2.0, 0.0, 0.0, 0.0, 1.0);
         assert!(matches!(Contact::hard_finger(skewed), Err(ContactError::NotSymmetric { row: 0, column: 1, .. })));
         assert!(matches!(Contact::frictionless_point(-1.0, Vector3::x()), Err(ContactError::Negative { .. })));

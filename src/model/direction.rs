@@ -17,7 +17,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_vector_but_zero_has_a_direction_of_length_one() {
+    fn every_vector_except_zero_has_a_unit_direction() {
         for length in [5e-324, 1e-310, 1e-200, 1.0, 1e200, f64::MAX] {
             let diagonal = Vector3::new(-length, length, length);
             assert!(

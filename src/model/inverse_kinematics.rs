@@ -73,7 +73,7 @@ impl InverseKinematics {
     }
 
     /// Returns the joint angles within the limits, rad, with the tip at `tip` (cm, in the finger's frame). Of several
-    /// solutions it is the one with the least largest distance of a joint from `present`, so that the finger keeps its
+    /// solutions it is the one whose largest joint motion from `present` is smallest, so that the finger keeps its
     /// branch.
     ///
     /// # Errors

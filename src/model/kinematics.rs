@@ -9,8 +9,8 @@ pub struct Links(pub [f64; 3]);
 impl Links {
     /// Returns the tip position in the finger's frame (Figure 8), cm, at joint angles `theta`, rad.
     ///
-    /// x = (l0 + l1 C1 + l2 C12) S0, y = -l1 S1 - l2 S12, z = (l0 + l1 C1 + l2 C12) C0. The derivative of this is eq.
-    /// 8.
+    /// x = (l0 + l1 C1 + l2 C12) S0, y = -l1 S1 - l2 S12, z = (l0 + l1 C1 + l2 C12) C0. Eq. 8 is the derivative of
+    /// these.
     pub fn tip(&self, theta: &Vector3<f64>) -> Vector3<f64> {
         let [_, l1, l2] = self.0;
         let (s0, c0) = theta[0].sin_cos();
@@ -48,7 +48,7 @@ impl Links {
     }
 
     /// Returns the rotation of the last link in the finger's frame. The link's own z axis points from joint 2 to the
-    /// tip. Joint 0 turns about y. Joints 1 and 2 turn about the x axis after its rotation by joint 0. The result is a
+    /// tip. Joint 0 turns about y. Joints 1 and 2 turn about the x axis as rotated by joint 0. The result is a
     /// quaternion, because the angle of a small rotation is lost in the trace of a matrix.
     pub fn tip_rotation(&self, theta: &Vector3<f64>) -> UnitQuaternion<f64> {
         UnitQuaternion::from_axis_angle(&Vector3::y_axis(), theta[0])

@@ -1,7 +1,7 @@
 //! Inertia, Coriolis and gravity torques of the three links, which are uniform cylinders, and of the tip, which is a
 //! point mass.
 //!
-//! The angular velocity of links 1 and 2 is the rate of joint 0 about the vertical plus a rate about the normal of the
+//! The angular velocity of links 1 and 2 is the rate of joint 0 about its axis plus a rate about the normal of the
 //! finger's plane. Both directions are principal axes of every link, so the inertia matrix does not couple joint 0 with
 //! the other joints.
 

@@ -89,7 +89,7 @@ mod tests {
     use std::os::unix::ffi::OsStrExt;
 
     #[test]
-    fn what_can_be_seen_stays_and_the_rest_is_escaped() {
+    fn visible_characters_stay_and_the_rest_is_escaped() {
         for (text, shown) in [
             ("tendon.minimum", "tendon.minimum"),
             ("/dev/tty\"ü'", "/dev/tty\"ü'"),

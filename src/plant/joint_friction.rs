@@ -8,8 +8,8 @@ use nalgebra::{Matrix3, Vector3};
 /// the error to three quarters or less in each sweep. The iteration ends early when nothing changes.
 const SWEEPS: usize = 60;
 
-/// Returns the joint rates after friction. `rates` are those without friction, and `bound` are the largest impulses, N
-/// m s.
+/// Returns the joint rates after friction. `rates` are those without friction, and `bound` has the largest impulses in
+/// N m s.
 pub(super) fn stop_by_friction(
     rates: Vector3<f64>,
     inverse_inertia: &Matrix3<f64>,

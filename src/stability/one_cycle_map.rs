@@ -11,11 +11,11 @@ use nalgebra::{DVector, Matrix3, Vector3, Vector4};
 /// Time in which the filters and integrals of the controller settle, s.
 const SETTLING: f64 = 0.3;
 
-/// Time for which the motion is observed, s, and the longer time if the first does not decide.
+/// Time for which the motion is observed, s, and the longer time if the first observation is inconclusive.
 const OBSERVED: f64 = 1.0;
 const OBSERVED_LONG: f64 = 4.0;
 
-/// If the largest modulus is less than this distance below 1, or above, the first observation does not decide.
+/// The first observation is inconclusive if the largest modulus is not below 1 by at least this.
 const SLOW: f64 = 2e-5;
 
 /// Interval between two observations, s. It is long enough to separate the remaining eigenvalues.

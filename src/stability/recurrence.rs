@@ -10,7 +10,7 @@ const WINDOW: usize = 80;
 const EXPLAINED: f64 = 1e-3;
 const LARGEST_ORDER: usize = 8;
 /// Least fraction of the last sample that a root must contribute to count.
-const PART: f64 = 0.01;
+const LEAST_SHARE: f64 = 0.01;
 
 /// Returns the factor by which the slowest mode of a freely decaying or growing linear system changes from one sample
 /// to the next. This is the largest modulus of its eigenvalues. `samples` has one vector of channels for each instant,
@@ -33,7 +33,7 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
         let Some((coefficients, missed)) = recurrence(window, order) else { break };
         if missed < EXPLAINED {
             let root = largest_root(window, &coefficients);
-            return if has_died(&samples[end..], root, ROUNDING * largest) { mean_change(window) } else { root };
+            return if has_decayed(&samples[end..], root, ROUNDING * largest) { mean_change(window) } else { root };
         }
     }
     mean_change(window)
@@ -41,8 +41,8 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
 
 /// Returns whether the samples in `follows` contradict a root. With the least contribution that counts, a mode with
 /// this root would have grown above `rounding`, but all samples are below it.
-fn has_died(follows: &[DVector<f64>], root: f64, rounding: f64) -> bool {
-    root.powi(follows.len() as i32) * PART > 1.0 && follows.iter().all(|sample| sample.norm() <= rounding)
+fn has_decayed(follows: &[DVector<f64>], root: f64, rounding: f64) -> bool {
+    root.powi(follows.len() as i32) * LEAST_SHARE > 1.0 && follows.iter().all(|sample| sample.norm() <= rounding)
 }
 
 /// Returns the mean change per sample, from the largest sample of the first half to that of the second. Returns NaN for
@@ -98,7 +98,7 @@ fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
         DMatrix::from_fn(window.len(), window[0].len(), |k, channel| Complex::from(window[k][channel] * weights[k]));
     let Ok(parts) = powers.clone().svd(true, true).solve(&samples, 1e-12) else { return f64::NAN };
     let last = window.len() - 1;
-    let has_part = |root: &usize| powers[(last, *root)].norm() * parts.row(*root).norm() >= PART;
+    let has_part = |root: &usize| powers[(last, *root)].norm() * parts.row(*root).norm() >= LEAST_SHARE;
     (0..order).filter(has_part).map(|root| roots[root].norm()).fold(0.0, f64::max)
 }
 
@@ -115,9 +115,9 @@ mod tests {
     }
 
     #[test]
-    fn a_root_that_what_follows_contradicts_is_none() {
+    fn a_root_that_later_samples_contradict_does_not_count() {
         assert!((growing(61, &[]) - 1.3).abs() < 1e-3);
-        assert!((growing(61, &[0.0; 5]) - 1.3).abs() < 1e-3, "too soon to tell");
+        assert!((growing(61, &[0.0; 5]) - 1.3).abs() < 1e-3, "too few later samples");
         assert!((growing(61, &[0.0; 30]) - 0.8).abs() < 0.05);
         let grows: Vec<f64> = (61..91).map(|k| 1e-14 * 1.3f64.powi(k)).collect();
         assert!((growing(61, &grows) - 1.3).abs() < 1e-3);

@@ -14,7 +14,7 @@ const SOFTEST: f64 = 1.0;
 const ROUNDING: f64 = 1e-5;
 
 /// A stiffness above what any pose supports, N/cm. The servo scales it down to the supported one.
-const BEYOND: f64 = 1e3;
+const UNSUPPORTED: f64 = 1e3;
 
 /// A finger with its controller, for tests with many springs.
 pub(super) struct Trial {
@@ -31,8 +31,8 @@ impl Trial {
 
     /// Returns the isotropic stiffness that each pose supports, N/cm.
     pub fn carried(&self, rests: &[Rest]) -> Vec<f64> {
-        let isotropic = |rest: &Rest| Rest { stiffness: Matrix3::identity() * BEYOND, damping: 1.0, ..*rest };
-        in_parallel(rests, |rest| BEYOND * self.map.scale(&isotropic(rest)))
+        let isotropic = |rest: &Rest| Rest { stiffness: Matrix3::identity() * UNSUPPORTED, damping: 1.0, ..*rest };
+        in_parallel(rests, |rest| UNSUPPORTED * self.map.scale(&isotropic(rest)))
     }
 
     /// Returns whether a rest is stable with a Kx between the softest and `stiffest`, N/cm. The relative stiffness of

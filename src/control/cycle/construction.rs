@@ -48,7 +48,7 @@ impl Controller {
             }
             Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };
-        // The bounds are narrower by what dither, noise and friction add to the tensions.
+        // The bounds leave room for the variation of the tensions by dither, noise and friction.
         let lower_reserve = state_feedback.as_ref().map_or(0.0, |law| law.lower_reserve);
         let upper_reserve = state_feedback.as_ref().map_or(Vector4::zeros(), |law| law.upper_reserve);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;

@@ -8,7 +8,7 @@ use nalgebra::{Vector3, Vector4};
 
 impl Controller {
     /// Runs one cycle of taking up slack. The joints are held where they are when the last tendon comes taut. `offset`
-    /// is what the gauges show too much, N, and `gravity` the torque that holds the links, N cm.
+    /// is the error of the gauges (shown minus true tension), N. `gravity` is the torque that holds the links, N cm.
     pub(super) fn take_up_slack(&self, state: &mut State, offset: &Vector4<f64>, gravity: Vector3<f64>) {
         let now = Slackness {
             travel: state.motor_angles.component_mul(&self.radius),

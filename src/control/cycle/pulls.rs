@@ -20,7 +20,7 @@ impl Controller {
         state.report.torque_scale = 1.0;
     }
 
-    /// Pulls with the motors, N, without tension feedback.
+    /// Commands pulls, N, with no feedback except the damper of the motors.
     pub(super) fn pull_freely(&self, state: &mut State, pulls: Vector4<f64>) {
         let speed = state.motor_speeds.component_mul(&self.radius);
         self.pull_open_loop(state, pulls - speed * self.motor_damping);
@@ -38,7 +38,7 @@ impl Controller {
         open_loop(state, state.pulls);
     }
 
-    /// Returns the box R^-1 with tensions that motors can reach with pulls of at most `limit`, N. Clamping the pulls
+    /// Returns the box R^-1, limited to tensions that motors reach with pulls of at most `limit`, N. Clamping the pulls
     /// instead would change the direction of the joint torque.
     pub(super) fn reachable(&self, limit: &Vector4<f64>) -> BoundedDistribution<'_> {
         self.distribution.below(&self.motor_torque.tensions(limit))
@@ -84,7 +84,7 @@ impl Controller {
     }
 }
 
-/// Resets the tension controller after pulls that it did not compute, so that it starts anew.
+/// Reports pulls that the tension controller did not compute, and resets that controller.
 pub(super) fn open_loop(state: &mut State, pulls: Vector4<f64>) {
     state.goes_on_from = None;
     state.tendons = TendonState::default();

@@ -17,7 +17,7 @@ impl Controller {
         let spring = self.spring_transition.advance(&mut state.spring, set_point);
         let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
         let push = self.soft_limits.push(&state.report.joints);
-        spring.soften(self.carried(&mut state.report, &spring.k_theta, &push));
+        spring.soften(self.supported(&mut state.report, &spring.k_theta, &push));
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
             _ => (state.report.joints, true),
@@ -40,7 +40,7 @@ impl Controller {
         let spring = self.spring_transition.advance(&mut state.spring, set_point);
         let k_theta = self.joint_stiffness.joint_stiffness(spring, &state.report.joints);
         let push = self.soft_limits.push(&state.report.joints);
-        let scale = self.carried(&mut state.report, &k_theta, &push);
+        let scale = self.supported(&mut state.report, &k_theta, &push);
         let spring = &Spring { stiffness: spring.stiffness * scale, ..*spring };
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
@@ -58,9 +58,9 @@ impl Controller {
         state.report.torque_scale = torque_scale;
     }
 
-    /// Returns the fraction of a spring's K_theta, N cm/rad, that the pose supports in addition to the springs of the
-    /// soft limits.
-    fn carried(&self, report: &mut Report, k_theta: &Matrix3<f64>, push: &Push) -> f64 {
+    /// Computes and reports the fraction of a spring's K_theta, N cm/rad, that the pose supports in addition to the
+    /// springs of the soft limits.
+    fn supported(&self, report: &mut Report, k_theta: &Matrix3<f64>, push: &Push) -> f64 {
         report.stiffness_scale = self.admissible.scale(k_theta, &push.stiffness);
         report.stiffness_scale
     }

@@ -3,9 +3,12 @@
 //!
 //! n^T (r m - (t - t_home) / k) = 0
 //!
-//! for any joint angles. Equivalently, three tendons determine the tension of the fourth: t = k (r m - R^T theta) +
-//! t_home. The difference at the start of monitoring counts as zero, because encoders that were never zeroed are no
-//! reason to stop a finger.
+//! for any joint angles. Equivalently, three tendons determine the tension of the fourth,
+//!
+//! t = k (r m - R^T theta) + t_home.
+//!
+//! The difference at the start of monitoring counts as zero, because encoders that were never zeroed are no reason to
+//! stop a finger.
 
 use super::alarm::{Alarm, Symptom};
 use super::sample::Sample;
@@ -51,7 +54,7 @@ pub(super) struct Memory {
     /// Difference after subtraction of the zero, N.
     difference: f64,
     /// Disagreement divided by the tolerated one.
-    part: f64,
+    ratio: f64,
     duration: f64,
     /// Tension of each tendon minus the tension that its gauge shows, if the other three gauges are right, N.
     missing: Vector4<f64>,
@@ -68,7 +71,7 @@ impl Memory {
 
     /// Returns whether the disagreement exceeds half of the tolerated one.
     pub fn doubtful(&self) -> bool {
-        self.part > 0.5
+        self.ratio > 0.5
     }
 }
 
@@ -105,12 +108,12 @@ impl Agreement {
         memory.missing = self.of_tension.map(|share| memory.difference / share);
         let explained = memory.difference < 0.0 && hangs;
         let tolerated = TOLERANCE + self.tolerance * self.of_tension.dot(&(above - memory.above).abs());
-        memory.part = if explained { 0.0 } else { memory.difference.abs() / tolerated };
+        memory.ratio = if explained { 0.0 } else { memory.difference.abs() / tolerated };
     }
 
     /// Returns an alarm if the disagreement has lasted too long. `explained` means that another fault causes it.
     pub fn watch(&self, memory: &mut Memory, sample: &Sample, explained: bool) -> Option<Alarm> {
-        let counts = memory.part > 1.0 && !explained;
+        let counts = memory.ratio > 1.0 && !explained;
         memory.duration = if counts { memory.duration + sample.elapsed } else { 0.0 };
         // The suspect is the gauge that differs most from the pull of its motor.
         let suspect = Part::gauge(memory.unbalanced.iamax());

@@ -6,13 +6,13 @@ use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 
 /// Factor by which a tendon may exceed t_max. Commands stay below t_max, but impacts and steps overshoot it.
-const BEYOND: f64 = 1.3;
+const OVERSHOOT: f64 = 1.3;
 
 /// A gauge that shows less than minus this fraction of t_min is defective.
-const BELOW_NOTHING: f64 = 0.5;
+const BELOW_ZERO: f64 = 0.5;
 
-/// A gauge whose last tension was above this fraction of t_max reaches the end of its range because of the tension. A
-/// defective gauge jumps there.
+/// If the last tension before the end of the range was above this fraction of t_max, the tendon was pulled to the end.
+/// From a lower tension the gauge has jumped there, and is defective.
 const PULLED: f64 = 0.5;
 
 /// Time for which either condition must last, s.
@@ -39,8 +39,8 @@ impl GaugeRange {
     pub fn new(finger: &ConfiguredFinger) -> Self {
         Self {
             pulled: PULLED * finger.tendon.maximum,
-            highest: BEYOND * finger.tendon.maximum,
-            lowest: -BELOW_NOTHING * finger.tendon.minimum,
+            highest: OVERSHOOT * finger.tendon.maximum,
+            lowest: -BELOW_ZERO * finger.tendon.minimum,
         }
     }
 

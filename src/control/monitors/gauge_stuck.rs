@@ -15,16 +15,16 @@ const KNOWN: u32 = 256;
 
 /// A gauge that shows one count in this number of samples, while all others are known to flicker, was dead from the
 /// start.
-const NEVER: u32 = 512;
+const DEAD_FROM_START: u32 = 512;
 
 /// A dead gauge soon differs from the commanded tension by more than this fraction of t_min, because the commands keep
 /// changing; at rest the dither changes them. A gauge without noise whose tendon has the commanded tension may show one
 /// count permanently. This was observed while other gauges flickered.
-const OFF: f64 = 0.015;
+const OFFSET: f64 = 0.015;
 
-/// Natural logarithm of the probability below which a constant count means a dead gauge: the probability that a working
-/// gauge with the learned flicker shows one count for this long. It is once in 10^11 samples, a year of four gauges at
-/// 1000 Hz.
+/// Natural logarithm of the probability below which a constant count means a dead gauge. The probability is that of a
+/// working gauge with the learned flicker showing one count for this long. The value is once in 10^11 samples, a year
+/// of four gauges at 1000 Hz.
 const UNLIKELY: f64 = -25.3;
 
 /// Least assumed probability that a sample of a gauge repeats the previous one. A gauge in motion hardly repeats a
@@ -46,7 +46,7 @@ const LEARNING_REVERSALS: f64 = 1.0 / 512.0;
 const SLACK: f64 = 0.3;
 
 /// Number of samples with the same count after which a gauge may be judged.
-const ROW: u32 = 4;
+const LEAST_ROW: u32 = 4;
 
 /// A gauge that flickered and then showed one count in this number of samples is dead if another monitor indicates it
 /// too.
@@ -59,7 +59,7 @@ pub(super) struct GaugeStuck {
     /// side only. Such a gauge is not used to judge others.
     slack: f64,
     /// Difference from the commanded tension, N.
-    off: f64,
+    offset: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -110,7 +110,7 @@ impl Memory {
 
 impl GaugeStuck {
     pub fn new(finger: &ConfiguredFinger) -> Self {
-        Self { slack: SLACK * finger.tendon.minimum, off: OFF * finger.tendon.minimum }
+        Self { slack: SLACK * finger.tendon.minimum, offset: OFFSET * finger.tendon.minimum }
     }
 
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
@@ -126,12 +126,12 @@ impl GaugeStuck {
         // Whether at least two other gauges have changed recently.
         let others_flicker = |gauge: usize| {
             let flickers =
-                |&other: &usize| other != gauge && same_for[other] < ROW && sample.tensions[other] > self.slack;
+                |&other: &usize| other != gauge && same_for[other] < LEAST_ROW && sample.tensions[other] > self.slack;
             (0..4).filter(flickers).count() >= 2
         };
         for gauge in 0..4 {
             // Samples of a gauge that is being judged must not change the learned flicker.
-            if memory.same[gauge] < ROW || !others_flicker(gauge) {
+            if memory.same[gauge] < LEAST_ROW || !others_flicker(gauge) {
                 let learn = |mean: &mut f64, is: bool, gain: f64| *mean += (f64::from(u8::from(is)) - *mean) * gain;
                 let same = memory.same[gauge] > 0;
                 learn(&mut memory.repeats[gauge], same, fast);
@@ -147,9 +147,9 @@ impl GaugeStuck {
             // The gauge of a hanging tendon may be at the end of its range, and then shows only half of its noise.
             let least = if sample.tensions[gauge] < self.slack { MOST_REPEATS } else { LEAST_REPEATS };
             let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(least).ln() < UNLIKELY;
-            let off = (sample.tensions[gauge] - sample.report.desired_tensions[gauge]).abs() > self.off;
+            let off = (sample.tensions[gauge] - sample.report.desired_tensions[gauge]).abs() > self.offset;
             let died = known[gauge] && unlikely && others_flicker(gauge);
-            let was_dead = memory.same[gauge] >= NEVER && alone(gauge) && sample.tensions[gauge] > self.slack;
+            let was_dead = memory.same[gauge] >= DEAD_FROM_START && alone(gauge) && sample.tensions[gauge] > self.slack;
             (off && (died || was_dead)).then_some(f64::from(counts[gauge]))
         })
     }

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 /// Fraction of the way from its limit to its stop at which a joint counts as at its stop. Tendons and stops are
 /// elastic.
-const NEARLY: f64 = 0.8;
+const STOP_FRACTION: f64 = 0.8;
 
 #[derive(Clone, Debug)]
 pub(super) struct JointStop {
@@ -20,7 +20,7 @@ pub(super) struct JointStop {
 impl JointStop {
     pub fn new(finger: &ConfiguredFinger) -> Self {
         let ((low, high), (lower, upper)) = (finger.joint_limits(), finger.stops());
-        Self { low: low.lerp(&lower, NEARLY), high: high.lerp(&upper, NEARLY) }
+        Self { low: low.lerp(&lower, STOP_FRACTION), high: high.lerp(&upper, STOP_FRACTION) }
     }
 
     pub fn watch(&self, sample: &Sample) -> Option<Alarm> {

@@ -25,7 +25,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_share_follows_what_goes_wrong_and_forgets() {
+    fn the_fraction_follows_failures_and_fades() {
         let mut quality = LineQuality::new(100.0);
         let every_fifth = (0..2000).map(|period| quality.note(f64::from(u8::from(period % 5 == 0)))).last();
         assert!((every_fifth.unwrap_or_default() - 0.2).abs() < 0.01, "{every_fifth:?}");

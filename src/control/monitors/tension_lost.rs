@@ -19,8 +19,8 @@ const LOW: f64 = 0.3;
 /// Fraction of t_min below which the tension of a tendon is gone.
 const GONE: f64 = 0.1;
 
-/// Fraction of t_min from which the tension of a low tendon counts as missing: the tension that the stretch shows
-/// beyond the gauge, minus what it showed before the tendon became low.
+/// Fraction of t_min from which the tension of a low tendon counts as missing. It applies to the tension that the
+/// stretch shows beyond the gauge, minus what the stretch showed before the tendon became low.
 const MISSED: f64 = 0.3;
 
 /// Time constant of the mean before the tendon became low, s.

@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_motor_at_its_limit_comes_down_to_what_it_can_give_for_ever() {
+    fn the_limit_of_a_motor_falls_to_its_continuous_torque() {
         let finger = ConfiguredFinger::default();
         let heating = MotorHeating::new(&finger, Vector4::repeat(100.0), &Vector4::repeat(0.0475), 100.0);
         let mut heat = Heat::default();
@@ -65,7 +65,8 @@ mod tests {
             seconds += if limit[0] > 99.9 { 0.01 } else { 0.0 };
             heating.advance(&mut heat, &limit);
         }
-        // The limit is full until 0.8 c^2 = l^2 (1 - exp(-t / 15 s)), with l = 1.9 c.
+        // With the continuous pull c, the limit of a cold motor is l = 1.9 c. It is available until
+        // 0.8 c^2 = l^2 (1 - exp(-t / 15 s)).
         assert!((seconds - 3.75f64).abs() < 0.1, "{seconds}");
         assert!((heating.limit(&heat)[0] - 2.5 / 0.0475).abs() < 0.5);
         for _ in 0..1500 {

@@ -14,7 +14,7 @@ pub(crate) struct MotorTorque {
     /// Largest pull of each motor, N.
     pub limit: Vector4<f64>,
     friction: MotorFriction,
-    /// Fraction of a pull that is left behind each conduit.
+    /// Fraction of a pull that remains as tension behind each conduit, whose friction opposes the pull.
     past_conduit: Vector4<f64>,
 }
 
@@ -37,8 +37,7 @@ impl MotorTorque {
         pulls.component_mul(&self.signed_radius)
     }
 
-    /// Returns the tensions, N, that motors with these pulls, N, reach in either direction of motion, with friction
-    /// acting against them.
+    /// Returns the tensions, N, that motors reach with these pulls, N, even if friction opposes them.
     pub fn tensions(&self, pulls: &Vector4<f64>) -> Vector4<f64> {
         (pulls - self.friction.coulomb).component_mul(&self.past_conduit)
     }

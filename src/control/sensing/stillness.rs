@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 const REST: f64 = 0.05;
 
 /// Largest motion of a motor that counts as at rest, rad. The last bit of an encoder flickers.
-const WANDER: f64 = 0.007;
+const LARGEST_MOTION: f64 = 0.007;
 
 /// The position of the motors, and the time for which they have kept it.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
@@ -24,7 +24,7 @@ impl Stillness {
 
     /// Records the motor angles, rad, `period` seconds after the previous ones.
     pub fn note(&mut self, motor_angles: &Vector4<f64>, period: f64) {
-        if (motor_angles - self.at).amax() <= WANDER {
+        if (motor_angles - self.at).amax() <= LARGEST_MOTION {
             self.seconds += period;
         } else {
             *self = Self::new(*motor_angles);

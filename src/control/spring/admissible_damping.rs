@@ -3,8 +3,8 @@
 use crate::model::configuration::{ConfiguredFinger, Scheme};
 use nalgebra::{Matrix3, Matrix3x4};
 
-/// Stiffness that the tendons of the default finger support in the middle of its joint ranges, N/cm. See [`carried`].
-const DEFAULT_CARRIED: f64 = 12.306_708_616;
+/// Stiffness that the tendons of the default finger support in the middle of its joint ranges, N/cm. See [`supported`].
+const DEFAULT_SUPPORTED: f64 = 12.306_708_616;
 
 /// Below this rate, Hz, the delay of a cycle narrows the range.
 const SLOW: f64 = 1000.0;
@@ -19,8 +19,8 @@ const SLOW: f64 = 1000.0;
 /// ratio of 1 is always admitted: it is the damping that the controller computes, and the bound of Kx covers its
 /// stability.
 ///
-/// A finger with other links or tendons has the range of the default finger at the stiffness that is the same fraction
-/// of what its tendons support.
+/// For a finger with other links or tendons, the stiffness is first converted to the stiffness of the default finger
+/// that is the same fraction of what the tendons support.
 ///
 /// Because both limits are straight lines, every point between two admitted pairs of stiffness and damping is admitted
 /// too.
@@ -38,7 +38,7 @@ impl AdmissibleDamping {
     /// 1 is admitted. No controller accepts such an R.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Self {
         let scheme = finger.controller.scheme(rate);
-        let correspondence = carried(finger).map_or(f64::INFINITY, |carried| DEFAULT_CARRIED / carried);
+        let correspondence = supported(finger).map_or(f64::INFINITY, |supported| DEFAULT_SUPPORTED / supported);
         let (least, most) = match rate < SLOW {
             true => ((0.7, 0.07), (2.0, -0.2)),
             false => ((0.4, 0.09), (2.5, -0.22)),
@@ -60,7 +60,7 @@ impl AdmissibleDamping {
 
 /// Returns the smallest stiffness, over all directions, that locked tendons give the tip in the middle of the joint
 /// ranges, N/cm. This is the smallest eigenvalue of J^-T (R k R^T) J^-1. Returns None if the rank of R is below 3.
-fn carried(finger: &ConfiguredFinger) -> Option<f64> {
+fn supported(finger: &ConfiguredFinger) -> Option<f64> {
     let (low, high) = finger.joint_limits();
     let jacobian = finger.links().jacobian(&((low + high) * 0.5));
     let (r, stiffness) = (finger.r(), finger.tendon.stiffness);
@@ -76,8 +76,8 @@ mod tests {
 
     #[test]
     fn the_default_finger_corresponds_to_itself() {
-        let carried = carried(&ConfiguredFinger::default()).expect("R has rank 3");
-        assert!((carried / DEFAULT_CARRIED - 1.0).abs() < 1e-6, "{carried}");
+        let supported = supported(&ConfiguredFinger::default()).expect("R has rank 3");
+        assert!((supported / DEFAULT_SUPPORTED - 1.0).abs() < 1e-6, "{supported}");
     }
 
     #[test]

@@ -39,8 +39,8 @@ impl AdmissibleStiffness {
         Some(Self { inverse, compliance, share: share(finger.controller.scheme(rate), rate) })
     }
 
-    /// Returns the factor, 0 to 1, by which K_theta must be scaled in addition to `limits`, the stiffness of the soft
-    /// joint limits. Both are in N cm/rad.
+    /// Returns the factor, 0 to 1, by which K_theta must be scaled to leave room for `limits`, the stiffness of the
+    /// soft joint limits. Both are in N cm/rad.
     ///
     /// The largest eigenvalue of a sum is at most the sum of the largest eigenvalues. That of the soft limits is at
     /// most their trace.

@@ -20,16 +20,16 @@ const LEAST_LEVER: f64 = 0.5;
 /// damping z of the set point.
 ///
 /// J is the 6 x 3 Jacobian of the tip's motion, and K the 6 x 6 stiffness of the contact. For a contact that transmits
-/// D directions, selected by a D x 6 matrix S, K is S^T K_c S with the D x D stiffness K_c. With the D x 3 Jacobian J_c
-/// = S J, K_theta is J_c^T K_c J_c, which is eq. 6.
+/// D directions, selected by a D x 6 matrix S, K is S^T K_c S with the D x D stiffness K_c. The D x 3 Jacobian of eq. 6
+/// is then S J, because K_theta = (S J)^T K_c (S J).
 ///
 /// B^2 is beta where K_theta has its reference value. It is proportional to 1/sqrt(K_theta), joint by joint, so that
 /// the damping ratio stays constant if Kx or the lever of a joint changes. A tip near the axis of joint 0 needs this,
 /// because that joint is then soft.
 ///
-/// If the lever r of joint 0 is less than the least lever rho, joint 0 has an additional stiffness n^T K n (rho^2 -
-/// r^2), where n is the direction in which the joint moves the tip. This is a spring to theta_d. It starts from zero at
-/// r = rho, and is zero if K has no stiffness along n.
+/// If the lever r of joint 0 is less than the least lever rho, joint 0 has an additional spring to theta_d with the
+/// stiffness n^T K n (rho^2 - r^2). n is the direction in which the joint moves the tip. The stiffness starts from zero
+/// at r = rho, and is zero if K has no stiffness along n.
 #[derive(Clone, Debug)]
 pub struct JointStiffness {
     links: Links,

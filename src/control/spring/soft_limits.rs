@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 /// Stiffness of a limit where the tendons support it, N cm/rad. A bent finger at 3 N/cm has about this stiffness.
 const STIFFNESS: f64 = 150.0;
 
-/// Largest fraction of the stiffness that a pose supports which the limit of one joint may use. All three joints at
-/// their limits still leave some for the tip.
+/// Largest fraction of the supported stiffness of a joint that its limit uses. With all three joints at their limits,
+/// some stiffness is left for the tip.
 const PART: f64 = 0.3;
 
 /// Depth beyond the limit, rad, at which a limit reaches its full stiffness. With a step in stiffness, a finger that
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_push_begins_with_nothing_and_is_as_stiff_as_it_says() {
+    fn the_push_starts_from_zero_and_has_the_reported_stiffness() {
         let limits = SoftLimits::new(&ConfiguredFinger::default(), &Vector3::new(1000.0, 1000.0, 100.0));
         assert_eq!(limits.stiffness, Vector3::new(STIFFNESS, STIFFNESS, PART * 100.0));
         let at = |joint: usize, beyond: f64| {

@@ -43,8 +43,8 @@ impl Spring {
     }
 }
 
-/// Two equal first-order stages in series. With two stages the torque has no kink either, and the finger still follows
-/// a planner that sends a new spring in every cycle. The spring changes gradually, and not its torque, because every
+/// Two equal first-order stages in series. With one stage the torque would have a kink. The finger also follows a
+/// planner that sends a new spring in every cycle. The spring changes gradually, and not its torque, because every
 /// spring between two springs within the bound is within the bound too.
 #[derive(Clone, Debug)]
 pub(crate) struct SpringTransition {

@@ -105,7 +105,7 @@ impl Drives {
     }
 
     /// Returns R m R^T / alpha, kg m^2: the inertia of the motors that acts on the joints.
-    fn felt(&self, numbers: &Numbers, r: &Matrix3x4<f64>) -> Matrix3<f64> {
+    fn apparent_inertia(&self, numbers: &Numbers, r: &Matrix3x4<f64>) -> Matrix3<f64> {
         r * Matrix4x3::from_fn(|tendon, joint| self.mass[tendon] * r[(joint, tendon)]) / numbers.inertia_gain
     }
 }
@@ -137,7 +137,7 @@ impl StateFeedback {
         let relative_damping = drives.relative_damping(&numbers, &dynamics, &r);
         let joint_coulomb = Vector3::from(finger.friction.joint_coulomb) * 0.01;
         let shaken = joint_coulomb * numbers.dither;
-        let felt_motors = drives.felt(&numbers, &r);
+        let apparent_motors = drives.apparent_inertia(&numbers, &r);
         let friction = MotorFriction::new(finger, tendons);
         let lower_reserve = (pseudo_inverse.abs() * shaken).max() + NOISE_RESERVE * GAUGE_NOISE;
         let upper_reserve = |motor| lower_reserve + FRICTION_RESERVE * friction.at(motor, maximum[motor]);
@@ -160,8 +160,8 @@ impl StateFeedback {
             r,
             pseudo_inverse,
             common: tendons.pretension(1.0).normalize(),
-            felt_motors,
-            damped_motors: felt_motors * numbers.felt,
+            apparent_motors,
+            damped_motors: apparent_motors * numbers.damped_inertia,
             mass: drives.mass,
             viscous: drives.viscous,
             stiffness: drives.stiffness,

@@ -24,14 +24,14 @@ impl DampingDesign {
     /// is in N m/rad. `relative` scales zeta.
     pub fn damping(
         &self,
-        felt: &Matrix3<f64>,
+        inertia: &Matrix3<f64>,
         links: &Matrix3<f64>,
         k_theta: &Matrix3<f64>,
         relative: f64,
     ) -> Matrix3<f64> {
-        let inverse = inverse(felt);
+        let inverse = inverse(inertia);
         let floor = self.least_frequency * self.least_frequency;
-        let mean = felt * square_root(&(inverse * k_theta + Matrix3::identity() * floor));
+        let mean = inertia * square_root(&(inverse * k_theta + Matrix3::identity() * floor));
         let lagging = links * inverse * k_theta;
         mean * (2.0 * self.ratio * relative) + (lagging + lagging.transpose()) * (0.5 * self.lag)
     }

@@ -116,13 +116,13 @@ impl StateFeedback {
         let k_theta =
             self.joint_stiffness.joint_stiffness(spring, &now.joints) + Matrix3::from_diagonal(&push.stiffness);
         let k_theta = k_theta * 0.01;
-        let felt = self.felt_motors + inertia;
+        let apparent = self.apparent_motors + inertia;
         let damped = self.damped_motors + inertia;
         let damping = self.damping.damping(&damped, inertia, &k_theta, spring.damping);
         let joint_friction = self.joint_friction(state, &now.rates, &reference.rates, &damping);
         let held = self.joint_stiffness.spring(spring, &now.joints) + push.torque + gravity.torques(&now.joints);
         held * 0.01 - damping * (now.rates - reference.rates)
-            + felt * reference.accelerations
+            + apparent * reference.accelerations
             + self.dynamics.coriolis(&now.joints, &reference.rates)
             + self.joint_viscous.component_mul(&reference.rates)
             + joint_friction

@@ -29,7 +29,7 @@ pub(super) struct Numbers {
     /// Lag of the tensions, and inertia of the motors, for which the spring's damping is designed. Both are relative to
     /// the values that follow from alpha.
     pub lag: f64,
-    pub felt: f64,
+    pub damped_inertia: f64,
     /// alpha and relative damping for the common component of the tendons, divided by those for the components that
     /// turn the joints. Differences between motors convert the common component to joint torque.
     pub common_gain: f64,
@@ -55,8 +55,7 @@ const DITHER_FREQUENCY: f64 = 40.0;
 /// See [`Numbers::friction_slope`].
 const FRICTION_SLOPE: f64 = 0.4;
 
-/// The numbers that the table contains for several rates. Without a comment they have the meaning of those in
-/// [`Numbers`].
+/// The numbers that the table contains for several rates. Fields without a comment are those of [`Numbers`].
 #[derive(Clone, Copy)]
 struct TunedNumbers {
     inertia_gain: f64,
@@ -71,7 +70,7 @@ struct TunedNumbers {
     lag: f64,
     common_gain: f64,
     common_damping: f64,
-    felt: f64,
+    damped_inertia: f64,
     /// Time constant of each pole of the reference, s.
     reference_time: f64,
 }
@@ -88,7 +87,7 @@ impl Tuned for TunedNumbers {
             lag: number(lower.lag, upper.lag),
             common_gain: number(lower.common_gain, upper.common_gain),
             common_damping: number(lower.common_damping, upper.common_damping),
-            felt: number(lower.felt, upper.felt),
+            damped_inertia: number(lower.damped_inertia, upper.damped_inertia),
             reference_time: number(lower.reference_time, upper.reference_time),
         }
     }
@@ -107,7 +106,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             lag: 0.04,
             common_gain: 0.2,
             common_damping: 0.6,
-            felt: 1.4,
+            damped_inertia: 1.4,
             reference_time: 0.012,
         },
     ),
@@ -123,7 +122,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             lag: 0.015,
             common_gain: 0.043,
             common_damping: 0.266,
-            felt: 10.2,
+            damped_inertia: 10.2,
             reference_time: 0.008,
         },
     ),
@@ -139,7 +138,7 @@ const TABLE: [Row<TunedNumbers>; 3] = [
             lag: 0.042,
             common_gain: 0.095,
             common_damping: 0.184,
-            felt: 9.03,
+            damped_inertia: 9.03,
             reference_time: 0.008,
         },
     ),
@@ -157,7 +156,7 @@ impl Numbers {
             link_bandwidth: tuned.link * rate,
             sample_offset: -tuned.look_back,
             lag: tuned.lag,
-            felt: tuned.felt,
+            damped_inertia: tuned.damped_inertia,
             common_gain: tuned.common_gain,
             common_damping: tuned.common_damping,
             friction_slope: FRICTION_SLOPE,

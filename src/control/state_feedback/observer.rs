@@ -103,7 +103,8 @@ impl TendonObserver {
         let encoder = design.encoder_step.powi(2) / 12.0;
         let gauge = design.gauge_step.powi(2) / 12.0 + design.gauge_noise.powi(2);
         let noise = Matrix2::new(encoder, 0.0, 0.0, gauge);
-        // For n integrators in a row a bandwidth w needs the noise density w^2n r T.
+        // For n integrators in series, a bandwidth w needs the noise density w^(2n) r T, with the variance r of the
+        // sensor and the period T.
         let mut density = Matrix6::zeros();
         density[(5, 5)] = design.link.powi(6) * (encoder + gauge / (stiffness * stiffness)) * period;
         density[(4, 4)] = design.disturbance.powi(2) * gauge * period;
@@ -130,7 +131,7 @@ impl TendonObserver {
                 break;
             }
         }
-        // One update is missing.
+        // A lost reply: a prediction without an update.
         covariance = predicted(&covariance);
         let recovery = std::array::from_fn(|_| {
             let gain = gain_of(&covariance);
@@ -264,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_motor_does_not_give_is_found() {
+    fn the_observer_finds_the_friction_of_the_motor() {
         let (tension, disturbance) = found(200.0);
         assert!((tension - 17.0).abs() < 1e-3, "{tension}");
         assert!((disturbance + 3.0).abs() < 1e-2, "{disturbance}");
@@ -274,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gain_after_a_lost_reply_goes_back_to_the_steady_one() {
+    fn the_gain_after_a_lost_reply_returns_to_the_steady_gain() {
         let observer = TendonObserver::new(TENDON, &design(200.0), 1e-3).expect("an observer");
         let apart = |gain: &Matrix6x2<f64>| (gain - observer.gain).component_div(&observer.gain).amax();
         assert!(apart(&observer.recovery[0]) > 0.1);

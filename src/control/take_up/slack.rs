@@ -15,15 +15,15 @@ use serde::{Deserialize, Serialize};
 const SPEED: f64 = 0.003;
 const ACCELERATION: f64 = 0.002;
 
-/// A tendon counts as taut when its tension is this fraction of t_min (`FELT`) above the lowest tension so far, which
-/// works with any zero of the gauge. It also counts as taut at the absolute fraction `TAUT` of t_min.
-const FELT: f64 = 0.04;
+/// A tendon counts as taut when its tension is this fraction of t_min (`DETECTED`) above the lowest tension so far,
+/// which works with any zero of the gauge. It also counts as taut at the absolute fraction `TAUT` of t_min.
+const DETECTED: f64 = 0.04;
 const TAUT: f64 = 0.2;
 
 /// Position control of a motor: stiffness, N/m; damping, N s/m; and largest pull in multiples of t_min.
-const HOLD: f64 = 15_000.0;
+const STIFFNESS: f64 = 15_000.0;
 const DAMPING: f64 = 200.0;
-const STRONGEST: f64 = 1.2;
+const LARGEST_PULL: f64 = 1.2;
 
 /// Time constant of the low-pass filter on the tensions, s.
 const SMOOTHING: f64 = 0.003;
@@ -88,8 +88,8 @@ pub(crate) struct Slackness {
 pub(crate) enum TakeUp {
     /// Pulls at the tendon, N.
     Pull(Vector4<f64>),
-    /// Joint torques, N cm, with tensions that are lower than usual by `below`, N. `begins` is true in the first such
-    /// cycle.
+    /// Joint torques, N cm. The tensions that produce them are reduced by `below`, N. `begins` is true in the first
+    /// such cycle.
     Hold { torques: Vector3<f64>, below: Vector4<f64>, begins: bool },
 }
 
@@ -126,8 +126,8 @@ impl SlackTakeUp {
                     *slack = Slack::Rising { joints: now.joints, seconds: 0.0 };
                     return self.rise(&now.joints, 0.0, now);
                 }
-                let strongest = STRONGEST * self.minimum;
-                let pulls = (winding.target - now.travel) * HOLD - now.speeds * DAMPING;
+                let strongest = LARGEST_PULL * self.minimum;
+                let pulls = (winding.target - now.travel) * STIFFNESS - now.speeds * DAMPING;
                 TakeUp::Pull(pulls.map(|pull| pull.clamp(-strongest, strongest)))
             }
             Slack::Rising { joints, seconds } => {
@@ -137,7 +137,7 @@ impl SlackTakeUp {
         }
     }
 
-    /// Moves every motor on that has not yet detected tension. Returns whether all tendons are taut at the same time.
+    /// Advances every motor that has not yet detected tension. Returns whether all tendons are taut at the same time.
     fn wind(&self, winding: &mut Winding, now: &Slackness) -> bool {
         winding.seconds += self.period;
         winding.tensions += (now.tensions - winding.tensions) * (self.period / SMOOTHING).min(1.0);
@@ -146,7 +146,7 @@ impl SlackTakeUp {
         let mut all = true;
         for motor in 0..4 {
             let tension = winding.tensions[motor];
-            let taut = tension > TAUT * self.minimum || tension - winding.lowest[motor] > FELT * self.minimum;
+            let taut = tension > TAUT * self.minimum || tension - winding.lowest[motor] > DETECTED * self.minimum;
             all &= taut;
             if taut && !winding.felt[motor] {
                 winding.felt[motor] = true;
@@ -167,7 +167,7 @@ impl SlackTakeUp {
 
     fn rise(&self, joints: &Vector3<f64>, seconds: f64, now: &Slackness) -> TakeUp {
         let torques = self.hold.torques(&(joints - now.joints), &now.joint_rates, UNLIMITED);
-        let missing = (1.0 - seconds / RISING).max(0.0) * (1.0 - FELT);
+        let missing = (1.0 - seconds / RISING).max(0.0) * (1.0 - DETECTED);
         TakeUp::Hold { torques, below: self.pretension * missing, begins: seconds == 0.0 }
     }
 }

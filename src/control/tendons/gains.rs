@@ -17,9 +17,9 @@ pub(crate) struct Gains {
     pub adaptation_gain: f64,
 }
 
-/// Speed of the set point, rad/s. Led at this speed to each of 200 random poses at 3 N/cm, a finger settled within 0.02
-/// rad and no tension fell below 1.6 N, with Figures 9 and 10 at all three rates of the table. At 1.5 times this speed
-/// the finger missed two poses, and a tendon became slack.
+/// Speed of the set point, rad/s. At this speed a finger settled within 0.02 rad in each of 200 random poses at 3 N/cm,
+/// and no tension fell below 1.6 N. This was found with Figures 9 and 10 at all three rates of the table. At 1.5 times
+/// this speed the finger did not settle in two poses, and a tendon became slack.
 const SET_POINT_SPEED: f64 = 2.0;
 
 /// Speed of the set point with state feedback from 1000 Hz up, rad/s. The finger follows its reference, which may
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_configured_follows_from_the_rate() {
+    fn gains_that_are_not_configured_follow_from_the_rate() {
         let mut configured = ConfiguredController::default();
         let between = (0.1f64 * 2.0).sqrt();
         for (rate, expected) in
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_work_is_refused_by_name() {
+    fn an_unusable_gain_is_refused_with_its_key() {
         let refused = |configured: ConfiguredController| Gains::new(&configured, 1000.0).unwrap_err().key;
         let base = ConfiguredController::default();
         let proportional =

@@ -77,7 +77,7 @@ impl TensionDistribution {
         BoundedDistribution { of: self, maximum: self.maximum.inf(limit).sup(&self.at_rest) }
     }
 
-    /// Returns [`BoundedDistribution::distribute`] without a limit by the motors.
+    /// Returns [`BoundedDistribution::distribute`] with the full upper bounds.
     pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         self.below(&self.maximum).distribute(torques)
     }

@@ -51,8 +51,8 @@ pub struct ConfiguredFinger {
     pub port: String,
     /// Bit rate of the port, bit/s.
     pub baud: u32,
-    /// Whether the library searches for a port that has failed, and opens it again. The finger continues only after it
-    /// is told to recover.
+    /// Whether the library searches for a port that has failed, and opens it again. The finger continues only after a
+    /// recovery is requested.
     pub reconnect: bool,
     /// Address of the finger on its board, 1 to 15. With 0 it is the finger's number.
     pub address: u8,
