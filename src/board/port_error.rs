@@ -12,7 +12,7 @@ pub enum PortError {
     /// ENOENT.
     #[error("{} does not exist: check the cable, the board's power and finger.port (ls -l \
              /dev/serial/by-id)", ShownPath(.0))]
-    MissingPermission(PathBuf),
+    Missing(PathBuf),
     /// EACCES.
     #[error("no permission to open {}: add the user to the port's group (usually dialout) and log in \
              again", ShownPath(.0))]
@@ -64,7 +64,7 @@ pub enum PortError {
     )]
     Vanished,
     /// EBADF: the descriptor is closed, or its number now belongs to another file.
-    #[error("another part of this program has closed the descriptor of the port. Call CloseHand and OpenHand")]
+    #[error("another part of this program has closed the descriptor of the port. Close the hand and open it again")]
     Closed,
     /// A read or write failed.
     #[error("reading or writing the port failed: {0}. Unplug the adapter and plug it in")]
@@ -75,7 +75,7 @@ impl PortError {
     /// Returns the errno that the system reported, or the closest one if it reported none.
     pub fn errno(&self) -> i32 {
         match self {
-            PortError::MissingPermission(_) => libc::ENOENT,
+            PortError::Missing(_) => libc::ENOENT,
             PortError::Forbidden(_) => libc::EACCES,
             PortError::Busy(_) => libc::EBUSY,
             PortError::NotASerialPort(_) => libc::ENOTTY,
@@ -92,7 +92,7 @@ impl PortError {
     pub(super) fn at_opening(path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.raw_os_error() {
-            Some(libc::ENOENT) => Self::MissingPermission(path),
+            Some(libc::ENOENT) => Self::Missing(path),
             Some(libc::EACCES) => Self::Forbidden(path),
             // The program that has the port open has marked it for exclusive use.
             Some(libc::EBUSY) => Self::Busy(path),

@@ -161,7 +161,7 @@ mod tests {
         let result = guarded("SendPos", || panic!("a defect"));
         let errno = std::io::Error::last_os_error().raw_os_error();
         assert_eq!((result, errno), (-1, Some(libc::EIO)));
-        assert_eq!(last_text(), "SendPos: the library failed (a defect): a defect of this library, please report it");
+        assert_eq!(last_text(), "SendPos: the library failed (a defect): please report this defect of the library");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The texts of FaultText.
 
+use crate::capi::remedy_calls::RemedyCalls;
 use crate::finger::FaultKind;
 use std::ffi::CString;
 use std::sync::LazyLock;
@@ -7,9 +8,9 @@ use std::sync::LazyLock;
 /// One text for each kind of fault, ordered by number.
 pub(super) static TEXTS: LazyLock<Vec<CString>> = LazyLock::new(|| {
     let text = |kind: &FaultKind| {
-        let description = kind.description();
-        let text = format!("{}: {}", description.name, description.explanation());
-        // The descriptions have no zero byte. If one had, its text would be empty.
+        let row = kind.description();
+        let text = format!("{}: {}{}", row.name, row.explanation(), RemedyCalls(row.actions));
+        // The table contains no zero byte. If it did, the text would be empty.
         CString::new(text).unwrap_or_default()
     };
     FaultKind::ALL.iter().map(text).collect()

@@ -23,6 +23,7 @@ mod memory;
 mod process;
 mod recovery_calls;
 mod refusal;
+mod remedy_calls;
 mod status_calls;
 mod text;
 mod timing_calls;

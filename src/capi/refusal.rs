@@ -2,6 +2,7 @@
 //! refusal of its kind.
 
 use crate::capi::process;
+use crate::capi::remedy_calls::RemedyCalls;
 use crate::capi::text::Text;
 use crate::hand;
 use crate::realtime::print_line;
@@ -18,7 +19,7 @@ use thiserror::Error;
 pub(super) enum Refusal {
     #[error(
         "this process was forked from one that has called OpenHand, and only that one has the servo threads: make the \
-         call there, or exec first"
+         call there, or call exec first"
     )]
     Forked,
     #[error("{name} is a null pointer: pass {wanted}")]
@@ -27,7 +28,7 @@ pub(super) enum Refusal {
     SmallStruct { name: &'static str, size: usize, least: usize },
     #[error("no hand is open: call OpenHand first, and check its result")]
     NoHand,
-    #[error("the hand is open already, and goes on: call CloseHand before OpenHand")]
+    #[error("the hand is already open, and continues: call CloseHand before OpenHand")]
     AlreadyOpen,
     #[error(
         "the process is exiting, and the library has closed the hand: make this call before exit is called or main \
@@ -37,13 +38,13 @@ pub(super) enum Refusal {
     #[error("another thread is opening or closing the hand: wait until its call has returned")]
     Busy,
     #[error(
-        "memory is short, and this call needs some: nothing was changed. Free memory, or raise the limit of this \
-         process (ulimit -v), and call again"
+        "there is too little free memory for this call, and nothing was changed: free memory, or raise the memory \
+         limit of this process (ulimit -v), and call again"
     )]
     NoMemory,
-    #[error("the library failed ({0}): a defect of this library, please report it")]
+    #[error("the library failed ({0}): please report this defect of the library")]
     Panicked(String),
-    #[error(transparent)]
+    #[error("{}{}", .0, RemedyCalls(.0.actions()))]
     Hand(#[from] hand::HandError),
 }
 
@@ -64,7 +65,7 @@ impl Display for Wanted {
         match self {
             Self::Array(numbers) => write!(formatter, "an array of {numbers} numbers"),
             Self::Struct(name) => write!(formatter, "the address of a struct {name}"),
-            Self::Matrix => formatter.write_str("the array of its matrix"),
+            Self::Matrix => formatter.write_str("the array of the matrix"),
             Self::Text => formatter.write_str("a text"),
             Self::FileName => formatter.write_str("the name of a file"),
         }

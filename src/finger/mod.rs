@@ -23,7 +23,7 @@ pub use adjustable::Adjustable;
 pub use black_box::{BlackBox, Recorder};
 pub use control_input::ControlInput;
 pub use cycle_record::{ControlRecord, ControllerSource, CycleRecord, KeptRecord};
-pub use faults::{Description, Fault, FaultKind, PartKind, Quantity, Severity, Warnings};
+pub use faults::{Action, Description, Fault, FaultKind, PartKind, Quantity, Severity, Warnings};
 pub use link_handover::{LinkRepairEnd, LinkServoEnd, ReleasedLink, RepairedLink, link_handover};
 pub use link_watch::Fading;
 pub use losses::Losses;

@@ -1,5 +1,6 @@
-//! Why a call was refused, and what to do about it.
+//! The errors of the hand: each text names the cause and the remedy.
 
+mod actions;
 mod configuration;
 mod errno;
 mod kind;
@@ -20,17 +21,17 @@ use crate::realtime::with_remedy;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// A refused call: nothing was changed. The text names the cause and the remedy.
+/// A refused call. Nothing was changed. The text names the cause and the remedy.
 #[derive(Debug, Error)]
 pub enum HandError {
-    /// Fingers are 1, 2 and 3.
+    /// The number of a finger is not 1, 2 or 3.
     #[error("there is no finger {0}: fingers are 1, 2 and 3")]
     NoSuchFinger(i32),
-    /// A finger of a hand of which only others were opened.
-    #[error("finger {0} is not open, because this hand was opened with other fingers only: open it with this finger")]
+    /// The hand was opened without this finger.
+    #[error("the hand was opened without finger {0}: open it with this finger")]
     NotOpened(i32),
-    /// A stage of a cycle that is not known.
-    #[error("there is no stage {0}: stages are TIMING_WAKE_UP to TIMING_AGE, 0 to 7")]
+    /// The number of a stage of the cycle does not exist.
+    #[error("there is no stage {0}: the stages of a cycle are 0 to 7")]
     NoSuchStage(i32),
     /// A set point that the finger cannot take.
     #[error(transparent)]
@@ -41,120 +42,120 @@ pub enum HandError {
     /// A faulted finger that cannot recover.
     #[error(transparent)]
     Recovery(#[from] RecoveryError),
-    /// A finger has stopped by itself.
-    #[error("finger {finger} is faulted: {fault} (fault {})", fault.kind.number())]
+    /// The finger has stopped because of a fault.
+    #[error("finger {finger} is faulted (fault {}): {fault}", fault.kind.number())]
     Faulted {
         /// 1 to 3.
         finger: i32,
-        /// What happened.
+        /// The fault.
         fault: Fault,
     },
-    /// A finger has stopped while the hand was being opened.
+    /// A finger faulted while the hand was being opened.
     #[error(
-        "finger {finger} faulted while the hand was being opened, and the hand is closed again: {fault} (fault {}). \
-         Call OpenHand where RecoverHand is named",
+        "the hand is not open, because finger {finger} faulted during opening (fault {}): {fault}. Open the hand again \
+         instead of recovering the finger",
         fault.kind.number()
     )]
     FaultedAtOpening {
         /// 1 to 3.
         finger: i32,
-        /// What happened.
+        /// The fault.
         fault: Fault,
     },
-    /// A port or board that does not serve.
+    /// The port or the board does not work.
     #[error("finger {finger}: {source} (fault {})", Fault::from(source).kind.number())]
     Link {
         /// 1 to 3.
         finger: usize,
-        /// What is wrong with it.
+        /// What is wrong with the port or the board.
         source: LinkError,
     },
-    /// Boards at two ports that say that they are the same.
+    /// The boards at two ports report the same unique number.
     #[error(
         "the boards of fingers {} ({}) and {} ({}) report the same unique number, {number}, so that they cannot be \
-         told apart: give every board a number of its own in its firmware, for example that of its processor with the \
-         finger's address in it (fault {code})",
+         distinguished: give every board its own number in its firmware, for example the number of its processor \
+         combined with the finger's address (fault {code})",
         fingers[0], ShownPath(&ports[0]), fingers[1], ShownPath(&ports[1]), code = FaultKind::SameNumber.number()
     )]
     SameNumber {
         /// 1 to 3.
         fingers: [i32; 2],
-        /// Where they are.
+        /// Their ports.
         ports: [PathBuf; 2],
-        /// Bytes in hex.
+        /// The bytes of the number in hexadecimal.
         number: String,
     },
-    /// The system refuses a thread or a pseudo terminal.
+    /// The system refuses a thread or a pseudo-terminal.
     #[error("cannot {doing}: {}", with_remedy(source))]
     System {
-        /// What was being done.
+        /// The refused operation.
         doing: &'static str,
-        /// What the system says.
+        /// The error that the system reported.
         source: std::io::Error,
     },
-    /// Real time that is enforced and cannot be had.
-    #[error("no real time: {missing}, or set `hand.real_time = \"try\"` to do without")]
+    /// Real time is enforced, but not permitted.
+    #[error("no real time: {missing}, or set `hand.real_time = \"try\"` to run without real time")]
     NotRealTime {
-        /// What cannot be had, why, and what to change.
+        /// What is not permitted, the reason and the remedy.
         missing: MissingPermission,
     },
-    /// A calibration gave up.
+    /// A calibration failed.
     #[error(
-        "finger {finger} is not calibrated, {}, and nothing was changed: {obstacle}",
+        "the calibration of finger {finger} failed, {}, and its previous calibration is in force: {obstacle}",
         if *limp { "its motors are off" } else { "it holds its pose" }
     )]
     Calibration {
         /// 1 to 3.
         finger: i32,
-        /// Whether the finger is limp now. Else it is the spring that it was before.
+        /// True if the finger is limp now. Otherwise it controls the stiffness that it had before.
         limp: bool,
-        /// What stood in the way.
+        /// The cause and the remedy.
         obstacle: Obstacle,
     },
-    /// A finger that is doing something else.
-    #[error("finger {0} is being opened, calibrated or closed: wait until that is done")]
+    /// The finger is busy.
+    #[error("finger {0} is being opened, calibrated or closed: wait until this is done")]
     Busy(i32),
-    /// A servo that takes no order.
+    /// The servo does not respond.
     #[error(
         "finger {0} does not respond: the hand was closed or opened again during the call, or its servo thread does \
-         not run. GetStatus shows its state; CloseHand and OpenHand start it again"
+         not run. Check the finger's status; to start the thread again, close the hand and open it again"
     )]
     NoAnswer(i32),
-    /// A calibration that is in force and not stored.
-    #[error("finger {finger} is calibrated until its hand is closed, but this is not stored: {source}")]
+    /// A calibration is in force, but it could not be stored.
+    #[error("the calibration of finger {finger} is in force until the hand is closed, but it is not stored: {source}")]
     NotStored {
         /// 1 to 3.
         finger: i32,
-        /// Why not.
+        /// The reason.
         source: ConfigurationError,
     },
-    /// A black box that cannot be written.
+    /// The black box cannot be written.
     #[error(
-        "cannot write the black box to {}: {source}. Name a file in a folder that exists, has room and can be written \
-         to by this user",
+        "cannot write the black box to {}: {source}. Name a file in a folder that exists, has free space and is \
+         writable for this user",
         ShownPath(path)
     )]
     BlackBox {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error that the system reported.
         source: std::io::Error,
     },
-    /// A cycle that is not in the black box.
+    /// The cycle is not in the black box.
     #[error(
-        "cycle {cycle} of finger {finger} is not kept: ask for one from FingerRecord.Oldest to FingerRecord.Newest, \
-         which span the last two seconds, or for 0, the newest"
+        "cycle {cycle} of finger {finger} is not in the black box: request a cycle from the oldest to the newest one, \
+         which span the last two seconds, or 0 for the newest"
     )]
     NoRecord {
         /// 1 to 3.
         finger: i32,
-        /// What was asked for; 0: the newest.
+        /// The requested cycle; 0: the newest.
         cycle: u64,
     },
-    /// A push beyond what any finger bears.
+    /// The force is too large for a simulated finger.
     #[error(
-        "a force of {force:.3e} N on finger {finger} is above {strongest} N, the largest that a simulated finger \
-         takes: push with less"
+        "a force of {force:.3e} N on finger {finger} is above {strongest} N, the largest force on a simulated finger: \
+         use a smaller one"
     )]
     TooMuchForce {
         /// 1 to 3.
@@ -164,8 +165,8 @@ pub enum HandError {
         /// The bound, N.
         strongest: f64,
     },
-    /// Pushing a finger that is not simulated.
-    #[error("finger {0} is on a real port: PushFinger pushes simulated fingers only (`port = \"simulated\"`)")]
+    /// Only a simulated finger can be pushed.
+    #[error("finger {0} has a real port: only a simulated finger (`port = \"simulated\"`) can be pushed")]
     NotSimulated(i32),
 }
 

@@ -90,19 +90,19 @@ fn of_the_tendons() -> Vec<Case> {
             suffer(bench, Defect::SlackTendon { tendon, grip: 1.0 });
             at(tendon)
         }),
-        case("dead gauge, as it was", GaugeStuck, |bench| {
+        case("gauge keeps its last count", GaugeStuck, |bench| {
             let gauge = bench.part();
             suffer(bench, Defect::DeadGauge { gauge, count: None });
             at(gauge)
         })
         // With this noise one count in five equals the previous one. A run of this length occurs once in 10^11 samples.
         .from(0.0, |truth, _, _| truth.time > 0.0165),
-        case("dead gauge, at nothing", GaugeStuck, |bench| {
+        case("gauge reads zero", GaugeStuck, |bench| {
             let gauge = bench.part();
             suffer(bench, Defect::DeadGauge { gauge, count: Some(0) });
             at(gauge)
         }),
-        case("dead gauge, at full scale", GaugeOutOfRange, |bench| {
+        case("gauge reads full scale", GaugeOutOfRange, |bench| {
             let gauge = bench.part();
             suffer(bench, Defect::DeadGauge { gauge, count: Some(4095) });
             at(gauge)
@@ -128,11 +128,11 @@ fn of_the_motors() -> Vec<Case> {
             at(motor)
         })
         .from(12.0, stands),
-        case("hot motor, by its driver", DriverFault, |bench| suffer(bench, Defect::HotMotor(1))),
+        case("hot motor, reported by its driver", DriverFault, |bench| suffer(bench, Defect::HotMotor(1))),
         case("hot motor, by I^2 t", OverheatedMotor, |bench| push(bench, [0.0, 0.0, -1.6]))
             .with(with_small_motors)
             .from(0.0, |truth, _, finger| truth.hot_for.max() > finger.motor.thermal_time),
-        case("a blow (40 N)", OverTension, |bench| push(bench, [0.0, 40.0, 0.0]))
+        case("impact (40 N)", OverTension, |bench| push(bench, [0.0, 40.0, 0.0]))
             .from(4.0, |truth, _, finger| truth.tensions.max() > 1.3 * finger.tendon.maximum),
         case("impossible pose", ImpossiblePose, turn_encoders_unseen),
     ]
@@ -145,7 +145,7 @@ fn of_the_board() -> Vec<Case> {
         case("emergency stop, input", EmergencyStopInput, |bench| suffer(bench, Defect::EmergencyStop)),
         case("motor supply", SupplyFault, |bench| suffer(bench, Defect::Supply)),
         case("sensor, by the board", SensorFault, |bench| suffer(bench, Defect::Sensor)),
-        case("reset", BoardReset, |bench| suffer(bench, Defect::Reset)),
+        case("board reset", BoardReset, |bench| suffer(bench, Defect::Reset)),
     ]
 }
 
@@ -153,15 +153,15 @@ fn of_the_board() -> Vec<Case> {
 pub fn of_the_line() -> Vec<Case> {
     use FaultKind::*;
     vec![
-        case("drop", LostReplies, |bench| line(bench, LineFault::Drop, 1.0, 1000)),
-        case("corrupt", DamagedReplies, |bench| line(bench, LineFault::Corrupt, 1.0, 1000)),
-        case("delay (3 ms)", LostReplies, |bench| line(bench, LineFault::Delay(3 * MILLISECOND), 1.0, 1000)),
-        case("stall (100 ms)", LostReplies, |bench| line(bench, LineFault::Stall, 1.0, 100)),
+        case("replies dropped", LostReplies, |bench| line(bench, LineFault::Drop, 1.0, 1000)),
+        case("replies corrupted", DamagedReplies, |bench| line(bench, LineFault::Corrupt, 1.0, 1000)),
+        case("replies delayed by 3 ms", LostReplies, |bench| line(bench, LineFault::Delay(3 * MILLISECOND), 1.0, 1000)),
+        case("line stalled for 100 ms", LostReplies, |bench| line(bench, LineFault::Stall, 1.0, 100)),
         case("unplug, replug", PortVanished, |bench| {
             bench.with_cable(|cable| cable.set_plugged(false));
             Injected::default()
         }),
-        case("silent host (30 ms)", Watchdog, |bench| {
+        case("host silent for 30 ms", Watchdog, |bench| {
             bench.pause(30 * MILLISECOND);
             Injected::default()
         }),
@@ -181,7 +181,7 @@ pub fn warnings() -> Vec<Case> {
             // Slack tendons give no information about the joints.
             truth.tensions.min() > 0.5 && (0..3).any(|joint| !(low[joint]..=high[joint]).contains(&truth.joints[joint]))
         }),
-        case("line noise (drop 30 %)", LineNoise, |bench| line(bench, LineFault::Drop, 0.3, 1000))
+        case("30 % of the replies dropped", LineNoise, |bench| line(bench, LineFault::Drop, 0.3, 1000))
             .from(0.0, |truth, _, _| truth.lost > 0.02),
         case("overrun (every eighth cycle 2.2 ms late)", Overrun, |bench| {
             bench.wake_late(2200 * MICROSECOND);

@@ -117,7 +117,7 @@ fn inject_all(cases: &[Case], rate: f64, times: u64, warns: bool) -> Vec<String>
         };
         let found = median_and_worst(&outcomes, |outcome| outcome.found);
         let ended = match warns {
-            true => "goes on".into(),
+            true => "continues".into(),
             false => median_and_worst(&outcomes, |outcome| outcome.ended),
         };
         println!(
@@ -136,7 +136,7 @@ fn inject_all(cases: &[Case], rate: f64, times: u64, warns: bool) -> Vec<String>
 
 fn inject_everything(times: u64) {
     println!(
-        "| injected | rate, Hz | called | can be known after, ms | named then after, ms | end state then after, ms |"
+        "| injected | rate, Hz | reported as | detectable after, ms | then reported after, ms | then end state after, ms |"
     );
     println!("|---|---|---|---|---|---|");
     let mut wrong = inject_all(&of_the_finger(), 1000.0, times, false);

@@ -186,7 +186,7 @@ fn what_an_emergency_stop_holds_is_said_where_people_look() {
             after(&read("docs/sun2xp.toml"), "# What the motors do when commands stop", "hold_time_ms ="),
         ),
         ("README.md", after(&read("README.md"), "## When something fails", "## The tool")),
-        ("docs/faults.md", after(&read("docs/faults.md"), "## Stopping and going on", "## All faults")),
+        ("docs/faults.md", after(&read("docs/faults.md"), "## Stopping and recovering", "## All faults")),
     ] {
         assert!(text.contains("StopHand") && text.contains("hold_time_ms"), "{place}: {text}");
     }

@@ -21,7 +21,7 @@ fn fault_text(hand: &Hand, finger: i32) -> String {
         assert_eq!(error.errno(), libc::EIO, "{error}");
         error.to_string()
     });
-    assert!(text.starts_with(&format!("finger {finger} is faulted: ")), "{text}");
+    assert!(text.starts_with(&format!("finger {finger} is faulted (fault ")), "{text}");
     text
 }
 

@@ -22,7 +22,7 @@ impl From<&LinkError> for Fault {
 impl From<&PortError> for Fault {
     fn from(error: &PortError) -> Self {
         let kind = match error {
-            PortError::MissingPermission(_) => FaultKind::PortMissing,
+            PortError::Missing(_) => FaultKind::PortMissing,
             PortError::Forbidden(_) => FaultKind::PortPermission,
             PortError::Busy(_) => FaultKind::PortBusy,
             PortError::Vanished => FaultKind::PortVanished,

@@ -1,5 +1,6 @@
 //! The fields of the fault table.
 
+use super::action::Action;
 use std::fmt::{self, Display, Formatter};
 
 /// The effect of a fault on the finger.
@@ -16,7 +17,7 @@ pub enum Severity {
 /// The meaning of a fault's part number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartKind {
-    /// The whole finger; the number is 0.
+    /// The whole finger. The number of the part is 0.
     Finger,
     /// Joints 0 to 2.
     Joint,
@@ -45,9 +46,9 @@ pub enum Quantity {
     Counts,
     /// Share, per cent.
     Share,
-    /// errno of the system.
+    /// The errno of the system.
     Errno,
-    /// Status bits of a reply.
+    /// The status bits of a reply.
     Status,
     /// Reason of a Refused frame, as its number on the wire.
     Reason,
@@ -70,8 +71,10 @@ pub struct Description {
     pub text: &'static str,
     /// The most frequent cause.
     pub cause: &'static str,
-    /// What to do.
+    /// What the user should do.
     pub remedy: &'static str,
+    /// The operations of the library that the remedy names, in the order of their use.
+    pub actions: &'static [Action],
 }
 
 impl Description {

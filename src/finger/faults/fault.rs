@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fault_says_what_where_how_much_why_and_what_to_do() {
+    fn a_fault_has_name_part_value_cause_and_remedy() {
         let text = Fault { kind: FaultKind::BrokenTendon, part: Part::Tendon(3), value: 0.04 }.to_string();
         assert!(text.starts_with("broken tendon, tendon 3 (0.0 N): "), "{text}");
         assert!(text.contains(". Likely cause: "), "{text}");

@@ -1,6 +1,6 @@
-//! Named faults: everything that can go wrong with a finger, with numbers that never change and texts for the person at
-//! the bench.
+//! Named faults: what can go wrong with a finger, as numbers that never change and as text for the user.
 
+mod action;
 mod at_link;
 mod description;
 mod fault;
@@ -9,6 +9,7 @@ mod kind;
 mod table;
 mod warnings;
 
+pub use action::Action;
 pub use description::{Description, PartKind, Quantity, Severity};
 pub use fault::Fault;
 pub use table::FaultKind;

@@ -3,12 +3,13 @@
 //! Numbers are permanent: a new fault gets the next free number, and a fault that is no longer detected keeps its
 //! number.
 
+use super::action::Action;
 use super::description::{Description, PartKind, Quantity, Severity};
 
 macro_rules! faults {
     ($($number:literal $kind:ident $constant:literal $severity:ident $part:ident $quantity:ident
-        $name:literal, $text:literal, $cause:literal, $remedy:literal;)*) => {
-        /// Every kind of fault.
+        $name:literal, $text:literal, $cause:literal, $remedy:literal, [$($action:ident),*];)*) => {
+        /// The kind of a fault, a warning or a refusal.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum FaultKind {
@@ -19,7 +20,7 @@ macro_rules! faults {
             /// All kinds, in the order of their numbers.
             pub const ALL: &[FaultKind] = &[$(FaultKind::$kind,)*];
 
-            /// The row of the table.
+            /// The row of the table for this kind.
             pub fn description(self) -> &'static Description {
                 match self {
                     $(FaultKind::$kind => &Description {
@@ -31,6 +32,7 @@ macro_rules! faults {
                         text: $text,
                         cause: $cause,
                         remedy: $remedy,
+                        actions: &[$(Action::$action),*],
                     },)*
                 }
             }
@@ -40,208 +42,213 @@ macro_rules! faults {
 
 faults! {
     1 SlackTendon "SLACK_TENDON" Fault Tendon Tension "slack tendon",
-        "a tendon does not come under tension within hand.open_timeout_ms, or loses it, although its motor pulls",
-        "a knot or clamp slips, the tendon is off its pulley, or a sign or zero of motor or gauge is wrong",
-        "Repair the tendon and call RecoverHand; if a sign or zero is wrong, call CloseHand and run sun2xp calibrate";
+        "a tendon is not under tension within hand.open_timeout_ms, or loses its tension although its motor pulls",
+        "a knot or clamp slips, the tendon is off its pulley, or the sign or zero of a motor or gauge is wrong",
+        "Repair the tendon and recover the finger; if a sign or zero is wrong, close the hand and run sun2xp calibrate",
+        [Recover, Close];
     2 BrokenTendon "BROKEN_TENDON" Fault Tendon Tension "broken tendon",
-        "a tendon has lost its tension while its motor turns, and the finger no longer holds the other tendons tight",
+        "a tendon has lost its tension while its motor turns, and the finger cannot keep the other tendons tight",
         "the tendon is torn or has come off",
-        "Replace the tendon, then call RecoverHand and ZeroFinger";
+        "Replace the tendon, then recover and zero the finger", [Recover, Zero];
     3 OverTension "OVER_TENSION" Fault Tendon Tension "over-tension",
         "the tension of a tendon is far above finger.tendon.maximum",
-        "the finger was struck or bent by force, a joint is jammed, or the scale of the gauge is wrong",
-        "Remove what loads the finger and call RecoverHand; check finger.tendon.maximum and \
-         finger.gauge.newton_per_count";
+        "the finger was hit or bent by force, a joint is jammed, or the scale of the gauge is wrong",
+        "Remove the load from the finger and recover it; check finger.tendon.maximum and \
+         finger.gauge.newton_per_count", [Recover];
     4 GaugeStuck "GAUGE_STUCK" Fault Gauge Counts "gauge stuck",
-        "a strain gauge shows one and the same count all the time",
+        "the count of a strain gauge no longer changes",
         "its wire is broken, or its amplifier or converter has failed",
-        "Check the wiring of the gauge and the board, then call RecoverHand and ZeroFinger";
+        "Check the wiring of the gauge and the board, then recover and zero the finger", [Recover, Zero];
     5 GaugeOutOfRange "GAUGE_OUT_OF_RANGE" Fault Gauge Counts "gauge out of range",
-        "a strain gauge is at the end of the range of its converter, or far below zero tension",
+        "a strain gauge reads the end of its converter's range, or a value far below zero tension",
         "a short circuit, a broken wire, or a wrong finger.gauge.zero",
-        "Check the wiring of the gauge, then call RecoverHand and ZeroFinger";
+        "Check the wiring of the gauge, then recover and zero the finger", [Recover, Zero];
     6 GaugeDisagrees "GAUGE_DISAGREES" Fault Gauge Tension "gauge against encoders",
-        "the measured tensions do not agree with the stretch of the tendons that the four encoders show",
+        "the measured tensions do not agree with the stretch of the tendons that the four encoders measure",
         "a gauge drifts, an encoder or a pulley has slipped, or a tendon has stretched permanently",
-        "Call RecoverHand and ZeroFinger; if the fault comes back, inspect this gauge and its tendon";
+        "Recover and zero the finger; if the fault returns, inspect this gauge and its tendon", [Recover, Zero];
     7 EncoderJump "ENCODER_JUMP" Fault Encoder Counts "encoder jump",
         "the count of an encoder changed by more in one cycle than its motor can turn",
         "interference on the lines of the encoder, a loose plug, or a board that has lost counts",
-        "Check the cable of the encoder and its shield, then call RecoverHand and ZeroFinger";
+        "Check the encoder's cable and its shield, then recover and zero the finger", [Recover, Zero];
     8 StalledMotor "STALLED_MOTOR" Fault Motor Tension "stalled motor",
         "a motor does not turn although its torque and the tension of its tendon are far out of balance",
         "the motor or its gear is jammed, its wires are broken, or its driver is off",
-        "Switch the power off, turn the motor by hand and check its wiring; then call RecoverHand";
+        "Switch the power off, turn the motor by hand and check its wiring; then recover the finger", [Recover];
     9 OverheatedMotor "OVERHEATED_MOTOR" Fault Motor Share "over-heated motor",
         "a motor has been at its thermal limit for too long, as computed from the square of its torque over time",
-        "the finger presses or holds more than the motor can bear continuously",
-        "Let the motor cool, call RecoverHand and command less force; check finger.motor.continuous_torque and \
-         thermal_time";
+        "the finger presses or holds more than the motor can carry continuously",
+        "Let the motor cool, recover the finger and command less force; check finger.motor.continuous_torque and \
+         finger.motor.thermal_time", [Recover];
     10 JointAtStop "JOINT_AT_STOP" Warning Joint Angle "joint at its stop",
         "a joint is beyond its limit, at its mechanical stop",
         "something pushes the finger, or the zero of the encoders is wrong",
-        "Remove what pushes the finger; if nothing does, call ZeroFinger";
+        "Remove what pushes the finger; if nothing does, zero the finger", [Zero];
     11 ImpossiblePose "IMPOSSIBLE_POSE" Fault Joint Angle "impossible pose",
         "the measured angle of a joint is one that the joint cannot reach",
         "a tendon is broken or off its pulley, an encoder has lost its zero, or the sign of an encoder is wrong",
-        "Inspect the tendons and call RecoverHand; if the fault comes back, call CloseHand and run sun2xp calibrate";
+        "Inspect the tendons and recover the finger; if the fault returns, close the hand and run sun2xp calibrate",
+        [Recover, Close];
     12 SlackInMotion "SLACK_IN_MOTION" Warning Tendon Tension "slack in motion",
         "a tendon lost its tension for a moment",
-        "a motion or a blow that is faster than the motors can follow",
-        "Move more slowly, or raise finger.tendon.minimum";
+        "a motion or an impact that is faster than the motors can follow",
+        "Move more slowly, or raise finger.tendon.minimum", [];
     13 LostReplies "LOST_REPLIES" Fault Finger Time "lost replies",
         "the board has sent no valid reply for this time",
         "the cable is unplugged, the board has no power, the line is too noisy, or the board sends without end",
-        "Check the cable, the power and the firmware of the board, then call RecoverHand";
+        "Check the cable, the power and the firmware of the board, then recover the finger", [Recover];
     14 DamagedReplies "DAMAGED_REPLIES" Fault Finger Share "damaged replies",
-        "too many replies arrive damaged: their CRC is wrong",
+        "too many replies have a wrong checksum",
         "interference, a bad ground connection, or a cable that is too long for the baud rate",
-        "Check the shield and the ground of the cable and call RecoverHand; or lower the baud rate of the board and \
-         finger.baud";
+        "Check the shield and the ground of the cable and recover the finger; or lower the board's baud rate and \
+         finger.baud", [Recover];
     15 LineNoise "LINE_NOISE" Warning Finger Share "noise on the line",
         "replies are lost or damaged from time to time",
-        "interference, a loose plug, or a USB adapter that holds bytes back",
-        "Check the cable and the adapter before more replies are lost";
+        "interference, a loose plug, or a USB adapter that delays bytes",
+        "Check the cable and the adapter before more replies are lost", [];
     16 Watchdog "WATCHDOG" Fault Finger Status "watchdog",
         "the watchdog of the board stopped the motors because commands came too late",
         "the servo does not run in real time, or the machine is overloaded or was suspended",
-        "Permit real time (README) or reduce the load of the machine, then call RecoverHand; or raise hand.watchdog_ms";
+        "Permit real-time scheduling (README) or reduce the load of the machine, then recover the finger; or raise \
+         hand.watchdog_ms", [Recover];
     17 BoardStopped "BOARD_STOPPED" Fault Finger Status "board stopped",
         "the board stopped the motors and reports no fault",
-        "another program told the board to stop, or its firmware did so by itself",
-        "Look up the status bits in docs/board-protocol.md, then call RecoverHand";
+        "another program sent the board a Stop frame, or the firmware of the board stopped by itself",
+        "Look up the status bits in docs/board-protocol.md, then recover the finger", [Recover];
     18 EmergencyStopInput "EMERGENCY_STOP_INPUT" Fault Finger Status "emergency stop, input",
         "the emergency stop input of the board is active, or was active",
         "somebody pressed the button, or its wire is broken",
-        "Make sure that it is safe to go on, release the button, then call RecoverHand";
+        "Make sure that the hand can move safely, release the button, then recover the finger", [Recover];
     19 EmergencyStopCall "EMERGENCY_STOP_CALL" Fault Finger Nothing "emergency stop, call",
-        "the planner called StopHand",
-        "the planner or its user saw a danger",
-        "Make sure that it is safe to go on, then call RecoverHand";
+        "the program requested an emergency stop",
+        "the program or its user detected a danger",
+        "Make sure that the hand can move safely, then recover the finger", [Recover];
     20 SupplyFault "SUPPLY_FAULT" Fault Finger Status "motor supply",
         "the supply of the motors is missing or out of range",
         "the supply is off or overloaded, or a fuse is blown",
-        "Check the supply, then call RecoverHand";
+        "Check the supply, then recover the finger", [Recover];
     21 DriverFault "DRIVER_FAULT" Fault Finger Status "motor driver",
         "a motor driver reports over-current, over-temperature or a short circuit",
         "a motor is hot, jammed or short-circuited",
-        "Let the motors cool, check motors and wires, then call RecoverHand";
+        "Let the motors cool, check the motors and their wires, then recover the finger", [Recover];
     22 SensorFault "SENSOR_FAULT" Fault Finger Status "sensor, by the board",
         "the board cannot read an encoder or a gauge",
         "the cable of a sensor is unplugged or broken",
-        "Check the cables of the sensors, then call RecoverHand and ZeroFinger";
+        "Check the cables of the sensors, then recover and zero the finger", [Recover, Zero];
     23 BoardReset "BOARD_RESET" Fault Finger Nothing "board reset",
-        "the board refuses commands because it is not configured: it has started anew since OpenHand",
-        "it lost its power, or it was reset",
-        "Check the power of the board, then call RecoverHand";
+        "the board refuses commands because it has restarted and is not configured",
+        "the board lost its power, or it was reset",
+        "Check the power of the board, then recover the finger", [Recover];
     24 CommandRefused "COMMAND_REFUSED" Fault Finger Reason "command refused",
         "the board refuses the frames of this finger",
-        "another program uses the board, or its firmware is faulty",
-        "End the other program and call RecoverHand; or call CloseHand and update the firmware";
+        "another program uses the board, or the firmware of the board is faulty",
+        "End the other program and recover the finger; or close the hand and update the firmware", [Recover, Close];
     25 PortVanished "PORT_VANISHED" Fault Finger Nothing "port vanished",
-        "the serial port has gone away",
-        "the cable was unplugged, or the adapter or the board lost its power; of a simulated finger: the planner \
+        "the serial port no longer exists",
+        "the cable was unplugged, or the adapter or the board lost its power; for a simulated finger: the program \
          closed descriptors of the library",
-        "Plug it in; then call RecoverHand where finger.reconnect is true, else CloseHand and OpenHand";
+        "Plug the cable in; then recover the finger if finger.reconnect is true, otherwise close the hand and open it \
+         again", [Recover, Close, Open];
     26 PortFailed "PORT_FAILED" Fault Finger Errno "port failed",
         "reading or writing the serial port failed",
         "the adapter or its driver failed",
-        "Unplug the adapter and plug it in; then call RecoverHand where finger.reconnect is true, else CloseHand and \
-         OpenHand";
+        "Unplug and replug the adapter; then recover the finger if finger.reconnect is true, otherwise close the hand \
+         and open it again", [Recover, Close, Open];
     27 PortMissing "PORT_MISSING" Refusal Finger Nothing "port missing",
         "the configured serial port does not exist",
         "the cable is unplugged, the board is off, or finger.port is wrong",
-        "Check the cable, the power and finger.port (ls -l /dev/serial/by-id)";
+        "Check the cable, the power and finger.port (ls -l /dev/serial/by-id)", [];
     28 PortBusy "PORT_BUSY" Refusal Finger Nothing "port busy",
         "another program uses the serial port",
         "a planner or a terminal program is still running",
-        "End that program (fuser -v PORT names it), or configure another port";
+        "End that program (fuser -v PORT names it), or configure another port", [];
     29 PortPermission "PORT_PERMISSION" Refusal Finger Nothing "port forbidden",
-        "this user has no permission to open the serial port",
+        "this user has no permission to use the serial port",
         "the user is not in the group of the port",
-        "Add the user to the group (usually dialout) and log in again";
+        "Add the user to the group (usually dialout) and log in again", [];
     30 PortUnusable "PORT_UNUSABLE" Refusal Finger Nothing "port unusable",
-        "the port cannot be opened or set up as configured",
-        "finger.port is no serial port, the port cannot run at finger.baud, or a limit of the system has been reached",
-        "Do what the text of HandError says";
+        "the port cannot be used as configured",
+        "finger.port is not a serial port, the port cannot run at finger.baud, or a system limit has been reached",
+        "Follow the text of the refused call", [];
     31 BoardSilent "BOARD_SILENT" Refusal Finger Time "board silent",
         "no byte came from the board",
         "it is off, the cable is unplugged, transmit and receive are crossed, or another device is at the port",
-        "Check the power, the cable and finger.port";
+        "Check the power, the cable and finger.port", [];
     32 Unintelligible "UNINTELLIGIBLE" Refusal Finger Nothing "no protocol",
         "bytes came, but no frame of the board protocol",
         "the baud rate differs from the board's, or another device is at the port",
-        "Check finger.baud and finger.port";
+        "Check finger.baud and finger.port", [];
     33 Unanswered "UNANSWERED" Refusal Finger Nothing "finger silent",
-        "the board sends valid frames, but not the answer that it was asked for",
+        "the board sends valid frames, but no answer to the request",
         "the firmware of the board is faulty, or several boards answer",
-        "Update the firmware; connect one board to a port";
+        "Update the firmware; connect one board to a port", [];
     34 WrongVersion "WRONG_VERSION" Refusal Finger Nothing "wrong protocol version",
         "the board and the library have no protocol version in common",
         "one of them is older",
-        "Update the older one";
+        "Update the older one", [];
     35 WrongFinger "WRONG_FINGER" Refusal Finger Nothing "wrong finger",
         "the board at this port has no finger with this address",
         "ports are swapped, or finger.address is wrong",
-        "Check finger.port and finger.address";
+        "Check finger.port and finger.address", [];
     36 UnsuitableBoard "UNSUITABLE_BOARD" Refusal Finger Nothing "wrong board",
-        "the board cannot do what is configured, or confirms something else",
+        "the board does not support the configuration, or confirms a different one",
         "the configuration was made for another board",
-        "Connect the right board, or change what the text of HandError names";
+        "Connect the right board, or change the setting that the text of the refused call names", [];
     37 IdentityChanged "IDENTITY_CHANGED" Fault Finger Nothing "identity changed",
-        "another board answers than at OpenHand",
+        "the board at the port is not the one that was there when the hand was opened",
         "boards or cables were exchanged while the hand was open",
-        "Put the cables back and call RecoverHand; or call CloseHand and OpenHand to use the new board";
+        "Put the cables back and recover the finger; or close the hand and open it again to use the new board",
+        [Recover, Close, Open];
     38 ZeroLost "ZERO_LOST" Fault Finger Status "zero lost",
         "the board reports that its encoder counts are no longer valid",
         "the board or its encoders lost their power",
-        "Call CloseHand, OpenHand and ZeroFinger";
+        "Close the hand, open it again and zero the finger", [Close, Open, Zero];
     39 Overrun "OVERRUN" Warning Finger Share "overrun",
-        "the servo comes late and skips periods",
+        "the servo misses its deadlines and skips periods",
         "the machine is overloaded, or the rate is too high for it",
-        "Permit real time (README), give the servo a core of its own (finger.core), or lower hand.rate";
+        "Permit real-time scheduling (README), give the servo a core of its own (finger.core), or lower hand.rate", [];
     40 RealtimeRefused "REALTIME_REFUSED" Warning Finger Nothing "no real time",
-        "the system does not let the servo run in real time",
+        "the system does not permit the servo to run in real time",
         "CAP_SYS_NICE or an rtprio limit is missing",
-        "See README; or set finger.priority = 0 to run without real time";
+        "Grant the permission (README), or set finger.priority = 0 to run without real time", [];
     41 ServoPanic "SERVO_PANIC" Fault Finger Nothing "servo failed",
         "the servo thread has failed",
         "a defect of this library",
-        "Call CloseHand and OpenHand, and please report the defect";
+        "Close the hand and open it again, and please report the defect", [Close, Open];
     42 CurrentLimit "CURRENT_LIMIT" Warning Finger Nothing "current limit",
         "the board clips torques to its own limits",
         "its limits are lower than finger.motor.torque_limit",
-        "Lower finger.motor.torque_limit";
+        "Lower finger.motor.torque_limit", [];
     43 TorqueNotAdmitted "TORQUE_NOT_ADMITTED" Warning Finger Share "torque not admitted",
-        "the tension limits permit only this part of the wanted joint torque",
+        "the tension limits permit only this part of the desired joint torque",
         "the set point is far away, or stiffness or load are more than the tendons can carry",
-        "Send set points that are nearer, or a softer Kx";
+        "Send set points that are nearer, or a softer Kx", [];
     44 CalibrationFailed "CALIBRATION_FAILED" Warning Finger Nothing "calibration failed",
-        "the last calibration failed; the finger is limp, and its calibration is the one from before",
-        "what the text of the refused call names",
-        "Do what that text says, then calibrate again";
+        "the last calibration failed; the finger is limp, and its previous calibration is in force",
+        "the text of the refused call names it",
+        "Follow the text of the refused call, then calibrate again", [];
     45 WarmMotor "WARM_MOTOR" Warning Motor Share "warm motor",
         "a motor is near its thermal limit, and its torque is being limited",
-        "the finger presses or holds more than the motor can bear continuously",
-        "Command less force, or let the motor rest";
+        "the finger presses or holds more than the motor can carry continuously",
+        "Command less force, or let the motor rest", [];
     46 Companion "COMPANION" Fault Finger Nothing "stopped with another",
         "another finger of the hand has faulted, and hand.on_fault is \"hand\"",
         "the fault of that finger",
-        "Remove the cause of that fault, then call RecoverHand for every finger";
+        "Remove the cause of that fault, then recover every finger", [Recover];
     47 PortClosed "PORT_CLOSED" Fault Finger Nothing "port closed",
         "another part of the program has closed the descriptor of the port",
-        "the planner closes descriptors that it has not opened, as programs do that become daemons",
-        "Call CloseHand and OpenHand; let the planner become a daemon before it calls OpenHand";
+        "the program closes descriptors that it has not opened, as programs do that become daemons",
+        "Close the hand and open it again; a daemon must detach before it opens the hand", [Close, Open];
     48 OpeningTimedOut "OPENING_TIMED_OUT" Fault Finger Time "opening timed out",
         "not all tendons were under tension at the end of hand.open_timeout_ms, because the servo ran too few of its \
          cycles",
         "the machine is overloaded, or the board's replies are lost",
-        "Reduce the load of the machine, permit real time (README) or raise hand.open_timeout_ms; then call \
-         RecoverHand";
+        "Reduce the load of the machine, permit real-time scheduling (README) or raise hand.open_timeout_ms; then \
+         recover the finger", [Recover];
     49 SameNumber "SAME_NUMBER" Refusal Finger Nothing "same number",
-        "boards at two ports report the same unique number, so that they cannot be told apart",
+        "the boards at two ports report the same unique number, so that they cannot be distinguished",
         "their firmware gives every board the same number",
-        "Give every board a number of its own in its firmware";
+        "Give every board its own number in its firmware", [];
 }
 
 #[cfg(test)]
@@ -264,11 +271,23 @@ mod tests {
     #[test]
     fn texts_are_sentences_without_their_ends() {
         for kind in FaultKind::ALL {
-            let told = kind.description();
-            for part in [told.name, told.text, told.cause, told.remedy] {
+            let row = kind.description();
+            for part in [row.name, row.text, row.cause, row.remedy] {
                 assert!(!part.is_empty() && !part.ends_with('.') && !part.contains("*/"), "{kind:?}: {part}");
             }
-            assert!(told.remedy.starts_with(char::is_uppercase), "{kind:?}: {}", told.remedy);
+            assert!(row.remedy.starts_with(char::is_uppercase), "{kind:?}: {}", row.remedy);
+        }
+    }
+
+    #[test]
+    fn actions_are_those_that_the_remedy_names() {
+        let (open, close) = ((Action::Open, "open"), (Action::Close, "close"));
+        let verbs = [open, close, (Action::Recover, "recover"), (Action::Zero, "zero the")];
+        for row in FaultKind::ALL.iter().map(|kind| kind.description()) {
+            for (action, verb) in verbs {
+                let named = row.remedy.to_lowercase().contains(&format!("{verb} "));
+                assert_eq!(row.actions.contains(&action), named, "{action:?}: {}", row.remedy);
+            }
         }
     }
 }

@@ -16,8 +16,8 @@ impl Warnings {
     pub fn note(&mut self, warning: Option<Fault>, cycles: u32) {
         match warning {
             Some(fault) => {
-                let goes_on = self.newest.is_some_and(|newest| newest.kind == fault.kind && newest.part == fault.part);
-                self.given += u64::from(!goes_on);
+                let persists = self.newest.is_some_and(|newest| newest.kind == fault.kind && newest.part == fault.part);
+                self.given += u64::from(!persists);
                 (self.newest, self.left) = (Some(fault), cycles);
             }
             None if self.left > 0 => self.left -= 1,

@@ -1,4 +1,4 @@
-//! Why a configuration cannot be read, used, changed or stored.
+//! The errors of a configuration.
 
 use crate::files::errno;
 use crate::model::configuration::Unusable;
@@ -9,41 +9,41 @@ use thiserror::Error;
 /// A configuration that cannot be read, used, changed or stored.
 #[derive(Debug, Error)]
 pub enum ConfigurationError {
-    /// A configuration file cannot be read.
+    /// The configuration file cannot be read.
     #[error(
-        "cannot read the configuration file {}: {source}. It must be a text file of at most 1 MiB that this \
-         user can read; where SUN2XP_CONFIG names one it must exist",
+        "cannot read the configuration file {}: {source}. The file must exist if SUN2XP_CONFIG names it, and must be a \
+         text file of at most 1 MiB that this user may read",
         ShownPath(path)
     )]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error that the system reported.
         source: std::io::Error,
     },
-    /// A configuration file that the environment names, in a program with raised privileges.
+    /// The environment names a configuration file, but the program has raised privileges.
     #[error(
-        "SUN2XP_CONFIG names {}, but this program is setuid or setgid, or has capabilities, and does not trust its \
-         environment: unset SUN2XP_CONFIG, and describe the hand in {system}",
+        "SUN2XP_CONFIG names {}, but this program is setuid or setgid, or has capabilities, so that its environment is \
+         not trusted: unset SUN2XP_CONFIG, and describe the hand in {system}",
         ShownPath(path)
     )]
     UntrustedEnvironment {
-        /// What the environment names.
+        /// The file that the environment names.
         path: PathBuf,
-        /// The file that is read instead.
+        /// The file that such a program reads.
         system: &'static str,
     },
-    /// A configuration that cannot be used.
+    /// The configuration file has an error.
     #[error("{}{}: {reason}", ShownPath(file), line.map(|line| format!(":{line}")).unwrap_or_default())]
     Invalid {
         /// The file.
         file: PathBuf,
-        /// The line, counted from 1, where the key stands in the file.
+        /// The line of the key, from 1; none if the key is not in the file.
         line: Option<usize>,
-        /// What is wrong with it.
+        /// What is wrong.
         reason: String,
     },
-    /// A configuration made in a program that cannot be used.
+    /// A configuration from a program has an error.
     #[error("{section}.{}: {}", unusable.key, unusable.reason)]
     Unusable {
         /// `hand`, or `finger.1` to `finger.3`.
@@ -51,38 +51,41 @@ pub enum ConfigurationError {
         /// The key and the reason.
         unusable: Unusable,
     },
-    /// Keys to adjust that cannot be read.
+    /// The keys to adjust cannot be read.
     #[error("finger {finger}, line {line} of the keys to adjust: {reason}")]
     Adjustment {
         /// 1 to 3.
         finger: i32,
         /// Counted from 1.
         line: usize,
-        /// What is wrong with it.
+        /// What is wrong.
         reason: String,
     },
-    /// A key that cannot change while the hand is open.
-    #[error("`{key}` cannot change while the hand is open: CloseHand, change the configuration file, OpenHand")]
+    /// The key cannot change while the hand is open.
+    #[error(
+        "`{key}` cannot change while the hand is open: close the hand, change the configuration file and open the hand \
+         again"
+    )]
     Permanent {
-        /// With dots, relative to the finger.
+        /// The path of the key with dots, relative to the finger.
         key: String,
     },
-    /// What was found cannot be written.
+    /// The configuration file cannot be written.
     #[error(
-        "cannot write into the configuration file {}: {source}. This user must be able to write the file and its \
+        "cannot write to the configuration file {}: {source}. This user needs permission to write the file and its \
          folder",
         ShownPath(path)
     )]
     Unwritable {
         /// The configuration file.
         path: PathBuf,
-        /// What the system says.
+        /// The error that the system reported.
         source: std::io::Error,
     },
-    /// What was found holds for something else than the configuration file now says.
+    /// A calibration does not match the configuration file, which has changed since.
     #[error(
-        "what was found does not belong to {}: {key} is {} there, and was {} when it was found. Nothing was written: \
-         make the two agree and find it again",
+        "the calibration does not match {}: {key} is {} there, and was {} during the calibration. Nothing was written: \
+         correct the file and calibrate again",
         ShownPath(path),
         Shown(is),
         Shown(was)
@@ -92,7 +95,7 @@ pub enum ConfigurationError {
         path: PathBuf,
         /// The key that differs.
         key: String,
-        /// Its value when it was found.
+        /// Its value during the calibration.
         was: String,
         /// Its value in the file.
         is: String,

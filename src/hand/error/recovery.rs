@@ -6,34 +6,34 @@ use thiserror::Error;
 /// A faulted finger that cannot recover.
 #[derive(Debug, Error)]
 pub enum RecoveryError {
-    /// A faulted finger whose port another one uses.
+    /// Another finger uses the port.
     #[error(
-        "finger {finger} shares its port with finger {other}, which runs, and fingers on one port recover together: \
-         call StopHand, then RecoverHand"
+        "finger {finger} shares its port with finger {other}, which is running, and fingers on one port recover only \
+         together: stop all fingers, then recover finger {finger}"
     )]
     PortInUse {
         /// 1 to 3.
         finger: i32,
-        /// The finger that runs.
+        /// The running finger.
         other: i32,
     },
-    /// A servo that does not run, so that it does not lend its port.
+    /// The servo thread does not run, so that it does not release its port.
     #[error(
-        "the servo thread of finger {0} gets no processor time: reduce the load of the machine or permit real time \
-         (README), then call RecoverHand again"
+        "the servo thread of finger {0} gets no processor time: reduce the load of the machine or permit \
+         real-time scheduling (README), then recover the finger again"
     )]
     ServoStalled(i32),
-    /// A faulted finger whose servo thread has ended.
+    /// The servo thread has ended.
     #[error(
-        "the servo thread of finger {0} has failed (fault {number}) and cannot be started again: call CloseHand, then \
-         OpenHand",
+        "the servo thread of finger {0} has failed (fault {number}) and cannot be restarted: close the hand and open \
+         it again",
         number = FaultKind::ServoPanic.number()
     )]
     ServoEnded(i32),
-    /// A port that has failed, and is not to be opened again.
+    /// The port has failed, and the configuration does not permit opening it again.
     #[error(
-        "the port of finger {0} has failed and is not opened again: call CloseHand, then OpenHand. With \
-         `finger.reconnect = true` RecoverHand opens a real port again"
+        "the port of finger {0} has failed, and `finger.reconnect` is false: close the hand and open it again, or set \
+         `finger.reconnect = true` so that recovering a finger reopens a real port"
     )]
     NotReconnected(i32),
 }

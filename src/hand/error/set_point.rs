@@ -1,4 +1,4 @@
-//! Why a set point is refused.
+//! The errors of a set point.
 
 use crate::model::{ContactError, OutOfReach};
 use thiserror::Error;
@@ -6,34 +6,34 @@ use thiserror::Error;
 /// A set point, stiffness, contact or damping that a finger cannot take.
 #[derive(Debug, Error)]
 pub enum SetPointError {
-    /// NaN or infinity in an argument.
+    /// An argument contains NaN or infinity.
     #[error("{what} of finger {finger} contains {value}: every entry must be a finite number")]
     NotFinite {
-        /// The argument.
+        /// The name of the argument.
         what: &'static str,
         /// 1 to 3.
         finger: i32,
-        /// The first such entry.
+        /// The first entry that is not finite.
         value: f64,
     },
-    /// Pos outside the joint limits.
+    /// A joint angle is outside its limits.
     #[error(
         "Pos[{joint}] = {value:.4} rad is outside the limits of finger {finger}, {low:.4} to {high:.4} rad: send an \
-         angle inside them, change `finger.joints`, or set `hand.out_of_range = \"clamp\"`"
+         angle within the limits, change `finger.joints`, or set `hand.out_of_range = \"clamp\"`"
     )]
     BeyondJointLimit {
         /// 1 to 3.
         finger: i32,
         /// 0 to 2.
         joint: usize,
-        /// What was asked, rad.
+        /// The requested angle, rad.
         value: f64,
         /// Lower limit, rad.
         low: f64,
         /// Upper limit, rad.
         high: f64,
     },
-    /// Kx stiffer than the bound.
+    /// Kx is stiffer than the bound.
     #[error(
         "the largest eigenvalue of Kx of finger {finger} is {largest:.3} N/cm, above the bound of {bound:.3} N/cm: \
          send a softer Kx, or set `hand.out_of_range = \"clamp\"`"
@@ -46,10 +46,10 @@ pub enum SetPointError {
         /// The bound, N/cm.
         bound: f64,
     },
-    /// Kx not symmetric.
+    /// Kx is not symmetric.
     #[error(
         "Kx of finger {finger} is not symmetric: Kx[{row}][{column}] and Kx[{column}][{row}] differ by \
-         {difference:.3e} N/cm, more than a thousandth of its largest entry. Send a symmetric Kx, as every spring has"
+         {difference:.3e} N/cm, more than a thousandth of its largest entry. Send a symmetric Kx"
     )]
     NotSymmetric {
         /// 1 to 3.
@@ -61,7 +61,7 @@ pub enum SetPointError {
         /// Their difference, N/cm.
         difference: f64,
     },
-    /// Kx with a negative eigenvalue.
+    /// Kx has a negative eigenvalue.
     #[error(
         "Kx of finger {finger} has the negative eigenvalue {smallest:.3e} N/cm, so the finger would push itself away \
          from its set point: send a Kx whose eigenvalues are zero or positive"
@@ -72,46 +72,46 @@ pub enum SetPointError {
         /// Smallest eigenvalue, N/cm.
         smallest: f64,
     },
-    /// A fingertip position that the finger does not reach.
+    /// The finger cannot reach the fingertip position.
     #[error("the tip of finger {finger} cannot be at {:.3}, {:.3}, {:.3} cm: {source}", tip[0], tip[1], tip[2])]
     OutOfReach {
         /// 1 to 3.
         finger: i32,
-        /// What was asked, cm.
+        /// The requested position, cm.
         tip: [f64; 3],
-        /// Why not.
+        /// The reason.
         source: OutOfReach,
     },
-    /// The stiffness of a contact that is none.
+    /// The stiffness or normal of a contact is invalid.
     #[error("the contact of finger {finger}: {source}")]
     Contact {
         /// 1 to 3.
         finger: i32,
-        /// What is wrong with it.
+        /// What is wrong.
         source: ContactError,
     },
-    /// A contact of a type that is not known.
+    /// The contact type does not exist.
     #[error(
-        "there is no contact of {0} dimensions: 1 is a frictionless point, 3 a hard finger with friction, 4 a soft \
-         finger"
+        "there is no contact with {0} dimensions: a frictionless point has 1, a hard finger with friction 3, and a \
+         soft finger 4"
     )]
     NoSuchContact(i32),
-    /// A damping ratio outside its range.
+    /// The damping ratio is outside its range.
     #[error(
-        "the damping {ratio} of finger {finger} is outside {least:.2} to {most:.2}, the range in which a spring of \
-         {stiffness:.4} N/cm comes to rest: send a ratio inside the range or a softer Kx first, or set \
+        "the damping ratio {ratio} of finger {finger} is outside {least:.2} to {most:.2}, the stable range at a \
+         stiffness of {stiffness:.4} N/cm: send a ratio within the range or a softer Kx first, or set \
          `hand.out_of_range = \"clamp\"`"
     )]
     Damping {
         /// 1 to 3.
         finger: i32,
-        /// Relative to the damping that the controller chooses.
+        /// The ratio to the damping that the controller chooses.
         ratio: f64,
-        /// Largest eigenvalue of the stiffness that goes with it, N/cm.
+        /// Largest eigenvalue of the stiffness in force, N/cm.
         stiffness: f64,
-        /// Least.
+        /// The smallest permitted ratio.
         least: f64,
-        /// Most.
+        /// The largest permitted ratio.
         most: f64,
     },
 }

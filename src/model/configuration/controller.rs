@@ -37,7 +37,7 @@ pub enum Law {
 pub struct ConfiguredController {
     /// The tendon controller. Without it [`ConfiguredController::scheme`] selects one.
     pub scheme: Option<Scheme>,
-    /// The stiffness law for SendPos. A fingertip set point always uses the exact law.
+    /// The stiffness law for set points in joint angles. A fingertip set point always uses the exact law.
     pub law: Law,
     /// Whether the controller compensates the torques of gravity on the links.
     pub gravity_compensation: bool,

@@ -1,0 +1,19 @@
+//! The operations that remedies of faults and errors name.
+
+/// An operation of the library that a remedy asks the caller for. The texts describe it in words, and the C interface
+/// adds the name of its call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Open the hand.
+    Open,
+    /// Close the hand.
+    Close,
+    /// Recover a faulted finger.
+    Recover,
+    /// Zero the sensors of a finger.
+    Zero,
+    /// Stop every finger.
+    Stop,
+    /// Query the status of a finger.
+    QueryStatus,
+}
