@@ -1,9 +1,10 @@
-//! Time of the calls that a planner makes all the while, as C makes them: on an opened simulated hand whose servos run.
+//! Measures the calls that a planner makes all the time, through the C entry points, on an open simulated hand with
+//! running servos.
 
 use divan::{Bencher, black_box};
 use std::ffi::{CStr, c_char, c_int};
 
-// The library's own symbols, as a C program sees them.
+// The library's own symbols, as a C program links them.
 use sun2xp as _;
 
 unsafe extern "C" {
@@ -16,12 +17,13 @@ unsafe extern "C" {
     fn GetPos(i: c_int, pos: *mut f32) -> c_int;
 }
 
-/// Other work on the machine may keep the hand from opening in time.
+/// Other work on the machine can prevent the hand from opening in time.
 const ATTEMPTS: u32 = 3;
 
 fn main() {
     let mut attempts = 0;
-    // SAFETY: no arguments. The configuration is that of the working directory, so the simulated hand of the defaults.
+    // SAFETY: the call takes no arguments. It opens the configuration of the working directory, which is the default
+    // simulated hand.
     while unsafe { OpenHand() } != 0 {
         // SAFETY: the text lives until this thread's next call.
         let reason = unsafe { CStr::from_ptr(HandError()) }.to_string_lossy();
@@ -32,35 +34,35 @@ fn main() {
         }
     }
     divan::main();
-    // SAFETY: as above.
+    // SAFETY: the call takes no arguments.
     assert_eq!(unsafe { CloseHand() }, 0, "the simulated hand closes");
 }
 
 #[divan::bench]
 fn send_pos(bencher: Bencher) {
     let pos = [0.1f32, 0.5, 1.0];
-    // SAFETY: three values, read during the call.
+    // SAFETY: three values, which are read during the call.
     bencher.bench_local(|| unsafe { SendPos(1, black_box(pos.as_ptr())) });
 }
 
 #[divan::bench]
 fn get_pos(bencher: Bencher) {
     let mut pos = [0.0f32; 3];
-    // SAFETY: room for three values, written during the call.
+    // SAFETY: room for three values, which are written during the call.
     bencher.bench_local(|| unsafe { GetPos(1, black_box(pos.as_mut_ptr())) });
 }
 
-/// With all its checks: symmetric, no negative eigenvalue, within the bound.
+/// SendKx checks that Kx is symmetric, has no negative eigenvalue and is within the bound.
 #[divan::bench]
 fn send_kx(bencher: Bencher) {
     let kx = [3.0f32, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0];
-    // SAFETY: nine values, read during the call.
+    // SAFETY: nine values, which are read during the call.
     bencher.bench_local(|| unsafe { SendKx(1, black_box(kx.as_ptr())) });
 }
 
 #[divan::bench]
 fn send_kx_double(bencher: Bencher) {
     let kx = [3.0f64, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0];
-    // SAFETY: nine values, read during the call.
+    // SAFETY: nine values, which are read during the call.
     bencher.bench_local(|| unsafe { SendKxD(1, black_box(kx.as_ptr())) });
 }

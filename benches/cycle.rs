@@ -1,4 +1,4 @@
-//! Time of one servo cycle: the whole of Figure 9, 10 or 11, from counts to motor torques. The report needed 1430 us.
+//! Measures one servo cycle: all of Figure 9, 10 or 11, from counts to motor torques. The report needed 1430 us.
 
 use divan::{Bencher, black_box};
 use nalgebra::{Matrix3, Vector3};
@@ -15,7 +15,7 @@ fn follow(bencher: Bencher, scheme: Scheme) {
     cycle(bencher, scheme, 1.0);
 }
 
-/// A torque beyond the tension limits: the scale has to be found.
+/// With a torque beyond the tension limits, so that the scale must be computed.
 #[divan::bench(args = [Scheme::Figure10, Scheme::StateFeedback])]
 fn follow_over_limit(bencher: Bencher, scheme: Scheme) {
     cycle(bencher, scheme, 40.0);
@@ -27,7 +27,7 @@ fn cycle(bencher: Bencher, scheme: Scheme, stiffness: f64) {
     let controller = Controller::new(&finger, 1000.0).expect("the default finger");
     let mut plant = Plant::new(&finger, Vector3::zeros()).expect("the default finger");
     let mut sensors = Sensors::new(&finger);
-    // Feedback of a finger in motion, so that no branch is always the same.
+    // The feedback of a finger in motion, so that no branch always goes the same way.
     plant.release_brake();
     let feedback: [Feedback; 64] = std::array::from_fn(|_| {
         for _ in 0..10 {

@@ -1,4 +1,4 @@
-//! What the timing figures cost a cycle of one finger: the readings of the clock, the notes and the ring, as in
+//! Measures what the timing figures cost in a cycle of one finger: the clock readings, the notes and the ring, as in
 //! `Servo::cycle`.
 
 use divan::{Bencher, black_box};
@@ -32,13 +32,13 @@ fn of_a_cycle(bencher: Bencher) {
         timing.note(CycleStage::Whole, beginning, computed);
         let left = timings.push(black_box(timing));
         beginning = computed;
-        // Somebody else collects; here it keeps the ring from filling.
+        // In the library another thread collects the timings. Here this keeps the ring from filling.
         let _ = black_box(arriving.pop());
         left
     });
 }
 
-/// One reading of the clock, to compare with: a cycle has seven.
+/// One clock reading, for comparison: a cycle has seven.
 #[divan::bench]
 fn of_a_clock_reading() -> u64 {
     now()

@@ -8,7 +8,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let hand = Hand::open(Configuration::default())?;
     // A fingertip that is stiff along x and soft along y and z, N/cm.
     hand.send_stiffness(1, [[3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])?;
-    // Joint angles of the spring's rest, rad.
+    // Joint angles at which the spring is at rest, rad.
     hand.send_position(1, [0.0, 0.5, 1.0])?;
     sleep(Duration::from_secs(1));
     println!("finger 1 is at {:.2?} rad", hand.position(1)?);

@@ -1,4 +1,4 @@
-//! `step.c` compiled and loaded, with the structures that it takes.
+//! Compiles and loads `step.c`, and defines the structures of its interface.
 
 use crate::parameters::Parameters;
 use std::error::Error;
@@ -99,7 +99,7 @@ pub struct ByHand {
 }
 
 impl ByHand {
-    /// Compiles with `$CC`, or cc, for the same processor as the library: the oldest of its kind.
+    /// Compiles with `$CC`, or cc, for the same baseline processor as the library.
     pub fn compile() -> Result<Self, Box<dyn Error>> {
         let compiler = std::env::var("CC").unwrap_or("cc".into());
         let source = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/handwritten/step.c");
@@ -112,12 +112,12 @@ impl ByHand {
         let version = Command::new(&compiler).arg("--version").output()?.stdout;
         let version = String::from_utf8_lossy(&version).lines().next().unwrap_or_default().to_string();
         let path = CString::new(library.into_os_string().into_encoded_bytes())?;
-        // SAFETY: a path that ends in 0. The library stays loaded until the process ends, so its symbols stay good;
-        // their types are those of step.c.
+        // SAFETY: the path ends with a zero byte. The library stays loaded until the process ends, so its symbols stay
+        // valid. Their types are those of step.c.
         unsafe {
             let library = libc::dlopen(path.as_ptr(), libc::RTLD_NOW);
             if library.is_null() {
-                return Err("cannot load what was compiled".into());
+                return Err("cannot load the compiled step".into());
             }
             let symbol = |name: &std::ffi::CStr| libc::dlsym(library, name.as_ptr());
             let symbols = [c"start", c"figure9_step", c"figure10_step"].map(symbol);

@@ -1,9 +1,10 @@
-//! One whole servo step against the same arithmetic in C by hand (`step.c`, -O3).
+//! Compares one complete servo step with the same arithmetic in handwritten C (`step.c`, -O3).
 //!
 //!     cargo bench --bench handwritten
 //!
-//! First a closed loop is run and recorded, and both must give the same motor torques in every cycle of it. Then both
-//! repeat it in turn. Statistics are off in both: what is timed is from counts to motor torques and report.
+//! First a closed loop is run and recorded, and both steps must give the same motor torques in every cycle of it. Then
+//! the two repeat the run alternately, and are timed from counts to motor torques and report. Neither computes
+//! statistics.
 
 mod by_hand;
 mod parameters;
@@ -17,12 +18,12 @@ use std::error::Error;
 use std::hint::black_box;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
-/// How often both repeat the recorded run.
+/// Number of times that each side repeats the recorded run.
 const ROUNDS: usize = 301;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let by_hand = ByHand::compile()?;
-    println!("| scheme | this library | C by hand | ratio |\n|---|---|---|---|");
+    println!("| scheme | this library | handwritten C | ratio |\n|---|---|---|---|");
     for (scheme, name, step) in
         [(Scheme::Figure9, "Figure 9", by_hand.figure9), (Scheme::Figure10, "Figure 10", by_hand.figure10)]
     {
@@ -37,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (ours, theirs) = time(&recording, &plain);
         println!("| {name} | {ours:.1} ns | {theirs:.1} ns | {:.3} |", ours / theirs);
     }
-    println!("\nMedians of {ROUNDS} runs of {} cycles each, in turn; {}, {}.", CYCLES, rustc(), by_hand.compiler);
+    println!("\nMedians of {ROUNDS} runs of {} cycles each, alternating; {}, {}.", CYCLES, rustc(), by_hand.compiler);
     Ok(())
 }
 
@@ -67,15 +68,15 @@ impl<'a> Plain<'a> {
         }
     }
 
-    /// Every cycle of the run; `see` is given its number and the motor torques.
+    /// Runs every cycle, and passes its number and its motor torques to `see`.
     fn run(&self, lost: impl Fn(usize) -> bool, mut see: impl FnMut(usize, &[f64; 4])) {
         let (mut state, mut torques, mut report) = (PlainState::default(), [0.0; 4], PlainReport::default());
-        // SAFETY: all structures are those of step.c, and alive.
+        // SAFETY: all structures have the layout of step.c, and are alive.
         unsafe { (self.start)(self.parameters, &mut state, &self.feedback[0]) };
         for (cycle, feedback) in self.feedback.iter().enumerate() {
             let set_point = &self.set_points[cycle / CYCLES_A_SET_POINT];
             let feedback = if lost(cycle) { std::ptr::null() } else { feedback };
-            // SAFETY: as above; step.c takes null for a lost reply.
+            // SAFETY: as above. In step.c a null pointer stands for a lost reply.
             unsafe { (self.step)(self.parameters, &mut state, feedback, set_point, &mut torques, &mut report) };
             see(cycle, black_box(&torques));
         }
@@ -91,22 +92,22 @@ impl<'a> Plain<'a> {
             worst = worst.max(apart / largest);
         });
         if worst.is_nan() || worst > 1e-9 {
-            return Err(format!("the two differ by {worst:e} of the torque: one of them is wrong"));
+            return Err(format!("the torques differ by {worst:e} of the largest one: one of the two steps is wrong"));
         }
-        eprintln!("the same torques within {worst:.1e}; {}", recording.seen());
+        eprintln!("the torques agree within {worst:.1e}; {}", recording.seen());
         Ok(())
     }
 }
 
-/// For how long this thread has run, ns: other work on the machine does not count.
+/// Returns the run time of this thread, ns. Other work on the machine does not count.
 fn thread_time() -> u64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: `time` is writable; the clock exists on every Linux.
+    // SAFETY: `time` is writable, and the clock exists on every Linux.
     unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
     time.tv_sec as u64 * 1_000_000_000 + time.tv_nsec as u64
 }
 
-/// ns a step: ours, C by hand.
+/// Returns the time of a step, ns: of the library and of the handwritten C.
 fn time(recording: &Recording, plain: &Plain) -> (f64, f64) {
     let per_step = |begun: u64| (thread_time() - begun) as f64 / CYCLES as f64;
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());

@@ -1,10 +1,11 @@
-//! `struct parameters` of `step.c`, with the gains that both sides have.
+//! `struct parameters` of `step.c`, with gains that both sides use.
 
 use nalgebra::{Matrix3, Matrix3x4, Vector4};
 use std::error::Error;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
-/// Gains that are configured for both sides, because the library's table is its own: those of the scheme at 1000 Hz.
+/// Gains of the scheme at 1000 Hz. They are configured for both sides, because step.c does not have the library's table
+/// of gains.
 pub struct Gains {
     tension_gain: f64,
     tension_integral: f64,
@@ -97,7 +98,7 @@ pub struct Parameters {
     encoder_zero: [i32; 4],
 }
 
-/// Of what the locked tendons carry, from 750 Hz up.
+/// The largest part of the stiffness of the locked tendons that the spring may have, at 750 Hz and above.
 const SHARE: f64 = 0.95;
 
 impl Parameters {
@@ -161,7 +162,7 @@ impl Parameters {
     }
 }
 
-/// Radians of a count, signed.
+/// Returns the radians per count, with sign.
 fn radians_per_count(finger: &ConfiguredFinger) -> [f64; 4] {
     let encoder = &finger.encoder;
     std::array::from_fn(|i| {
@@ -169,14 +170,14 @@ fn radians_per_count(finger: &ConfiguredFinger) -> [f64; 4] {
     })
 }
 
-/// The inverse of the Cholesky factor of the joint stiffness of locked tendons.
+/// Returns the inverse of the Cholesky factor of the joint stiffness with locked tendons.
 fn inverse_cholesky(finger: &ConfiguredFinger, r: &Matrix3x4<f64>) -> Result<Matrix3<f64>, Box<dyn Error>> {
     let stretched = Matrix3x4::from_fn(|i, j| r[(i, j)] * finger.tendon.stiffness[j]);
     let cholesky = (stretched * r.transpose()).cholesky().ok_or("R has no rank of 3")?;
     Ok(cholesky.l().try_inverse().ok_or("R has no rank of 3")?)
 }
 
-/// The damping of each joint for links of these lengths, cm, and the rate time of the gains, s.
+/// Returns the damping of each joint for links of these lengths, cm, and the rate time of the gains, s.
 fn joint_damping([l0, l1, l2]: [f64; 3], rate_time: f64) -> [f64; 3] {
     let levers = [(l0 + l1) * (l0 + l1), l1 * l1 + l2 * l2, l2 * l2];
     levers.map(|lever| lever * 3.0 * rate_time * rate_time)

@@ -1,9 +1,9 @@
 /*
- * One servo step of Figures 9 and 10, from counts to motor torques and report, as one would write it by hand for this
- * one finger: what the library's step is measured against. The same arithmetic and the same features as
- * Controller::cycle while a fingertip is a spring with the report's law; gravity is off in both.
+ * One servo step of Figures 9 and 10, from counts to motor torques and report, as handwritten C for this one finger.
+ * The library's step is compared with it. It has the same arithmetic and the same features as Controller::cycle while a
+ * fingertip is a spring with the report's law. Gravity compensation is off in both.
  *
- * Units as in the library: rad, cm, N, N cm, s. by_hand.rs repeats the structures of structures.h.
+ * The units are those of the library: rad, cm, N, N cm, s. by_hand.rs repeats the structures of structures.h.
  */
 #include <math.h>
 #include <stddef.h>
@@ -54,7 +54,7 @@ static void measure(const struct parameters *p, struct state *s, const struct fe
     s->report.under_tension = least >= p->tight && s->still_seconds >= REST;
 }
 
-/* What motors as warm as these may pull. */
+/* The largest pulls of motors with the present heat. */
 static void warm_limits(const struct parameters *p, const struct state *s, double limit[TENDONS])
 {
     for (int i = 0; i < TENDONS; i++) {
@@ -63,7 +63,7 @@ static void warm_limits(const struct parameters *p, const struct state *s, doubl
     }
 }
 
-/* Eqs. 18 to 20 with an upper bound, which is never beyond what motors with this limit give. */
+/* Eqs. 18 to 20 with an upper bound. The bound never exceeds what motors with this limit can pull. */
 static double distribute(const struct parameters *p, const double limit[TENDONS], const double torques[JOINTS],
                          double tensions[TENDONS])
 {
@@ -102,7 +102,7 @@ static void approach(struct spring *spring, const double stiffness[TIP][TIP], do
     spring->damping += (damping - spring->damping) * part;
 }
 
-/* tau of the spring, its damper and the soft limits; advances the anchor. */
+/* The joint torques of the spring, its damper and the soft limits. Advances the anchor. */
 static void joint_torques(const struct parameters *p, struct state *s, const struct set_point *set_point,
                           double torques[JOINTS])
 {
@@ -225,7 +225,7 @@ void figure10_step(const struct parameters *p, struct state *s, const struct fee
     step(p, s, feedback, set_point, motor_torques, report, 1);
 }
 
-/* At rest, pulling as much as the tendons do. */
+/* Starts at rest, with motors that pull as much as their tendons. */
 void start(const struct parameters *p, struct state *s, const struct feedback *feedback)
 {
     memset(s, 0, sizeof *s);

@@ -1,5 +1,5 @@
-/* The stiffness of the fingertip in the joints, and how much of it the tendons can carry. Only step.c includes this
- * file, so that the compiler sees the whole step. */
+/* The joint stiffness that the fingertip's stiffness requires, and the part of it that the tendons can carry. Only
+ * step.c includes this file, so that the compiler sees the whole step. */
 #include <math.h>
 
 #include "structures.h"
@@ -11,7 +11,7 @@ static double clamp(double value, double low, double high)
     return value < low ? low : value > high ? high : value;
 }
 
-/* Rows 0 to 2 eq. 8, rows 3 to 5 the axes of the joints. */
+/* Rows 0 to 2: the Jacobian of eq. 8. Rows 3 to 5: the axes of the joints. */
 static void spatial_jacobian(const double links[JOINTS], const double joints[JOINTS], double j[TIP][JOINTS])
 {
     double s0 = sin(joints[0]), c0 = cos(joints[0]);
@@ -40,7 +40,7 @@ static void spatial_jacobian(const double links[JOINTS], const double joints[JOI
     j[5][2] = -s0;
 }
 
-/* J^T K J, eq. 6. */
+/* Eq. 6: J^T K J. */
 static void joint_stiffness(const double k[TIP][TIP], const double j[TIP][JOINTS], double k_theta[JOINTS][JOINTS])
 {
     double kj[TIP][JOINTS];
@@ -66,7 +66,7 @@ static void multiply(const double a[JOINTS][JOINTS], const double b[JOINTS][JOIN
                 a[row][0] * b[0][column] + a[row][1] * b[1][column] + a[row][2] * b[2][column];
 }
 
-/* By the cosine formula. */
+/* The largest eigenvalue of a symmetric matrix, by the trigonometric formula. */
 static double largest_eigenvalue(const double m[JOINTS][JOINTS])
 {
     double square[JOINTS][JOINTS];
@@ -84,7 +84,7 @@ static double largest_eigenvalue(const double m[JOINTS][JOINTS])
     return third + 2.0 * root * cos(acos(clamp(cubic / (spread * root), -1.0, 1.0)) / 3.0);
 }
 
-/* Of joint 0 near its axis, beside J^T K J. */
+/* The stiffness of joint 0 in addition to J^T K J when the tip is near its axis. */
 static double hold(const double k[TIP][TIP], const double j[TIP][JOINTS])
 {
     double lacking = LEAST_LEVER * LEAST_LEVER - (j[0][0] * j[0][0] + j[1][0] * j[1][0] + j[2][0] * j[2][0]);
@@ -97,7 +97,7 @@ static double hold(const double k[TIP][TIP], const double j[TIP][JOINTS])
     return held * lacking;
 }
 
-/* How much of K_theta the locked tendons can carry beside the joints' limits. */
+/* The part of K_theta that the locked tendons can carry in addition to the soft limits of the joints. */
 static double admissible(const struct parameters *p, const double k_theta[JOINTS][JOINTS], const double limits[JOINTS])
 {
     double half[JOINTS][JOINTS], transposed[JOINTS][JOINTS], whole[JOINTS][JOINTS];

@@ -1,4 +1,4 @@
-/* The structures of a step. by_hand.rs repeats them. */
+/* The structures of a servo step. by_hand.rs repeats them. */
 #ifndef STRUCTURES_H
 #define STRUCTURES_H
 
@@ -46,7 +46,7 @@ struct set_point {
     double damping;
 };
 
-/* What is between two set points. */
+/* The blended spring between two set points. */
 struct spring {
     double stiffness[TIP][TIP];
     double exact, damping;

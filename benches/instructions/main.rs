@@ -1,10 +1,12 @@
-//! Instructions of one servo step, counted by callgrind: the same on every run, so that a rise is a change of the code.
+//! Counts the instructions of one servo step with callgrind. The result is the same on every run, so an increase is
+//! caused by a change of the code.
 //!
 //!     cargo bench --bench instructions                    counts, and compares with recorded.toml
-//!     cargo bench --bench instructions -- --record        counts, and writes recorded.toml anew
+//!     cargo bench --bench instructions -- --record        counts, and writes recorded.toml again
 //!
-//! More than 2 % above what is recorded is a failure. Another compiler or C library makes other code: then nothing is
-//! compared, and said so. Record again when such a version becomes the usual one, or when a rise is meant.
+//! More than 2 % above the recorded number is a failure. Another compiler or C library generates other code. Then
+//! nothing is compared, and a line on standard error says so. Record again when such a version becomes the usual one,
+//! or when an increase is intended.
 
 #[allow(dead_code, reason = "what the comparison with C needs of it")]
 #[path = "../recorded_run/mod.rs"]
@@ -23,40 +25,40 @@ use std::process::Command;
 use sun2xp::control::{Activity, Controller, Feedback, State};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
-/// As in a configuration.
+/// Names of the schemes, as in a configuration.
 const SCHEMES: [&str; 4] = ["figure 9", "figure 10", "figure 11", "state feedback"];
 
-/// What a step may need above what is recorded.
+/// Largest permitted increase above the recorded number.
 const RISE: f64 = 0.02;
 
 const RECORD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions/recorded.toml");
 
-/// The C library chooses its sines by what the processor has: without these it takes those that every processor can
-/// run.
+/// The C library selects its sine functions by the features of the processor. With this setting it uses those that run
+/// on every processor.
 const PLAIN_PROCESSOR: &str =
     "glibc.cpu.hwcaps=-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-FMA4,-AVX_Fast_Unaligned_Load,-ERMS";
 
 #[derive(Parser)]
 struct Arguments {
-    /// Writes what is counted into the file that later counts are compared with.
+    /// Writes the counts into the file with which later counts are compared.
     #[arg(long)]
     record: bool,
-    /// Runs the steps of this scheme: what callgrind counts.
+    /// Runs the steps of this scheme, which callgrind counts.
     #[arg(long, hide = true)]
     scheme: Option<String>,
-    /// `cargo bench` passes it.
+    /// `cargo bench` passes this option.
     #[arg(long, hide = true)]
     bench: bool,
 }
 
-/// recorded.toml.
+/// The content of recorded.toml.
 #[derive(Deserialize, Serialize)]
 struct Record {
     /// `rustc --version`.
     rustc: String,
     /// Version of the C library.
     libc: String,
-    /// Instructions a step, by scheme.
+    /// Instructions per step, by scheme.
     instructions: BTreeMap<String, f64>,
 }
 
@@ -83,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     compare(&now, &recorded)
 }
 
-/// The recorded run of a scheme.
+/// Repeats the recorded run of a scheme.
 fn steps(scheme: &str) -> Result<(), Box<dyn Error>> {
     let mut finger = ConfiguredFinger::default();
     let name: StrDeserializer<ValueError> = scheme.into_deserializer();
@@ -101,7 +103,7 @@ fn counted_step(controller: &Controller, state: &mut State, feedback: Option<&Fe
     black_box(controller.cycle(state, feedback, activity));
 }
 
-/// Instructions a step.
+/// Returns the instructions per step.
 fn count(scheme: &str) -> Result<f64, Box<dyn Error>> {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("instructions.callgrind");
     let run = Command::new("valgrind")
@@ -116,12 +118,12 @@ fn count(scheme: &str) -> Result<f64, Box<dyn Error>> {
         return Err(format!("valgrind: {}", String::from_utf8_lossy(&run.stderr)).into());
     }
     let text = std::fs::read_to_string(file)?;
-    let total = text.lines().find_map(|line| line.strip_prefix("totals: ")).ok_or("callgrind has counted nothing")?;
+    let total = text.lines().find_map(|line| line.strip_prefix("totals: ")).ok_or("callgrind counted nothing")?;
     Ok(total.trim().parse::<f64>()? / CYCLES as f64)
 }
 
 fn compare(now: &Record, recorded: &Record) -> Result<(), Box<dyn Error>> {
-    println!("| scheme | instructions a step | recorded |\n|---|---|---|");
+    println!("| scheme | instructions per step | recorded |\n|---|---|---|");
     let mut risen = Vec::new();
     for (scheme, count) in &now.instructions {
         let before =
@@ -134,7 +136,7 @@ fn compare(now: &Record, recorded: &Record) -> Result<(), Box<dyn Error>> {
     println!("\n{}; C library {}", now.rustc, now.libc);
     if (&now.rustc, &now.libc) != (&recorded.rustc, &recorded.libc) {
         eprintln!(
-            "NOT COMPARED: these counts are of another compiler or C library than the recorded ones ({}; {}). \
+            "NOT COMPARED: the recorded counts are of another compiler or C library ({}; {}). \
              {HOW_TO_RECORD}",
             recorded.rustc, recorded.libc
         );
@@ -144,7 +146,7 @@ fn compare(now: &Record, recorded: &Record) -> Result<(), Box<dyn Error>> {
         return Ok(());
     }
     Err(format!(
-        "a step needs over {:.0} % more instructions: {}. Where that is meant: {HOW_TO_RECORD}",
+        "a step needs over {:.0} % more instructions: {}. If this is intended: {HOW_TO_RECORD}",
         100.0 * RISE,
         risen.join("; ")
     )

@@ -1,21 +1,21 @@
-//! cyclictest: what the machine can do, measured by somebody else.
+//! Runs cyclictest, an independent measurement of what the machine can do.
 
 use crate::Failure;
 use crate::percentiles::Percentiles;
 use std::process::{Child, Command, Stdio};
 
-/// Latencies are counted up to this, ns; longer ones count as this long.
+/// Latencies above this value count as this value, ns.
 const LONGEST: u64 = 1_000_000;
 
-/// Three threads of it, staggered over the period as servo threads are.
+/// cyclictest with three threads, staggered over the period like servo threads.
 pub struct Cyclictest(Child);
 
-/// What one of its threads has measured.
+/// The measurements of one thread.
 pub struct Measured {
     pub latency: Percentiles,
-    /// Wake-ups that were counted.
+    /// Number of wake-ups.
     pub count: usize,
-    /// Of them those later than [`LONGEST`].
+    /// Number of wake-ups that were later than [`LONGEST`].
     pub late: u64,
 }
 
@@ -34,7 +34,7 @@ impl Cyclictest {
         Ok(Self(child))
     }
 
-    /// Waits for its end.
+    /// Waits for the end of the run.
     pub fn finish(self) -> Result<Vec<Measured>, Failure> {
         let output = self.0.wait_with_output()?;
         if !output.status.success() {
@@ -42,7 +42,7 @@ impl Cyclictest {
         }
         let text = String::from_utf8(output.stdout)?;
         let mut latencies: Vec<Vec<u64>> = vec![Vec::new(); 3];
-        // One line a latency: it, and how often each thread has met it.
+        // Each line has a latency, and for each thread the number of wake-ups with this latency.
         for line in text.lines().filter(|line| line.starts_with(|first: char| first.is_ascii_digit())) {
             let numbers: Vec<u64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
             let [latency, counts @ ..] = &numbers[..] else { continue };

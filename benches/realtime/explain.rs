@@ -1,5 +1,5 @@
-//! Late cycles and what made them late: a clock that notes what it is asked, and watchers that note when their core
-//! stood still.
+//! Classifies late cycles by their causes. A clock records the times at which the servo calls it, and watch threads
+//! record when their core paused.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -8,32 +8,32 @@ use std::thread::JoinHandle;
 use sun2xp::finger::REPLY_WINDOW;
 use sun2xp::realtime::{Clock, MonotonicClock, Priority, Schedule, now, spawn};
 
-/// How many late cycles, and how many pauses of a core, are kept: of a busy machine for half an hour.
+/// Number of late cycles and of pauses per core that are stored: enough for half an hour on a busy machine.
 const KEPT: usize = 4_000_000;
 
-/// A cycle that was not done when the next one should have begun. ns.
+/// A cycle that was not complete when the next one was due. All times in ns.
 #[derive(Clone, Copy)]
 pub struct LateCycle {
-    /// Its scheduled beginning.
+    /// Scheduled start.
     pub beginning: u64,
-    /// Its first instruction.
+    /// Time of the first instruction.
     pub woken: u64,
-    /// When it was done.
+    /// Time of the end.
     pub done: u64,
-    /// For how long its thread ran meanwhile, by the kernel's account: with its system calls, without waiting.
+    /// Run time of the thread during the cycle, by the kernel's account. It includes system calls, but no waiting.
     pub ran: u64,
-    /// For how much of that it computed, which is without system calls.
+    /// The part of the run time that was computation, without system calls.
     pub computed: u64,
 }
 
-/// What a servo asks of its clock in one cycle: to sleep until the beginning; the time when it has woken; and last the
-/// times when it begins to compute and when it has. So the clock knows of every late cycle, and the library that is
-/// measured is the one that is used.
+/// A clock that records late cycles from the calls that a servo makes in one cycle. The servo sleeps until the start,
+/// reads the time after waking up, and last reads the times at the start and the end of its computation. So the
+/// measured library needs no change.
 pub struct NotingClock {
     period: u64,
     beginning: Cell<u64>,
     woken: Cell<Option<Instant>>,
-    /// The last two that were asked for.
+    /// The last two readings.
     last: Cell<[Instant; 2]>,
     late: Cell<Vec<LateCycle>>,
     cycles: Cell<u64>,
@@ -51,7 +51,7 @@ impl NotingClock {
         }
     }
 
-    /// How many cycles there were, and the late ones.
+    /// Returns the number of cycles, and the late ones.
     pub fn finish(self) -> (u64, Vec<LateCycle>) {
         self.end_cycle();
         (self.cycles.get(), self.late.take())
@@ -94,35 +94,37 @@ impl Clock for &NotingClock {
     }
 }
 
-/// Of the servo's thread, ns.
+/// A time on the servo's thread, ns.
 #[derive(Clone, Copy, Default)]
 struct Instant {
     time: u64,
-    /// For how long it has run.
+    /// Run time of the thread so far.
     ran: u64,
 }
 
-/// For how long the calling thread has run, ns.
+/// Returns the run time of the calling thread, ns.
 fn thread_time() -> u64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: `time` is writable; the clock exists on every Linux.
+    // SAFETY: `time` is writable, and the clock exists on every Linux.
     unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
     time.tv_sec as u64 * 1_000_000_000 + time.tv_nsec as u64
 }
 
-/// A time in which a core did not run a thread that was due, above all servos: from, to, ns.
+/// An interval in which a core did not run a thread that was due and had a priority above all servos: start and end,
+/// ns.
 pub type Pause = (u64, u64);
 
-/// One thread a core that does nothing but wake up, as cyclictest's do, and notes when it was late.
+/// One thread per core that only wakes up, like those of cyclictest, and records when it was late.
 pub struct Watchers {
     ended: Arc<AtomicBool>,
     threads: Vec<JoinHandle<Vec<Pause>>>,
 }
 
-/// A watcher looks so often, ns: within what a cycle may run for, so that no pause that makes one late goes unseen.
-const LOOKING: u64 = 100_000;
+/// Interval between two wake-ups of a watch thread, ns. It is shorter than the run time available to a cycle, so that
+/// every pause that makes a cycle late is detected.
+const CHECK_INTERVAL: u64 = 100_000;
 
-/// Later than this, ns, counts as a pause.
+/// A wake-up that is later than this counts as a pause, ns.
 const PAUSE: u64 = 50_000;
 
 impl Watchers {
@@ -145,7 +147,7 @@ impl Watchers {
 
 fn watch(ended: &AtomicBool) -> Vec<Pause> {
     let mut pauses = Vec::with_capacity(KEPT);
-    let mut schedule = Schedule::new(now() + LOOKING, LOOKING);
+    let mut schedule = Schedule::new(now() + CHECK_INTERVAL, CHECK_INTERVAL);
     while !ended.load(Relaxed) {
         let due = schedule.next();
         MonotonicClock.sleep_until(due);
@@ -166,43 +168,42 @@ impl Pauses {
         self.0.iter().map(Vec::len).sum()
     }
 
-    /// Whether they explain why a cycle was late. On any core: a servo may have been on any.
+    /// Returns whether the pauses of any one core explain why a cycle was late. The servo may have been on any core.
     fn explain(&self, cycle: &LateCycle, period: u64) -> bool {
         let excess = cycle.done - (cycle.beginning + period);
         let overlap = |&(from, to): &Pause| to.min(cycle.done).saturating_sub(from.max(cycle.beginning));
-        // A watcher looks from time to time: a pause that begins between two looks is seen shorter than it is.
-        let seen = |overlap: u64| if overlap > 0 { overlap + LOOKING } else { 0 };
+        // A pause that begins between two wake-ups of a watch thread is recorded shorter than it was.
+        let corrected = |overlap: u64| if overlap > 0 { overlap + CHECK_INTERVAL } else { 0 };
         self.0.iter().any(|core| {
-            // They are in the order of time.
+            // The pauses are in the order of time.
             let near = &core[core.partition_point(|pause| pause.1 <= cycle.beginning)..];
             let near = near.iter().take_while(|pause| pause.0 < cycle.done);
-            near.map(overlap).map(seen).sum::<u64>() >= excess
+            near.map(overlap).map(corrected).sum::<u64>() >= excess
         })
     }
 }
 
-/// What made a cycle late.
+/// The cause of a late cycle.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Cause {
-    /// Its own wake-up: without that it would have been in time.
+    /// Its thread was woken late. With a wake-up in time, the cycle would have met its deadline.
     WakeUp,
-    /// A core stood still meanwhile to a thread above all servos, for as long as the cycle was late.
+    /// During the cycle a core did not run a thread above all servos, for at least as long as the cycle was late.
     Pause,
-    /// It was kept from its core: by a poll that returned after its deadline, or by other threads. It ran for so short
-    /// a time that it would have been done with what is left of a period after the latest reply, had it run when it was
-    /// due.
-    Kept,
-    /// It ran for longer than that, but would have been late without its computation too: write, wait and read took
-    /// long.
+    /// A late return of a poll, or other threads, kept the thread from its core. Its run time was shorter than the part
+    /// of a period that is left after the latest reply, so with its core it would have met its deadline.
+    KeptFromCore,
+    /// Its run time was longer than that, but the cycle would have been late even without its computation: write, wait
+    /// and read took long.
     Exchange,
-    /// None of these: the library itself, in its computation.
+    /// None of the above: the computation of the library itself.
     Library,
 }
 
-/// A computation that ran for no longer than this part of a period has not made the cycle late.
+/// A computation with a run time below this part of a period did not make the cycle late.
 const COMPUTING: f64 = 0.05;
 
-/// `pauses`: of threads above all servos.
+/// Returns the cause of a late cycle. `pauses` are those of threads above all servos.
 pub fn cause(cycle: &LateCycle, period: u64, pauses: &Pauses) -> Cause {
     let &LateCycle { beginning, woken, done, ran, computed } = cycle;
     let late_without_computation = done - computed > beginning + period;
@@ -210,7 +211,7 @@ pub fn cause(cycle: &LateCycle, period: u64, pauses: &Pauses) -> Cause {
     match () {
         _ if done - woken <= period => Cause::WakeUp,
         _ if pauses.explain(cycle, period) => Cause::Pause,
-        _ if within(ran, 1.0 - REPLY_WINDOW) => Cause::Kept,
+        _ if within(ran, 1.0 - REPLY_WINDOW) => Cause::KeptFromCore,
         _ if late_without_computation || within(computed, COMPUTING) => Cause::Exchange,
         _ => Cause::Library,
     }

@@ -1,4 +1,4 @@
-//! Fingers on simulated boards behind pseudo-terminals, to be served on a clock of the caller's choice.
+//! Fingers on simulated boards at pseudo-terminals, served with a clock of the caller's choice.
 
 use crate::Failure;
 use sun2xp::board::{Link, Port, Terms};
@@ -8,18 +8,18 @@ use sun2xp::realtime::{Consumer, ring};
 use sun2xp::realtime::{CycleTiming, Priority, Schedule, now};
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
-/// One finger: what its planner, its servo thread and its board have.
+/// One finger: the parts for its planner, its servo thread and its board.
 pub struct Finger {
     pub mailbox: Mailbox,
     pub port: ServedPort<Port>,
     pub schedule: Schedule,
-    /// The board lives as long as this.
+    /// The board, which lives as long as this value.
     pub board: SimulatedPort,
-    /// Where the servo leaves its timings and records; nobody looks.
+    /// The receivers of the servo's timings and records, which are not read.
     pub uncollected: (Consumer<CycleTiming>, BlackBox),
 }
 
-/// All fingers of a hand, each on its own port, with cycles of so many ns; the phases staggered.
+/// Connects to all fingers of a hand, each on its own port. `period` is in ns, and the phases are staggered.
 pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> Result<Vec<Finger>, Failure> {
     let first = now() + 100_000_000;
     let reach_one = |index: usize| {

@@ -1,5 +1,5 @@
-//! Three fingers for a long time, with cyclictest beside them: whether a cycle is ever late by the library's own
-//! computation.
+//! Runs three fingers for a long time with cyclictest in parallel, and checks whether the library's own computation
+//! ever makes a cycle late.
 
 use crate::Failure;
 use crate::cyclictest::{Cyclictest, Measured};
@@ -9,22 +9,23 @@ use sun2xp::finger::{Mailbox, Servo, Stage};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Priority, now, spawn};
 
-/// Three fingers at 1000 Hz for a long time; every late cycle is sorted by its cause. Exit status 1: one was late
-/// by the library's own computation.
+/// Runs three fingers at 1000 Hz for a long time and classifies every late cycle by its cause. Exit status 1: the
+/// library's own computation made a cycle late.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// How long.
+    /// Duration, minutes.
     #[arg(long, default_value_t = 30.0)]
     minutes: f64,
 }
 
-/// Of the watchers: above every servo.
+/// Priority of the watch threads: above every servo.
 const ABOVE: u8 = 90;
 
-/// Of the simulated boards: below every servo.
+/// Priority of the simulated boards: below every servo.
 const BELOW: u8 = 20;
 
-/// Three fingers that have run: for each its cycles and the late ones, and its planner's end.
+/// The results of a run: for each finger its number of cycles and its late cycles, and the planner's end of its
+/// mailbox.
 struct Ran {
     cycles: Vec<(u64, Vec<LateCycle>)>,
     planners: Vec<Mailbox>,
@@ -32,7 +33,7 @@ struct Ran {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut configuration = Configuration::default();
-    // What is measured is time: a machine that starves the terminals' bytes must not end it with a fault.
+    // The run measures time, so a machine that delays the terminals' bytes must not end it with a fault.
     configuration.hand.watchdog_ms = 1000;
     let period = (1e9 / configuration.hand.rate) as u64;
     let seconds = (arguments.minutes * 60.0).ceil() as u64;
@@ -52,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         pauses.count()
     );
     if own > 0 {
-        return Err(format!("{own} cycles were late by the library's own computation").into());
+        return Err(format!("the library's own computation made {own} cycles late").into());
     }
     Ok(())
 }
@@ -83,19 +84,19 @@ fn serve(configuration: &Configuration, period: u64, end: u64) -> Result<Ran, Fa
     Ok(Ran { cycles, planners })
 }
 
-/// Prints a row for each finger. Returns how many cycles were late by the library's own computation.
+/// Prints a row for each finger. Returns the number of cycles that the library's own computation made late.
 fn print_fingers(ran: &Ran, period: u64, pauses: &Pauses) -> usize {
     println!(
-        "| finger | cycles | replies lost | late | by their wake-up | by a pause of a core | kept from its core | \
-         by system calls of the exchange | by its computation |"
+        "| finger | cycles | lost replies | late cycles | late wake-up | pause of a core | kept from the core | \
+         system calls of the exchange | computation |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     let mut own = 0;
     for (index, ((cycles, late), mailbox)) in ran.cycles.iter().zip(&ran.planners).enumerate() {
         let report = mailbox.report();
         if report.stage != Stage::Running {
-            // Its servo has gone on, so its cycles count.
-            eprintln!("finger {} is {:?} in the end. Other work on the machine disturbs it.", index + 1, report.stage);
+            // The servo has continued, so its cycles count.
+            eprintln!("finger {} is {:?} at the end. Other work on the machine disturbs it.", index + 1, report.stage);
         }
         let causes: Vec<(Cause, LateCycle)> = late.iter().map(|cycle| (cause(cycle, period, pauses), *cycle)).collect();
         let count = |cause| causes.iter().filter(|(found, _)| *found == cause).count();
@@ -107,7 +108,7 @@ fn print_fingers(ran: &Ran, period: u64, pauses: &Pauses) -> usize {
             late.len(),
             count(Cause::WakeUp),
             count(Cause::Pause),
-            count(Cause::Kept),
+            count(Cause::KeptFromCore),
             count(Cause::Exchange)
         );
         let by_library = causes.iter().filter(|(cause, _)| *cause == Cause::Library);
@@ -129,9 +130,9 @@ fn explain(index: usize, cycle: &LateCycle) {
     );
 }
 
-/// Prints what cyclictest has measured.
+/// Prints the measurements of cyclictest.
 fn print_machine(machine: &Result<Vec<Measured>, Failure>) {
-    println!("\n| cyclictest beside it | wake-ups | median | 99 % | worst | over 1 ms |\n|---|---|---|---|---|---|");
+    println!("\n| cyclictest in parallel | wake-ups | median | 99 % | worst | over 1 ms |\n|---|---|---|---|---|---|");
     if let Err(reason) = machine {
         println!("| not measured: {reason} | | | | | |");
     }

@@ -1,12 +1,12 @@
-//! How the servo threads run on this machine: the figures of `docs/measurements.md` about time.
+//! Measures how the servo threads run on this machine: the figures about time in `docs/measurements.md`.
 //!
 //!     cargo bench --bench realtime -- wake-up [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- throughput [--seconds 5] [--priority 0]
 //!     cargo bench --bench realtime -- planner [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- long-run [--minutes 30]
 //!
-//! wake-up and long-run need cyclictest (Debian: rt-tests), and wake-up stress-ng. What is compared is measured in one
-//! run, in turn. Without a name all but the long run are done.
+//! wake-up and long-run need cyclictest (Debian: rt-tests), and wake-up also needs stress-ng. The sides of a comparison
+//! alternate within one run. Without a name, everything except the long run is measured.
 
 mod cyclictest;
 mod explain;
@@ -29,17 +29,18 @@ type Failure = Box<dyn Error>;
 struct Arguments {
     #[command(subcommand)]
     figure: Option<Figure>,
-    /// `cargo bench` passes it.
+    /// `cargo bench` passes this option.
     #[arg(long, hide = true, global = true)]
     bench: bool,
 }
 
 #[derive(Subcommand)]
 enum Figure {
-    /// Wake-up latency of three servo-like threads, and of cyclictest, idle and under load.
+    /// Measures the wake-up latency of three servo-like threads and of cyclictest, idle and under load.
     WakeUp(Turns),
     Throughput(throughput::Arguments),
-    /// Wake-up of the servos with two threads calling SendPos and GetPos as fast as they can, and without.
+    /// Measures the wake-up latency of the servos with and without two threads that call SendPos and GetPos as fast as
+    /// they can.
     Planner(Turns),
     LongRun(long_run::Arguments),
 }
@@ -51,7 +52,7 @@ fn main() -> Result<(), Failure> {
         Some(Figure::Planner(turns)) => planner::run(&turns),
         Some(Figure::LongRun(arguments)) => long_run::run(&arguments),
         None => {
-            // One that fails does not keep the others from being measured.
+            // A measurement that fails does not prevent the others.
             let measured = [
                 wake_up::run(&Turns::default()),
                 throughput::run(&throughput::Arguments::default()),

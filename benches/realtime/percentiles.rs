@@ -9,7 +9,7 @@ pub struct Percentiles {
 }
 
 impl Percentiles {
-    /// Of times in ns.
+    /// Computes the percentiles of times in ns.
     pub fn of(mut times: Vec<u64>) -> Self {
         times.sort_unstable();
         let at =
@@ -18,7 +18,7 @@ impl Percentiles {
     }
 }
 
-/// Not a number where there are no values.
+/// Returns the median, or NaN if there are no values.
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);

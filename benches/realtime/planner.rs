@@ -1,4 +1,4 @@
-//! Whether planners that call as fast as they can delay the servo.
+//! Measures whether planners that call as fast as they can delay the servo.
 
 use crate::Failure;
 use crate::percentiles::median;
@@ -11,11 +11,11 @@ use sun2xp::hand::{Hand, HandError};
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::CycleStage;
 
-/// What the two threads do meanwhile.
+/// What the two planner threads do during a measurement.
 #[derive(Clone, Copy, PartialEq)]
 enum Planners {
     Quiet,
-    /// They use the cores, but not the library: what the load alone does.
+    /// The threads use the cores, but do not call the library. This shows the effect of the load alone.
     Spinning,
     Calling,
 }
@@ -23,13 +23,13 @@ enum Planners {
 const KINDS: [(Planners, &str); 3] = [
     (Planners::Quiet, "no planner"),
     (Planners::Spinning, "two threads that spin"),
-    (Planners::Calling, "two that call"),
+    (Planners::Calling, "two threads that call"),
 ];
 
-/// A turn in which a finger faulted is measured again, until there were so many in all.
+/// Largest number of measurements that are repeated because a finger faulted.
 const MOST_DISTURBED: usize = 10;
 
-/// Median and 99 % of the wake-up of a finger, us.
+/// Median and 99 % of the wake-up latency of a finger, us.
 type WakeUp = (f64, f64);
 
 pub fn run(turns: &Turns) -> Result<(), Failure> {
@@ -53,7 +53,7 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
         }
     }
     println!(
-        "| | wake-up, median | 99 % | against spinning, median (goal for those that call: at most 1.1) | 99 % \
+        "| | median | 99 % | relative to spinning: median (goal for threads that call: at most 1.1) | 99 % \
          |\n|---|---|---|---|---|"
     );
     let of = |kind: usize, part: fn(&WakeUp) -> f64| median(wake_ups[kind].iter().map(part));
@@ -64,8 +64,8 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     }
     let [_, _, calling] = wake_ups.map(|wake_ups| wake_ups.len() / FINGERS);
     println!(
-        "\nMedians over three fingers and {} repeats of {} s, {disturbed} more disturbed by faults; {:.1} million \
-         calls a second.\n",
+        "\nMedians over three fingers and {} repeats of {} s, {disturbed} more were disturbed by faults. {:.1} million \
+         calls per second.\n",
         turns.repeats,
         turns.seconds,
         calls.load(Relaxed) as f64 / (calling as u64 * turns.seconds) as f64 * 1e-6
@@ -73,7 +73,7 @@ pub fn run(turns: &Turns) -> Result<(), Failure> {
     Ok(())
 }
 
-/// One measurement, on a hand of its own.
+/// Makes one measurement on a hand of its own.
 fn turn(seconds: u64, kind: Planners, calls: &AtomicU64) -> Result<Vec<WakeUp>, Failure> {
     let hand = Hand::open(Configuration::default())?;
     let (ended, made) = (AtomicBool::new(false), AtomicU64::new(0));
@@ -93,7 +93,7 @@ fn turn(seconds: u64, kind: Planners, calls: &AtomicU64) -> Result<Vec<WakeUp>, 
     })
 }
 
-/// One planner, until it is told to end.
+/// Runs one planner until `ended` is set.
 fn plan(hand: &Hand, finger: i32, kind: Planners, ended: &AtomicBool, calls: &AtomicU64) -> Result<(), HandError> {
     let start = hand.position(finger)?;
     while !ended.load(Relaxed) {
@@ -112,10 +112,10 @@ fn plan(hand: &Hand, finger: i32, kind: Planners, ended: &AtomicBool, calls: &At
     Ok(())
 }
 
-/// Of each finger.
+/// Returns the wake-up latency of each finger.
 fn measure(hand: &Hand, seconds: u64) -> Result<Vec<WakeUp>, Failure> {
     let fingers = 1..=FINGERS as i32;
-    // What begins is not what is measured.
+    // The start of the hand is not measured.
     sleep(Duration::from_millis(200));
     fingers.clone().try_for_each(|finger| hand.reset_timing(finger))?;
     sleep(Duration::from_secs(seconds));

@@ -1,5 +1,5 @@
-//! Cycles a second without a rate limit: what is left is the system's terminals, the codec and the core. A cycle whose
-//! reply was lost is not counted.
+//! Measures the cycles per second without a rate limit. The system's terminals, the codec and the core then set the
+//! rate. A cycle whose reply was lost does not count.
 
 use crate::Failure;
 use crate::fingers::reach;
@@ -12,10 +12,10 @@ use sun2xp::finger::{Losses, Mailbox, Servo, Stage};
 use sun2xp::model::configuration::{Configuration, FINGERS, Scheme};
 use sun2xp::realtime::{Clock, MonotonicClock, Priority, now, spawn};
 
-/// Cycles a second with the rate limit off, three fingers on three pseudo-terminals.
+/// Measures the cycles per second of three fingers on three pseudo-terminals without a rate limit.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// How long, s.
+    /// Duration, s.
     #[arg(long, default_value_t = 5)]
     seconds: u64,
     /// SCHED_FIFO priority of the servo threads; 0: not real-time.
@@ -29,27 +29,29 @@ impl Default for Arguments {
     }
 }
 
-/// Cycles a second of all fingers, with their replies.
+/// Goal for the cycles per second of all fingers, without those that lost their replies.
 const GOAL: f64 = 30_000.0;
 
-/// What the controllers are told, Hz: near what comes of it, so that the fingers are under control.
-const TOLD: f64 = 10_000.0;
+/// The rate for which the controllers are designed, Hz. It is near the measured rate, so that the fingers stay under
+/// control.
+const CONTROLLER_RATE: f64 = 10_000.0;
 
-/// How far apart cycles begin until the fingers are under control, ns. Replies are awaited for most of it.
+/// Period until the fingers are under control, ns. Replies are awaited for most of it.
 const PERIOD: u64 = 1_000_000;
 
-/// Of the simulated boards, below the servos.
+/// Priority of the simulated boards, below the servos.
 const BOARD_PRIORITY: u8 = 20;
 
 const BAUD: u32 = 1_000_000;
 
-/// What the servo threads do.
+/// Phases of the measurement.
 const OPEN: u8 = 0;
 const MEASURE: u8 = 1;
 const END: u8 = 2;
 
-/// A clock that waits only while the fingers come under tension. They do so at an ordinary rate: on a machine with
-/// other work a servo that never waits keeps the bytes of its own terminals from being carried.
+/// A clock that sleeps only until the fingers are under control. At first they run at an ordinary rate: on a machine
+/// with other work, a servo that never sleeps would prevent the system from transporting the bytes of its own
+/// terminals.
 #[derive(Clone)]
 struct UnlimitedClock {
     phase: Arc<AtomicU8>,
@@ -67,16 +69,16 @@ impl Clock for UnlimitedClock {
     }
 }
 
-/// How long the fingers may take to come under tension. Other work on the machine slows them down.
+/// Time limit for the fingers to come under control. Other work on the machine slows them down.
 const OPENING: Duration = Duration::from_secs(30);
 
-/// A measurement in which a finger was not under control is made again, until there were so many.
+/// A measurement is repeated if a finger was not under control, up to this number of attempts.
 const ATTEMPTS: u32 = 3;
 
-/// A finger that stays under control for a shorter time is not measured.
+/// A finger is not measured if it stayed under control for a shorter time.
 const SHORTEST: Duration = Duration::from_millis(500);
 
-/// Whatever becomes of the measurement, the servo threads end with it.
+/// The phase of the measurement. Dropping it ends the servo threads, whatever the result.
 struct Phase(Arc<AtomicU8>);
 
 impl Drop for Phase {
@@ -85,8 +87,8 @@ impl Drop for Phase {
     }
 }
 
-/// Of one finger: cycles a second with a reply, how many replies were lost, and what ended the measurement early; or
-/// why nothing was measured.
+/// The result of one finger: cycles per second with a reply, lost replies, and what ended the measurement early. An
+/// error contains why nothing was measured.
 type Row = Result<(f64, u64, Option<String>), String>;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -100,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             None => break,
         }
     }
-    println!("| finger | cycles a second | replies lost |\n|---|---|---|");
+    println!("| finger | cycles per second | lost replies |\n|---|---|---|");
     for (finger, row) in (1..).zip(&rows) {
         match row {
             Ok((rate, lost, None)) => println!("| {finger} | {rate:.0} | {lost} |"),
@@ -118,8 +120,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bytes = Kind::Command.wire_length() + Kind::Reply.wire_length();
     let share = capacity(BAUD, 1, 1000.0)?;
     println!(
-        "Bytes a cycle: {bytes}. At {BAUD} baud one finger at 1000 Hz takes {:.0} % of what the line can do, {:.0} Hz \
-         is the limit; a pseudo-terminal has none, and here does {:.1} times that.\n",
+        "Bytes per cycle: {bytes}. At {BAUD} baud, one finger at 1000 Hz uses {:.0} % of the line's capacity. The \
+         limit is {:.0} Hz. A pseudo-terminal has no such limit, and here runs at {:.1} times that rate.\n",
         100.0 * share,
         1000.0 / share,
         all / 3.0 * share / 1000.0
@@ -129,11 +131,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn measure(arguments: &Arguments) -> Result<Vec<Row>, Failure> {
     let mut configuration = Configuration::default();
-    configuration.hand.rate = TOLD;
-    // Nothing is to fault only because a machine with other work lets the terminals' bytes wait.
+    configuration.hand.rate = CONTROLLER_RATE;
+    // A machine with other work may delay the terminals' bytes. This must not cause a fault.
     (configuration.hand.watchdog_ms, configuration.hand.open_timeout_ms) = (1000, 60_000);
     for finger in &mut configuration.fingers {
-        // State feedback reckons with equal periods, and without a rate limit none is like the other.
+        // State feedback assumes equal periods. Without a rate limit the periods differ.
         finger.controller.scheme = Some(Scheme::Figure10);
     }
     let phase = Phase(Arc::new(AtomicU8::new(OPEN)));
@@ -158,7 +160,7 @@ fn measure(arguments: &Arguments) -> Result<Vec<Row>, Failure> {
     Ok(rows)
 }
 
-/// Lets the servos run without a rate limit once all fingers are under control, and looks at them.
+/// Lets the servos run without a rate limit once all fingers are under control, and measures them.
 fn observe(mailboxes: &[Mailbox], phase: &Phase, length: Duration) -> Vec<Row> {
     let begun = Instant::now();
     let opening = |mailbox: &Mailbox| mailbox.report().stage == Stage::Opening;
@@ -172,7 +174,7 @@ fn observe(mailboxes: &[Mailbox], phase: &Phase, length: Duration) -> Vec<Row> {
     phase.0.store(MEASURE, Relaxed);
     let begun = Instant::now();
     let before: Vec<_> = mailboxes.iter().map(|mailbox| mailbox.report().losses).collect();
-    // Of each finger what was counted last while it was under control, and when.
+    // The last counts of each finger under control, and their time.
     let mut last: Vec<_> = before.iter().map(|losses| (*losses, Duration::ZERO)).collect();
     while begun.elapsed() < length {
         std::thread::sleep(Duration::from_millis(50));
@@ -189,14 +191,13 @@ fn observe(mailboxes: &[Mailbox], phase: &Phase, length: Duration) -> Vec<Row> {
         }
         let losses = losses.since(before);
         let rate = (losses.cycles - losses.lost_replies) as f64 / after.as_secs_f64();
-        let ended =
-            (!running(mailbox)).then(|| format!("until after {:.1} s: {}", after.as_secs_f64(), state(mailbox)));
+        let ended = (!running(mailbox)).then(|| format!("only for {:.1} s: {}", after.as_secs_f64(), state(mailbox)));
         Ok((rate, losses.lost_replies, ended))
     };
     mailboxes.iter().zip(&before).zip(&last).map(row).collect()
 }
 
-/// Why a finger is not measured.
+/// Returns why a finger is not measured.
 fn state(mailbox: &Mailbox) -> String {
     let report = mailbox.report();
     let losses = report.losses;

@@ -1,12 +1,12 @@
-//! What is compared is measured in turn, so that a disturbance of the machine hits one side like the other.
+//! The sides of a comparison are measured alternately, so that a disturbance of the machine affects them alike.
 
-/// How often, and how long.
+/// Number and duration of the measurements.
 #[derive(clap::Args)]
 pub struct Turns {
-    /// How often each is measured, in turn.
+    /// Number of measurements of each side.
     #[arg(long, default_value_t = Self::default().repeats)]
     pub repeats: usize,
-    /// How long each time, s.
+    /// Duration of each measurement, s.
     #[arg(long, default_value_t = Self::default().seconds)]
     pub seconds: u64,
 }

@@ -1,4 +1,5 @@
-//! Wake-up latency of three servo-like threads against cyclictest at the same priority and interval, in turn.
+//! Compares the wake-up latency of three servo-like threads with cyclictest at the same priority and interval. The two
+//! alternate.
 
 use crate::Failure;
 use crate::cyclictest::Cyclictest;
@@ -12,13 +13,13 @@ use sun2xp::realtime::{Clock, MonotonicClock, Priority, Schedule, now, spawn};
 const PRIORITY: u8 = 80;
 const PERIOD_US: u64 = 1000;
 
-/// The threads may be so much later than cyclictest's.
+/// Largest permitted ratio of the threads' latency to cyclictest's.
 const GOAL: f64 = 1.1;
 
 pub fn run(turns: &Turns) -> Result<(), Failure> {
     let _awake = keep_awake();
-    println!("| load | of | this library | cyclictest | ratio | goal |\n|---|---|---|---|---|---|");
-    for (load, busy) in [("idle", false), ("stress-ng", true)] {
+    println!("| load | figure | this library | cyclictest | ratio | goal |\n|---|---|---|---|---|---|");
+    for (load, busy) in [("none", false), ("stress-ng", true)] {
         if let Err(reason) = measure(turns, load, busy) {
             println!("| {load} | not measured: {reason} | | | | |");
         }
@@ -45,14 +46,15 @@ fn measure(turns: &Turns, load: &str, busy: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// cyclictest keeps the processor out of deep sleep while it runs. So the same must hold while the library is measured.
+/// Keeps the processor out of deep sleep. cyclictest does this while it runs, so the same must hold while the library
+/// is measured.
 fn keep_awake() -> Option<File> {
     let mut latency = OpenOptions::new().write(true).open("/dev/cpu_dma_latency").ok()?;
     latency.write_all(&0i32.to_ne_bytes()).ok()?;
     Some(latency)
 }
 
-/// Latencies of three threads that do nothing but wake up, each in its phase of the period.
+/// Returns the latencies of three threads that only wake up, with phases staggered over the period.
 fn servo_threads(seconds: u64) -> Result<Vec<Percentiles>, Failure> {
     let first = now() + 10_000_000;
     let cycles = (seconds * 1_000_000 / PERIOD_US) as usize;
@@ -78,7 +80,7 @@ fn servo_threads(seconds: u64) -> Result<Vec<Percentiles>, Failure> {
     Ok(all)
 }
 
-/// Work for every core, memory and the disk's caches.
+/// Load for every core, the memory and the caches.
 struct Stress(Child);
 
 impl Stress {
@@ -95,8 +97,8 @@ impl Stress {
 
 impl Drop for Stress {
     fn drop(&mut self) {
-        // Its parent passes the signal on to its workers.
-        // SAFETY: a process that this one has started and not yet waited for.
+        // stress-ng passes the signal on to its workers. SAFETY: this process has started the process with this number,
+        // and has not yet waited for it.
         unsafe { libc::kill(self.0.id() as libc::pid_t, libc::SIGINT) };
         let _ = self.0.wait();
     }

@@ -1,4 +1,5 @@
-//! A closed loop of controller and simulated finger that passes through what a finger meets, recorded.
+//! Records a closed loop of controller and simulated finger that covers the usual and the exceptional states of a
+//! finger.
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 use std::error::Error;
@@ -8,17 +9,17 @@ use sun2xp::plant::{Plant, Sensors};
 
 pub const RATE: f64 = 1000.0;
 
-/// For so many cycles a set point is held.
+/// Number of cycles for which each set point is held.
 pub const CYCLES_A_SET_POINT: usize = 500;
 
-/// Joints, rad, and Kx relative to [`STIFFNESS`].
+/// Joint angles, rad, and Kx relative to [`STIFFNESS`].
 const SET_POINTS: [([f64; 3], f64); 6] = [
     ([0.3, 0.6, 1.2], 1.0),
     ([-0.4, 0.2, 0.8], 1.0),
-    // Beyond the soft limit of joint 2: the limit pushes back.
+    // Beyond the soft limit of joint 2, which pushes back.
     ([0.0, 0.5, -0.3], 1.0),
     ([0.2, 0.9, 1.5], 0.3),
-    // Stiffer than the tendons: the stiffness is scaled, then the torque.
+    // Stiffer than the tendons, so that first the stiffness and then the torque is scaled.
     ([0.5, 0.3, 0.7], 40.0),
     ([0.0, 0.5, 1.0], 1.0),
 ];
@@ -32,11 +33,11 @@ const STIFFNESS: Matrix3<f64> = Matrix3::new(
 
 pub const CYCLES: usize = CYCLES_A_SET_POINT * SET_POINTS.len();
 
-/// While this set point is held, the fingertip is pushed with so much, N: more than the tendons can hold.
+/// The set point during which the fingertip is pushed, and the force, N. The tendons cannot withstand it.
 const PUSHED: usize = 3;
 const PUSH: Vector3<f64> = Vector3::new(0.0, 8.0, 25.0);
 
-/// Whether the reply of a cycle is lost.
+/// Returns whether the reply of a cycle is lost.
 pub fn lost(cycle: usize) -> bool {
     cycle % 97 == 96
 }
@@ -74,7 +75,7 @@ impl Recording {
             feedback.push(now);
             let set_point = cycle / CYCLES_A_SET_POINT;
             plant.set_external_force(if set_point == PUSHED { PUSH } else { Vector3::zeros() });
-            // The command of the last cycle acts during this one.
+            // The command of the previous cycle acts during this one.
             for _ in 0..10 {
                 plant.step((acting * 0.01).into());
             }
@@ -87,7 +88,7 @@ impl Recording {
         Ok(Self { finger, controller, set_points, activities, feedback, torques, reports })
     }
 
-    /// The run once more; `cycle` is given what a cycle is given, and whether it has a reply.
+    /// Repeats the run. `cycle` receives the inputs of each cycle; the feedback is `None` if the reply is lost.
     pub fn repeat(&self, mut cycle: impl FnMut(&Controller, &mut State, Option<&Feedback>, &Activity)) {
         let mut state = self.controller.start(&self.feedback[0]);
         for (number, feedback) in self.feedback.iter().enumerate() {
@@ -96,14 +97,14 @@ impl Recording {
         }
     }
 
-    /// What the run has passed through: a comparison on a run where nothing happens would say nothing.
+    /// Returns which states the run has covered. Without them a comparison would be meaningless.
     pub fn seen(&self) -> String {
         let cycles = |met: fn(&Report) -> bool| self.reports.iter().filter(|report| met(report)).count();
         let (low, high) = self.finger.joint_limits();
         let beyond = self.reports.iter().filter(|report| report.joints.inf(&high).sup(&low) != report.joints).count();
         format!(
-            "of {CYCLES} cycles {} were scaled in stiffness, {} in torque, {beyond} beyond a soft limit, {} without \
-             reply",
+            "of {CYCLES} cycles, {} had a scaled stiffness, {} a scaled torque, {beyond} a joint beyond a soft limit, \
+             {} no reply",
             cycles(|report| report.stiffness_scale < 1.0),
             cycles(|report| report.torque_scale < 1.0),
             (0..CYCLES).filter(|&cycle| lost(cycle)).count()

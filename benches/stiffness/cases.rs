@@ -1,4 +1,4 @@
-//! What is measured: poses, springs, directions; all from one seed.
+//! The measured cases: poses, springs and directions, all from one seed.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use rand_distr::{Distribution, UnitSphere};
@@ -17,7 +17,7 @@ pub struct Case {
     pub seed: u64,
 }
 
-/// What the joints of a finger rub with.
+/// The friction of a finger.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Friction {
     None,
@@ -25,7 +25,7 @@ pub enum Friction {
     Harsh,
 }
 
-/// The poses that the goals name, degrees: lower, upper.
+/// The poses to which the goals apply, degrees: lower and upper limit of each joint.
 pub const USUAL: [[f64; 2]; 3] = [[-30.0, 30.0], [-10.0, 70.0], [30.0, 100.0]];
 
 impl Case {
@@ -33,19 +33,19 @@ impl Case {
         format!("{}, {} Hz", self.controller(), self.rate)
     }
 
-    /// As the configuration names it.
+    /// Returns the controller's name, as in a configuration.
     pub fn controller(&self) -> String {
         let value = self.scheme.serialize(ValueSerializer::new()).expect("a name");
         value.as_str().unwrap_or_default().to_owned()
     }
 
-    /// The admissible bound on the largest eigenvalue of Kx, N/cm.
+    /// Returns the admissible bound on the largest eigenvalue of Kx, N/cm.
     pub fn bound(&self) -> f64 {
         ConfiguredFinger::default().stiffness_bound(self.rate)
     }
 
-    /// A finger with this controller, at `pose`, that knows its own friction as identification finds it. Set points are
-    /// not slowed down: steps are steps.
+    /// Returns a finger with this controller at `pose`. Its configuration contains the friction that identification
+    /// finds. The speed of set points is not limited, so that a step is a step.
     pub fn finger(&self, pose: &Vector3<f64>, friction: Friction) -> ConfiguredFinger {
         let mut finger = ConfiguredFinger::default();
         finger.controller.scheme = Some(self.scheme);
@@ -70,13 +70,14 @@ impl Case {
         finger
     }
 
-    /// rad, within [`USUAL`].
+    /// Returns random poses within [`USUAL`], rad.
     pub fn poses(&self) -> Vec<Vector3<f64>> {
         let mut random = Pcg64::seed_from_u64(self.seed);
         (0..self.poses).map(|_| pose(&mut random, &USUAL)).collect()
     }
 
-    /// N/cm: isotropic ones, one with axes, four with random axes; none stiffer than the bound.
+    /// Returns values of Kx, N/cm: isotropic ones, one with different axes, four with random axes. None is stiffer than
+    /// the bound.
     pub fn springs(&self) -> Vec<Matrix3<f64>> {
         let mut random = Pcg64::seed_from_u64(self.seed + 1);
         let isotropic = [1.0, 3.0, self.bound()].map(|stiffness| Matrix3::identity() * stiffness);
@@ -86,7 +87,7 @@ impl Case {
         springs
     }
 
-    /// Every pose with every spring.
+    /// Returns every combination of pose and spring.
     pub fn poses_and_springs(&self) -> Vec<(Vector3<f64>, Matrix3<f64>)> {
         let springs = self.springs();
         self.poses()
@@ -95,7 +96,8 @@ impl Case {
             .collect()
     }
 
-    /// Directions to step into from the pose with this number: along each axis, one sign by chance, and one oblique.
+    /// Returns the directions of the steps from the pose with this number: one along each axis, with a random sign, and
+    /// an oblique one.
     pub fn directions(&self, pose: usize) -> Vec<Vector3<f64>> {
         let mut random = Pcg64::seed_from_u64(self.seed + 100 + pose as u64);
         let mut directions: Vec<_> = [Vector3::x(), Vector3::y(), Vector3::z()]
@@ -106,7 +108,7 @@ impl Case {
         directions
     }
 
-    /// Every pose with those of its directions in which the tip can go `distance` cm.
+    /// Returns every combination of a pose and one of its directions in which the tip can move `distance` cm.
     pub fn poses_and_directions(&self, distance: f64) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         let finger = ConfiguredFinger::default();
         let of_pose = |(number, pose): (usize, Vector3<f64>)| {
@@ -118,12 +120,13 @@ impl Case {
     }
 }
 
-/// +x, -x, +y, -y, +z, -z.
+/// Returns +x, -x, +y, -y, +z, -z.
 pub fn axes() -> impl Iterator<Item = Vector3<f64>> {
     [Vector3::x(), Vector3::y(), Vector3::z()].into_iter().flat_map(|axis| [axis, -axis])
 }
 
-/// Whether the tip can go `distance` cm straight from `pose` without leaving the joint limits or straightening.
+/// Returns whether the tip can move `distance` cm in a straight line from `pose` without straightening the finger and
+/// within the joint limits.
 pub fn has_room(finger: &ConfiguredFinger, pose: &Vector3<f64>, direction: &Vector3<f64>, distance: f64) -> bool {
     const STRIDE: f64 = 0.05;
     const BENT: f64 = 0.35;
@@ -139,12 +142,12 @@ pub fn has_room(finger: &ConfiguredFinger, pose: &Vector3<f64>, direction: &Vect
     true
 }
 
-/// A pose within these limits (degrees), rad.
+/// Returns a random pose within these limits (degrees), rad.
 pub fn pose(random: &mut Pcg64, limits: &[[f64; 2]; 3]) -> Vector3<f64> {
     Vector3::from(limits.map(|[low, high]| uniform(random, low, high).to_radians()))
 }
 
-/// A random spring with eigenvalues between these, N/cm.
+/// Returns a random spring with eigenvalues between these, N/cm.
 pub fn spring(random: &mut Pcg64, softest: f64, stiffest: f64) -> Matrix3<f64> {
     let axis = Unit::new_normalize(direction(random));
     let turn = Rotation3::from_axis_angle(&axis, uniform(random, 0.0, std::f64::consts::PI));
@@ -152,7 +155,7 @@ pub fn spring(random: &mut Pcg64, softest: f64, stiffest: f64) -> Matrix3<f64> {
     turn * Matrix3::from_diagonal(&principal) * turn.inverse()
 }
 
-/// Any direction, of unit length.
+/// Returns a random direction of unit length.
 pub fn direction(random: &mut Pcg64) -> Vector3<f64> {
     Vector3::from(<UnitSphere as Distribution<[f64; 3]>>::sample(&UnitSphere, random))
 }
@@ -161,7 +164,7 @@ pub fn uniform(random: &mut Pcg64, low: f64, high: f64) -> f64 {
     low + (high - low) * f64::from(random.next_u32()) / 4294967296.0
 }
 
-/// Makes the true tendons so many times as stiff.
+/// Multiplies the stiffness of the true tendons by `ratio`.
 pub fn stiffen(finger: &mut ConfiguredFinger, ratio: &[f64; 4]) {
     for (stiffness, ratio) in finger.simulation.tendon_stiffness.iter_mut().zip(ratio) {
         *stiffness *= ratio;

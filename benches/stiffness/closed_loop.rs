@@ -1,4 +1,4 @@
-//! The core and the simulated finger in one loop, with one cycle between sample and torque.
+//! The control core and the simulated finger in one loop, with one cycle between sample and torque.
 
 use crate::cases::{Case, Friction};
 use nalgebra::{Matrix3, Vector3, Vector4};
@@ -14,7 +14,7 @@ pub struct ClosedLoop {
     pub plant: Plant,
     pub report: Report,
     pub set_point: SetPoint,
-    /// Smallest true and commanded tensions, largest true one, since [`ClosedLoop::forget`], N.
+    /// Smallest true and commanded tension, and largest true tension, since [`ClosedLoop::reset_extremes`], N.
     pub least_true: f64,
     pub least_commanded: f64,
     pub most_true: f64,
@@ -30,7 +30,8 @@ pub struct ClosedLoop {
     random: Pcg64,
 }
 
-/// A finger at rest, held where it is by a spring, and a controller that may believe of it what is not so.
+/// A finger at rest, held in place by a spring, and the configuration that its controller uses. The configuration may
+/// differ from the true finger.
 pub struct Held<'a> {
     pub case: &'a Case,
     pub finger: &'a ConfiguredFinger,
@@ -40,23 +41,23 @@ pub struct Held<'a> {
     pub senses: Senses,
 }
 
-/// How the controller sees the finger.
+/// How the controller receives the measurements.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Senses {
-    /// In counts, and with noise.
+    /// In counts, with noise.
     Counts,
-    /// As it is.
+    /// Exactly.
     Exact,
 }
 
 impl ClosedLoop {
-    /// A finger in counts whose controller knows it.
+    /// Creates a finger that is measured in counts and whose controller knows its true parameters.
     pub fn at(case: &Case, pose: &Vector3<f64>, friction: Friction, kx: &Matrix3<f64>) -> Self {
         let finger = &case.finger(pose, friction);
         Self::new(&Held { case, finger, belief: finger, pose, kx, senses: Senses::Counts })
     }
 
-    /// The finger after it was held for 0.3 s.
+    /// Creates a finger that has been held for 0.3 s.
     pub fn new(held: &Held) -> Self {
         let &Held { case, finger, belief, pose, kx, senses } = held;
         let mut plant = Plant::new(finger, Vector3::zeros()).expect("the default finger");
@@ -66,7 +67,7 @@ impl ClosedLoop {
         plant.release_brake();
         let radius = Vector4::from(finger.geometry.motor_radius);
         let motor_torques = plant.tensions().component_mul(&radius);
-        // Exact law: it is the fidelity of the spring that is measured.
+        // The exact law, because the accuracy of the spring is measured.
         let set_point = SetPoint { law: Law::Exact, ..SetPoint::hard_finger(*pose, *kx) };
         let mut this = Self {
             plant,
@@ -87,16 +88,16 @@ impl ClosedLoop {
             random: Pcg64::seed_from_u64(case.seed + 7),
         };
         this.run(0.3);
-        this.forget();
+        this.reset_extremes();
         this
     }
 
-    /// Where the spring is anchored, cm.
+    /// Returns the position of the spring's anchor, cm.
     pub fn anchor(&self) -> Vector3<f64> {
         self.finger.links().tip(&self.set_point.joints)
     }
 
-    /// Anchors the spring elsewhere, cm. Whether that is within reach.
+    /// Moves the spring's anchor to `tip`, cm. Returns whether that is within reach.
     #[must_use]
     pub fn move_anchor(&mut self, tip: &Vector3<f64>) -> bool {
         let present = self.set_point.joints;
@@ -109,19 +110,19 @@ impl ClosedLoop {
         self.plant.set_external_force(force);
     }
 
-    /// From now on this part of the replies is lost.
+    /// Loses replies with the probability `loss` from now on.
     pub fn lose(&mut self, loss: f64) {
         self.loss = loss;
     }
 
-    pub fn forget(&mut self) {
+    pub fn reset_extremes(&mut self) {
         (self.least_true, self.least_commanded, self.most_true) = (f64::INFINITY, f64::INFINITY, 0.0);
     }
 
     pub fn cycle(&mut self) {
         let counts = read(&mut self.sensors, &self.plant);
         let values = Measured { motor_angles: self.plant.motor_angles(), tensions: self.plant.tensions() };
-        // What the last cycle commanded acts during this one.
+        // The command of the previous cycle acts during this one.
         for _ in 0..(1.0 / (self.rate * PLANT_STEP_SECONDS)).round() as usize {
             self.plant.step((self.command.motor_torques * 0.01).into());
             let tensions = self.plant.tensions();
@@ -141,7 +142,7 @@ impl ClosedLoop {
         (0..self.cycles(seconds)).for_each(|_| self.cycle());
     }
 
-    /// The true tip in every cycle of so many seconds, cm.
+    /// Returns the true position of the tip in every cycle of this time, cm.
     pub fn tips(&mut self, seconds: f64) -> Vec<Vector3<f64>> {
         (0..self.cycles(seconds))
             .map(|_| {
@@ -151,7 +152,7 @@ impl ClosedLoop {
             .collect()
     }
 
-    /// Mean of the true tip over so many seconds, cm.
+    /// Returns the mean of the true position of the tip over this time, cm.
     pub fn mean_tip(&mut self, seconds: f64) -> Vector3<f64> {
         let tips = self.tips(seconds);
         tips.iter().sum::<Vector3<f64>>() / tips.len() as f64

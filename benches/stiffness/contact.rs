@@ -1,4 +1,4 @@
-//! Rows in which the tip or a joint meets something that does not give way.
+//! Rows in which the tip or a joint meets a rigid obstacle or an elastic wall.
 
 use crate::cases::{Case, Friction, axes};
 use crate::closed_loop::ClosedLoop;
@@ -7,22 +7,23 @@ use nalgebra::{Matrix3, Vector3};
 use sun2xp::control::Law;
 use sun2xp::model::configuration::Surface;
 
-/// N/cm.
+/// Stiffness of the walls, N/cm.
 pub const WALLS: [f64; 3] = [30.0, 100.0, 300.0];
-/// How far the anchor is moved toward a wall, and how far off that is, cm: 3.5 mm of spring press the tip against it.
+/// Distance by which the anchor moves toward a wall, and distance to the wall, cm. A spring deflection of 3.5 mm then
+/// presses the tip against the wall.
 pub const INTO: f64 = 0.4;
 pub const OFF: f64 = 0.05;
 
-/// What became of a finger that was moved into a wall.
+/// The motion of a finger that was moved into a wall.
 pub struct Residual {
-    /// Motion that is left after 2 s, cm rms.
+    /// Motion from 1.7 to 2 s, cm rms.
     pub late: f64,
-    /// The same from 0.7 to 1 s.
+    /// Motion from 0.7 to 1 s, cm rms.
     pub early: f64,
 }
 
-/// How many poses do not come to rest within 2 s against a wall, from any side, without friction to help; and the
-/// largest residual motion, cm rms.
+/// Returns the number of poses that do not come to rest within 2 s against a wall on any side, without friction, and
+/// the largest residual motion, cm rms.
 pub fn against_walls(case: &Case, stiffness: f64) -> (usize, f64) {
     let of_pose = each(&case.poses(), |_, pose| {
         let runs = WALLS.iter().flat_map(|&wall| axes().map(move |outward| (wall, outward)));
@@ -33,7 +34,7 @@ pub fn against_walls(case: &Case, stiffness: f64) -> (usize, f64) {
 }
 
 impl Residual {
-    /// Whether it is more than the noise of the gauges makes, or grows.
+    /// Returns whether the motion exceeds the one that the noise of the gauges causes, or grows.
     pub fn lasts(&self) -> bool {
         const NOISE: f64 = 0.005;
         const PERCEPTIBLE: f64 = 0.001;
@@ -41,7 +42,7 @@ impl Residual {
     }
 }
 
-/// None where the anchor cannot be that far in the wall.
+/// Returns `None` if the anchor cannot be that far inside the wall.
 fn into_wall(case: &Case, pose: &Vector3<f64>, stiffness: f64, wall: f64, outward: &Vector3<f64>) -> Option<Residual> {
     let mut finger = ClosedLoop::at(case, pose, Friction::None, &(Matrix3::identity() * stiffness));
     let tip = finger.anchor();
@@ -59,25 +60,25 @@ pub fn wall_off(tip: &Vector3<f64>, outward: &Vector3<f64>, stiffness: f64) -> S
     Surface::Wall { point: (tip - outward * OFF).into(), normal: (*outward).into(), stiffness }
 }
 
-/// Root mean square about the mean.
+/// Returns the root mean square of the distance from the mean.
 pub fn residual(tips: &[Vector3<f64>]) -> f64 {
     let mean = tips.iter().sum::<Vector3<f64>>() / tips.len() as f64;
     (tips.iter().map(|tip| (tip - mean).norm_squared()).sum::<f64>() / tips.len() as f64).sqrt()
 }
 
-/// What a torque beyond the limits came to.
+/// The result of a torque beyond the limits.
 pub struct OverLimit {
-    /// How far the largest true tension is above t_max, N: at rest, and from the beginning.
+    /// Largest true tension minus t_max, N: at rest, and from the beginning.
     pub excess: f64,
     pub excess_on_the_way: f64,
-    /// Angle between the joint torque of the true tensions, averaged, and the one that the law asked for, degrees.
+    /// Angle between the mean joint torque of the true tensions and the one that the law required, degrees.
     pub turned: f64,
-    /// The largest part of the torque that the limits let through: 1 would be no trial.
+    /// The largest part of the torque that was within the limits. 1 means that the limits had no effect.
     pub scale: f64,
 }
 
-/// A set point far beyond the mechanical stop of joint 1, by the report's law, so that joints press against the stop
-/// with more than the tendons may carry.
+/// Commands a set point far beyond the mechanical stop of joint 1, with the report's law. The joint then presses
+/// against the stop with more torque than the tension limits permit.
 pub fn over_limit(case: &Case) -> OverLimit {
     let all = each(&case.poses(), |_, pose| {
         let mut pose = *pose;
@@ -85,10 +86,10 @@ pub fn over_limit(case: &Case) -> OverLimit {
         let mut finger = ClosedLoop::at(case, &pose, Friction::Default, &(Matrix3::identity() * case.bound()));
         finger.set_point.law = Law::Report;
         finger.set_point.joints[1] += 2.0;
-        // Joint 0 swings slowly while most of the torque is held back.
+        // Joint 0 swings slowly while most of the torque is outside the limits.
         finger.run(3.0);
         let most_on_the_way = finger.most_true;
-        finger.forget();
+        finger.reset_extremes();
         let r = finger.finger.tendons().expect("the default finger").r;
         let cycles = finger.cycles(0.5);
         let (mut asked, mut given, mut scale) = (Vector3::zeros(), Vector3::zeros(), 0.0);

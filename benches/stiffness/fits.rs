@@ -1,11 +1,11 @@
-//! Numbers out of recorded points: what a spring, a slope and a decay are.
+//! Computes stiffnesses and slopes from recorded points.
 
 use nalgebra::{Matrix3, Vector3};
 pub use sun2xp::stability::growth;
 
-/// The relative error of a spring in its worst direction: the largest singular value of S K S - 1 with S = Kx^-1/2, K
-/// being the stiffness that forces (N) and deflections (cm) show together. So u^T K u is within (1 +- e) u^T Kx u for
-/// every u.
+/// Returns the relative error of a spring in its worst direction: the largest singular value of S K S - 1 with S =
+/// Kx^-1/2. K is the stiffness fitted to forces (N) and deflections (cm). For an error e, u^T K u is within (1 +- e)
+/// u^T Kx u for every u.
 pub fn spring_error(forces: &[Vector3<f64>], deflections: &[Vector3<f64>], kx: &Matrix3<f64>) -> f64 {
     let found = apparent_stiffness(forces, deflections);
     let mut eigen = kx.symmetric_eigen();
@@ -15,7 +15,7 @@ pub fn spring_error(forces: &[Vector3<f64>], deflections: &[Vector3<f64>], kx: &
     if error.iter().all(|entry| entry.is_finite()) { error.singular_values().max() } else { f64::INFINITY }
 }
 
-/// K of f = K d by least squares, N/cm.
+/// Returns K of f = K d by least squares, N/cm.
 pub fn apparent_stiffness(forces: &[Vector3<f64>], deflections: &[Vector3<f64>]) -> Matrix3<f64> {
     let sum = |a: &[Vector3<f64>], b: &[Vector3<f64>]| -> Matrix3<f64> {
         a.iter().zip(b).map(|(a, b)| a * b.transpose()).sum()
@@ -24,7 +24,7 @@ pub fn apparent_stiffness(forces: &[Vector3<f64>], deflections: &[Vector3<f64>])
     sum(forces, deflections) * squared.try_inverse().unwrap_or_else(|| Matrix3::repeat(f64::NAN))
 }
 
-/// Least-squares slope of y over x.
+/// Returns the least-squares slope of y over x.
 pub fn slope(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;

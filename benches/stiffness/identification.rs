@@ -1,4 +1,4 @@
-//! A finger whose tendons are not as believed, identified as it will be before it is used.
+//! Identifies a finger whose tendons differ from their configuration, as it would be identified before use.
 
 use crate::cases::{Case, Friction, stiffen};
 use nalgebra::Vector3;
@@ -7,8 +7,8 @@ use sun2xp::control::{Activity, Controller, Feedback, MotorCommand, Report};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 
-/// What identification finds for the stiffness of each tendon, N/cm, where the true ones are these times as stiff as
-/// believed. With the friction that a finger has, and in counts.
+/// Returns the stiffness of each tendon that identification finds, N/cm, if the true tendons are stiffer than
+/// configured by the factors `ratio`. With the default friction and measurements in counts.
 pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obstacle> {
     let pose = Vector3::from(ConfiguredFinger::default().simulation.start_degrees.map(f64::to_radians));
     let mut belief = case.finger(&pose, Friction::Default);

@@ -1,11 +1,11 @@
-//! How well a finger is the spring that it is told to be: the figures of `docs/stiffness.md`.
+//! Measures how accurately a finger behaves as the commanded spring: the figures of `docs/stiffness.md`.
 //!
 //!     cargo bench --bench stiffness -- [--quick] [--poses N] [--seed N] [--rates 500,1000,2000]
 //!                                      [--controllers "figure 9,state feedback"] [--only TEXT] [--out FOLDER]
 //!                                      [--write docs/stiffness.md]
 //!
-//! The pure core against the simulated finger, in memory and on simulated time, with one cycle between sample and
-//! torque.
+//! The control core runs against the simulated finger, in memory and in simulated time. One cycle passes between a
+//! sample and its torque.
 
 mod cases;
 mod closed_loop;
@@ -30,9 +30,9 @@ use std::time::Instant;
 use sun2xp::model::configuration::Scheme;
 
 #[derive(Parser)]
-#[command(about = "Measures how well a finger is the spring that it is told to be")]
+#[command(about = "Measures how accurately a finger behaves as the commanded spring")]
 struct Arguments {
-    /// How many random poses; 24, or 4 if quick.
+    /// Number of random poses; 24, or 4 with --quick.
     #[arg(long)]
     poses: Option<usize>,
     /// Few poses, and 1000 Hz only.
@@ -41,23 +41,23 @@ struct Arguments {
     /// Seed of the poses, of Kx and of the noise.
     #[arg(long, default_value_t = 20261121)]
     seed: u64,
-    /// Hz, separated by commas; 500, 1000 and 2000, or 1000 if quick.
+    /// Rates in Hz, separated by commas; 500, 1000 and 2000, or 1000 with --quick.
     #[arg(long, value_delimiter = ',')]
     rates: Option<Vec<f64>>,
-    /// Tendon controllers, as in the configuration, separated by commas. Figure 10 is measured first in any case: it is
-    /// what the others are compared with.
+    /// Tendon controllers, as in the configuration, separated by commas. Figure 10 is always measured first, as the
+    /// reference.
     #[arg(long, value_delimiter = ',', value_parser = scheme, default_values = ["figure 10", "state feedback"])]
     controllers: Vec<Scheme>,
-    /// Only rows whose names contain this, or one of several texts separated by semicolons.
+    /// Only rows whose names contain this text, or one of several texts separated by semicolons.
     #[arg(long, default_value = "")]
     only: String,
-    /// Where step responses and ellipsoids are drawn.
+    /// Folder for the plots of step responses and ellipsoids.
     #[arg(long, default_value = concat!(env!("CARGO_TARGET_TMPDIR"), "/stiffness"))]
     out: PathBuf,
     /// Replaces the table in this file, between its two marks.
     #[arg(long)]
     write: Option<PathBuf>,
-    /// `cargo bench` passes it. Without it, so with `cargo test --all-targets`, a quick run is enough.
+    /// `cargo bench` passes this option. Without it, as in `cargo test --all-targets`, a quick run is enough.
     #[arg(long, hide = true)]
     bench: bool,
 }
@@ -94,7 +94,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What was typed, without what Cargo adds.
+/// Returns the command as typed, without the option that Cargo adds.
 fn command() -> String {
     let typed = std::env::args().skip(1).filter(|argument| argument != "--bench");
     let quoted = typed.map(|argument| if argument.contains(' ') { format!("\"{argument}\"") } else { argument });

@@ -1,4 +1,4 @@
-//! Rows that move the spring's anchor and look at how the tip follows.
+//! Rows that move the spring's anchor and measure how the tip follows.
 
 use crate::cases::{Case, Friction};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
@@ -7,23 +7,23 @@ use crate::parallel::{each, least, worst};
 use nalgebra::{Matrix3, Vector3, Vector4};
 use sun2xp::model::configuration::ConfiguredFinger;
 
-/// What a set of steps came to.
+/// The results of a set of steps.
 pub struct Steps {
-    /// Time to stay within 5 %, s: worst and median.
+    /// Time until the tip stays within 5 % of the step, s: worst and median.
     pub worst: f64,
     pub median: f64,
-    /// Part of the step by which the tip goes beyond it, worst.
+    /// Worst overshoot, as a part of the step.
     pub overshoot: f64,
-    /// N, true and commanded.
+    /// Smallest true and commanded tension, N.
     pub least_true: f64,
     pub least_commanded: f64,
 }
 
-/// 5 mm, cm.
+/// Length of a step, cm.
 pub const STEP: f64 = 0.5;
-/// What is free beyond the end of a step, so that overshoot does not meet a limit.
+/// Free distance of a step, so that an overshoot does not reach a limit, cm.
 const ROOM: f64 = 1.2 * STEP;
-/// How long a step is watched, s: what has not settled by then counts as this long.
+/// Duration of a step, s. A step that has not settled by then counts with this time.
 const WATCHED: f64 = 1.5;
 
 struct Step {
@@ -33,12 +33,12 @@ struct Step {
     least_commanded: f64,
 }
 
-/// Steps of the anchor by 5 mm from every pose in several directions, as far as the joint limits leave room.
+/// Steps of the anchor by 5 mm from every pose in several directions, as far as the joint limits permit.
 pub fn steps(case: &Case, stiffness: f64, loss: f64) -> Steps {
     steps_of(case, stiffness, loss, |_| {})
 }
 
-/// The same, of fingers that differ from what their controllers believe.
+/// The same for fingers that differ from the configuration of their controllers.
 pub fn steps_of(case: &Case, stiffness: f64, loss: f64, differ: impl Fn(&mut ConfiguredFinger) + Sync) -> Steps {
     let kx = Matrix3::identity() * stiffness;
     let all = each(&case.poses_and_directions(ROOM), |_, (pose, direction)| {
@@ -68,7 +68,7 @@ fn step(finger: &mut ClosedLoop, direction: &Vector3<f64>) -> Step {
     for cycle in 1..=finger.cycles(WATCHED) {
         finger.cycle();
         let error = finger.plant.tip() - target;
-        // Written so that NaN is not settled.
+        // The comparison treats NaN as not settled.
         if error.norm().is_nan() || error.norm() > 0.05 * STEP {
             time = cycle as f64 / finger.rate;
         }
@@ -77,8 +77,8 @@ fn step(finger: &mut ClosedLoop, direction: &Vector3<f64>) -> Step {
     Step { time, overshoot, least_true: finger.least_true, least_commanded: finger.least_commanded }
 }
 
-/// How far the tip has gone in the course of one step, parts of it, over time, s: every pose's first direction with
-/// room.
+/// Returns the motion of the tip along one step, as a part of the step over time in s, for the first direction of every
+/// pose that the joint limits permit.
 pub fn step_responses(case: &Case, stiffness: f64, seconds: f64) -> Vec<Vec<(f64, f64)>> {
     let mut cases = case.poses_and_directions(ROOM);
     cases.dedup_by_key(|(pose, _)| *pose);
@@ -94,8 +94,8 @@ pub fn step_responses(case: &Case, stiffness: f64, seconds: f64) -> Vec<Vec<(f64
     })
 }
 
-/// A reach of 30 mm over 200 ms, minimum jerk, Kx 3: the largest error from 100 ms after its end on, cm, and the least
-/// true tension, N.
+/// Moves the anchor by 30 mm in 200 ms with minimum jerk, at Kx 3. Returns the largest error from 100 ms after the end,
+/// cm, and the smallest true tension, N.
 pub fn reach(case: &Case) -> (f64, f64) {
     const WAY: f64 = 3.0;
     let all = each(&case.poses_and_directions(WAY), |_, (pose, direction)| {
@@ -115,8 +115,8 @@ pub fn reach(case: &Case) -> (f64, f64) {
     (worst(all.iter().map(|one| one.0)), least(all.iter().map(|one| one.1)))
 }
 
-/// A finger that holds its pose, with friction: how much the commanded pull of a tendon changes from cycle to cycle, N
-/// rms, and how much the tip moves, cm rms; worst over poses and tendons.
+/// Holds a pose, with friction. Returns the change of a tendon's commanded pull per cycle, N rms, and the motion of the
+/// tip, cm rms. Both are the worst of all poses and tendons.
 pub fn at_rest(case: &Case, stiffness: f64) -> (f64, f64) {
     let all = each(&case.poses(), |_, pose| {
         let mut finger = ClosedLoop::at(case, pose, Friction::Default, &(Matrix3::identity() * stiffness));

@@ -1,11 +1,13 @@
-//! The cases of a row side by side: every case has its own finger and its own seed, so their order does not matter.
+//! Measures the cases of a row in parallel. Every case has its own finger and its own seed, so the order does not
+//! matter.
 
 use std::num::NonZero;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-/// `measure` of every item with its number, in order, on as many threads as there are cores.
+/// Calls `measure` for every item with its number, on one thread per core. Returns the results in the order of the
+/// items.
 pub fn each<Item: Sync, Found: Send>(items: &[Item], measure: impl Fn(usize, &Item) -> Found + Sync) -> Vec<Found> {
     let threads = thread::available_parallelism().map_or(1, NonZero::get);
     let (next, found) = (AtomicUsize::new(0), Mutex::new(Vec::with_capacity(items.len())));
@@ -27,13 +29,13 @@ pub fn each<Item: Sync, Found: Send>(items: &[Item], measure: impl Fn(usize, &It
     found.into_iter().map(|(_, one)| one).collect()
 }
 
-/// The largest; what is not a number is larger than any.
+/// Returns the largest value. NaN counts as larger than any number.
 pub fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
     let beyond = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
     values.into_iter().map(beyond).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The smallest; what is not a number is smaller than any.
+/// Returns the smallest value. NaN counts as smaller than any number.
 pub fn least(values: impl IntoIterator<Item = f64>) -> f64 {
     -worst(values.into_iter().map(|value| -value))
 }

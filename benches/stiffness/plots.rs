@@ -1,4 +1,4 @@
-//! Step responses, and commanded against apparent stiffness, as SVG.
+//! Plots step responses, and the commanded and the apparent stiffness, as SVG.
 
 use crate::cases::{Case, Friction};
 use crate::closed_loop::{Held, Senses};
@@ -14,7 +14,7 @@ const RATE: f64 = 1000.0;
 const POSES: usize = 6;
 const FONT: &str = "sans-serif";
 
-/// Draws into `folder`: `step-response.svg` and `stiffness-ellipses.svg`, one panel a controller, at 1000 Hz.
+/// Draws `step-response.svg` and `stiffness-ellipses.svg` in `folder`, one panel per controller, at 1000 Hz.
 pub fn draw(folder: &Path, schemes: &[Scheme], seed: u64) -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(folder)?;
     let cases: Vec<Case> = schemes.iter().map(|&scheme| Case { scheme, rate: RATE, poses: POSES, seed }).collect();
@@ -45,9 +45,9 @@ fn step_responses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The forces that a deflection by 1 mm in every direction of a coordinate plane wants (black) and finds (red):
-/// sections through the ellipsoids of Kx = diag(1, 5, 2) and of the apparent stiffness; friction on. One row a
-/// controller, one column a pose.
+/// Draws the forces for a deflection of 1 mm in every direction of a coordinate plane: those of Kx = diag(1, 5, 2) in
+/// black, and those of the apparent stiffness in red, with friction. They are sections of the two ellipsoids. There is
+/// one row per controller and one column per pose.
 fn ellipses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
     const PLANE: [usize; 2] = [0, 1];
     let kx = Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0));
@@ -76,7 +76,7 @@ fn ellipses(file: &Path, cases: &[Case]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// K d for deflections d of 1 mm around the plane of two axes, N.
+/// Returns K d for deflections d of 1 mm in all directions of a plane of two axes, N.
 fn section(stiffness: &Matrix3<f64>, [a, b]: [usize; 2]) -> Vec<(f64, f64)> {
     let of = |row, column| 0.1 * stiffness[(row, column)];
     let plane = Matrix2::new(of(a, a), of(a, b), of(b, a), of(b, b));

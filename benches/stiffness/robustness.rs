@@ -1,4 +1,4 @@
-//! Rows in which the controller believes something that is not so.
+//! Rows in which the controller's configuration differs from the true finger.
 
 use crate::cases::{Case, Friction, stiffen};
 use crate::closed_loop::{Held, Senses};
@@ -9,13 +9,13 @@ use nalgebra::Matrix3;
 use sun2xp::calibration::Obstacle;
 use sun2xp::model::configuration::ConfiguredFinger;
 
-/// The apparent stiffness where the true finger is not what the controller believes. No friction, exact sensors: what
-/// is left is the belief's fault.
+/// Measures the apparent stiffness of a finger that differs from the controller's configuration. There is no friction
+/// and the sensors are exact, so that only the wrong configuration causes the error.
 fn believing_otherwise(case: &Case, stiffness: f64, differ: impl Fn(&mut ConfiguredFinger) + Sync) -> Fidelity {
     believing(case, stiffness, |finger, _| differ(finger))
 }
 
-/// The same, where what is true and what is believed both differ from the default.
+/// The same for a true finger and a configuration that may both differ from the default.
 fn believing(
     case: &Case,
     stiffness: f64,
@@ -31,13 +31,13 @@ fn believing(
     }))
 }
 
-/// Motors that give more or less than their commands: all alike, and against each other.
+/// Ratios of the motors' true torques to their commands: all alike, and with opposite signs.
 pub const MOTOR_CONSTANTS: [[f64; 4]; 4] = [[1.2; 4], [0.8; 4], [1.2, 0.8, 1.2, 0.8], [1.2, 0.8, 0.8, 1.2]];
 
-/// Tendons stiffer or softer than believed, by 10 %, alike and against each other.
+/// Ratios of the tendons' true stiffness to the configured one, 10 % off: all alike, and with opposite signs.
 pub const TENDONS: [[f64; 4]; 4] = [[1.1; 4], [0.9; 4], [1.1, 0.9, 1.1, 0.9], [1.1, 0.9, 0.9, 1.1]];
 
-/// The worst with motors that are off by each of these.
+/// Returns the worst result over motors with each of these ratios.
 pub fn motor_constants(case: &Case, stiffness: f64, ratios: &[[f64; 4]]) -> Fidelity {
     let with = |ratio: &[f64; 4]| {
         believing_otherwise(case, stiffness, |finger| finger.simulation.motor_constant_ratio = *ratio)
@@ -45,14 +45,14 @@ pub fn motor_constants(case: &Case, stiffness: f64, ratios: &[[f64; 4]]) -> Fide
     Fidelity::worst(&ratios.iter().map(with).collect::<Vec<_>>())
 }
 
-/// The worst with tendons that are off by each of these.
+/// Returns the worst result over tendons with each of these ratios.
 pub fn tendon_stiffness(case: &Case, stiffness: f64, ratios: &[[f64; 4]]) -> Fidelity {
     let with = |ratio: &[f64; 4]| believing_otherwise(case, stiffness, |finger| stiffen(finger, ratio));
     Fidelity::worst(&ratios.iter().map(with).collect::<Vec<_>>())
 }
 
-/// With tendons that are off by each of these, and a controller that has identified them: the worst error of what it
-/// then believes of a tendon, and the apparent stiffness at each of `stiffnesses`.
+/// Measures tendons with each of these ratios after identification. Returns the worst error of an identified stiffness,
+/// and the worst apparent stiffness at each of `stiffnesses`.
 pub fn identified_tendons(
     case: &Case,
     stiffnesses: [f64; 2],

@@ -1,4 +1,5 @@
-//! Rows about the exact one-cycle map: frictionless, exactly measured, with all that the controller remembers.
+//! Rows about the exact one-cycle map: without friction, with exact measurements, and with all states of the
+//! controller.
 
 use crate::cases::{self, Case, Friction, USUAL};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
@@ -11,7 +12,7 @@ use rand_pcg::rand_core::SeedableRng;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::model::configuration::Surface;
 
-/// A finger as it is left to itself.
+/// A finger whose stability is measured.
 pub struct Sample {
     pub pose: Vector3<f64>,
     pub kx: Matrix3<f64>,
@@ -20,20 +21,20 @@ pub struct Sample {
     pub wall: Option<(Surface, Vector3<f64>)>,
 }
 
-/// What the samples of a row came to.
+/// The results of a row.
 pub struct Stability {
     pub samples: usize,
-    /// How many have an eigenvalue outside the unit circle, or do not come to rest.
+    /// Number of samples that have an eigenvalue outside the unit circle, or do not come to rest.
     pub unstable: usize,
-    /// The largest modulus of an eigenvalue among those that come to rest, a cycle.
+    /// Largest modulus of an eigenvalue, per cycle, among the samples that come to rest.
     pub largest: f64,
 }
 
 /// Samples for each pose of the other rows.
 const DENSITY: usize = 20;
 
-/// Poses within `limits`, springs up to the bound, small loads: without one the tendons 1 and 4 share t_min, where eq.
-/// 20 has a kink.
+/// Returns poses within `limits`, with springs up to the bound and small loads. Without a load, tendons 1 and 4 would
+/// share t_min, where eq. 20 has a kink.
 fn samples(case: &Case, limits: &[[f64; 2]; 3]) -> Vec<Sample> {
     let mut random = Pcg64::seed_from_u64(case.seed + 2);
     let bound = case.bound();
@@ -48,19 +49,19 @@ fn samples(case: &Case, limits: &[[f64; 2]; 3]) -> Vec<Sample> {
         .collect()
 }
 
-/// Fingers in the poses of the goals.
+/// Measures fingers in the poses of the goals.
 pub fn usual(case: &Case) -> Stability {
     measure(case, &samples(case, &USUAL))
 }
 
-/// Fingers anywhere within their joint limits, near the straight one too.
+/// Measures fingers anywhere within their joint limits, including almost straight ones.
 pub fn anywhere(case: &Case) -> Stability {
     let joints = ConfiguredFinger::default().joints;
     let limits = std::array::from_fn(|joint| [joints.minimum_degrees[joint], joints.maximum_degrees[joint]]);
     measure(case, &samples(case, &limits))
 }
 
-/// Fingers pressed against walls of the three stiffnesses, from any side.
+/// Measures fingers that press against walls of the three stiffnesses on any side.
 pub fn against_walls(case: &Case) -> Stability {
     let links = ConfiguredFinger::default().links();
     let mut samples = samples(case, &USUAL);
@@ -76,7 +77,7 @@ pub fn against_walls(case: &Case) -> Stability {
 
 fn measure(case: &Case, samples: &[Sample]) -> Stability {
     let found = each(samples, |_, sample| growth(case, &case.finger(&sample.pose, Friction::None), sample));
-    // A tip on the axis of joint 0 has an eigenvalue of 1: nothing holds that joint.
+    // A finger with its tip on the axis of joint 0 has an eigenvalue of 1, because nothing holds that joint.
     const ROUNDING: f64 = 1e-5;
     let inside = |growth: &f64| *growth < 1.0 + ROUNDING;
     Stability {
@@ -86,15 +87,15 @@ fn measure(case: &Case, samples: &[Sample]) -> Stability {
     }
 }
 
-/// The largest modulus of an eigenvalue of the one-cycle map; none where the finger does not come to rest, or has lost
-/// a tendon or the wall.
+/// Returns the largest modulus of an eigenvalue of the one-cycle map, or `None` if the finger does not come to rest or
+/// has a slack tendon.
 ///
-/// Two fingers, one of them nudged by next to nothing: how their difference goes on is the linear map and nothing else.
+/// Runs two fingers, one of which is displaced slightly. Their difference evolves by the linear map alone.
 pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> Option<f64> {
     const SETTLED: f64 = 2.0;
     const AT_REST: f64 = 1e-2;
     const WATCHED: f64 = 1.5;
-    /// Between two samples, s: apart enough that the eigenvalues left are, too.
+    /// Time between two samples, s. It is long enough to separate the remaining eigenvalues.
     const STRIDE: f64 = 0.005;
     let Sample { pose, kx, .. } = sample;
     let held = Held { case, finger: description, belief: description, pose, kx, senses: Senses::Exact };
@@ -102,17 +103,17 @@ pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> O
     finger.push(sample.load);
     if let Some((surface, anchor)) = &sample.wall {
         finger.plant.set_surface(Some(*surface));
-        // Where the anchor is out of reach, what is pressed against the wall by less is a sample as good.
+        // If the anchor is out of reach, a weaker force presses the tip against the wall, which is as good a sample.
         if !finger.move_anchor(anchor) {
             finger.push((anchor - finger.anchor()).normalize());
         }
     }
     finger.run(SETTLED);
-    finger.forget();
+    finger.reset_extremes();
 
-    let mut nudged = finger.clone();
+    let mut displaced = finger.clone();
     for (motor, angle) in [3e-4, -2e-4, 1e-4, 4e-4].into_iter().enumerate() {
-        nudged.plant.turn_motor(motor, angle);
+        displaced.plant.turn_motor(motor, angle);
     }
     let stride = finger.cycles(STRIDE).max(1);
     let mut speeds = Vec::new();
@@ -120,11 +121,11 @@ pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> O
         .map(|_| {
             for _ in 0..stride {
                 finger.cycle();
-                nudged.cycle();
+                displaced.cycle();
             }
-            let (a, b) = (&finger.plant, &nudged.plant);
+            let (a, b) = (&finger.plant, &displaced.plant);
             speeds.push(a.joint_rates().amax());
-            // In proportion to one another, as far as a finger with a ratio of 1 to 20 and modes at 30 rad/s has one.
+            // Scales the differences to similar size, for a finger with a ratio of 1 to 20 and modes at 30 rad/s.
             let joints = (a.joints() - b.joints()) * 20.0;
             let rates = (a.joint_rates() - b.joint_rates()) * 0.7;
             let motors = a.motor_angles() - b.motor_angles();

@@ -1,4 +1,4 @@
-//! Rows that push slowly and look at how far the tip gives way.
+//! Rows that push slowly and measure the deflection of the tip.
 
 use crate::cases::{Case, Friction, axes};
 use crate::closed_loop::{ClosedLoop, Held, Senses};
@@ -6,13 +6,12 @@ use crate::fits;
 use crate::parallel::{each, least, worst};
 use nalgebra::{Matrix3, Vector3};
 
-/// How well a tip is its spring.
+/// How accurately a tip behaves as its spring.
 #[derive(Clone, Copy)]
 pub struct Fidelity {
-    /// Of the apparent stiffness, in the worst direction, against what the controller reports that it gives: a part of
-    /// Kx.
+    /// Error of the apparent stiffness in the worst direction, relative to the stiffness that the controller reports.
     pub error: f64,
-    /// That part: less than 1 where the tendons of the pose carry no more.
+    /// The reported stiffness as a part of Kx. It is less than 1 if the tendons cannot carry Kx in this pose.
     pub scale: f64,
 }
 
@@ -22,7 +21,8 @@ impl Fidelity {
     }
 }
 
-/// The stiffness that the tip shows, about 1 mm; worst over poses and springs. No friction.
+/// Measures the apparent stiffness for deflections of 1 mm, without friction. Returns the worst of all poses and
+/// springs.
 pub fn apparent_stiffness(case: &Case, senses: Senses) -> Fidelity {
     Fidelity::worst(&each(&case.poses_and_springs(), |_, (pose, kx)| {
         let finger = &case.finger(pose, Friction::None);
@@ -30,25 +30,25 @@ pub fn apparent_stiffness(case: &Case, senses: Senses) -> Fidelity {
     }))
 }
 
-/// The stiffness that one tip shows, about 1 mm.
+/// Measures the apparent stiffness of one tip for deflections of 1 mm.
 pub fn fidelity(held: &Held) -> Fidelity {
     let Pushed { forces, deflections, scale } = pushed_about(held);
     Fidelity { error: fits::spring_error(&forces, &deflections, &(held.kx * scale)), scale }
 }
 
-/// What pushes came to.
+/// The results of the pushes.
 pub struct Pushed {
-    /// N.
+    /// Forces, N.
     pub forces: Vec<Vector3<f64>>,
-    /// How far the true tip went from the middle of each pair of pushes, cm.
+    /// Deflection of the true tip from the middle of each pair of pushes, cm.
     pub deflections: Vec<Vector3<f64>>,
-    /// The part of Kx that was given, as reported.
+    /// The reported stiffness as a part of Kx.
     pub scale: f64,
 }
 
-/// Pushes that deflect Kx by 1 mm along every axis both ways.
+/// Pushes along every axis both ways, with forces that deflect Kx by 1 mm.
 ///
-/// Both pushes of a pair meet the same noise, so that most of it leaves their difference; the rest is averaged.
+/// Both pushes of a pair have the same noise, so that most of it cancels in their difference. The rest is averaged.
 pub fn pushed_about(held: &Held) -> Pushed {
     const DEFLECTION: f64 = 0.1;
     let (settled, averaged) = if held.senses == Senses::Exact { (2.5, 0.5) } else { (1.0, 3.0) };
@@ -71,7 +71,7 @@ pub fn pushed_about(held: &Held) -> Pushed {
     Pushed { forces, deflections, scale: scales / 6.0 }
 }
 
-/// Error of the slope of a triangular force loop of +-2 mm in 3 s, friction on.
+/// Returns the error of the slope of a triangular force loop of +-2 mm in 3 s, with friction.
 pub fn triangle(case: &Case, stiffness: f64) -> f64 {
     const AMPLITUDE: f64 = 0.2;
     worst(each(&case.poses(), |_, pose| {
@@ -81,7 +81,7 @@ pub fn triangle(case: &Case, stiffness: f64) -> f64 {
             let points: Vec<(f64, f64)> = (0..cycles)
                 .map(|cycle| {
                     let phase = 4.0 * cycle as f64 / cycles as f64;
-                    // Up to 1, down to -1 and back: it begins and ends at rest.
+                    // The wave rises to 1, falls to -1 and returns, so that the loop begins and ends at rest.
                     let wave = match phase {
                         ..1.0 => phase,
                         ..3.0 => 2.0 - phase,
@@ -98,8 +98,8 @@ pub fn triangle(case: &Case, stiffness: f64) -> f64 {
     }))
 }
 
-/// Error of the stiffness that the deflection along the push shows, when pushed from rest with Kx times `deflection` cm
-/// for 3 s.
+/// Returns the error of the stiffness that follows from the deflection along the push. The finger is pushed from rest
+/// with Kx times `deflection` cm for 3 s.
 pub fn pushed_from_rest(case: &Case, friction: Friction, stiffness: f64, deflection: f64) -> f64 {
     worst(each(&case.poses(), |_, pose| {
         worst(axes().map(|direction| {

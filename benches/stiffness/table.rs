@@ -1,4 +1,4 @@
-//! The table: what is measured, what is wanted, and what each column reaches, as Markdown.
+//! The table of all measurements and goals, as Markdown.
 
 use crate::cases::{Case, Friction};
 use crate::closed_loop::Senses;
@@ -10,15 +10,15 @@ use std::path::Path;
 use std::time::Instant;
 use std::{fs, io};
 
-/// One property of a finger.
+/// One measured property of a finger.
 struct Row {
     what: &'static str,
-    /// At 1000 Hz and above.
+    /// The goal at 1000 Hz and above.
     goal: &'static str,
     measure: fn(&Case) -> String,
 }
 
-/// What was measured for one controller at one rate.
+/// The results of one controller at one rate.
 pub struct Column {
     name: String,
     cells: Vec<(&'static Row, String)>,
@@ -26,7 +26,7 @@ pub struct Column {
 
 static ROWS: [Row; 22] = [
     Row {
-        what: "apparent stiffness about 1 mm, worst direction, no friction, quantised and noisy sensors",
+        what: "apparent stiffness at 1 mm, worst direction, no friction, quantised and noisy sensors: error",
         goal: "<= 0.3 %",
         measure: |case| fidelity(statics::apparent_stiffness(case, Senses::Counts)),
     },
@@ -36,24 +36,24 @@ static ROWS: [Row; 22] = [
         measure: |case| fidelity(statics::apparent_stiffness(case, Senses::Exact)),
     },
     Row {
-        what: "slope of a 2 mm, 3 s triangular force loop, friction: Kx 3 / bound",
+        what: "triangular force loop of 2 mm in 3 s, with friction: error of the slope, Kx 3 / bound",
         goal: "<= 3 %",
         measure: |case| at_both(case, statics::triangle),
     },
     Row {
-        what: "pushed from rest by Kx 2 mm, friction: Kx 3 / bound",
+        what: "pushed from rest by Kx 2 mm, with friction: error of the stiffness, Kx 3 / bound",
         goal: "<= 5 %",
         measure: |case| {
             at_both(case, |case, stiffness| statics::pushed_from_rest(case, Friction::Default, stiffness, 0.2))
         },
     },
     Row {
-        what: "pushed from rest by Kx 1 mm, harsh joint friction, Kx 3",
+        what: "pushed from rest by Kx 1 mm, harsh joint friction: error of the stiffness, Kx 3",
         goal: "<= 50 %",
         measure: |case| percent(statics::pushed_from_rest(case, Friction::Harsh, 3.0, 0.1)),
     },
     Row {
-        what: "5 mm step at Kx 3: time to within 5 %, worst / median; overshoot",
+        what: "5 mm step at Kx 3: settling time to 5 %, worst / median; overshoot",
         goal: "<= 150 ms; <= 10 %",
         measure: |case| {
             let steps = motion::steps(case, 3.0, 0.0);
@@ -61,7 +61,8 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "30 mm reach in 200 ms, Kx 3, friction: error from 100 ms after its end on; least true tension",
+        what: "30 mm reach in 200 ms at Kx 3, with friction: largest error from 100 ms after its end; least true \
+               tension",
         goal: "<= 0.3 mm; >= 4 N",
         measure: |case| {
             let (error, least) = motion::reach(case);
@@ -77,17 +78,18 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "against walls of 30, 100, 300 N/cm, Kx 3: poses not at rest after 2 s; residual motion",
+        what: "against walls of 30, 100, 300 N/cm at Kx 3: poses not at rest after 2 s; residual motion",
         goal: "0",
         measure: |case| walls(case, 3.0),
     },
     Row { what: "the same at the bound", goal: "0", measure: |case| walls(case, case.bound()) },
     Row {
-        what: "over-limit torque against a stop: largest tension over t_max at rest / on the way; torque turned by",
+        what: "over-limit torque against a stop: largest tension minus t_max, at rest / before; angle between \
+               commanded and applied torque",
         goal: "<= 0.1 N; 0",
         measure: |case| {
             let found = contact::over_limit(case);
-            assert!(found.scale < 1.0, "no torque over the limit: nothing measured");
+            assert!(found.scale < 1.0, "no torque exceeded the limits, so nothing was measured");
             format!("{:+.2} / {:+.2} N; {:.2} degrees", found.excess, found.excess_on_the_way, found.turned)
         },
     },
@@ -101,7 +103,7 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "motor constants off by 20 %: 5 mm step at Kx 3, worst / median; overshoot",
+        what: "motor constants off by 20 %: settling time of a 5 mm step at Kx 3, worst / median; overshoot",
         goal: "no effect",
         measure: |case| {
             let steps = motion::steps_of(case, 3.0, 0.0, |finger| {
@@ -120,7 +122,8 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "tendon stiffness off by 10 %, identified: error of what is found; of the stiffness then, Kx 3 / bound",
+        what: "tendon stiffness off by 10 %, identified: error of the identified value; error of the stiffness, Kx \
+               3 / bound",
         goal: "<= 2 %; <= 1 %",
         measure: |case| match robustness::identified_tendons(case, [3.0, case.bound()], &robustness::TENDONS) {
             Ok((found, [soft, stiff])) => format!("{}; {} / {}", percent(found), fidelity(soft), fidelity(stiff)),
@@ -128,7 +131,7 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "5 % of the replies lost: 5 mm step at Kx 3, worst / median; median longer by",
+        what: "5 % of the replies lost: settling time of a 5 mm step at Kx 3, worst / median; increase of the median",
         goal: "<= +3 %",
         measure: |case| {
             let (whole, lossy) = (motion::steps(case, 3.0, 0.0), motion::steps(case, 3.0, 0.05));
@@ -136,7 +139,7 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "stability, poses as above, Kx up to the bound, loads up to 1 mm: unstable; largest eigenvalue",
+        what: "stability, poses as above, Kx up to the bound, loads up to 1 mm: unstable samples; largest eigenvalue",
         goal: "0; < 1",
         measure: |case| eigenvalue(&stability::usual(case)),
     },
@@ -151,7 +154,7 @@ static ROWS: [Row; 22] = [
         measure: |case| eigenvalue(&stability::against_walls(case)),
     },
     Row {
-        what: "at rest at Kx 3, friction: change of the commands from cycle to cycle; motion of the tip",
+        what: "at rest at Kx 3, with friction: change of the commands per cycle; motion of the tip",
         goal: "",
         measure: |case| {
             let (change, motion) = motion::at_rest(case, 3.0);
@@ -159,7 +162,7 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "at rest at the bound, friction: change of the commands from cycle to cycle; motion of the tip",
+        what: "at rest at the bound, with friction: change of the commands per cycle; motion of the tip",
         goal: "",
         measure: |case| {
             let (change, motion) = motion::at_rest(case, case.bound());
@@ -167,7 +170,7 @@ static ROWS: [Row; 22] = [
         },
     },
     Row {
-        what: "5 mm step at the bound: time to within 5 %, worst / median; overshoot",
+        what: "5 mm step at the bound: settling time to 5 %, worst / median; overshoot",
         goal: "",
         measure: |case| {
             let steps = motion::steps(case, case.bound(), 0.0);
@@ -180,17 +183,17 @@ fn percent(part: f64) -> String {
     format!("{:.2} %", 100.0 * part)
 }
 
-/// The error of what is reported, and what is, where that is not Kx.
+/// Formats the error of the reported stiffness, and the reported stiffness if it is less than Kx.
 fn fidelity(found: Fidelity) -> String {
     let error = percent(found.error);
-    if found.scale < 1.0 { format!("{error} of what is reported, {:.3} Kx at least", found.scale) } else { error }
+    if found.scale < 1.0 { format!("{error} of the reported stiffness, at least {:.3} Kx", found.scale) } else { error }
 }
 
 fn fidelity_at_both(case: &Case, measure: fn(&Case, f64) -> Fidelity) -> String {
     format!("{} / {}", fidelity(measure(case, 3.0)), fidelity(measure(case, case.bound())))
 }
 
-/// At Kx 3 and at the bound.
+/// Measures at Kx 3 and at the bound.
 fn at_both(case: &Case, measure: fn(&Case, f64) -> f64) -> String {
     format!("{} / {}", percent(measure(case, 3.0)), percent(measure(case, case.bound())))
 }
@@ -228,9 +231,9 @@ impl Column {
     }
 }
 
-/// One row a measurement, one column a controller and rate.
+/// Returns the table with one row per measurement, and one column per controller and rate.
 pub fn markdown(columns: &[Column]) -> String {
-    let mut text = String::from("| worst over poses and Kx unless said | goal |");
+    let mut text = String::from("| worst over poses and Kx unless stated otherwise | goal |");
     for column in columns {
         let _ = write!(text, " {} |", column.name);
     }
@@ -251,7 +254,7 @@ pub fn markdown(columns: &[Column]) -> String {
 const BEGIN: &str = "<!-- table: begin -->\n";
 const END: &str = "<!-- table: end -->";
 
-/// Puts the table, and the command that made it, between the two marks in a file.
+/// Writes the table, and the command that made it, between the two marks in a file.
 pub fn replace_in(file: &Path, command: &str, table: &str) -> io::Result<()> {
     let text = fs::read_to_string(file)?;
     let missing = || io::Error::other(format!("{} lacks the lines {BEGIN}{END}", file.display()));
