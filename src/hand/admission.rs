@@ -117,8 +117,9 @@ impl Admission {
     }
 }
 
-/// Whether the damping of a set point and its stiffness go together, for one finger. A copy of it goes along with each change of a set point, because it must see damping and
-/// stiffness in the step that sends them: two planners may change one each at the same time.
+/// Whether the damping of a set point and its stiffness go together, for one finger. A copy of it goes along with each
+/// change of a set point, because it must see damping and stiffness in the step that sends them: two planners may
+/// change one each at the same time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampingAdmission {
     /// 1 to 3.

@@ -1,12 +1,14 @@
-//! The architecture that docs/architecture.md shows: imports run downward only, and no circle hides behind a
-//! re-export.
+//! The rules of docs/architecture.md: imports run downward only, no circle hides behind a re-export, and files,
+//! functions and lines are short.
 
 mod circles;
 mod crate_tree;
 mod imports;
+mod limits;
 
 use crate_tree::CrateTree;
 use std::collections::BTreeSet;
+use std::fs;
 use std::path::Path;
 
 /// The folders of the library from the top down. A file imports from its own folder and from lower ones.
@@ -51,4 +53,39 @@ fn imports_run_downward() {
 fn no_files_import_each_other_in_a_circle() {
     let found = circles::find(&imports::all(&library()));
     assert!(found.is_empty(), "circles of files:\n{}", found.join("\n\n"));
+}
+
+/// The generated header is no source file. Neither are Markdown, TOML and other texts.
+#[test]
+fn files_functions_and_lines_are_short() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let found: Vec<String> = limits::source_files(root)
+        .into_iter()
+        .filter(|path| !path.ends_with("include/Sun2Xp.h"))
+        .flat_map(|path| {
+            let text = fs::read_to_string(&path).expect("a source file");
+            limits::exceeded(path.strip_prefix(root).expect("it is below the root"), &text)
+        })
+        .collect();
+    assert!(found.is_empty(), "beyond the limits:\n{}", found.join("\n"));
+}
+
+#[test]
+fn a_file_a_function_or_a_line_beyond_its_limit_is_found() {
+    let found = |name: &str, text: &str| limits::exceeded(Path::new(name), text);
+    assert!(found("one.rs", &"// A line.\n".repeat(300)).is_empty());
+    assert_eq!(found("one.rs", &"// A line.\n".repeat(301)), ["one.rs: 301 lines"]);
+    assert!(found("one.c", &"x".repeat(120)).is_empty());
+    assert_eq!(found("one.c", &"x".repeat(121)), ["one.c:1: 121 columns"]);
+    for (name, begin, indentation) in [
+        ("one.rs", "    pub(crate) const unsafe extern \"C\" fn long(\n        x: X,\n    ) {", "    "),
+        ("one.rs", "async fn long() {", ""),
+        ("one.c", "static int long(int one,\n                int other)\n{", ""),
+    ] {
+        let function = |lines: usize| {
+            format!("\n{begin}\n{}{indentation}}}\n", "        x;\n".repeat(lines - begin.lines().count() - 1))
+        };
+        assert!(found(name, &function(60)).is_empty(), "{begin}");
+        assert_eq!(found(name, &function(61)), [format!("{name}:2: a function of 61 lines")], "{begin}");
+    }
 }
