@@ -59,7 +59,7 @@ pub(super) struct StateFeedback {
     mass: Vector4<f64>,
     viscous: Vector4<f64>,
     stiffness: Vector4<f64>,
-    /// alpha.
+    /// alpha: commanded tension for a tension error.
     inertia_gain: f64,
     /// c, N s/m.
     relative_damping: f64,

@@ -28,7 +28,7 @@ pub enum ContactError {
     /// NaN or infinity.
     #[error("an entry of K or Normal is {0}: every entry must be a finite number")]
     NotFinite(f64),
-    /// K[row][column] and K[column][row] differ.
+    /// `K[row][column]` and `K[column][row]` differ.
     #[error(
         "K is not symmetric: K[{row}][{column}] and K[{column}][{row}] differ by {difference:.3e}, more than a \
          thousandth of its largest entry. Send a symmetric K, as every spring has"

@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 /// A link as a rigid body.
 #[derive(Clone, Copy, Debug)]
 struct Cylinder {
-    /// kg.
+    /// Mass, kg.
     mass: f64,
     /// Moment of inertia about the axis, kg m^2.
     axial: f64,

@@ -16,7 +16,7 @@ const LEAST_SHARE: f64 = 0.01;
 /// to the next. This is the largest modulus of its eigenvalues. `samples` has one vector of channels for each instant,
 /// at equal intervals. The channels must be comparable in size.
 ///
-/// After the fast modes have decayed, the last samples follow a short recurrence y[k] = a1 y[k-1] + ... + ap y[k-p]
+/// After the fast modes have decayed, the last samples follow a short recurrence `y[k] = a1 y[k-1] + ... + ap y[k-p]`
 /// with the same coefficients in every channel. The roots of this recurrence are the remaining eigenvalues (Prony). The
 /// shortest recurrence that explains the samples has hardly any other roots, and these do not contribute to the motion.
 /// If no recurrence explains the samples, the roots mean nothing, and the mean change of the samples is returned. This

@@ -63,8 +63,7 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// Returns the tension of each tendon minus the tension that its gauge shows, if the other three gauges are right,
-    /// N.
+    /// Returns `missing` of the last sample, N.
     pub fn missing(&self) -> Vector4<f64> {
         self.missing
     }

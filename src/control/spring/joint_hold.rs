@@ -14,7 +14,7 @@ const DAMPING: f64 = 0.2;
 /// tau = k (theta_d - theta) - d (theta_dot - theta_dot_d).
 #[derive(Clone, Debug)]
 pub(crate) struct JointHold {
-    /// N cm s/rad.
+    /// Damping of each joint, N cm s/rad.
     damping: Vector3<f64>,
 }
 

@@ -19,17 +19,17 @@ const DEPTH: f64 = 0.0175;
 /// the fingertip stays exact.
 #[derive(Clone, Debug)]
 pub(crate) struct SoftLimits {
-    /// rad.
+    /// Limits of the joints, rad.
     low: Vector3<f64>,
     high: Vector3<f64>,
-    /// N cm/rad.
+    /// Full stiffness of the limits of each joint, N cm/rad.
     stiffness: Vector3<f64>,
 }
 
 /// The torque and stiffness that the limits add.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Push {
-    /// N cm.
+    /// Torque, N cm.
     pub torque: Vector3<f64>,
     /// Stiffness of each joint, N cm/rad. The caller adds a damper for it.
     pub stiffness: Vector3<f64>,

@@ -33,13 +33,13 @@ const DRIFT_BANDWIDTH: f64 = 60.0;
 
 /// The motors and their tendons as masses on springs, in SI units at the tendon.
 struct Drives {
-    /// m.
+    /// Radius of each motor, m.
     radius: Vector4<f64>,
-    /// kg.
+    /// Mass of each rotor, kg.
     mass: Vector4<f64>,
-    /// N s/m.
+    /// Viscous friction of each motor, N s/m.
     viscous: Vector4<f64>,
-    /// N/m.
+    /// Stiffness of each tendon, N/m.
     stiffness: Vector4<f64>,
     /// Tensions at which the encoders are zeroed, N.
     home: Vector4<f64>,

@@ -11,9 +11,9 @@ use nalgebra::Matrix3;
 /// spring's torque acts on the links. The second term compensates the lag of that share.
 #[derive(Clone, Debug)]
 pub(crate) struct DampingDesign {
-    /// zeta.
+    /// zeta: damping ratio.
     pub ratio: f64,
-    /// f, rad/s.
+    /// f: least damped frequency, rad/s.
     pub least_frequency: f64,
     /// Lag of the tensions, s.
     pub lag: f64,

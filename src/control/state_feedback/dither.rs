@@ -8,9 +8,9 @@ use std::f64::consts::TAU;
 /// Joint torques A sin(omega t + i 120 degrees). With three phases the whole finger is never at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Dither {
-    /// A, N m.
+    /// A: amplitude, N m.
     amplitude: Vector3<f64>,
-    /// omega, rad/s.
+    /// omega: angular frequency, rad/s.
     pub frequency: f64,
     /// Rotation of the phasor in one cycle.
     step: Vector2<f64>,

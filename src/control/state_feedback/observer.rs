@@ -15,11 +15,11 @@ const RECOVERY: usize = 8;
 /// J/r^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ElasticTendon {
-    /// kg.
+    /// m: mass of the rotor, kg.
     pub mass: f64,
-    /// N s/m.
+    /// b: viscous friction of the motor, N s/m.
     pub viscous: f64,
-    /// N/m.
+    /// k: stiffness of the tendon, N/m.
     pub stiffness: f64,
     /// Tension at which the encoder is zeroed, N.
     pub home: f64,

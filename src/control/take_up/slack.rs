@@ -74,12 +74,12 @@ pub(crate) struct Winding {
 
 /// The measurements of a cycle.
 pub(crate) struct Slackness {
-    /// m and m/s of tendon, positive inward.
+    /// Travel, m, and speeds, m/s, of the tendons at the motors, positive inward.
     pub travel: Vector4<f64>,
     pub speeds: Vector4<f64>,
     /// Tensions, N.
     pub tensions: Vector4<f64>,
-    /// rad and rad/s.
+    /// Joint angles, rad, and rates, rad/s.
     pub joints: Vector3<f64>,
     pub joint_rates: Vector3<f64>,
 }
