@@ -175,6 +175,9 @@
    planner's thread-local data (__thread). These data enlarge their stacks, and with hand.real_time
    the locked memory of each servo.
 
+   Sandbox: install a sandbox (seccomp) before OpenHand. If it forbids a system call that threads,
+   waits, ports or pseudo-terminals need, OpenHand is refused with the errno of the sandbox.
+
    Slow calls: OpenHand, CloseHand, RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger and
    WriteBlackBox run in a thread of the library, and the planner's thread waits for it. A signal
    handler may jump out of that wait (siglongjmp). The call then continues to its end; until then

@@ -1,5 +1,5 @@
 //! Planners in hostile surroundings: descriptors that the planner closes without the library's knowledge, limits of the
-//! system, and names with control sequences for terminals.
+//! system, sandboxes, and names with control sequences for terminals.
 
 #[allow(dead_code)]
 mod c;
@@ -48,6 +48,18 @@ fn closes_descriptors(limit: &str, highest: &str) {
 #[test]
 fn limits_of_the_system_are_told_with_their_remedy_and_leave_nothing_behind() {
     Bench::new().succeed(&strict(&[]), &["limits.c"]);
+}
+
+#[test]
+fn a_sandbox_that_forbids_a_system_call_is_named_as_the_cause() {
+    let bench = Bench::new();
+    let program = bench.build(c_compiler(), &strict(&[]), &["sandbox.c"]);
+    let run = bench.run(Command::new(program));
+    if run.status.code() == Some(NOT_PERMITTED) {
+        return c::leave_out("a sandbox", "the system does not permit seccomp filters: permit them");
+    }
+    assert!(run.status.success(), "{}\n{}", run.status, said(&run));
+    assert!(!said(&run).contains("panicked"), "{}", said(&run));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The errors of a serial port.
 
 use crate::model::ShownPath;
-use crate::realtime::with_remedy;
+use crate::realtime::{remedy, with_remedy};
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -67,7 +67,7 @@ pub enum PortError {
     #[error("another part of this program has closed the descriptor of the port. Close the hand and open it again")]
     Closed,
     /// A read or write failed.
-    #[error("reading or writing the port failed: {0}. Unplug the adapter and plug it in")]
+    #[error("reading or writing the port failed: {}", failing(.0))]
     Failed(io::Error),
 }
 
@@ -124,9 +124,24 @@ fn opening(source: &io::Error) -> String {
     }
 }
 
+fn failing(source: &io::Error) -> String {
+    match remedy(source) {
+        Some(remedy) => format!("{source}: {remedy}"),
+        None => format!("{source}. Unplug the adapter and plug it in"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_a_failure_of_the_adapter_is_answered_by_unplugging_it() {
+        for (errno, unplug) in [(libc::EPROTO, true), (libc::EPERM, false), (libc::ENOSYS, false)] {
+            let text = PortError::from(io::Error::from_raw_os_error(errno)).to_string();
+            assert_eq!((text.contains("Unplug"), text.contains("sandbox")), (unplug, !unplug), "{text}");
+        }
+    }
 
     #[test]
     fn the_errno_of_the_system_is_kept_and_has_a_remedy() {
@@ -141,6 +156,7 @@ mod tests {
             (libc::ENODEV, "no device"),
             (libc::EIO, "plug it in again"),
             (libc::ENOMEM, "memory"),
+            (libc::EPERM, "container"),
         ] {
             let error = PortError::at_opening(Path::new("/dev/port"), io::Error::from_raw_os_error(errno));
             assert_eq!(error.errno(), errno, "{error}");

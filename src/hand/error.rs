@@ -17,7 +17,7 @@ use crate::calibration::Obstacle;
 use crate::finger::{Fault, FaultKind};
 use crate::hand::missing_permissions::MissingPermission;
 use crate::model::{ShownPath, UnusableConfiguration};
-use crate::realtime::with_remedy;
+use crate::realtime::{with_remedy, with_terminal_remedy};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -85,7 +85,10 @@ pub enum HandError {
         /// The bytes of the number in hexadecimal.
         number: String,
     },
-    /// The system refuses a thread or a pseudo-terminal.
+    /// The system refuses the thread or the pseudo-terminal of a simulated board.
+    #[error("cannot start the simulated board on a pseudo-terminal: {}", with_terminal_remedy(.0))]
+    SimulatedPort(std::io::Error),
+    /// The system refuses a thread, or to let this process wait.
     #[error("cannot {doing}: {}", with_remedy(source))]
     System {
         /// The refused operation.

@@ -106,7 +106,7 @@ pub fn simulate(
         };
         let priority = Priority { fifo, core: None };
         let port = SimulatedPort::start(board, Pace::patient(configuration.hand.rate), priority)
-            .map_err(|source| HandError::System { doing: "start the simulated board on a pseudo-terminal", source })?;
+            .map_err(HandError::SimulatedPort)?;
         ports[index] = Some(port);
     }
     Ok(ports)

@@ -7,7 +7,7 @@ use crate::hand::reconnection::Recovery;
 use crate::hand::servo_threads::{Given, PortServo, start};
 use crate::hand::{Configured, Fingers, Found, HandError, find_configuration};
 use crate::model::configuration::{Configuration, FINGERS};
-use crate::realtime::{self, Distribution, now};
+use crate::realtime::{self, Distribution, MonotonicClock, now};
 use crate::simulated::{SimulatedFinger, SimulatedPort};
 use nalgebra::Vector3;
 use parking_lot::{Mutex, RwLock};
@@ -95,6 +95,9 @@ impl Hand {
         limp: bool,
     ) -> Result<Self, HandError> {
         check(&configuration)?;
+        // Where a sandbox forbids it, the servo threads would never wait, and others would panic.
+        let waiting = MonotonicClock::check_sleep();
+        waiting.map_err(|source| HandError::System { doing: "wait for a time (clock_nanosleep)", source })?;
         let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
         let simulated = simulate(&configuration, fingers)?;
         let Connected { lines, reached, workshops } = reach(&configuration, fingers, &simulated, limp)?;

@@ -1,6 +1,8 @@
 //! The monotonic clock, and a trait for timing code that works with any clock.
 #![allow(unsafe_code)]
 
+use std::io;
+
 /// A clock that can be waited on. Times are ns since an arbitrary start.
 pub trait Clock {
     /// The time, ns.
@@ -13,22 +15,39 @@ pub trait Clock {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MonotonicClock;
 
+impl MonotonicClock {
+    /// Checks that the system lets this process wait, which a sandbox may forbid.
+    ///
+    /// # Errors
+    /// What the system reports.
+    pub fn check_sleep() -> io::Result<()> {
+        // The deadline has passed, so this returns at once.
+        match sleep(0) {
+            0 | libc::EINTR => Ok(()),
+            error => Err(io::Error::from_raw_os_error(error)),
+        }
+    }
+}
+
 impl Clock for MonotonicClock {
     fn now(&self) -> u64 {
         now()
     }
 
     fn sleep_until(&self, deadline: u64) {
-        let until = libc::timespec {
-            tv_sec: (deadline / 1_000_000_000) as libc::time_t,
-            tv_nsec: (deadline % 1_000_000_000) as libc::c_long,
-        };
-        // SAFETY: `until` is a valid timespec. With TIMER_ABSTIME the remainder is not written, so null is allowed. Any
-        // error other than EINTR means a wrong argument, and then a servo must not sleep forever.
-        while unsafe { libc::clock_nanosleep(libc::CLOCK_MONOTONIC, libc::TIMER_ABSTIME, &until, std::ptr::null_mut()) }
-            == libc::EINTR
-        {}
+        // Any error other than EINTR means a wrong argument or a sandbox, and then a servo must not sleep forever.
+        while sleep(deadline) == libc::EINTR {}
     }
+}
+
+/// Sleeps until `deadline`, ns. Returns 0, or the errno of the system.
+fn sleep(deadline: u64) -> libc::c_int {
+    let until = libc::timespec {
+        tv_sec: (deadline / 1_000_000_000) as libc::time_t,
+        tv_nsec: (deadline % 1_000_000_000) as libc::c_long,
+    };
+    // SAFETY: `until` is a valid timespec. With TIMER_ABSTIME the remainder is not written, so null is allowed.
+    unsafe { libc::clock_nanosleep(libc::CLOCK_MONOTONIC, libc::TIMER_ABSTIME, &until, std::ptr::null_mut()) }
 }
 
 /// The time of CLOCK_MONOTONIC, ns.

@@ -1,4 +1,5 @@
-//! Remedies for a thread, a descriptor or a pseudo-terminal that the system refuses because a limit has been reached.
+//! Remedies for a thread, a descriptor or a pseudo-terminal that the system refuses: because a limit has been reached, a
+//! sandbox forbids it, or it is missing.
 #![allow(unsafe_code, reason = "the scheduling policy of the calling thread")]
 
 use std::ffi::c_int;
@@ -7,8 +8,8 @@ use std::io;
 /// SCHED_DEADLINE, which has this value in every Linux.
 const DEADLINE: c_int = 6;
 
-/// The remedy for an error of a call that creates a thread, a descriptor or a pseudo-terminal; none if the error has
-/// nothing to do with a limit.
+/// The remedy for an error of a call that creates a thread, a descriptor or a pseudo-terminal; none if neither a limit
+/// nor a sandbox is the cause.
 pub fn remedy(error: &io::Error) -> Option<&'static str> {
     // SAFETY: no pointers. 0 is the calling thread, to which the call was refused.
     remedy_under(unsafe { libc::sched_getscheduler(0) }, error)
@@ -30,6 +31,12 @@ fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
              the service or container (TasksMax, pids.max) or of the system (kernel.threads-max); raise the \
              limits of memory too (ulimit -v, and ulimit -l after mlockall)",
         ),
+        // The two errors with which sandboxes refuse a system call. EPERM is also what the device rules of a container
+        // answer.
+        libc::EPERM | libc::ENOSYS => Some(
+            "a sandbox (seccomp) or a container forbids a system call that this needs: permit it there (strace -f shows \
+             which one), or run outside",
+        ),
         libc::ENOMEM => Some("memory is short: end other programs, or raise the limit of this process (ulimit -v)"),
         libc::ENOSPC => Some(
             "no pseudo-terminal is free: end programs that hold one, such as terminal windows, or raise kernel.pty.max \
@@ -47,6 +54,20 @@ pub fn with_remedy(error: &io::Error) -> String {
     }
 }
 
+/// The text of an error of a call that opens a pseudo-terminal, followed by its remedy.
+pub fn with_terminal_remedy(error: &io::Error) -> String {
+    match error.raw_os_error() {
+        // ENOENT: /dev/ptmx or the terminal under /dev/pts is missing. ENODEV: nothing is mounted on /dev/pts. EACCES:
+        // /dev/pts/ptmx is accessible to nobody, which is the default of a mount. EINVAL and ENOTTY: /dev/ptmx is
+        // another device or a file.
+        Some(libc::ENOENT | libc::ENODEV | libc::EACCES | libc::EINVAL | libc::ENOTTY) => format!(
+            "{error}: pseudo-terminals are not available here. Mount them (mount -t devpts -o ptmxmode=666 devpts \
+             /dev/pts) and make /dev/ptmx a link to /dev/pts/ptmx, or set `finger.port` to a real port"
+        ),
+        _ => with_remedy(error),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -60,6 +81,8 @@ mod tests {
             (libc::EAGAIN, "ulimit -u"),
             (libc::ENOMEM, "ulimit -v"),
             (libc::ENOSPC, "kernel.pty.max"),
+            (libc::EPERM, "sandbox"),
+            (libc::ENOSYS, "sandbox"),
         ] {
             assert!(text(errno).contains(word), "{}", text(errno));
         }

@@ -29,7 +29,7 @@ pub use floating_point::Environment;
 pub use follower::Follower;
 pub use free_memory::is_memory_free;
 pub use last_thread::PlannerWatch;
-pub use limits::{remedy, with_remedy};
+pub use limits::{remedy, with_remedy, with_terminal_remedy};
 pub use memory::LockedMemory;
 pub use pages::{Pages, SharedPages};
 pub use period::Schedule;

@@ -16,6 +16,8 @@
 
 /* Numbers of the thread and of the pseudo-terminal that is refused, counted from 1; 0 refuses none. */
 static int refused_thread, refused_terminal, threads, terminals;
+/* The errno of the refused pseudo-terminal. */
+static int terminal_error;
 
 typedef int thread_maker(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
 typedef int terminal_maker(int);
@@ -35,7 +37,7 @@ int posix_openpt(int flags)
     *(void **)&next = dlsym(RTLD_NEXT, "posix_openpt");
     if (++terminals != refused_terminal)
         return next(flags);
-    errno = ENOSPC;
+    errno = terminal_error;
     return -1;
 }
 
@@ -91,9 +93,21 @@ static void refuse_descriptors(void)
 
 static void refuse_terminals(void)
 {
+    static const int errors[] = {ENOENT, ENODEV, EACCES, EINVAL};
+    int number;
+
     for (refused_terminal = 1; refused_terminal <= 3; refused_terminal++) {
         terminals = 0;
+        terminal_error = ENOSPC;
         REFUSED(OpenHand(), ENOSPC, "kernel.pty.max");
+        check_that_nothing_is_left();
+    }
+    /* /dev/ptmx is missing, /dev/pts is not mounted, the planner may not open /dev/ptmx, or it is another device. */
+    for (number = 0; number < 4; number++) {
+        refused_terminal = 1;
+        terminals = 0;
+        terminal_error = errors[number];
+        REFUSED(OpenHand(), errors[number], "mount -t devpts");
         check_that_nothing_is_left();
     }
     refused_terminal = 0;

@@ -136,7 +136,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let pace = arguments.patient.map_or(Pace::RealTime, Pace::patient);
-    let port = SimulatedPort::start(board, pace, Priority { fifo: arguments.priority, core: None })?;
+    let priority = Priority { fifo: arguments.priority, core: None };
+    let port = SimulatedPort::start(board, pace, priority).map_err(hand::HandError::SimulatedPort)?;
     if let Some(link) = &arguments.link {
         make_link(&port.path(), link)?;
     }

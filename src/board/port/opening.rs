@@ -116,6 +116,10 @@ fn open(path: &Path) -> Result<Descriptor, PortError> {
     // SAFETY: the descriptor is open.
     match unsafe { libc::isatty(descriptor.number()) } {
         1 => Ok(descriptor),
-        _ => Err(PortError::NotASerialPort(path.to_owned())),
+        _ => match io::Error::last_os_error() {
+            // A sandbox forbids the question.
+            error if matches!(error.raw_os_error(), Some(libc::EPERM | libc::ENOSYS)) => Err(failed(error)),
+            _ => Err(PortError::NotASerialPort(path.to_owned())),
+        },
     }
 }

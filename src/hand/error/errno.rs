@@ -14,7 +14,7 @@ impl HandError {
             Self::Recovery(error) => error.errno(),
             Self::TooMuchForce { .. } => libc::ERANGE,
             Self::Faulted { .. } | Self::FaultedAtOpening { .. } => libc::EIO,
-            Self::System { source, .. } => source.raw_os_error().unwrap_or(libc::EIO),
+            Self::System { source, .. } | Self::SimulatedPort(source) => source.raw_os_error().unwrap_or(libc::EIO),
             Self::NotRealTime { missing } => missing.errno(),
             Self::Link { source, .. } => source.errno(),
             Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } | Self::NoAnswer(_) => libc::ETIMEDOUT,
