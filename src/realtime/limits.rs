@@ -1,5 +1,5 @@
-//! Remedies for a thread, a descriptor or a pseudo-terminal that the system refuses: because a limit has been reached, a
-//! sandbox forbids it, or it is missing.
+//! Remedies for a thread, a descriptor or a pseudo-terminal that the system refuses: because a limit has been reached,
+//! because a sandbox forbids it, or because it is missing.
 #![allow(unsafe_code, reason = "the scheduling policy of the calling thread")]
 
 use std::ffi::c_int;
@@ -34,8 +34,8 @@ fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
         // The two errors with which sandboxes refuse a system call. EPERM is also what the device rules of a container
         // answer.
         libc::EPERM | libc::ENOSYS => Some(
-            "a sandbox (seccomp) or a container forbids a system call that this needs: permit it there (strace -f shows \
-             which one), or run outside",
+            "a sandbox (seccomp) or a container forbids a system call that this needs: permit it there (strace -f \
+             shows which one), or run outside",
         ),
         libc::ENOMEM => Some("memory is short: end other programs, or raise the limit of this process (ulimit -v)"),
         libc::ENOSPC => Some(
