@@ -74,8 +74,8 @@ pub use finger::{
     Stage, stop_all,
 };
 pub use hand::{
-    Calibrating, ConfigurationError, Configured, FingerFault, FingerStatus, FingerTip, Fingers, Hand, HandError,
-    Recovering, RecoveryError, SetPointError, Standing,
+    Calibrating, CalibrationState, ConfigurationError, Configured, FingerFault, FingerStatus, FingerTip, Fingers, Hand,
+    HandError, Recovering, RecoveryError, SetPointError,
 };
 pub use model::configuration::{
     Configuration, ConfiguredController, ConfiguredEncoder, ConfiguredFinger, ConfiguredFriction, ConfiguredGauge,

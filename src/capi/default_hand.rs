@@ -3,7 +3,7 @@
 use crate::calibration::Task;
 use crate::capi::process;
 use crate::capi::refusal::{self, Refusal};
-use crate::hand::{self, Calibrating, Hand, HandError, Recovering, Standing};
+use crate::hand::{self, Calibrating, CalibrationState, Hand, HandError, Recovering};
 use parking_lot::{Mutex, RwLock};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
@@ -86,7 +86,7 @@ fn refuse_while_exiting() -> Result<(), Refusal> {
 pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
     let recovering = command(|hand| Recovering::begin(hand, finger))?;
     // The hand is not locked here, because ports are slow. If it was closed meanwhile, that is reported first.
-    let result = recovering.mend();
+    let result = recovering.reconnect();
     command(|_| result)?;
     while !command(|hand| recovering.poll(hand))? {
         sleep(POLLING_PERIOD);
@@ -98,7 +98,7 @@ pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
 /// that CloseHand and other calls work meanwhile.
 pub(super) fn calibrate(finger: i32, task: Task) -> Result<(), Refusal> {
     let mut calibrating = command(|hand| Calibrating::begin(hand, finger, task))?;
-    while let Standing::Going(_) = command(|hand| calibrating.poll(hand))? {
+    while let CalibrationState::Going(_) = command(|hand| calibrating.poll(hand))? {
         sleep(POLLING_PERIOD);
     }
     // The hand is not locked here, so that CloseHand waits neither for a slow disk nor for other processes that store.

@@ -1,5 +1,5 @@
-//! Changing a finger's configuration while it runs: a new controller is made here, beside the servo, and handed to it
-//! whole.
+//! Changes of a finger's configuration while it runs. The new controller is made on the planner's thread and passed to
+//! the servo as a whole.
 
 use crate::control::SetPoint;
 use crate::finger::Adjustable;
@@ -13,8 +13,8 @@ use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, Unusabl
 use nalgebra::Matrix6;
 use toml_edit::{Document, Item, Table};
 
-/// Keys, with dots, and tables of keys that count only at open: what the port, the thread and the board were opened
-/// with, what the servo's state is measured in, and the simulated finger.
+/// Dotted keys, and tables of keys, that take effect only at open: those of the port, the thread and the board, those
+/// that define the units of the servo's state, and those of the simulated finger.
 const PERMANENT: &[&str] = &[
     "port",
     "baud",
@@ -34,12 +34,12 @@ const PERMANENT: &[&str] = &[
 ];
 
 impl Hand {
-    /// Changes keys of the configuration of finger 1, 2 or 3 while it runs: `keys` are lines of TOML as they would
-    /// stand under `[finger.N]`, such as `tendon.minimum = 6`. All of them take effect together, within a cycle and
-    /// without a jump in torque. What is not named stays. `controller.law` counts from the next set point on.
+    /// Changes keys of the configuration of finger 1, 2 or 3 while it runs. `keys` are lines of TOML as in the table
+    /// `[finger.N]`, such as `tendon.minimum = 6`. All of them take effect together, within a cycle and without a jump
+    /// in torque. Other keys keep their values. `controller.law` applies to later set points.
     ///
-    /// A configured `stiffness.bound` was found for one controller. Under another `controller.scheme` it counts only if
-    /// it is less than the default one, or if `keys` name it too.
+    /// A configured `stiffness.bound` was found for one controller. Under another `controller.scheme` it is used only
+    /// if it is less than the default bound, or if `keys` contains it too.
     ///
     /// # Errors
     /// No such finger, keys that cannot be read, that cannot change while the hand is open, or that make a
@@ -48,7 +48,7 @@ impl Hand {
     pub fn adjust(&self, finger: i32, keys: &str) -> Result<(), HandError> {
         let member = self.dispatcher.member(finger)?;
         let index = finger as usize - 1; // the member is there: 1 to 3
-        // Held throughout: of two adjustments the second starts from what the first has made.
+        // The lock is held throughout, so that of two adjustments the second starts from the result of the first.
         let mut configuration = self.configuration.write();
         let mut changed = configuration.clone();
         changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys, configuration.hand.rate)?;
@@ -64,7 +64,7 @@ impl Hand {
     }
 }
 
-/// Limits and controller, in one step for everybody who sends.
+/// Replaces the limits and the controller in one step, as seen by every sender.
 fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) -> Result<(), HandError> {
     let finger = changed.finger;
     let mut admission = member.admission.write();
@@ -78,7 +78,7 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     member.mailbox.adjust(adjustable).map_err(faulted)?;
     if admitted != sent {
         let clamp = |set_point: &mut SetPoint| {
-            // Else the finger has begun anew meanwhile, and holds the pose it was found in.
+            // Otherwise the finger has restarted meanwhile and holds the pose that it was found in.
             if *set_point == sent {
                 *set_point = admitted;
             }
@@ -89,7 +89,7 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     Ok(())
 }
 
-/// The configuration of a finger at `rate`, Hz, with `keys` laid over it.
+/// The configuration of a finger, with `keys` replacing some of its values. `rate` is in Hz.
 fn adjusted(
     number: i32,
     finger: &ConfiguredFinger,
@@ -117,7 +117,7 @@ fn adjusted(
     Ok(changed)
 }
 
-/// The first key that counts only at open.
+/// The first key that takes effect only at open.
 fn permanent(table: &Table, above: &str) -> Option<String> {
     table.iter().find_map(|(key, item)| {
         let path = if above.is_empty() { key.to_string() } else { format!("{above}.{key}") };
@@ -141,14 +141,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_named_stays() {
+    fn other_keys_keep_their_values() {
         assert_eq!(changed(""), ConfiguredFinger::default());
         let mut expected = ConfiguredFinger::default();
         expected.tendon.minimum = 6.0;
         expected.controller.tension_gain = Some(3.0);
         assert_eq!(changed("tendon.minimum = 6\ncontroller.tension_gain = 3"), expected);
         assert_eq!(changed("tendon = { minimum = 6 }\n[controller]\ntension_gain = 3.0\n"), expected);
-        // Upon an earlier change, and with an optional table that is set.
+        // On top of an earlier change, and with an optional table that is set.
         expected.geometry.ghost_row = Some([1.0; 4]);
         expected.simulation.surface =
             Some(crate::model::configuration::Surface::Ball { centre: [0.0, 1.0, 9.0], radius: 2.0, stiffness: 30.0 });
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_told_with_its_line() {
+    fn an_unreadable_key_is_reported_with_its_line() {
         for (keys, place, word) in [
             ("tendon.minimum = 6\ntendon.minimun = 5", 2, "minimun"),
             ("\n\ntendon.minimum = ", 3, ""),

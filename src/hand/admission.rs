@@ -1,4 +1,4 @@
-//! What a planner may ask of a finger: the checks between a call and the servo. Nothing that fails one reaches it.
+//! The checks of a planner's commands. A command that fails a check does not reach the servo.
 
 use crate::control::{AdmissibleDamping, SetPoint, spatial};
 use crate::hand::SetPointError;
@@ -7,7 +7,7 @@ use crate::model::configuration::{Law, OutOfRange};
 use crate::model::{Contact, ContactError, Links, spring};
 use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};
 
-/// The limits of one finger, and what its tip is computed with.
+/// The limits of one finger, and the geometry of its tip.
 #[derive(Clone, Debug)]
 pub(super) struct Admission {
     /// 1 to 3.
@@ -16,27 +16,27 @@ pub(super) struct Admission {
     pub joint_limits: (Vector3<f64>, Vector3<f64>),
     /// Bound on the largest eigenvalue of Kx, N/cm.
     pub stiffness_bound: f64,
-    /// A^-1 within the joint limits.
+    /// A^-1, limited to the joint limits.
     pub inverse_kinematics: InverseKinematics,
     pub links: Links,
     /// R of eq. 14, cm.
     pub r: Matrix3x4<f64>,
-    /// The damping that goes with a stiffness.
+    /// The damping that is admissible with a stiffness.
     pub damping: DampingAdmission,
-    /// What SendPos makes of deflections.
+    /// The stiffness law that SendPos selects.
     pub law: Law,
     /// Refuse or clamp.
     pub out_of_range: OutOfRange,
 }
 
 impl Admission {
-    /// Desired joint angles, rad, as they may be sent to the servo.
+    /// Desired joint angles, rad, checked for the servo.
     pub fn joints(&self, joints: [f64; 3]) -> Result<Vector3<f64>, SetPointError> {
         self.finite("Pos", &joints)?;
         let mut admitted = Vector3::from(joints);
         for joint in 0..3 {
             let (low, high) = (self.joint_limits.0[joint], self.joint_limits.1[joint]);
-            // A limit sent as `float` is a limit: it may be rounded beyond it.
+            // A limit that is sent as `float` may be rounded beyond the limit. It must be accepted.
             let rounding = f64::from(f32::EPSILON) * low.abs().max(high.abs());
             let value = joints[joint];
             if (value < low - rounding || value > high + rounding) && self.out_of_range == OutOfRange::Refuse {
@@ -47,14 +47,15 @@ impl Admission {
         Ok(admitted)
     }
 
-    /// The stiffness of a set point with this Kx. Here the rows of a planner become the form that the servo uses.
+    /// The stiffness of a set point with this Kx. This converts the planner's rows to the form that the servo uses.
     pub fn stiffness(&self, rows: [[f64; 3]; 3]) -> Result<Matrix6<f64>, SetPointError> {
         self.kx(rows).map(|kx| spatial(&kx))
     }
 
-    /// Kx, N/cm, symmetric, positive semi-definite and within the bound. `rows[row][column]`.
+    /// Kx, N/cm, checked to be symmetric, positive semi-definite and within the bound. The argument is
+    /// `rows[row][column]`.
     pub fn kx(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
-        // nalgebra is column-major: this is the one place where the order of C is turned.
+        // nalgebra is column-major. Only this line converts from the row-major order of C.
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
         let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| self.no_spring(error))?;
         let bound = self.stiffness_bound;
@@ -66,14 +67,14 @@ impl Admission {
         if !too_stiff && smallest >= 0.0 {
             return Ok(symmetric);
         }
-        // The nearest admissible spring keeps its principal directions.
+        // The nearest admissible spring has the same principal directions.
         let mut eigen = symmetric.symmetric_eigen();
         eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = eigenvalue.clamp(0.0, bound));
         let recomposed = eigen.recompose();
         Ok((recomposed + recomposed.transpose()) * 0.5)
     }
 
-    /// Why a Kx is no spring.
+    /// The error for a Kx that is not a spring.
     fn no_spring(&self, error: ContactError) -> SetPointError {
         let finger = self.finger;
         match error {
@@ -86,15 +87,16 @@ impl Admission {
         }
     }
 
-    /// Joint angles, rad, for a tip position, cm, nearest to the `present` ones. Never clamped: the nearest point of
-    /// the workspace may be on the other side of an object.
+    /// Joint angles, rad, for a tip position, cm. Of several solutions it returns the one nearest to `present`. The
+    /// position is never clamped, because the nearest point of the workspace may be on the other side of an object.
     pub fn tip(&self, tip: [f64; 3], present: &Vector3<f64>) -> Result<Vector3<f64>, SetPointError> {
         self.finite("Tip", &tip)?;
         let found = self.inverse_kinematics.joints(&Vector3::from(tip), present);
         found.map_err(|source| SetPointError::OutOfReach { finger: self.finger, tip, source })
     }
 
-    /// The stiffness of a contact, within the bound. A rotation counts by the way it moves the last joint.
+    /// The stiffness of a contact, checked against the bound. A rotational stiffness is converted with the length of
+    /// the last link.
     pub fn contact(&self, contact: &Contact) -> Result<Matrix6<f64>, SetPointError> {
         let (bound, lever) = (self.stiffness_bound, self.links.0[2]);
         let largest = contact.largest_eigenvalue(lever);
@@ -108,7 +110,7 @@ impl Admission {
         }
     }
 
-    /// Refuses NaN and infinity: they must never reach the servo.
+    /// Refuses NaN and infinity, which must never reach the servo.
     pub fn finite(&self, what: &'static str, values: &[f64]) -> Result<(), SetPointError> {
         match values.iter().find(|value| !value.is_finite()) {
             None => Ok(()),
@@ -117,16 +119,16 @@ impl Admission {
     }
 }
 
-/// Whether the damping of a set point and its stiffness go together, for one finger. A copy of it goes along with each
-/// change of a set point, because it must see damping and stiffness in the step that sends them: two planners may
-/// change one each at the same time.
+/// The check that damping and stiffness of a finger's set point suit each other. Each change of a set point carries a
+/// copy of the check: two planners may change damping and stiffness at the same time, so the check must run in the step
+/// that sends both.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampingAdmission {
     /// 1 to 3.
     pub finger: i32,
-    /// What the finger's controller admits.
+    /// The damping that the finger's controller admits.
     pub admissible: AdmissibleDamping,
-    /// By which a rotational stiffness counts, cm: the length of the last link.
+    /// Converts a rotational stiffness, cm: the length of the last link.
     pub lever: f64,
     /// Refuse or clamp.
     pub out_of_range: OutOfRange,

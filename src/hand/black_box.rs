@@ -1,4 +1,4 @@
-//! The black boxes of an open hand, which are kept at all times.
+//! The black boxes of an open hand.
 
 use crate::finger::{KeptRecord, Recording};
 use crate::hand::black_box_file::save_recording;
@@ -6,7 +6,7 @@ use crate::hand::{Hand, HandError};
 use std::path::Path;
 
 impl Hand {
-    /// The last two seconds of finger 1, 2 or 3; of a faulted one the last two before the fault.
+    /// The last two seconds of finger 1, 2 or 3; of a faulted finger, the last two seconds before the fault.
     ///
     /// # Errors
     /// No such finger.
@@ -14,7 +14,7 @@ impl Hand {
         self.dispatcher.recording(finger)?.ok_or(HandError::NoAnswer(finger))
     }
 
-    /// One cycle of the last two seconds of finger 1, 2 or 3, or the newest.
+    /// One cycle of the last two seconds of finger 1, 2 or 3, or the newest cycle.
     ///
     /// # Errors
     /// No such finger, a cycle that is not kept.
@@ -22,8 +22,8 @@ impl Hand {
         self.dispatcher.record(finger, cycle)?.ok_or(HandError::NoRecord { finger, cycle: cycle.unwrap_or_default() })
     }
 
-    /// Writes them into a file, new or in the place of an old one: `sun2xp replay` and docs/black-box.md tell what to
-    /// do with it. If that fails, an old file stays as it was.
+    /// Writes the last two seconds into a file for `sun2xp replay` (docs/black-box.md). An existing file is replaced
+    /// only if the writing succeeds.
     ///
     /// # Errors
     /// No such finger, a file that cannot be written, a path that leads to something other than a regular file.

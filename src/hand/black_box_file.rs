@@ -1,4 +1,4 @@
-//! Black boxes in files: written at a fault where that is configured, and when asked.
+//! Writing black boxes into files: at a fault, if configured, and on request.
 
 use crate::files::create_file;
 use crate::finger::Recording;
@@ -9,18 +9,18 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Files of one finger in one second.
-const MOST: u32 = 100;
+/// Largest number of files for one finger in one second.
+const MOST_FILES: u32 = 100;
 
-/// Writes a recording that was taken while there was a hand: writing may take longer than the hand is open.
+/// Writes a recording that was taken from an open hand. It needs no hand, because writing may outlast the hand.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// The file cannot be written.
 pub fn save_recording(recording: &Recording, path: &Path) -> Result<(), HandError> {
     recording.save(path).map_err(|source| HandError::BlackBox { path: path.to_path_buf(), source })
 }
 
-/// Writes the recording of a fault into `folder`, as a new file, and says so; or why not.
+/// Writes the recording of a fault into a new file in `folder`, and reports the file or the failure on standard error.
 pub(super) fn keep(recording: &Recording, folder: &Path) {
     let finger = recording.origin.finger;
     print_notice(&match write_new(recording, folder) {
@@ -35,6 +35,6 @@ pub(super) fn keep(recording: &Recording, folder: &Path) {
 
 fn write_new(recording: &Recording, folder: &Path) -> io::Result<PathBuf> {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let names = (1..=MOST).map(|count| format!("finger-{}-{seconds}-{count}.jsonl", recording.origin.finger));
+    let names = (1..=MOST_FILES).map(|count| format!("finger-{}-{seconds}-{count}.jsonl", recording.origin.finger));
     create_file(folder, names, |output| recording.write(output))
 }

@@ -1,4 +1,5 @@
-//! Calibrating a finger of an open hand: asks its servo, waits for the verdict, puts what was found in force.
+//! Calibration of a finger of an open hand: gives the order to the servo, waits for the verdict, and puts the results
+//! in force.
 
 use crate::calibration::{Calibration, Findings, Progress, Step, Task, Verdict};
 use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
@@ -13,41 +14,41 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// How often the verdict is looked for.
-const LOOKING: Duration = Duration::from_millis(5);
+/// How often the verdict is polled.
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
-/// A servo takes an order within a cycle; one that has not after so long never will.
+/// A servo takes an order within a cycle. After this time the order is considered lost.
 const ANSWER: Duration = Duration::from_secs(5);
 
-/// A calibration under way. It goes on by itself; [`Calibrating::poll`] follows it.
+/// A calibration in progress. It runs without further calls; [`Calibrating::poll`] reports its progress.
 #[derive(Debug)]
 pub struct Calibrating {
     finger: i32,
-    /// Nobody else calibrates the finger until this is dropped.
+    /// While this exists, nobody else can calibrate the finger.
     _claim: Claim,
     order: u32,
-    /// What was found, once the finger is about to be controlled with it.
+    /// The results, from the moment when the finger is ordered to restart with them.
     found: Option<(Findings, Found)>,
     asked: Instant,
 }
 
-/// How a calibration stands.
+/// The state of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "looked at and dropped")]
-pub enum Standing {
-    /// It goes on.
+#[expect(clippy::large_enum_variant, reason = "short-lived")]
+pub enum CalibrationState {
+    /// The calibration is in progress.
     Going(Progress),
-    /// Done, and in force.
+    /// The calibration is done, and its results are in force.
     Done(Findings),
 }
 
-/// The right to calibrate a finger. A finger is limp for a moment between the verdict of a calibration and the use of
-/// what was found: another calibration must not begin then.
+/// The exclusive right to calibrate a finger. Between the verdict of a calibration and the use of its results a finger
+/// is limp for a moment. Another calibration must not begin then.
 #[derive(Debug)]
 struct Claim(Arc<AtomicBool>);
 
 impl Claim {
-    /// None where somebody else has it.
+    /// Returns none if another caller has the right.
     fn take(claimed: &Arc<AtomicBool>) -> Option<Self> {
         (!claimed.swap(true, Ordering::AcqRel)).then(|| Self(claimed.clone()))
     }
@@ -60,11 +61,12 @@ impl Drop for Claim {
 }
 
 impl Calibrating {
-    /// Begins. With [`Task::Identify`] the finger moves to its lower stops and presses; with [`Task::Zero`] its tendons
-    /// become slack for a second. The space that its joints can reach must be free. Set points are ignored meanwhile.
+    /// Begins a calibration. With [`Task::Identify`] the finger moves to its lower stops and presses. With
+    /// [`Task::Zero`] its tendons are slack for a second. The whole range of its joints must be free. Set points are
+    /// ignored until it is done.
     ///
     /// # Errors
-    /// No such finger, finger faulted or busy, a configuration that no routine can work with.
+    /// No such finger, finger faulted or busy, a configuration that the routine cannot work with.
     pub fn begin(hand: &Hand, finger: i32, task: Task) -> Result<Self, HandError> {
         let member = hand.dispatcher.member(finger)?;
         let index = finger as usize - 1; // 1 to 3: the member is there
@@ -89,38 +91,38 @@ impl Calibrating {
         given.map_err(|fault| HandError::Faulted { finger, fault })?.ok_or(HandError::Busy(finger))
     }
 
-    /// How it stands now. What was found is put in force first: tendons are brought under tension, and the finger is a
-    /// spring that holds its pose at its initial stiffness; but after [`Task::Signs`] it stays limp, because its zeros
-    /// may be anywhere. Not to be called again after it is done.
+    /// Returns the state of the calibration. When the routine is done, its results are put in force first: tendons are
+    /// brought under tension, and the finger becomes a spring that holds its pose at its initial stiffness. After
+    /// [`Task::Signs`] the finger stays limp, because its zeros may be wrong. Must not be called again after `Done`.
     ///
     /// # Errors
-    /// A routine that gave up, and left the finger limp; a finger that faults.
-    pub fn poll(&mut self, hand: &Hand) -> Result<Standing, HandError> {
+    /// The routine failed and left the finger limp, or the finger faults.
+    pub fn poll(&mut self, hand: &Hand) -> Result<CalibrationState, HandError> {
         let finger = self.finger;
         let report = hand.dispatcher.report(finger)?;
         if report.orders != self.order {
-            // Counted from open, so a hand that was opened anew never gets there.
+            // Orders are counted from open, so in a hand that was opened again the number is never reached.
             if self.asked.elapsed() > ANSWER {
                 return Err(HandError::NoAnswer(finger));
             }
-            return Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 0.0 }));
+            return Ok(CalibrationState::Going(Progress { step: Step::TakingUpSlack, part: 0.0 }));
         }
         if let Some((findings, found)) = &self.found {
             if report.stage == Stage::Opening {
-                return Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }));
+                return Ok(CalibrationState::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }));
             }
             hand.note(found.clone());
-            return Ok(Standing::Done(*findings));
+            return Ok(CalibrationState::Done(*findings));
         }
         match report.calibration {
-            None => Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 0.0 })),
-            Some(Verdict::Going(progress)) => Ok(Standing::Going(progress)),
+            None => Ok(CalibrationState::Going(Progress { step: Step::TakingUpSlack, part: 0.0 })),
+            Some(Verdict::Going(progress)) => Ok(CalibrationState::Going(progress)),
             Some(Verdict::Refused(obstacle)) => {
                 Err(HandError::Calibration { finger, limp: report.stage == Stage::Limp, obstacle })
             }
             Some(Verdict::Found(found)) => {
                 let index = finger as usize - 1; // 1 to 3: it has reported
-                // Held throughout: an adjustment meanwhile is not lost.
+                // The lock is held throughout, so that a concurrent adjustment is not lost.
                 let mut configuration = hand.configuration.write();
                 let mut changed = configuration.clone();
                 found.apply(&mut changed.fingers[index]);
@@ -134,16 +136,16 @@ impl Calibrating {
                 })?;
                 (self.found, self.asked) = (Some((found, to_store)), Instant::now());
                 *configuration = changed;
-                Ok(Standing::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))
+                Ok(CalibrationState::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))
             }
         }
     }
 }
 
 impl Hand {
-    /// Finds which way motors, encoders and gauges of finger 1, 2 or 3 count. The finger stays limp.
+    /// Finds the directions in which motors, encoders and gauges of finger 1, 2 or 3 count. The finger stays limp.
     ///
-    /// `progress` is told how far it is, 200 times a second.
+    /// `progress` is called 200 times per second.
     ///
     /// # Errors
     /// As [`Calibrating::begin`] and [`Calibrating::poll`].
@@ -151,7 +153,7 @@ impl Hand {
         self.calibrate(finger, Task::Signs, progress)
     }
 
-    /// Zeroes gauges and encoders of finger 1, 2 or 3, the latter as `zeroing.method` says.
+    /// Zeroes gauges and encoders of finger 1, 2 or 3. `zeroing.method` selects the method for the encoders.
     ///
     /// # Errors
     /// As [`Calibrating::begin`] and [`Calibrating::poll`].
@@ -171,14 +173,14 @@ impl Hand {
         let mut calibrating = Calibrating::begin(self, finger, task)?;
         loop {
             match calibrating.poll(self)? {
-                Standing::Going(going) => progress(going),
-                Standing::Done(findings) => return Ok(findings),
+                CalibrationState::Going(going) => progress(going),
+                CalibrationState::Done(findings) => return Ok(findings),
             }
-            sleep(LOOKING);
+            sleep(POLL_INTERVAL);
         }
     }
 
-    /// The configuration of finger 1, 2 or 3 with everything that was found since open.
+    /// The configuration of finger 1, 2 or 3, with all results of calibrations since open.
     ///
     /// # Errors
     /// No such finger.
@@ -187,18 +189,18 @@ impl Hand {
         Ok(self.configuration.read().fingers[finger as usize - 1].clone()) // the member is there: 1 to 3
     }
 
-    /// Writes what calibrations of finger 1, 2 or 3 have found since the last such call into the configuration file
-    /// that the hand was opened with, by [`store_findings`]. Whether there is such a file, and something to write.
+    /// Writes the calibration results of finger 1, 2 or 3 since the last such call into the configuration file that the
+    /// hand was opened with, by [`store_findings`]. Returns whether there is such a file, and something to write.
     ///
     /// # Errors
-    /// No such finger; [`HandError::NotStored`] with the reason. What was found stays in force until the hand is
-    /// closed, and is not kept for another such call.
+    /// No such finger; [`HandError::NotStored`] with the reason. The results then stay in force until the hand is
+    /// closed, and a later call does not store them.
     pub fn store_calibration(&self, finger: i32) -> Result<bool, HandError> {
         self.dispatcher.member(finger)?;
         self.to_store(finger).map_or(Ok(false), |calibration| calibration.store().map(|()| true))
     }
 
-    /// What [`Hand::store_calibration`] would write, for who writes it without the hand.
+    /// What [`Hand::store_calibration`] would write, for a caller that writes it without the hand.
     pub(crate) fn to_store(&self, finger: i32) -> Option<ToStore> {
         let mut all = self.found.lock();
         let place = all.iter().position(|found| found.finger() == finger)?;
@@ -215,7 +217,7 @@ impl Hand {
     }
 }
 
-/// What was found, and the file that it belongs into.
+/// Results, and the file to store them in.
 pub(crate) struct ToStore {
     file: PathBuf,
     found: Found,

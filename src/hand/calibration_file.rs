@@ -1,4 +1,5 @@
-//! What was found into the configuration file: only its keys, in the finger's own table, with comments and layout kept.
+//! Stores results in the configuration file: writes only their keys, in the finger's own table, and keeps comments and
+//! layout.
 
 mod editing;
 
@@ -11,16 +12,16 @@ use editing::{child, same, set, written};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Value};
 
-/// What some editors begin a text with.
+/// Some editors put this at the beginning of a text.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// Writes what was found into the configuration file at `path`: the keys that were found, where the file has other
-/// values. Nothing else changes, whoever has changed what else in the file since it was read. Other processes may store
-/// at the same time: each waits for the others, for at most 30 seconds.
+/// Writes results into the configuration file at `path`, where the file has other values. Everything else in the file
+/// is kept, including changes that others have made since it was read. Several processes may store at the same time:
+/// each waits for the others, for at most 30 seconds.
 ///
 /// # Errors
-/// A file that cannot be read, used or written; [`ConfigurationError::Mismatch`] where the file has changed so that
-/// what was found does not fit. The file is as it was then, and nothing of what was found is written.
+/// The file cannot be read, used or written; [`ConfigurationError::Mismatch`] if the file has changed so that the
+/// results do not apply to it. The file is unchanged then.
 pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), ConfigurationError> {
     update_file(path, LARGEST, |text| change(path, text, found)).map_err(|error| match error {
         UpdateError::File(source) => ConfigurationError::Unwritable { path: path.to_path_buf(), source },
@@ -28,7 +29,7 @@ pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), ConfigurationE
     })
 }
 
-/// The text with what was found; none where it stands there already.
+/// The text with the results; none if it contains them already.
 fn change(path: &Path, text: &str, found: &[Found]) -> Result<Option<String>, ConfigurationError> {
     let file = || path.to_path_buf();
     let before = parse(text).map_err(|wrong| ConfigurationError::Invalid {
@@ -55,7 +56,7 @@ fn change(path: &Path, text: &str, found: &[Found]) -> Result<Option<String>, Co
     }
 }
 
-/// A changed text with the byte order mark and the ends of lines of the text before, which the parser drops.
+/// Gives a changed text the byte order mark and the line ends of the original, which the parser drops.
 fn like(before: &str, mut changed: String) -> String {
     if before.contains("\r\n") && before.matches("\r\n").count() == before.matches('\n').count() {
         changed = changed.replace("\r\n", "\n").replace('\n', "\r\n");
@@ -66,7 +67,7 @@ fn like(before: &str, mut changed: String) -> String {
     }
 }
 
-/// Whether anything had to be changed.
+/// Writes the results of one finger. Returns whether anything changed.
 fn write_finger(document: &mut DocumentMut, found: &Found, before: &Configuration) -> Result<bool, String> {
     let number = found.finger();
     let present = &before.fingers[number as usize - 1]; // 1 to 3: it was found
@@ -85,7 +86,7 @@ fn write_finger(document: &mut DocumentMut, found: &Found, before: &Configuratio
     Ok(changed)
 }
 
-/// What stands at a key, default or not; nothing where it is not set.
+/// The numbers at a key, including default values; none if the key is not set.
 fn numbers_at(finger: &ConfiguredFinger, section: &str, key: &str) -> Vec<f64> {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     let document = toml_edit::ser::to_document(finger).unwrap_or_default();
@@ -104,7 +105,7 @@ mod tests {
     use nalgebra::Vector3;
     use std::fs;
 
-    /// What [`store`] makes of a file that was read before it became `text`.
+    /// The file after storing, if it was read before its text became `text`.
     fn try_to_store(text: &str, found: &[Found]) -> Result<String, ConfigurationError> {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("hand.toml");
@@ -120,7 +121,7 @@ mod tests {
     fn stored(text: &str, found: &[Found]) -> String {
         let after = try_to_store(text, found).unwrap_or_else(|error| panic!("{error}"));
         parse(&after).expect("still usable");
-        // A second time there is nothing to do.
+        // Storing again changes nothing.
         assert_eq!(try_to_store(&after, found).expect("stored"), after);
         after
     }
@@ -199,7 +200,7 @@ mod tests {
 
     #[test]
     fn others_findings_stay() {
-        // Both were found with the file as it was in the beginning.
+        // Both results were found with the file as it was at the beginning.
         let (first, second) = (zeros(1, [5, 6, 7, 8], 200.0), zeros(2, [9, 9, 9, 9], 190.0));
         let bound = Found::bound(7.5, 1, &parse(FILE).expect("usable")).expect("a finger");
         let text = stored(&stored(FILE, &[first]), &[second, bound]);
@@ -232,7 +233,7 @@ mod tests {
         let radius = "[finger.1.geometry]\nmotor_radius = [0.05, 0.05, 0.05, 0.05]\n";
         let error = try_to_store(radius, &[zeros(1, [5; 4], 0.0)]).expect_err("other motors").to_string();
         assert!(error.contains("finger.1.geometry.motor_radius is [0.05, 0.05, 0.05, 0.05] there"), "{error}");
-        // Finger 2 has no part in that.
+        // The change does not affect finger 2.
         stored(radius, &[zeros(2, [5; 4], 0.0)]);
         let error = try_to_store("[hand]\nrate = 500\n", &[bound(2, 7.0)]).expect_err("another rate").to_string();
         assert!(error.contains("hand.rate is 500 there, and was 1000 when"), "{error}");

@@ -1,4 +1,4 @@
-//! Finds the configuration file and turns it into a [`Configuration`], naming file, line and reason where it cannot.
+//! Finds the configuration file and converts it to a [`Configuration`]. Errors name the file, the line and the reason.
 
 mod place;
 mod text;
@@ -15,31 +15,31 @@ pub(super) use text::overlay;
 pub use values::deserialize;
 pub use wrong::Wrong;
 
-/// The largest configuration file that is read, bytes: more than sixty times docs/sun2xp.toml, which names every key.
+/// Largest configuration file, bytes: more than sixty times the size of docs/sun2xp.toml, which contains every key.
 pub(super) const LARGEST: u64 = 1 << 20;
 
-/// A configuration, and where it comes from.
+/// A configuration and its source.
 #[derive(Clone, Debug)]
 pub struct Configured {
     /// The hand.
     pub configuration: Configuration,
-    /// The file; none where no file was found.
+    /// The file; none if no file was found.
     pub file: Option<PathBuf>,
     /// Whether the file names the port of each finger.
     ports_named: [bool; FINGERS],
 }
 
-/// Finds and reads the configuration file: the one that `SUN2XP_CONFIG` names, else `sun2xp.toml` in the working
-/// directory, else `sun2xp/sun2xp.toml` in the user's configuration folder, else in the system's (`XDG_CONFIG_DIRS`, or
-/// `/etc/xdg`). Where there is none of them, the hand is the simulated one. An empty `SUN2XP_CONFIG` counts as unset.
+/// Finds and reads the configuration file: the file that `SUN2XP_CONFIG` names, or else `sun2xp.toml` in the working
+/// directory, or else `sun2xp/sun2xp.toml` in the user's configuration folder, or else in the system's
+/// (`XDG_CONFIG_DIRS`, or `/etc/xdg`). If there is none of them, the hand is simulated. An empty `SUN2XP_CONFIG` counts
+/// as unset.
 ///
-/// A program that is setuid or setgid, or whose file has capabilities, reads only `/etc/xdg/sun2xp/sun2xp.toml`: the
-/// environment and the working directory belong to whoever starts it.
+/// A program that is setuid or setgid, or whose file has capabilities, reads only `/etc/xdg/sun2xp/sun2xp.toml`,
+/// because its caller controls the environment and the working directory.
 ///
 /// # Errors
-/// A file that is named or found and cannot be read or used. A missing file that `SUN2XP_CONFIG` names is an error too,
-/// and so is `SUN2XP_CONFIG` where it is not trusted: a planner that believes it moves a real hand must never get the
-/// simulation instead.
+/// A file that is named or found cannot be read or used. It is also an error if `SUN2XP_CONFIG` names a missing file,
+/// or is set although it is not trusted: a planner that expects a real hand must never get the simulation instead.
 pub fn find_configuration() -> Result<Configured, ConfigurationError> {
     match place::locate()? {
         Some(path) => Configured::read(&path),
@@ -50,8 +50,8 @@ pub fn find_configuration() -> Result<Configured, ConfigurationError> {
 /// Reads and checks one configuration file.
 ///
 /// # Errors
-/// [`ConfigurationError::Invalid`] with file, line and reason; [`ConfigurationError::Unreadable`] where it cannot be
-/// read, is no regular file or is larger than 1 MiB.
+/// [`ConfigurationError::Invalid`] with file, line and reason; [`ConfigurationError::Unreadable`] if the file cannot be
+/// read, is not a regular file or is larger than 1 MiB.
 pub fn read_configuration(path: &Path) -> Result<Configuration, ConfigurationError> {
     Configured::read(path).map(|configured| configured.configuration)
 }
@@ -76,7 +76,8 @@ impl Configured {
         }
     }
 
-    /// Says in one line on standard error which of these fingers are simulated although nobody has asked for that.
+    /// Prints one line on standard error that names those of these fingers that are simulated although nothing requests
+    /// it.
     pub fn announce(&self, fingers: Fingers) {
         if let Some(line) = self.announcement(fingers) {
             print_notice(&line);

@@ -1,5 +1,5 @@
-//! The Dispatcher: hands each command to its finger and collects the reports. A command wakes no thread and waits for
-//! none.
+//! The Dispatcher: passes each command to its finger and collects the reports. A command does not wake a thread, and
+//! does not wait for one.
 
 mod collected;
 mod collecting;
@@ -21,17 +21,17 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
 
-/// One finger as the planners see it.
+/// The planners' side of one finger.
 pub(super) struct Member {
     /// 1 to 3.
     pub number: i32,
     pub admission: RwLock<Admission>,
     pub mailbox: Mailbox,
-    /// Whether somebody calibrates the finger.
+    /// Whether a caller has the right to calibrate the finger.
     pub calibrated: Arc<AtomicBool>,
 }
 
-/// Routes to the fingers, collects from them.
+/// Passes commands to the fingers, and collects from them.
 pub(super) struct Dispatcher {
     members: Vec<Member>,
     collected: Arc<Vec<Mutex<Collected>>>,
@@ -39,7 +39,7 @@ pub(super) struct Dispatcher {
 }
 
 impl Dispatcher {
-    /// `fingers` in the order of their numbers: all that were opened.
+    /// `fingers` are all opened fingers, in the order of their numbers.
     pub fn new(fingers: Vec<Reached>) -> Self {
         let (mut members, mut collected) = (Vec::new(), Vec::new());
         for finger in fingers {
@@ -59,8 +59,8 @@ impl Dispatcher {
         Self { members, collected: Arc::new(collected), collector: None }
     }
 
-    /// Starts the thread that collects timings and black boxes, so that none is lost while nobody asks, and that has
-    /// the black box of a finger that faults written into `folder`.
+    /// Starts the thread that collects timings and black boxes, so that none is lost while no planner calls. It also
+    /// has the black box of a faulted finger written into `folder`.
     pub fn start_collecting(&mut self, folder: Option<PathBuf>) -> io::Result<()> {
         let (stop, stopped) = bounded(0);
         let fingers = self.collected.clone();
@@ -70,7 +70,7 @@ impl Dispatcher {
         Ok(())
     }
 
-    /// In a forked child, which has no such thread.
+    /// For a forked child, which does not have the thread.
     pub fn forget_collector(&mut self) {
         std::mem::forget(self.collector.take());
     }
@@ -97,28 +97,29 @@ impl Dispatcher {
         Ok(self.member(finger)?.mailbox.report())
     }
 
-    /// What was counted of a stage.
+    /// The timing of a stage.
     pub fn timing(&self, finger: i32, stage: CycleStage) -> Result<Distribution, HandError> {
         let mut collected = self.collected(finger)?;
         collected.collect();
         Ok(collected.histograms.distribution(stage))
     }
 
-    /// What went wrong.
+    /// Counts of cycles and errors.
     pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
         let index = self.index(finger)?;
-        // The report is read under the lock: a reset of another thread's is then before both or after both. A servo
-        // reports a cycle before it tells its times: whoever reads these first counts none that is no cycle yet.
+        // The report is read under the lock, so that a reset by another thread comes before both or after both. A servo
+        // publishes the report of a cycle before its timing. A caller that reads the timing first therefore never
+        // counts a timing whose cycle is not reported yet.
         let collected = self.collected(finger)?;
         Ok(self.members[index].mailbox.report().losses.since(&collected.losses_before))
     }
 
-    /// Begins to count timings and losses anew.
+    /// Resets timings and losses.
     pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
         let index = self.index(finger)?;
         let mut collected = self.collected(finger)?;
-        // Before the times, for the same reason: those of a cycle that is not counted are collected here, but for one
-        // that is just being told.
+        // The report is read before the timings for the same reason. The timings of uncounted cycles are then discarded
+        // here, except for a cycle that is just being published.
         collected.losses_before = self.members[index].mailbox.report().losses;
         collected.collect();
         collected.histograms.reset();
@@ -132,15 +133,15 @@ impl Dispatcher {
         Ok(collected.black_box.recording())
     }
 
-    /// One of the last two seconds' records.
+    /// A record of the last two seconds.
     pub fn record(&self, finger: i32, cycle: Option<u64>) -> Result<Option<KeptRecord>, HandError> {
         let mut collected = self.collected(finger)?;
         collected.collect();
         Ok(collected.black_box.record(cycle))
     }
 
-    /// Lets `give` hand a finger what was made from this configuration, under the number that it gets here. The black
-    /// box keeps the configuration if that is done, and nothing of it where it is refused.
+    /// Calls `give` with `adjustable` under its new number, to pass it to the finger. If that succeeds, the black box
+    /// stores the configuration that it was made from. If it is refused, the black box stores nothing.
     pub fn hand_over<T>(
         &self,
         finger: i32,
@@ -151,7 +152,7 @@ impl Dispatcher {
         self.announce(finger, configuration, adjustable, give, BlackBox::announce)
     }
 
-    /// The same for what a calibration computes with once it takes over.
+    /// Like [`Dispatcher::hand_over`], for the data that a calibration computes with when it takes over.
     pub fn hand_over_calibration<T>(
         &self,
         finger: i32,
@@ -171,7 +172,8 @@ impl Dispatcher {
         announce: impl FnOnce(&mut BlackBox, ConfiguredFinger, Vector3<f64>, u32),
     ) -> Result<T, HandError> {
         let index = self.index(finger)?;
-        // Locked throughout: no record that names the controller is collected before the black box knows it.
+        // The lock is held throughout, so that no record that names the controller is collected before the black box
+        // has its source.
         let mut collected = self.collected(finger)?;
         let taken = self.members[index].mailbox.report().controller;
         collected.collect();
@@ -209,7 +211,7 @@ impl Drop for Dispatcher {
     fn drop(&mut self) {
         if let Some((stop, thread)) = self.collector.take() {
             drop(stop);
-            // It panics only if the histograms do, and then there is nothing to collect.
+            // The thread panics only if the histograms panic. Then there is nothing to collect.
             let _ = thread.join();
         }
     }

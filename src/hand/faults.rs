@@ -1,21 +1,21 @@
-//! What is wrong with a finger.
+//! The fault and the warnings of a finger.
 
 use crate::finger::{Fault, FaultKind, Stage};
 use crate::hand::{Hand, HandError};
 
-/// The answer to [`Hand::fault`].
+/// The result of [`Hand::fault`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FingerFault {
-    /// What made the finger stop; stays until it recovers, or the hand is opened anew.
+    /// The fault that stopped the finger. It stays until the finger recovers or the hand is opened again.
     pub stopped: Option<Fault>,
-    /// What the finger is warned of, up to a second ago.
+    /// The newest warning, if it was given within the last second.
     pub warning: Option<Fault>,
-    /// How many warnings have been given since open; one that goes on counts once.
+    /// Number of warnings since open. One that persists counts once.
     pub warnings: u64,
 }
 
 impl Hand {
-    /// What is wrong with finger 1, 2 or 3.
+    /// The fault and the warnings of finger 1, 2 or 3.
     ///
     /// # Errors
     /// No such finger.
@@ -25,7 +25,7 @@ impl Hand {
             Stage::Faulted(fault) => Some(fault),
             _ => None,
         };
-        let refused = self.given.refused.then_some(Fault::new(FaultKind::RealtimeRefused));
+        let refused = self.real_time.refused.then_some(Fault::new(FaultKind::RealtimeRefused));
         let warning = report.warnings.newest().or(refused);
         Ok(FingerFault { stopped, warning, warnings: report.warnings.given() })
     }

@@ -1,11 +1,10 @@
-//! Which fingers of a hand are opened.
+//! The selection of a hand's fingers that are opened.
 
 use crate::hand::HandError;
 use crate::model::configuration::FINGERS;
 
-/// Some fingers of a hand, one at least: those that are opened. The ports of the others are not touched, and calls for
-/// them are refused with [`HandError::NotOpened`]. The configuration still describes the whole hand, and all of it is
-/// checked.
+/// A selection of at least one finger. The ports of other fingers are not opened, and calls for other fingers are
+/// refused with [`HandError::NotOpened`]. The configuration still describes the whole hand, and all of it is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingers([bool; FINGERS]);
 
@@ -13,7 +12,7 @@ impl Fingers {
     /// Every finger.
     pub const ALL: Self = Self([true; FINGERS]);
 
-    /// Finger 1, 2 or 3 alone.
+    /// Only finger 1, 2 or 3.
     ///
     /// # Errors
     /// No such finger.
@@ -21,7 +20,7 @@ impl Fingers {
         Self([false; FINGERS]).and(finger)
     }
 
-    /// These fingers and finger 1, 2 or 3.
+    /// This selection and finger 1, 2 or 3.
     ///
     /// # Errors
     /// No such finger.
@@ -31,7 +30,7 @@ impl Fingers {
         Ok(self)
     }
 
-    /// The fingers with these numbers, 1 to 3. Without any: every finger.
+    /// The fingers with these numbers, 1 to 3. An empty list selects every finger.
     ///
     /// # Errors
     /// No such finger.
@@ -42,12 +41,12 @@ impl Fingers {
         }
     }
 
-    /// Their numbers, 1 to 3, in this order.
+    /// The numbers of the fingers, 1 to 3, in rising order.
     pub fn numbers(self) -> impl Iterator<Item = i32> {
         self.indices().map(|index| index as i32 + 1) // 1 to 3
     }
 
-    /// Their places in a configuration, 0 to 2.
+    /// The indices of the fingers in a configuration, 0 to 2.
     pub(super) fn indices(self) -> impl Iterator<Item = usize> {
         (0..FINGERS).filter(move |&index| self.0[index])
     }

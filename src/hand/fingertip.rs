@@ -1,32 +1,32 @@
-//! What is known of a fingertip: where it is, what it presses and how its tendons pull.
+//! The state of a fingertip: position, force and tendon tensions.
 
 use crate::finger::FingerReport;
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError};
 use nalgebra::{Matrix3, Vector3};
 
-/// A direction of the fingertip that moves by less than this, cm for a turn of the joints by 1 rad, is not felt in
-/// their torques: an error of 0.1 N cm would be a third of a newton. The default finger is so within 9 degrees of
-/// straight.
+/// Limit of observability, cm per rad. If the fingertip moves by less than this in a direction for a turn of the joints
+/// by 1 rad, the joint torques do not show a force in that direction: a torque error of 0.1 N cm would be a third of a
+/// newton. The default finger has such a direction within 9 degrees of the straight pose.
 const FELT: f64 = 0.3;
 
-/// What is known of a fingertip.
+/// The state of a fingertip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FingerTip {
-    /// Where it is in the finger's frame, cm: from the measured joint angles.
+    /// Position in the finger's frame, cm, from the measured joint angles.
     pub tip: [f64; 3],
-    /// What it does to the thing it touches, in the finger's frame, N: J^-T R t (eqs. 1 and 13) with the measured
-    /// tensions t. So friction and weight of the finger and the torque that accelerates it are in it. Never NaN: along
-    /// a direction in which a pose near the straight one leaves the joints without feeling it is zero.
+    /// Force on the touched object in the finger's frame, N: J^-T R t (eqs. 1 and 13) with the measured tensions t. It
+    /// includes friction and weight of the finger and the torque that accelerates it. It is never NaN: near the
+    /// straight pose, the component in a direction that the joints do not feel is zero.
     pub force: [f64; 3],
-    /// How many directions the joints feel: 3, and fewer near a singular pose.
+    /// Number of directions that the joints feel: 3, or fewer near a singular pose.
     pub felt: usize,
     /// Measured tendon tensions, N.
     pub tensions: [f64; 4],
 }
 
 impl Hand {
-    /// Where the tip of finger 1, 2 or 3 is, what it presses and how its tendons pull, not older than a cycle.
+    /// Position and force of the tip and tendon tensions of finger 1, 2 or 3, not older than a cycle.
     ///
     /// # Errors
     /// No such finger, finger faulted.
@@ -50,9 +50,9 @@ impl FingerTip {
     }
 }
 
-/// The smallest force with tau = J^T f in the directions that are felt, and how many these are.
+/// The smallest force with tau = J^T f in the directions that the joints feel, and the number of these directions.
 fn tip_force(jacobian: &Matrix3<f64>, torques: &Vector3<f64>) -> (Vector3<f64>, usize) {
-    // By the eigenvectors of J J^T: J^-T tau = sum of u (u . J tau) / s^2 over them, s^2 the eigenvalues.
+    // With the eigenvectors u and eigenvalues s^2 of J J^T: J^-T tau = sum of u (u . J tau) / s^2.
     let eigen = (jacobian * jacobian.transpose()).symmetric_eigen();
     let pushed = jacobian * torques;
     let mut force = Vector3::zeros();
@@ -81,7 +81,7 @@ mod tests {
             let (found, felt) = tip_force(&jacobian, &(jacobian.transpose() * force));
             assert!(felt == 3 && (found - force).amax() < 1e-9, "{degrees:?}: {found}");
         }
-        // Straight: what pushes along the finger is not felt, all else is.
+        // In the straight pose, a force along the finger is not felt, and any other force is.
         for degrees in [[0.0, 0.0, 0.0], [0.0, 0.0, 5.0]] {
             let jacobian = pose(degrees);
             let (found, felt) = tip_force(&jacobian, &(jacobian.transpose() * force));

@@ -1,4 +1,5 @@
-//! What one run has found of a finger: keys of the configuration with their values, and what they were found with.
+//! Results for one finger: keys of the configuration with their values, and the configuration that they were found
+//! with.
 
 use crate::calibration::Findings;
 use crate::hand::HandError;
@@ -6,8 +7,8 @@ use crate::model::configuration::{Configuration, FINGERS};
 use std::collections::BTreeMap;
 use toml_edit::Item;
 
-/// What signs, zeros, friction and stiffness hold for, besides the finger itself: where it is connected, and what turns
-/// counts and torques into angles and forces.
+/// The keys that signs, zeros, friction and stiffness depend on, besides the finger itself: where it is connected, and
+/// what converts counts and torques to angles and forces.
 const HELD_BY_CALIBRATION: &[&str] = &[
     "port",
     "address",
@@ -17,25 +18,26 @@ const HELD_BY_CALIBRATION: &[&str] = &[
     "motor.torque_constant",
 ];
 
-/// What a bound of Kx holds for.
+/// The keys that a bound of Kx depends on.
 const HELD_BY_BOUND: &[&str] = &[RATE, "geometry", "motor", "tendon", "joints", "links", "friction", "controller"];
 
-/// The one key among these that is not a finger's.
+/// The only one of these keys that is not in the finger's table.
 const RATE: &str = "hand.rate";
 
-/// What one run, or several calibrations in a row, found of one finger. Only this is written when it is stored.
+/// The results of one run, or of several calibrations in a row, for one finger. Only these keys are written when it is
+/// stored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// 1 to 3.
+    /// Number of the finger, 1 to 3.
     finger: i32,
     values: Vec<FoundValue>,
-    /// Keys and tables of keys on which the values depend.
+    /// Keys and tables of keys that the values depend on.
     held_by: &'static [&'static str],
-    /// These keys as they were.
+    /// The values of these keys when the results were found.
     holds_for: BTreeMap<String, String>,
 }
 
-/// A key of a finger with what was found.
+/// A key of a finger, with the value that was found.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FoundValue {
     pub section: &'static str,
@@ -43,7 +45,7 @@ pub(super) struct FoundValue {
     pub numbers: Numbers,
 }
 
-/// Numbers as they stand in a file.
+/// Numbers as written in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Numbers {
     /// An array of whole numbers.
@@ -52,12 +54,12 @@ pub(super) enum Numbers {
     Real(Vec<f64>),
     /// A real number.
     One(f64),
-    /// The signs of the real numbers that are there: their sizes were not looked for.
+    /// Signs for the real numbers in the file, whose magnitudes were not measured.
     SignsOf([i8; 4]),
 }
 
 impl Found {
-    /// What a calibration of a finger has found. `configuration`: the one that is in force with it.
+    /// The results of a calibration. `configuration` is the one that is in force with them.
     ///
     /// # Errors
     /// No such finger.
@@ -73,8 +75,8 @@ impl Found {
                 value("encoder", "zero", whole(zeros.encoder)),
                 value("gauge", "zero", Numbers::Real(zeros.gauge.into())),
             ],
-            // The gains were found relative to those before, and the tolerance is not measured: both stand in the
-            // configuration.
+            // The gains were found relative to the previous ones, and the tolerance is not measured. Both are taken
+            // from the configuration.
             Findings::Identified(found) => vec![
                 value("gauge", "newton_per_count", Numbers::Real(of.gauge.newton_per_count.into())),
                 value("tendon", "stiffness", Numbers::Real(found.tendon_stiffness.as_slice().into())),
@@ -87,7 +89,7 @@ impl Found {
         Self::new(finger, values, HELD_BY_CALIBRATION, configuration)
     }
 
-    /// The bound of Kx of a finger, N/cm, that was found with `configuration`.
+    /// The bound of Kx of a finger, N/cm, found with `configuration`.
     ///
     /// # Errors
     /// No such finger.
@@ -106,12 +108,12 @@ impl Found {
         Ok(Self { finger, values, held_by, holds_for })
     }
 
-    /// 1 to 3.
+    /// Number of the finger, 1 to 3.
     pub fn finger(&self) -> i32 {
         self.finger
     }
 
-    /// Adds what a later calibration of the same finger has found.
+    /// Adds the results of a later calibration of the same finger.
     pub(super) fn add(&mut self, later: Self) {
         for FoundValue { section, key, numbers } in later.values {
             let before = self.values.iter_mut().find(|value| (value.section, value.key) == (section, key));
@@ -128,7 +130,7 @@ impl Found {
         &self.values
     }
 
-    /// The first key on which this depends and that `configuration` has otherwise, unless all are as they were.
+    /// The first key that the results depend on and that has another value in `configuration`; none if all are equal.
     pub(super) fn misfit(&self, configuration: &Configuration) -> Option<Misfit> {
         let present = excerpt(configuration, self.finger as usize - 1, self.held_by); // 1 to 3, as `new` has checked
         let keys = self.holds_for.keys().chain(present.keys());
@@ -142,18 +144,18 @@ impl Found {
     }
 }
 
-/// A key that findings depend on and that has changed.
+/// A key that results depend on, with another value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Misfit {
-    /// The whole key.
+    /// The key with its table.
     pub key: String,
-    /// Its value when they were found.
+    /// Its value when the results were found.
     pub was: String,
-    /// Its value now.
+    /// Its current value.
     pub is: String,
 }
 
-/// The sizes of some numbers with other signs.
+/// The magnitudes of some numbers, with other signs.
 pub(super) fn with_signs(sizes: &[f64], signs: [i8; 4]) -> Vec<f64> {
     sizes.iter().zip(signs).map(|(size, sign)| size.abs() * f64::from(sign)).collect()
 }
@@ -171,10 +173,10 @@ fn whole<T: Into<i64>>(values: [T; 4]) -> Numbers {
     Numbers::Whole(values.map(T::into).into())
 }
 
-/// Keys of one finger, and of the keys in tables, with their values as text. What is not set is not there.
+/// The values of some keys, as text. A table stands for all of its keys. A key that is not set is left out.
 fn excerpt(configuration: &Configuration, index: usize, keys: &[&str]) -> BTreeMap<String, String> {
     let mut leaves = BTreeMap::new();
-    // Every configuration can be written: it came from such a text, or could have.
+    // Every configuration can be serialised, because it was or could have been read from such a text.
     let finger = toml_edit::ser::to_document(&configuration.fingers[index]).unwrap_or_default();
     for &key in keys {
         if key == RATE {

@@ -1,35 +1,36 @@
-//! The unique numbers of the boards that a hand meets when it is opened: each port has its own.
+//! The unique numbers of the boards of a hand. The check at open requires that boards at different ports have different
+//! numbers.
 
 use crate::board::protocol::Identity;
 use crate::hand::HandError;
 use std::path::{Path, PathBuf};
 
-/// The boards so far.
+/// The boards found so far.
 #[derive(Default)]
-pub(super) struct Identities(Vec<Met>);
+pub(super) struct Identities(Vec<KnownNumber>);
 
-struct Met {
-    /// 1 to 3.
+struct KnownNumber {
+    /// Number of the finger, 1 to 3.
     finger: i32,
     port: PathBuf,
     number: [u8; 12],
 }
 
 impl Identities {
-    /// Takes in the board of finger 1, 2 or 3.
+    /// Adds the board of finger 1, 2 or 3.
     ///
     /// # Errors
-    /// A board at another port has the same number. Fingers on one port may have one.
-    pub fn meet(&mut self, finger: i32, port: &Path, identity: &Identity) -> Result<(), HandError> {
+    /// A board at another port has the same number. Fingers on one port may share a number.
+    pub fn add(&mut self, finger: i32, port: &Path, identity: &Identity) -> Result<(), HandError> {
         let number = identity.unique_number;
-        match self.0.iter().find(|met| met.number == number && met.port != port) {
-            Some(met) => Err(HandError::SameNumber {
-                fingers: [met.finger, finger],
-                ports: [met.port.clone(), port.to_owned()],
+        match self.0.iter().find(|known| known.number == number && known.port != port) {
+            Some(known) => Err(HandError::SameNumber {
+                fingers: [known.finger, finger],
+                ports: [known.port.clone(), port.to_owned()],
                 number: number.map(|byte| format!("{byte:02X}")).join(" "),
             }),
             None => {
-                self.0.push(Met { finger, port: port.to_owned(), number });
+                self.0.push(KnownNumber { finger, port: port.to_owned(), number });
                 Ok(())
             }
         }
@@ -41,7 +42,7 @@ pub(super) mod tests {
     use super::*;
     use crate::board::protocol::{Capabilities, FirmwareVersion, VERSION};
 
-    /// A board that differs from others of this function in its number only.
+    /// The identity of a board, which differs between calls only in its unique number.
     pub fn identity(number: u8) -> Identity {
         Identity {
             version: VERSION,
@@ -61,11 +62,11 @@ pub(super) mod tests {
     #[test]
     fn each_port_has_its_own_number_and_its_fingers_may_share_it() {
         let mut identities = Identities::default();
-        assert!(identities.meet(1, Path::new("/dev/left"), &identity(5)).is_ok());
-        assert!(identities.meet(2, Path::new("/dev/left"), &identity(5)).is_ok());
-        assert!(identities.meet(3, Path::new("/dev/right"), &identity(6)).is_ok());
+        assert!(identities.add(1, Path::new("/dev/left"), &identity(5)).is_ok());
+        assert!(identities.add(2, Path::new("/dev/left"), &identity(5)).is_ok());
+        assert!(identities.add(3, Path::new("/dev/right"), &identity(6)).is_ok());
         let error =
-            identities.meet(3, Path::new("/dev/right"), &identity(5)).expect_err("the number of fingers 1 and 2");
+            identities.add(3, Path::new("/dev/right"), &identity(5)).expect_err("the number of fingers 1 and 2");
         assert!(matches!(error, HandError::SameNumber { fingers: [1, 3], .. }), "{error}");
     }
 }

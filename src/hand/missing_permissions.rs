@@ -1,10 +1,10 @@
-//! What a hand's servo threads lack to be real-time.
+//! The permissions that a hand's servo threads lack for running in real time.
 
 use crate::realtime::RealtimeRefusals;
 use std::io;
 use thiserror::Error;
 
-/// Something that a servo thread was to have and cannot have. The texts name the remedy.
+/// A permission that a servo thread needs and does not have. The texts name the remedy.
 #[derive(Debug, Error)]
 pub enum MissingPermission {
     /// SCHED_FIFO.
@@ -23,14 +23,14 @@ pub enum MissingPermission {
 }
 
 impl MissingPermission {
-    /// What the system said.
+    /// The errno of the system's refusal.
     pub fn errno(&self) -> i32 {
         let (Self::Scheduling(source) | Self::Memory(source) | Self::Core(source)) = self;
         source.raw_os_error().unwrap_or(libc::EIO)
     }
 }
 
-/// What is missing to any of the threads, one of a kind.
+/// The permissions that any of the threads lacks, at most one of each kind.
 pub fn missing_permissions(refusals: Vec<RealtimeRefusals>) -> Vec<MissingPermission> {
     let (mut scheduling, mut memory, mut core) = (None, None, None);
     for refused in refusals {

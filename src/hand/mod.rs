@@ -1,5 +1,5 @@
-//! Root and Dispatcher: opens and closes a hand, reads its configuration, routes commands to the fingers and collects
-//! their reports (section 3 of the report).
+//! Root and Dispatcher (section 3 of the report): opens and closes a hand, reads its configuration, passes commands to
+//! the fingers and collects their reports.
 
 mod adjustment;
 mod admission;
@@ -18,17 +18,17 @@ mod identities;
 mod missing_permissions;
 mod notice;
 mod opening;
+mod port_repair;
 mod reconnection;
 mod recovery;
 mod root;
 mod servo_threads;
 mod set_points;
 mod status;
-mod workshop;
 
 pub use crate::finger::stop_all;
 pub use black_box_file::save_recording;
-pub use calibrating::{Calibrating, Standing};
+pub use calibrating::{Calibrating, CalibrationState};
 pub use calibration_file::store_findings;
 pub use configuration_file::{Configured, Wrong, deserialize, find_configuration, read_configuration};
 pub(crate) use error::ErrorKind;

@@ -1,9 +1,9 @@
-//! What a hand says on standard error: one line each, for people who do not look at results.
+//! Messages of a hand on standard error, for people who do not check results.
 
 use crate::model::one_line;
 use crate::realtime::print_line;
 
-/// One line.
+/// Prints one line.
 pub(super) fn print_notice(text: &str) {
     print_line(&one_line(text));
 }

@@ -1,4 +1,5 @@
-//! From a configuration to ports with fingers behind them: everything that happens before a servo thread runs.
+//! The steps of opening a hand before its servo threads start: checks the configuration, opens the ports and shakes
+//! hands with the boards.
 
 use crate::board::protocol::Status;
 use crate::board::{Link, Port, Terms, capacity};
@@ -8,7 +9,7 @@ use crate::hand::admission::{Admission, DampingAdmission};
 use crate::hand::fingers::Fingers;
 use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
-use crate::hand::workshop::{KnownBoard, Workshop};
+use crate::hand::port_repair::{KnownBoard, PortRepair};
 use crate::hand::{ConfigurationError, HandError, SetPointError};
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
@@ -18,45 +19,45 @@ use crate::simulated::{Pace, SimulatedBoard, SimulatedPort};
 use nalgebra::Matrix3;
 use std::path::{Path, PathBuf};
 
-/// Simulated boards run below every servo: they stand for something outside the machine.
+/// Simulated boards run below the priority of every servo, because they represent devices outside of the machine.
 const SIMULATED_BOARD_PRIORITY: u8 = 20;
 
-/// How long, s, timings of a servo wait to be collected before some are lost.
+/// Capacity of the timing rings, s: how long nobody may collect before timings are lost.
 const UNCOLLECTED: f64 = 0.8;
 
-/// A finger that has been reached: its servo side is in a [`ServedPort`].
+/// A finger after the handshake. Its servo side is in a [`ServedPort`].
 pub(super) struct Reached {
     /// 0 to 2.
     pub index: usize,
     /// The planners' end.
     pub mailbox: Mailbox,
-    /// What may be asked of it.
+    /// The checks of its commands.
     pub admission: Admission,
-    /// Where the servo leaves its timings.
+    /// Timings from the servo.
     pub timings: Consumer<CycleTiming>,
-    /// Where it leaves its cycles.
+    /// Cycle records from the servo.
     pub black_box: BlackBox,
 }
 
-/// A whole hand.
+/// A hand after the handshakes.
 pub(super) struct Connected {
-    /// What the servos get.
+    /// The servos' side.
     pub lines: Vec<Line>,
-    /// What the planners get, in the order of the fingers.
+    /// The planners' side, in the order of the fingers.
     pub reached: Vec<Reached>,
-    /// What is needed to mend a port.
-    pub workshops: Vec<Workshop>,
+    /// The data for repairing the ports.
+    pub repairs: Vec<PortRepair>,
 }
 
-/// A port with its fingers, and the thread that shall serve it.
+/// A port with its fingers, and the number of the thread that will serve it.
 pub(super) struct Line {
     /// 1 to 3.
     pub thread: u8,
     pub port: ServedPort<Port>,
 }
 
-/// Everything about a configuration that can be refused without a port: values, the initial stiffness, what the lines
-/// carry.
+/// Checks everything in a configuration that can be checked without a port: values, initial stiffness, capacity of the
+/// lines.
 pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration> {
     configuration.check()?;
     for index in 0..FINGERS {
@@ -67,8 +68,8 @@ pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration>
     Ok(())
 }
 
-/// The folder into which black boxes are written at a fault. It must be there before it is needed, and stays the same
-/// one when the planner goes to another working directory.
+/// The folder for black boxes. It must exist at open. Its absolute path is kept, so that it stays the same if the
+/// planner changes its working directory.
 pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<PathBuf>, UnusableConfiguration> {
     match &configuration.hand.black_box {
         Some(folder) if !Path::new(folder).is_dir() => {
@@ -79,13 +80,13 @@ pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<P
     }
 }
 
-/// A path that means the same from every working directory.
+/// The absolute path.
 pub(super) fn from_here(path: PathBuf) -> PathBuf {
-    // Where there is no working directory only absolute paths lead anywhere.
+    // Without a working directory, only absolute paths are valid.
     std::path::absolute(&path).unwrap_or(path)
 }
 
-/// A simulated board behind a pseudo-terminal, for each of these fingers whose port is `simulated`.
+/// Starts a simulated board at a pseudo-terminal for each of these fingers whose port is `simulated`.
 pub fn simulate(
     configuration: &Configuration,
     fingers: Fingers,
@@ -112,16 +113,16 @@ pub fn simulate(
     Ok(ports)
 }
 
-/// Opens the ports of these fingers and shakes hands with each of them. `limp`: the motors shall stay off.
+/// Opens the ports of these fingers and shakes hands with each finger. If `limp` is true, the motors stay off.
 pub(super) fn reach(
     configuration: &Configuration,
     fingers: Fingers,
     simulated: &[Option<SimulatedPort>; FINGERS],
     limp: bool,
 ) -> Result<Connected, HandError> {
-    // An emergency stop from here on counts.
+    // Emergency stops from here on stop the hand.
     let alarm = StopSignal::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
-    let (mut lines, mut reached, mut workshops) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut lines, mut reached, mut repairs) = (Vec::new(), Vec::new(), Vec::new());
     let mut identities = Identities::default();
     for (path, sharing) in ports(configuration, fingers, simulated) {
         let first = sharing[0];
@@ -131,7 +132,7 @@ pub(super) fn reach(
         let (mut servos, mut boards) = (Vec::new(), Vec::new());
         for &index in &sharing {
             let (servo, finger, board) = shake_hands(configuration, index, &mut link)?;
-            identities.meet(board.finger, &path, &board.identity)?;
+            identities.add(board.finger, &path, &board.identity)?;
             let servo = servo.with(alarm.clone());
             servos.push(if limp { servo.limp() } else { servo });
             reached.push(finger);
@@ -143,16 +144,16 @@ pub(super) fn reach(
             port: ServedPort::new(link, servos).with_handover(handover),
         });
         let baud = configuration.fingers[first].baud;
-        // The path of a built-in board's port may mean a pseudo-terminal of the planner's once that port is gone.
+        // A built-in board's port is not reopened: when it is gone, its path may name a pseudo-terminal of the planner.
         let reconnects = |&index: &usize| configuration.fingers[index].reconnect && simulated[index].is_none();
         let reconnect = sharing.iter().any(reconnects);
-        workshops.push(Workshop::new(path, baud, reconnect, boards, repair_end));
+        repairs.push(PortRepair::new(path, baud, reconnect, boards, repair_end));
     }
     reached.sort_by_key(|finger| finger.index);
-    Ok(Connected { lines, reached, workshops })
+    Ok(Connected { lines, reached, repairs })
 }
 
-/// Every port of these fingers, with those that are on it, 0 to 2, one at least.
+/// The ports of these fingers, each with the indices, 0 to 2, of at least one finger.
 pub fn ports(
     configuration: &Configuration,
     fingers: Fingers,
@@ -170,7 +171,7 @@ pub fn ports(
     ports
 }
 
-/// A USB bridge that holds replies back makes every cycle lose its reply.
+/// Prints a notice if a USB adapter delays bytes, because then every cycle loses its reply.
 fn warn_of_latency(port: &Port) {
     if let Some(milliseconds) = port.latency_timer_ms().filter(|&milliseconds| milliseconds > 1) {
         print_notice(&format!(
@@ -181,7 +182,7 @@ fn warn_of_latency(port: &Port) {
     }
 }
 
-/// What is to be said of a board that keeps a longer watchdog than is configured, because it cannot keep a shorter one.
+/// The notice for a board that uses a longer watchdog than configured, because it does not support a shorter one.
 fn longer_watchdog(finger: usize, configured_ms: u16, agreed_ms: u16) -> Option<String> {
     (agreed_ms > configured_ms).then(|| {
         format!(
@@ -249,11 +250,11 @@ fn initial_stiffness(configuration: &Configuration, index: usize) -> Result<Matr
     admission(configuration, index).kx(configuration.fingers[index].stiffness.initial).map_err(refused)
 }
 
-/// Whether the line of a finger carries the rate, with everything that shares it.
+/// Checks that the line of a finger can carry all of its traffic at the configured rate.
 fn carries(configuration: &Configuration, index: usize) -> Result<(), Unusable> {
     let finger = &configuration.fingers[index];
     if finger.simulated() {
-        // A pseudo-terminal has no bits a second.
+        // A pseudo-terminal has no bit rate.
         return Ok(());
     }
     let sharing = configuration.fingers.iter().filter(|other| other.port == finger.port).count();

@@ -1,6 +1,6 @@
-//! The ports of a hand that may have to be repaired, and the thread that looks for those that are gone.
+//! The ports of a hand, and the thread that reopens those that are gone.
 
-use crate::hand::workshop::Workshop;
+use crate::hand::port_repair::PortRepair;
 use crate::realtime::{Priority, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use parking_lot::Mutex;
@@ -10,75 +10,75 @@ use std::sync::atomic::AtomicU32;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often a port that is gone is looked for.
-const LOOKING_FOR_PORTS: Duration = Duration::from_millis(100);
+/// How often a port that is gone is tried.
+const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 
-/// A port that may have to be mended. It outlives its hand where somebody is at work on it.
-pub(super) struct Place {
+/// A port with its repair data. It may outlive its hand while a repair is in progress.
+pub(super) struct RepairablePort {
     /// 1 to 3.
     pub fingers: Vec<i32>,
-    /// How often the line was repaired and given back to its servo. The recoveries of its fingers reach this number
-    /// when the servo takes it.
-    pub mended: AtomicU32,
-    /// Locked while ports are opened and hands shaken, which takes long. None once the hand is closed.
-    pub workshop: Mutex<Option<Workshop>>,
+    /// Number of repairs after which the link was given back to the servo. The fingers' numbers of recoveries reach it
+    /// when the servo takes the link.
+    pub repairs: AtomicU32,
+    /// Locked during a repair, which takes long. None after the hand is closed.
+    pub repair: Mutex<Option<PortRepair>>,
 }
 
-/// Every port of a hand, and the thread that looks for those that are gone.
+/// Every port of a hand, and the thread that reopens those that are gone.
 pub(super) struct Recovery {
-    pub places: Vec<Arc<Place>>,
+    pub ports: Vec<Arc<RepairablePort>>,
     reconnecting: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Recovery {
-    pub fn new(workshops: Vec<Workshop>) -> Self {
-        let place = |workshop: Workshop| {
-            let fingers = workshop.boards.iter().map(|board| board.finger).collect();
-            Arc::new(Place { fingers, mended: AtomicU32::new(0), workshop: Mutex::new(Some(workshop)) })
+    pub fn new(repairs: Vec<PortRepair>) -> Self {
+        let port = |repair: PortRepair| {
+            let fingers = repair.boards.iter().map(|board| board.finger).collect();
+            Arc::new(RepairablePort { fingers, repairs: AtomicU32::new(0), repair: Mutex::new(Some(repair)) })
         };
-        Self { places: workshops.into_iter().map(place).collect(), reconnecting: None }
+        Self { ports: repairs.into_iter().map(port).collect(), reconnecting: None }
     }
 
-    /// Starts that thread, where a port asks for it.
+    /// Starts the thread, if a port is configured to be reopened.
     pub fn start(&mut self) -> io::Result<()> {
-        let asks = |place: &Arc<Place>| place.workshop.lock().as_ref().is_some_and(|workshop| workshop.reconnect);
-        if !self.places.iter().any(asks) {
+        let reopens = |port: &Arc<RepairablePort>| port.repair.lock().as_ref().is_some_and(|repair| repair.reconnect);
+        if !self.ports.iter().any(reopens) {
             return Ok(());
         }
         let (stop, stopped) = bounded(0);
-        let places = self.places.clone();
-        let thread = spawn("sun2xp ports", Priority::default(), move |_| reconnect(&places, &stopped))?;
+        let ports = self.ports.clone();
+        let thread = spawn("sun2xp ports", Priority::default(), move |_| reconnect(&ports, &stopped))?;
         self.reconnecting = Some((stop, thread));
         Ok(())
     }
 
-    /// In a forked child, which has no such thread.
+    /// For a forked child, which does not have the thread.
     pub fn forget(&mut self) {
         std::mem::forget(self.reconnecting.take());
     }
 
-    /// Ends that thread, and closes the ports that the servos have lent: waits for whoever is at work on one.
+    /// Ends the thread and closes the released links. Waits for repairs in progress.
     pub fn end(&mut self) {
         if let Some((stop, thread)) = self.reconnecting.take() {
             drop(stop);
-            // A panic has ended it before.
+            // The join fails only if the thread panicked.
             let _ = thread.join();
         }
-        self.places.iter().for_each(|place| *place.workshop.lock() = None);
+        self.ports.iter().for_each(|port| *port.repair.lock() = None);
     }
 }
 
-fn reconnect(places: &[Arc<Place>], stopped: &Receiver<()>) {
-    while stopped.recv_timeout(LOOKING_FOR_PORTS) == Err(RecvTimeoutError::Timeout) {
-        for place in places {
-            if let Some(workshop) = &mut *place.workshop.lock()
-                && workshop.reconnect
-                && !workshop.servo_ended()
-                && workshop.fetch()
-                && !workshop.checked
+fn reconnect(ports: &[Arc<RepairablePort>], stopped: &Receiver<()>) {
+    while stopped.recv_timeout(RETRY_INTERVAL) == Err(RecvTimeoutError::Timeout) {
+        for port in ports {
+            if let Some(repair) = &mut *port.repair.lock()
+                && repair.reconnect
+                && !repair.servo_ended()
+                && repair.take_link()
+                && !repair.checked
             {
-                // Whoever recovers the finger is told what is wrong.
-                let _ = workshop.mend();
+                // The error is reported to the caller that recovers the finger.
+                let _ = repair.restore();
             }
         }
     }

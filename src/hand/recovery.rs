@@ -1,120 +1,122 @@
-//! Going on after a fault: ports are opened again, boards shake hands anew, and the finger comes under tension as after
+//! Recovery after a fault: ports are opened again, handshakes are repeated, and the finger takes up slack as after
 //! OpenHand.
 //!
-//! The servo lends its link for that when every finger on it is at rest, because opening a port and shaking hands take
-//! long. They happen on the planner's thread, in a recover call, and before that on a thread of their own where
-//! `finger.reconnect` asks for it.
+//! The servo releases its link when every finger on it is at rest, because opening a port and shaking hands take too
+//! long for a servo. They run on the planner's thread in a recovery call. If `finger.reconnect` is set, a separate
+//! thread tries them before that.
 
 use crate::finger::{Stage, stop_calls};
-use crate::hand::reconnection::Place;
+use crate::hand::reconnection::RepairablePort;
 use crate::hand::{Hand, HandError, RecoveryError};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// A servo lends its link so long after the last of its fingers faulted, at most. It may be about to fault too.
-const LENDING: Duration = Duration::from_millis(500);
+/// Time in which a servo releases its link after the last of its fingers has faulted. Until then, a running finger of
+/// the port may be about to fault too.
+const RELEASE_LIMIT: Duration = Duration::from_millis(500);
 
-/// How often a recovery is looked at.
-const LOOKING: Duration = Duration::from_millis(2);
+/// How often a recovery is polled.
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
-/// A servo lends or takes back a link within some cycles. One that has not after so long does not run.
-const TAKING_BACK: Duration = Duration::from_secs(5);
+/// A servo releases or takes back a link within some cycles. After this time the servo is considered stalled.
+const STALL_LIMIT: Duration = Duration::from_secs(5);
 
-/// A recovery under way, in three steps, of which only the second takes long, and needs no hand.
+/// A recovery in progress. It has three steps: begin, reconnect and poll. Only `reconnect` takes long, and it does not
+/// need the hand.
 pub struct Recovering {
-    /// Nothing is to be done without one.
+    /// None if the finger is not faulted, so that there is nothing to do.
     task: Option<Task>,
     begun: Instant,
 }
 
 struct Task {
     finger: i32,
-    place: Arc<Place>,
-    /// How often the finger had recovered.
+    port: Arc<RepairablePort>,
+    /// Number of recoveries of the finger at the beginning.
     recoveries: u32,
-    /// Every finger of the port, with how often it had recovered before.
+    /// Every finger of the port, with its number of recoveries at the beginning.
     fingers: Vec<(i32, u32)>,
-    /// One of them that was not faulted.
+    /// One of these fingers that was not faulted at the beginning.
     running: Option<i32>,
     stop_calls: u32,
 }
 
 impl Recovering {
-    /// Notes how finger 1, 2 or 3 stands, with every other finger of its port. Nothing is to be done for a finger that
-    /// is not faulted.
+    /// Notes the state of finger 1, 2 or 3 and of every other finger on its port. If the finger is not faulted, the
+    /// other steps do nothing.
     ///
     /// # Errors
     /// No such finger.
     pub fn begin(hand: &Hand, finger: i32) -> Result<Self, HandError> {
         let begun = Instant::now();
-        // An emergency stop from here on counts.
+        // Emergency stops from here on stop the recovered finger.
         let stop_calls = stop_calls();
-        let place = hand.recovery.places.iter().find(|place| place.fingers.contains(&finger));
+        let port = hand.recovery.ports.iter().find(|port| port.fingers.contains(&finger));
         let report = hand.report(finger)?;
-        let place = place.ok_or(HandError::NotOpened(finger))?.clone();
+        let port = port.ok_or(HandError::NotOpened(finger))?.clone();
         if !matches!(report.stage, Stage::Faulted(_)) {
             return Ok(Self { task: None, begun });
         }
         let (mut fingers, mut running) = (Vec::new(), None);
-        for &finger in &place.fingers {
+        for &finger in &port.fingers {
             let report = hand.report(finger)?;
             fingers.push((finger, report.recoveries));
             running = running.or((!matches!(report.stage, Stage::Faulted(_))).then_some(finger));
         }
         let recoveries = report.recoveries;
-        Ok(Self { task: Some(Task { finger, place, recoveries, fingers, running, stop_calls }), begun })
+        Ok(Self { task: Some(Task { finger, port, recoveries, fingers, running, stop_calls }), begun })
     }
 
-    /// Mends what the finger is connected by and lets it take up slack, with every other finger of the port. Ports are
-    /// opened and hands shaken here: it may take a second. Only those wait for it who mend the same port or close the
-    /// hand.
+    /// Repairs the connection of the finger, and makes every faulted finger of the port take up slack. This opens ports
+    /// and shakes hands, which may take a second. Only calls that repair the same port or close the hand wait for it.
     ///
     /// # Errors
-    /// A finger that runs on the same port; a port or board that does not serve, or is another than at open; a servo
-    /// that has failed or does not run; a hand that was closed.
-    pub fn mend(&self) -> Result<(), HandError> {
-        let Some(Task { finger, ref place, recoveries, running, stop_calls, .. }) = self.task else { return Ok(()) };
+    /// Another finger runs on the same port; a port or board does not work, or is not the same as at open; the servo
+    /// has failed or does not run; the hand was closed.
+    pub fn reconnect(&self) -> Result<(), HandError> {
+        let Some(Task { finger, ref port, recoveries, running, stop_calls, .. }) = self.task else { return Ok(()) };
         let waiting = Instant::now();
         loop {
-            if let Some(workshop) = &mut *place.workshop.lock() {
-                if place.mended.load(Ordering::Acquire) != recoveries {
-                    // Somebody who recovers a finger of the same port was faster. Perhaps the servo has not taken it
+            if let Some(repair) = &mut *port.repair.lock() {
+                if port.repairs.load(Ordering::Acquire) != recoveries {
+                    // Another caller has recovered a finger of the same port. Perhaps the servo has not taken the link
                     // back yet.
                     return Ok(());
                 }
-                if workshop.servo_ended() {
+                if repair.servo_ended() {
                     return Err(RecoveryError::ServoEnded(finger).into());
                 }
-                if workshop.fetch() {
-                    let configured = workshop.mend()?;
-                    // First, so that no finger has recovered more often than its port was mended.
-                    place.mended.fetch_add(1, Ordering::Release);
-                    workshop.give_back(configured, stop_calls);
+                if repair.take_link() {
+                    let configured = repair.restore()?;
+                    // Counted before the servo gets the link, so that no finger has more recoveries than its port has
+                    // repairs.
+                    port.repairs.fetch_add(1, Ordering::Release);
+                    repair.give_back(configured, stop_calls);
                     return Ok(());
                 }
             } else {
                 return Err(HandError::NoAnswer(finger));
             }
-            if let Some(refusal) = not_lent(finger, running, waiting.elapsed()) {
+            if let Some(refusal) = not_released(finger, running, waiting.elapsed()) {
                 return Err(refusal.into());
             }
-            sleep(LOOKING);
+            sleep(POLL_INTERVAL);
         }
     }
 
-    /// Whether every finger of the port holds the pose that it was found in.
+    /// Whether every finger of the port holds its pose.
     ///
     /// # Errors
-    /// A finger that faults again.
+    /// A finger of the port faults again.
     pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
         let mut done = true;
         for &(finger, before) in self.task.iter().flat_map(|task| &task.fingers) {
             let report = hand.report(finger)?;
             match report.stage {
                 Stage::Faulted(_) if report.recoveries == before => {
-                    if self.begun.elapsed() > TAKING_BACK {
+                    if self.begun.elapsed() > STALL_LIMIT {
                         return Err(HandError::NoAnswer(finger));
                     }
                     done = false;
@@ -127,28 +129,28 @@ impl Recovering {
     }
 }
 
-/// What is wrong where a servo has not lent the link of a finger for so long, if that is too long. `running`: another
-/// finger of the port, which was not faulted in the beginning.
-fn not_lent(finger: i32, running: Option<i32>, waited: Duration) -> Option<RecoveryError> {
+/// The error for a servo that has not released the link of a finger within the permitted time; none before that.
+/// `running` is another finger of the port that was not faulted at the beginning.
+fn not_released(finger: i32, running: Option<i32>, waited: Duration) -> Option<RecoveryError> {
     match running {
-        Some(other) if waited > LENDING => Some(RecoveryError::PortInUse { finger, other }),
-        None if waited > TAKING_BACK => Some(RecoveryError::ServoStalled(finger)),
+        Some(other) if waited > RELEASE_LIMIT => Some(RecoveryError::PortInUse { finger, other }),
+        None if waited > STALL_LIMIT => Some(RecoveryError::ServoStalled(finger)),
         _ => None,
     }
 }
 
 impl Hand {
-    /// Makes a faulted finger 1, 2 or 3 a spring again, that holds the pose it is in at its initial stiffness; and with
-    /// it the other faulted fingers on its port. What made it fault must be mended. Does nothing for a finger that is
-    /// not faulted.
+    /// Makes a faulted finger 1, 2 or 3 a spring again, which holds its present pose at its initial stiffness. The
+    /// other faulted fingers on its port recover too. The cause of the fault must be removed before. Does nothing if
+    /// the finger is not faulted.
     ///
     /// # Errors
-    /// As [`Recovering::begin`], [`Recovering::mend`] and [`Recovering::poll`].
+    /// As [`Recovering::begin`], [`Recovering::reconnect`] and [`Recovering::poll`].
     pub fn recover(&self, finger: i32) -> Result<(), HandError> {
         let recovering = Recovering::begin(self, finger)?;
-        recovering.mend()?;
+        recovering.reconnect()?;
         while !recovering.poll(self)? {
-            sleep(LOOKING);
+            sleep(POLL_INTERVAL);
         }
         Ok(())
     }
@@ -161,12 +163,15 @@ mod tests {
     #[test]
     fn only_a_finger_that_runs_is_said_to_use_the_port() {
         for waited in [0, 100, 400].map(Duration::from_millis) {
-            assert!(not_lent(1, None, waited).is_none() && not_lent(1, Some(2), waited).is_none());
+            assert!(not_released(1, None, waited).is_none() && not_released(1, Some(2), waited).is_none());
         }
-        assert!(matches!(not_lent(1, Some(2), 2 * LENDING), Some(RecoveryError::PortInUse { finger: 1, other: 2 })));
-        // A finger alone, whose servo is kept from running for a while.
-        assert!(not_lent(1, None, 2 * LENDING).is_none());
-        let text = not_lent(1, None, 2 * TAKING_BACK).expect("too long").to_string();
+        assert!(matches!(
+            not_released(1, Some(2), 2 * RELEASE_LIMIT),
+            Some(RecoveryError::PortInUse { finger: 1, other: 2 })
+        ));
+        // The only finger of a port, whose servo does not run for a while.
+        assert!(not_released(1, None, 2 * RELEASE_LIMIT).is_none());
+        let text = not_released(1, None, 2 * STALL_LIMIT).expect("too long").to_string();
         assert!(text.contains("no processor time") && text.contains("reduce the load"), "{text}");
     }
 }

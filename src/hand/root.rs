@@ -1,10 +1,10 @@
-//! Root: opens and closes a hand, owns its threads and ports.
+//! Root: opens and closes a hand, and owns its threads and ports.
 
 use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach, simulate};
 use crate::hand::reconnection::Recovery;
-use crate::hand::servo_threads::{Given, PortServo, start};
+use crate::hand::servo_threads::{PortServo, RealtimeState, start};
 use crate::hand::{Configured, Fingers, Found, HandError, find_configuration};
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{self, Distribution, MonotonicClock, now};
@@ -16,50 +16,50 @@ use std::process::id;
 use std::thread::{JoinHandle, sleep};
 use std::time::Duration;
 
-/// Bound on the components of a push, N: far beyond what tears a finger off, and not beyond what can be simulated.
+/// Largest component of a push, N. It is far above what would tear a finger off, and low enough to be simulated.
 const STRONGEST_PUSH: f64 = 1000.0;
 
-/// A board takes no longer than this, ns, to confirm that it has stopped.
-const STOPPING: u64 = 300_000_000;
+/// Time that a board takes at most to confirm that it has stopped, ns.
+const STOP_CONFIRMATION: u64 = 300_000_000;
 
-/// A servo's last frames are on the line after this.
-const LAST_WORDS: Duration = Duration::from_millis(20);
+/// Time for the last frames of a servo to leave the port.
+const FLUSH_TIME: Duration = Duration::from_millis(20);
 
-/// How often OpenHand looks whether every finger holds its pose.
-const LOOKING: Duration = Duration::from_millis(1);
+/// How often the stages of the fingers are polled while the hand opens or ends.
+const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
-/// An open hand: its fingers, their servo threads and their ports. A value: a process can have several.
+/// An open hand: its fingers, servo threads and ports. A process can have several.
 ///
-/// Every call may come from several threads. Dropping it closes it.
+/// All functions may be called from several threads. Dropping the hand closes it.
 pub struct Hand {
     pub(super) dispatcher: Dispatcher,
     servos: Vec<JoinHandle<PortServo>>,
     pub(super) recovery: Recovery,
     simulated: [Option<SimulatedPort>; FINGERS],
-    /// As it is now: planners may adjust it, and calibration changes what it finds.
+    /// The configuration in force. Planners can adjust it, and calibration changes its results in it.
     pub(super) configuration: RwLock<Configuration>,
-    /// Where the configuration was read from, and where calibration is stored.
+    /// The configuration file, in which calibration results are stored.
     pub(super) file: Option<PathBuf>,
-    /// What calibration has found since it was last stored.
+    /// Calibration results that are not stored yet.
     pub(super) found: Mutex<Vec<Found>>,
-    pub(super) given: Given,
-    /// Within this time, ns, every finger reaches its end state.
+    pub(super) real_time: RealtimeState,
+    /// Time in which every finger reaches its end state, ns.
     ending: u64,
-    /// The process that has the threads. A forked child inherits this value, but not them.
+    /// The process that has the threads. A forked child inherits this value, but not the threads.
     process: u32,
 }
 
 impl Hand {
-    /// Opens the hand that the configuration file describes; where there is no such file the simulated one. One line on
-    /// standard error says which fingers are simulated because no file names their ports.
+    /// Opens the hand that the configuration file describes, or the simulated hand if there is no file. If fingers are
+    /// simulated because no file names their ports, one line on standard error names them.
     ///
     /// # Errors
-    /// As [`Hand::open`], and a configuration file that cannot be read or used.
+    /// As [`Hand::open`]. The configuration file cannot be read or used.
     pub fn open_configured() -> Result<Self, HandError> {
         Self::open_as(find_configuration()?)
     }
 
-    /// Opens the hand that [`configured`] has found.
+    /// Opens the hand that [`find_configuration`] has found.
     ///
     /// # Errors
     /// As [`Hand::open`].
@@ -68,19 +68,18 @@ impl Hand {
         Self::open_from(configured.configuration, configured.file, Fingers::ALL, false)
     }
 
-    /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons and returns when every finger
-    /// holds the pose it is in at its initial stiffness.
+    /// Opens the hand: shakes hands with its boards, takes up the slack of its tendons, and returns when every finger
+    /// holds its pose at its initial stiffness.
     ///
     /// # Errors
-    /// A configuration that cannot be used, a port or board that does not serve, a finger that faults. Everything that
-    /// was opened is closed again then, and every motor is in its end state.
+    /// The configuration cannot be used, a port or board does not work, or a finger faults. Everything that was opened
+    /// is closed again then, and every motor is in its end state.
     pub fn open(configuration: Configuration) -> Result<Self, HandError> {
         Self::open_from(configuration, None, Fingers::ALL, false)
     }
 
-    /// Opens these fingers of the hand, with their motors off: to find signs and zeros before anything pulls. `file`:
-    /// where calibration shall be stored. A finger becomes a spring when it has been calibrated by [`Hand::zero`] or
-    /// [`Hand::identify`].
+    /// Opens these fingers of the hand with their motors off, in order to find signs and zeros before anything pulls.
+    /// Calibration results are stored in `file`. A finger becomes a spring after [`Hand::zero`] or [`Hand::identify`].
     ///
     /// # Errors
     /// As [`Hand::open`].
@@ -100,20 +99,20 @@ impl Hand {
         waiting.map_err(|source| HandError::System { doing: "wait for a time (clock_nanosleep)", source })?;
         let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
         let simulated = simulate(&configuration, fingers)?;
-        let Connected { lines, reached, workshops } = reach(&configuration, fingers, &simulated, limp)?;
-        let recovery = Recovery::new(workshops);
+        let Connected { lines, reached, repairs } = reach(&configuration, fingers, &simulated, limp)?;
+        let recovery = Recovery::new(repairs);
         let dispatcher = Dispatcher::new(reached);
-        let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOPPING;
+        let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOP_CONFIRMATION;
         let configuration = RwLock::new(configuration);
         let servos = Vec::new();
-        let given = Given::default();
+        let real_time = RealtimeState::default();
         let (found, process) = (Mutex::default(), id());
         let mut hand =
-            Self { dispatcher, servos, recovery, simulated, configuration, file, found, given, ending, process };
+            Self { dispatcher, servos, recovery, simulated, configuration, file, found, real_time, ending, process };
         // From here on, dropping the hand closes it.
         let collecting = hand.dispatcher.start_collecting(folder);
         collecting.map_err(|source| HandError::System { doing: "start the thread that collects reports", source })?;
-        hand.given = start(&hand.configuration.read(), lines, &mut hand.servos)?;
+        hand.real_time = start(&hand.configuration.read(), lines, &mut hand.servos)?;
         hand.wait_for_every_finger()?;
         let reconnecting = hand.recovery.start();
         reconnecting.map_err(|source| HandError::System { doing: "start the thread that looks for ports", source })?;
@@ -136,7 +135,7 @@ impl Hand {
         self.dispatcher.last_report(finger)
     }
 
-    /// How long a stage of the cycles of finger 1, 2 or 3 has taken since open or since the timings were last reset.
+    /// The duration of a stage of the cycles of finger 1, 2 or 3, since open or the last reset.
     ///
     /// # Errors
     /// No such finger.
@@ -144,8 +143,7 @@ impl Hand {
         self.dispatcher.timing(finger, stage)
     }
 
-    /// How many cycles finger 1, 2 or 3 has had, and what went wrong in them, since open or since the timings were last
-    /// reset.
+    /// Counts of the cycles and errors of finger 1, 2 or 3, since open or the last reset.
     ///
     /// # Errors
     /// No such finger.
@@ -153,7 +151,7 @@ impl Hand {
         self.dispatcher.losses(finger)
     }
 
-    /// Begins to count timings and losses of finger 1, 2 or 3 anew.
+    /// Resets timings and losses of finger 1, 2 or 3.
     ///
     /// # Errors
     /// No such finger.
@@ -161,7 +159,7 @@ impl Hand {
         self.dispatcher.reset_timing(finger)
     }
 
-    /// Pushes the fingertip of a simulated finger with a force in the finger's frame, N, until the next such call.
+    /// Pushes the fingertip of a simulated finger with a force in the finger's frame, N, until the next call.
     ///
     /// # Errors
     /// No such finger, NaN or infinity, a finger on a real port.
@@ -174,29 +172,29 @@ impl Hand {
             return Err(HandError::TooMuchForce { finger, force: largest, strongest: STRONGEST_PUSH });
         }
         let push = |finger: &mut SimulatedFinger| finger.plant().set_external_force(Vector3::from(force));
-        // The board was made with this one address.
+        // The board of a simulated finger has only this address.
         port.with_finger(self.configuration.read().address(index), push);
         Ok(())
     }
 
-    /// Asks every finger to go to its end state, and waits until that should be done. Waits for no lock and frees
-    /// nothing, so that it serves where a process is about to end, even in a signal handler. The hand is of no use
-    /// afterwards.
+    /// Requests the end state of every finger, and waits for the time that this takes. It takes no lock and frees
+    /// nothing, so that it can be called when the process is about to end, even in a signal handler. The hand cannot be
+    /// used afterwards.
     pub fn end(&self) {
         let members = self.dispatcher.members();
         members.iter().for_each(|member| member.mailbox.close());
         let limit = now() + self.ending;
         while now() < limit && !members.iter().all(|member| member.mailbox.ended() == Some(true)) {
-            sleep(LOOKING);
+            sleep(POLL_INTERVAL);
         }
-        // The servo says so a moment before it has told the board.
-        sleep(LAST_WORDS);
+        // The servo reports the end shortly before it sends the last frame.
+        sleep(FLUSH_TIME);
     }
 
-    /// Brings every finger to its end state, as configured, and ends the threads. The same as dropping the hand.
+    /// Brings every finger to its configured end state and ends the threads. Dropping the hand does the same.
     pub fn close(self) {}
 
-    /// Until every finger is a spring that holds its pose. Each decides by itself within the open time-out.
+    /// Waits until every finger is a spring that holds its pose. Each finger applies the open time-out itself.
     fn wait_for_every_finger(&self) -> Result<(), HandError> {
         loop {
             let mut opening = false;
@@ -211,7 +209,7 @@ impl Hand {
             if !opening {
                 return Ok(());
             }
-            sleep(LOOKING);
+            sleep(POLL_INTERVAL);
         }
     }
 }
@@ -219,7 +217,7 @@ impl Hand {
 impl Drop for Hand {
     fn drop(&mut self) {
         if self.process != id() {
-            // A forked child: the threads and the motors are its parent's.
+            // This is a forked child. The threads and the motors belong to its parent.
             self.servos.drain(..).for_each(std::mem::forget);
             self.dispatcher.forget_collector();
             self.recovery.forget();
@@ -227,7 +225,8 @@ impl Drop for Hand {
         }
         self.dispatcher.members().iter().for_each(|member| member.mailbox.close());
         for servo in self.servos.drain(..) {
-            // A servo thread catches its own panics. Its ports are closed here, not in the servo: it may take long.
+            // A servo thread catches its panics. Its ports are closed here and not in the servo, because closing may
+            // take long.
             let _ = servo.join();
         }
         self.recovery.end();

@@ -1,4 +1,4 @@
-//! Starts the servo threads, as real-time as they can and have to be.
+//! Starts the servo threads, in real time as far as permitted and required.
 
 use crate::board::Port;
 use crate::finger::{ServedPort, Servo};
@@ -15,60 +15,60 @@ use std::thread::JoinHandle;
 /// The servo of one thread.
 pub(super) type PortServo = Servo<Port, MonotonicClock>;
 
-/// The first cycle begins so long after every thread is ready, ns.
+/// Time from the moment when every thread is ready to the first cycle, ns.
 const HEAD_START: u64 = 2_000_000;
 
-/// What the servo threads were given.
+/// Which real-time properties the servo threads have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Given {
-    /// All run under SCHED_FIFO.
+pub(super) struct RealtimeState {
+    /// Whether all threads run under SCHED_FIFO.
     pub scheduling: bool,
-    /// The system has refused that to one of them.
+    /// Whether the system refused SCHED_FIFO to a thread.
     pub refused: bool,
-    /// All have their memory locked.
+    /// Whether all threads have their memory locked.
     pub memory: bool,
-    /// All run on the cores that are configured.
+    /// Whether all threads run on the configured cores.
     pub core: bool,
 }
 
-/// Starts a servo thread for all lines of one number, each. They are put into `servos`, to be joined, also where this
-/// fails: then none has begun its first cycle.
+/// Starts one servo thread for each thread number among the lines. The threads are added to `servos`, to be joined,
+/// even if this fails. After a failure, no thread has begun its first cycle.
 ///
 /// # Errors
-/// The system refuses a thread; or real time is enforced, and is not permitted.
+/// The system refuses a thread, or real time is enforced but not permitted.
 pub(super) fn start(
     configuration: &Configuration,
     lines: Vec<Line>,
     servos: &mut Vec<JoinHandle<PortServo>>,
-) -> Result<Given, HandError> {
+) -> Result<RealtimeState, HandError> {
     let real_time = configuration.hand.real_time;
     let shares = by_thread(lines);
     let numbers: Vec<u8> = shares.keys().copied().collect();
-    let (report, hear) = bounded(numbers.len());
-    let (begin, begun) = bounded(numbers.len());
+    let (report, reports) = bounded(numbers.len());
+    let (begin, beginning) = bounded(numbers.len());
     for (place, (thread, ports)) in shares.into_iter().enumerate() {
         let servo = port_servo(configuration, ports, place, numbers.len());
-        let (report, begun) = (report.clone(), begun.clone());
+        let (report, beginning) = (report.clone(), beginning.clone());
         let name = format!("sun2xp servo {thread}");
         let handle = spawn(&name, priority(configuration, thread), move |refusals| {
-            run(servo, refusals, real_time, &report, &begun)
+            run(servo, refusals, real_time, &report, &beginning)
         });
         servos.push(handle.map_err(|source| HandError::System { doing: "start a servo thread", source })?);
     }
-    // Our own sender would keep the channel open where a thread died before it could report.
+    // This sender would keep the channel open if a thread died before it reported.
     drop(report);
-    let missing = missing_permissions(hear.iter().take(numbers.len()).collect());
-    let given = Given::of(configuration, &numbers, &missing);
+    let missing = missing_permissions(reports.iter().take(numbers.len()).collect());
+    let state = RealtimeState::of(configuration, &numbers, &missing);
     accept(missing, real_time)?;
     let first = now() + HEAD_START;
     for _ in &numbers {
-        // The channel has room for the message to a thread that died.
+        // The channel has room for the message to a thread that has died.
         let _ = begin.send(first);
     }
-    Ok(given)
+    Ok(state)
 }
 
-/// The numbers of the threads, rising, with the ports that each one serves.
+/// The ports of each servo thread, by thread number.
 fn by_thread(lines: Vec<Line>) -> BTreeMap<u8, Vec<ServedPort<Port>>> {
     let mut ports: BTreeMap<u8, Vec<ServedPort<Port>>> = BTreeMap::new();
     for line in lines {
@@ -87,14 +87,14 @@ fn port_servo(configuration: &Configuration, ports: Vec<ServedPort<Port>>, place
     }
 }
 
-/// The life of a servo thread: it prepares its memory, reports what the system refused, waits for its first cycle and
+/// The body of a servo thread: prepares its memory, reports what the system refused, waits for its first cycle and
 /// runs.
 fn run(
     mut servo: PortServo,
     mut refusals: RealtimeRefusals,
     real_time: RealTime,
     report: &Sender<RealtimeRefusals>,
-    begun: &Receiver<u64>,
+    beginning: &Receiver<u64>,
 ) -> PortServo {
     touch_stack();
     let mut locked = None;
@@ -102,9 +102,9 @@ fn run(
         let stack = LockedStack::lock().map(|stack| locked = Some(stack));
         refusals.memory = stack.and_then(|()| servo.memory().lock()).err();
     }
-    // The caller of `start` waits for this report. If it has given up, it does not say when to begin either.
+    // `start` waits for this report. If it has returned an error, it does not send the time of the first cycle either.
     let _ = report.send(refusals);
-    if let Ok(first) = begun.recv() {
+    if let Ok(first) = beginning.recv() {
         servo = servo.later(first);
         servo.run();
     }
@@ -112,7 +112,7 @@ fn run(
     servo
 }
 
-impl Given {
+impl RealtimeState {
     fn of(configuration: &Configuration, threads: &[u8], missing: &[MissingPermission]) -> Self {
         let tried = configuration.hand.real_time != RealTime::Ignore;
         let lacks = |kind: fn(&MissingPermission) -> bool| missing.iter().any(kind);
@@ -127,7 +127,7 @@ impl Given {
     }
 }
 
-/// Refuses what is missing where real time is enforced, and warns of it otherwise.
+/// Returns an error for a missing permission if real time is enforced, and prints a notice otherwise.
 fn accept(missing: Vec<MissingPermission>, real_time: RealTime) -> Result<(), HandError> {
     for missing in missing {
         match real_time {
@@ -140,13 +140,13 @@ fn accept(missing: Vec<MissingPermission>, real_time: RealTime) -> Result<(), Ha
     Ok(())
 }
 
-/// The priority and core of a servo thread, 1 to 3.
+/// Priority and core of servo thread 1, 2 or 3.
 pub fn priority(configuration: &Configuration, thread: u8) -> Priority {
     if configuration.hand.real_time == RealTime::Ignore {
         return Priority::default();
     }
     let own = (0..FINGERS).find(|&index| configuration.thread(index) == thread);
-    // Fingers that share a thread have the same priority and core: the configuration was checked.
+    // Fingers on one thread have the same priority and core, because the configuration was checked.
     let finger = own.map(|index| &configuration.fingers[index]);
     finger.map_or_else(Priority::default, |finger| Priority { fifo: finger.priority, core: finger.core })
 }

@@ -1,4 +1,4 @@
-//! The calls that send set points: from a planner's arguments through their checks to the mailbox of the finger.
+//! The calls that send set points. Each checks the planner's arguments and writes to the mailbox of the finger.
 
 use crate::control::{Law, SetPoint};
 use crate::hand::admission::Admission;
@@ -6,7 +6,7 @@ use crate::hand::{Hand, HandError, SetPointError};
 use crate::model::Contact;
 
 impl Hand {
-    /// theta_d of finger 1, 2 or 3: joints 0, 1, 2, rad. Takes effect within a cycle.
+    /// Sends theta_d of finger 1, 2 or 3: joints 0, 1 and 2, rad. It takes effect within a cycle.
     ///
     /// # Errors
     /// No such finger, NaN or infinity, beyond a joint limit, finger faulted.
@@ -18,8 +18,8 @@ impl Hand {
         sent.map_err(|fault| HandError::Faulted { finger, fault })
     }
 
-    /// Kx of finger 1, 2 or 3 in the finger's frame, N/cm: `rows[row][column]`. Taken over whole, without a
-    /// jump in torque: 95 % of the change is there after 50 ms.
+    /// Sends Kx of finger 1, 2 or 3 in the finger's frame, N/cm: `rows[row][column]`. The whole matrix takes effect
+    /// without a jump in torque; 95 % of the change is reached after 50 ms.
     ///
     /// # Errors
     /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, too stiff for the
@@ -34,14 +34,14 @@ impl Hand {
         })
     }
 
-    /// Where the tip of finger 1, 2 or 3 shall be, cm, in the finger's frame. The fingertip is the exact spring there,
-    /// tau = J^T Kx (x_d - x), with the stiffness sent last; of several joint solutions within the limits it takes the
-    /// one that is nearest to the present pose. Takes effect within a cycle; the way there is straight in the joints,
-    /// at their bounded speed.
+    /// Sends the desired position of the tip of finger 1, 2 or 3 in the finger's frame, cm. The fingertip becomes the
+    /// exact spring tau = J^T Kx (x_d - x), with the stiffness that was sent last. Of several joint solutions within
+    /// the limits, the one nearest to the present pose is used. It takes effect within a cycle. The motion is straight
+    /// in joint space, at the bounded joint speed.
     ///
     /// # Errors
-    /// No such finger, NaN or infinity, out of reach or of the joint limits (also where commands are clamped), finger
-    /// faulted.
+    /// No such finger, NaN or infinity, position out of reach or of the joint limits (even if commands are clamped),
+    /// finger faulted.
     pub fn send_tip(&self, finger: i32, tip: [f64; 3]) -> Result<(), HandError> {
         let present = self.dispatcher.last_report(finger)?.cycle.joints;
         self.send(finger, |admission| {
@@ -53,12 +53,12 @@ impl Hand {
         })
     }
 
-    /// What finger 1, 2 or 3 may exchange with an object: its tip becomes the spring of that contact, without a jump in
-    /// torque. Takes the place of the Kx sent last, as a Kx takes its.
+    /// Sends a contact for finger 1, 2 or 3: the tip becomes the spring of that contact, without a jump in torque. It
+    /// replaces the last Kx, and a later Kx replaces it.
     ///
     /// # Errors
-    /// No such finger, stiffer than the bound, too stiff for the damping sent last, finger faulted. A rotation counts
-    /// for the bound by how far it moves the last joint: k N cm/rad as k / l2^2 N/cm.
+    /// No such finger, stiffer than the bound, too stiff for the damping sent last, finger faulted. A rotational
+    /// stiffness k, N cm/rad, counts as k / l2^2 N/cm, by the motion of the last joint.
     pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
         self.send(finger, |admission| {
             let (stiffness, damping) = (admission.contact(&contact)?, admission.damping);
@@ -69,8 +69,8 @@ impl Hand {
         })
     }
 
-    /// Damping of finger 1, 2 or 3 relative to what the controller chooses from the stiffness: 1 is that, and is in
-    /// force after open. The range depends on controller, rate and stiffness
+    /// Sends the damping of finger 1, 2 or 3, relative to the damping that the controller chooses from the stiffness.
+    /// It is 1 after open. The range depends on controller, rate and stiffness
     /// ([`AdmissibleDamping`](crate::control::AdmissibleDamping)).
     ///
     /// # Errors
@@ -86,7 +86,7 @@ impl Hand {
         })
     }
 
-    /// Sends the change that `admit` lets through. Both are one step: limits do not change between them. The change
+    /// Sends the change that `admit` returns. The limits cannot change between the check and the sending. The change
     /// itself may still refuse the set point that it starts from.
     fn send<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,

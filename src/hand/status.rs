@@ -1,41 +1,40 @@
-//! How a finger and the thread that serves it are doing.
+//! The status of a finger and of its servo thread.
 
 use crate::calibration::Verdict;
 use crate::finger::{Losses, Stage};
 use crate::hand::{Hand, HandError};
 use crate::realtime::{self, Distribution, now};
 
-/// What is known of a finger and of the thread that serves it.
+/// The status of a finger and of its servo thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FingerStatus {
-    /// Where the finger is between open and close.
+    /// Stage of the finger between open and close.
     pub stage: Stage,
     /// Whether every servo thread runs under SCHED_FIFO.
     pub realtime: bool,
     /// Whether every servo thread has its memory locked.
     pub memory_locked: bool,
-    /// Whether every servo thread runs on the core that is configured, if one is.
+    /// Whether every servo thread runs on its configured core, if one is configured.
     pub on_core: bool,
-    /// Configured cycles in a second, Hz.
+    /// Configured rate, Hz.
     pub rate: f64,
-    /// Measured cycles in a second since open, Hz; less while a cycle is missing.
+    /// Measured rate since open, Hz. It decreases while a cycle is missing.
     pub measured_rate: f64,
-    /// From the scheduled beginning of a cycle to its first instruction, microseconds: the servo's jitter.
+    /// From the scheduled beginning of a cycle to its first instruction, microseconds: the jitter of the servo.
     pub wake_up: Distribution,
-    /// Its cycles since open, and what went wrong in them. The skipped periods include those that are missing up to
-    /// now.
+    /// Cycles and errors since open. The skipped periods include those that are missing now.
     pub losses: Losses,
-    /// The part of the wanted joint torque that the tension limits let through in the last cycle, 0 to 1.
+    /// Part of the wanted joint torque that the tension limits permitted in the last cycle, 0 to 1.
     pub torque_scale: f64,
-    /// The part of Kx that the finger was given in the last cycle, 0 to 1: less than 1 where its tendons carry no more
-    /// in this pose.
+    /// Part of Kx that was applied in the last cycle, 0 to 1. It is less than 1 if the tendons cannot carry Kx in this
+    /// pose.
     pub stiffness_scale: f64,
-    /// The part of the calibration under way that is done, 0 to 1; 0 where there is none.
+    /// Completed part of the calibration in progress, 0 to 1; 0 if there is none.
     pub calibration: f64,
 }
 
 impl Hand {
-    /// How finger 1, 2 or 3 and its thread are doing.
+    /// The status of finger 1, 2 or 3 and of its servo thread.
     ///
     /// # Errors
     /// No such finger.
@@ -51,9 +50,9 @@ impl Hand {
         let intervals = report.losses.cycles.saturating_sub(1) as f64;
         Ok(FingerStatus {
             stage: report.stage,
-            realtime: self.given.scheduling,
-            memory_locked: self.given.memory,
-            on_core: self.given.core,
+            realtime: self.real_time.scheduling,
+            memory_locked: self.real_time.memory,
+            on_core: self.real_time.core,
             rate,
             measured_rate: if seconds > 0.0 { intervals / seconds } else { 0.0 },
             wake_up: self.timing(finger, realtime::CycleStage::WakeUp)?,

@@ -158,7 +158,7 @@ fn two_that_recover_fingers_of_one_port_at_once_both_succeed() {
     // Both recoveries have begun before one of them has restored the port.
     let recovering = [1, 2].map(|finger| Recovering::begin(&hand, finger).expect("begun"));
     for recovering in &recovering {
-        recovering.mend().unwrap_or_else(|error| panic!("{error}"));
+        recovering.reconnect().unwrap_or_else(|error| panic!("{error}"));
     }
     for recovering in &recovering {
         wait_until("recovered", || recovering.poll(&hand).unwrap_or_else(|error| panic!("{error}")));
@@ -179,7 +179,7 @@ fn who_recovers_a_finger_that_was_just_mended_is_not_told_that_it_shares_its_por
         assert_eq!(faults(&hand, 2), FaultKind::EmergencyStopCall);
         for _ in 0..2 {
             let recovering = Recovering::begin(&hand, 2).expect("begun");
-            recovering.mend().unwrap_or_else(|error| panic!("round {round}: {error}"));
+            recovering.reconnect().unwrap_or_else(|error| panic!("round {round}: {error}"));
         }
         recovers(&hand, 2);
         assert_eq!(hand.report(2).expect("a report").recoveries, round + 1);
@@ -214,9 +214,9 @@ fn a_hand_is_closed_and_its_ports_free_while_somebody_recovers_a_finger() {
     assert_eq!(faults(&hand, 2), FaultKind::LostReplies);
     let [mending, late] = [(); 2].map(|()| Recovering::begin(&hand, 2).expect("begun"));
     // The recovery has the finger's link, but no board answers there.
-    assert_eq!(mending.mend().expect_err("nobody answers").errno(), libc::ETIMEDOUT);
+    assert_eq!(mending.reconnect().expect_err("nobody answers").errno(), libc::ETIMEDOUT);
     hand.close();
-    let error = late.mend().expect_err("closed");
+    let error = late.reconnect().expect_err("closed");
     assert!(error.to_string().contains("was closed"), "{error}");
     boards[1].signal(libc::SIGCONT);
     // The board first carries out the requests that arrived while it was stopped.

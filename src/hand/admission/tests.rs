@@ -31,7 +31,7 @@ fn kx_is_taken_row_by_row() {
     let kx = admission(OutOfRange::Refuse).kx(rows).expect("admissible");
     assert_eq!(kx[(0, 1)], 0.5);
     assert_eq!(kx[(1, 2)], 0.25);
-    // Less than a thousandth of the largest entry: symmetrised.
+    // An asymmetry below a thousandth of the largest entry is removed.
     assert_eq!(kx[(0, 2)], 0.0005);
     assert_eq!(kx, kx.transpose());
     let skewed = [[3.0, 0.5, 0.004], [0.5, 2.0, 0.25], [0.0, 0.25, 1.0]];
@@ -50,7 +50,7 @@ fn springs_of_any_rank_are_admitted_and_others_refused() {
     assert!(matches!(refuse.kx(diagonal(1.0, -0.1, 0.0)), Err(SetPointError::Negative { .. })));
     assert!(matches!(refuse.kx(diagonal(-1.0, 0.0, 0.0)), Err(SetPointError::Negative { .. })));
     assert!(matches!(refuse.kx(diagonal(f64::NAN, 0.0, 0.0)), Err(SetPointError::NotFinite { .. })));
-    // Within rounding of zero: taken as zero.
+    // An eigenvalue within rounding of zero counts as zero.
     let kx = refuse.kx(diagonal(1.0, -0.0005, 0.0)).expect("admissible");
     assert!(kx.symmetric_eigenvalues().min() > -1e-12);
 }
@@ -87,7 +87,7 @@ fn a_torsion_counts_by_the_lever_of_the_last_link() {
         let k = nalgebra::Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, torsion));
         Contact::soft_finger(k, Vector3::z()).expect("a spring")
     };
-    // 6 N/cm at 4 cm.
+    // 96 N cm/rad at 4 cm correspond to 6 N/cm.
     let (refuse, clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
     assert_eq!(refuse.contact(&contact(96.0)).expect("admissible"), *contact(96.0).stiffness());
     assert!(matches!(refuse.contact(&contact(97.0)), Err(SetPointError::TooStiff { .. })));
@@ -130,7 +130,7 @@ proptest! {
         mantissas in prop::array::uniform32(-1.0f64..1.0), exponents in prop::array::uniform6(-160i32..155),
         diagonal in prop::bool::ANY, lever in -1.0f64..2.0,
     ) {
-        // A A^T of rank 5: a spring, but for rounding, of any size in each of its directions.
+        // A A^T of rank 5 is a spring, except for rounding, with any magnitude in each of its directions.
         let root = nalgebra::SMatrix::<f64, 6, 5>::from_fn(|row, column| match diagonal && row != column {
             true => 0.0,
             false => mantissas[5 * row + column] * 10f64.powi(exponents[row]),

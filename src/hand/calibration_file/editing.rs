@@ -1,12 +1,12 @@
-//! Single values of a TOML document, changed so that everything around them stays.
+//! Changes of single values in a TOML document that keep everything around them.
 
 use crate::hand::found::{Numbers, with_signs};
 use toml_edit::{Array, Formatted, Item, Table, TableLike, Value};
 
-/// Significant digits that are written: more than any routine finds.
+/// Significant digits that are written. No routine measures as many.
 const DIGITS: usize = 6;
 
-/// The values as they are written, and whether in an array. `present`: the numbers that are there.
+/// The values to write, and whether they form an array. `present` are the numbers in the file.
 pub(super) fn written(numbers: &Numbers, present: &[f64]) -> (Vec<Value>, bool) {
     match numbers {
         Numbers::Whole(values) => (values.iter().map(|&value| value.into()).collect(), true),
@@ -16,8 +16,8 @@ pub(super) fn written(numbers: &Numbers, present: &[f64]) -> (Vec<Value>, bool) 
     }
 }
 
-/// Puts values at a key that holds the numbers `present`, here or where all fingers share them. Comments and layout
-/// stay where the key stands here.
+/// Writes values to a key whose numbers are `present`, in this table or in the one for all fingers. Comments and layout
+/// are kept if the key is in this table.
 pub(super) fn set(section: &mut dyn TableLike, key: &str, values: Vec<Value>, array: bool, present: &[f64]) {
     if array {
         match section.get_mut(key).and_then(Item::as_array_mut) {
@@ -47,19 +47,19 @@ pub(super) fn set(section: &mut dyn TableLike, key: &str, values: Vec<Value>, ar
     }
 }
 
-/// To so many significant digits.
+/// Rounds to the written number of digits.
 fn rounded(value: f64) -> Value {
     let digits = DIGITS - 1;
-    // The text of a finite number is one.
+    // The text of a finite number can be parsed.
     Value::Float(Formatted::new(format!("{value:.digits$e}").parse().unwrap_or(value)))
 }
 
-/// Whether the values are there already.
+/// Whether the values are present already.
 pub(super) fn same(values: &[Value], present: &[f64]) -> bool {
     values.len() == present.len() && values.iter().zip(present).all(|(value, &number)| is(value, number))
 }
 
-/// Whether a value is this number, which may have been written with more digits.
+/// Whether a value equals this number, which may have been written with more digits.
 fn is(value: &Value, number: f64) -> bool {
     match value {
         Value::Integer(whole) => *whole.value() as f64 == number,
@@ -67,7 +67,7 @@ fn is(value: &Value, number: f64) -> bool {
     }
 }
 
-/// The table behind a key; a new one, without a header of its own until it has keys, where there is none.
+/// The table with this key. If there is none, a new one without a header until it has keys.
 pub(super) fn child<'a>(parent: &'a mut dyn TableLike, key: &str) -> Result<&'a mut dyn TableLike, String> {
     if !parent.contains_key(key) {
         let mut table = Table::new();

@@ -1,4 +1,4 @@
-//! Where the configuration file is.
+//! The location of the configuration file.
 
 use crate::files::raised_privileges;
 use crate::hand::ConfigurationError;
@@ -7,25 +7,25 @@ use std::env;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// The one place that no user decides.
+/// The only location that no user controls.
 pub(super) const SYSTEM_FILE: &str = "/etc/xdg/sun2xp/sun2xp.toml";
 
-/// What decides where the file is.
+/// Everything that determines the location of the file.
 struct Environment {
-    /// Whether the process has rights that its caller has not.
+    /// Whether the process has privileges that its caller does not have.
     raised_privileges: bool,
-    /// `SUN2XP_CONFIG`
+    /// Value of `SUN2XP_CONFIG`.
     named: Option<OsString>,
     /// The user's configuration folder.
     user: Option<PathBuf>,
-    /// `XDG_CONFIG_DIRS`
+    /// Value of `XDG_CONFIG_DIRS`.
     system: Option<OsString>,
 }
 
-/// The configuration file, if there is one. An empty `SUN2XP_CONFIG` counts as unset.
+/// Returns the configuration file, if there is one. An empty `SUN2XP_CONFIG` counts as unset.
 ///
 /// # Errors
-/// `SUN2XP_CONFIG` in a program with raised privileges: the planner would get another hand than the one that was named.
+/// `SUN2XP_CONFIG` is set in a program with raised privileges, which would open another hand than the one it names.
 pub(super) fn locate() -> Result<Option<PathBuf>, ConfigurationError> {
     let environment = Environment {
         raised_privileges: raised_privileges(),
@@ -33,8 +33,8 @@ pub(super) fn locate() -> Result<Option<PathBuf>, ConfigurationError> {
         user: etcetera::choose_base_strategy().ok().map(|strategy| strategy.config_dir()),
         system: env::var_os("XDG_CONFIG_DIRS"),
     };
-    // A file that is there but unreadable is found, and refused: symlink_metadata needs no permission on the file
-    // itself.
+    // A file that exists but cannot be read counts as found, and is then refused. symlink_metadata needs no permission
+    // for the file itself.
     environment.file(|path| path.symlink_metadata().is_ok())
 }
 
@@ -48,7 +48,7 @@ impl Environment {
             (None, false) => {}
         }
         let system = self.system.filter(|folders| !folders.is_empty()).unwrap_or("/etc/xdg".into());
-        // The standard of these folders: relative ones are to be ignored.
+        // The XDG specification requires that relative folders are ignored.
         let system = env::split_paths(&system).filter(|folder| folder.is_absolute()).collect::<Vec<_>>();
         let folders = self.user.into_iter().chain(system);
         let candidates =

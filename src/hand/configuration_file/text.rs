@@ -1,4 +1,4 @@
-//! From the text of a configuration file to a [`Configuration`], or to the line and the reason why there is none.
+//! Conversion of the text of a configuration file to a [`Configuration`], or to an error with line and reason.
 
 use super::values::deserialize;
 use super::wrong::Wrong;
@@ -8,7 +8,7 @@ use crate::model::{Shown, UnusableConfiguration};
 use std::ops::Range;
 use toml_edit::{Document, Item, Table, Value};
 
-/// Reads and checks the text of a configuration file. Also says of each finger whether the text names its port.
+/// Reads and checks the text of a configuration file. Also returns, for each finger, whether the text names its port.
 pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wrong> {
     let document = Document::parse(text).map_err(Wrong::in_syntax)?;
     let root = document.as_table();
@@ -43,7 +43,7 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wron
     Ok((configuration, ports_named))
 }
 
-/// A value that the checks refuse, with the place in the file that it comes from.
+/// An error for a value that the checks refuse, with its position in the file.
 fn unusable(root: &Table, refusal: &UnusableConfiguration) -> Wrong {
     let key = refusal.unusable.key;
     let number = refusal.finger.map(|index| (index + 1).to_string());
@@ -68,7 +68,7 @@ fn span_of_key(table: &Table, key: &str) -> Option<Range<usize>> {
     table.key(key)?.span()
 }
 
-/// The table behind a key; an empty one where there is no such key. An inline table is a table too.
+/// The table with this key; an empty one if there is no such key. An inline table is a table too.
 fn table(parent: &Table, key: &str) -> Result<Table, Wrong> {
     match parent.get(key).cloned() {
         None => Ok(Table::new()),
@@ -78,7 +78,7 @@ fn table(parent: &Table, key: &str) -> Result<Table, Wrong> {
     }
 }
 
-/// Lays `over` on `base`, table by table: what `over` does not name stays.
+/// Merges `over` into `base`, table by table. Keys that `over` does not contain keep their values.
 pub(in crate::hand) fn overlay(base: &mut Table, over: &Table) {
     for (key, item) in over.iter() {
         let both = (table(base, key), table(over, key));
@@ -89,7 +89,7 @@ pub(in crate::hand) fn overlay(base: &mut Table, over: &Table) {
             }
             _ => item.clone(),
         };
-        // The key is taken along, because it knows its line.
+        // The key object is copied too, because it holds the key's position.
         match over.key(key).cloned() {
             Some(named) => {
                 base.remove(key);
@@ -102,15 +102,15 @@ pub(in crate::hand) fn overlay(base: &mut Table, over: &Table) {
     }
 }
 
-/// Where a dotted key stands in the file, if it stands there.
+/// The position of a dotted key in the file, if the file contains it.
 fn span_of(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
     let (path, last) = dotted.rsplit_once('.').unwrap_or(("", dotted));
     let parent = path.split('.').filter(|part| !part.is_empty()).try_fold(section?, |item, part| item.get(part))?;
     parent.as_table_like()?.key(last)?.span()
 }
 
-/// Where the innermost table around a dotted key begins. A default does not fit what the file says, so the key itself
-/// is not there, but what it does not fit mostly stands beside it.
+/// The position of the innermost table of a dotted key. If a default value does not suit the file, the file does not
+/// contain the key. The value that it does not suit is usually in the same table.
 fn nearest_table(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
     let (path, _) = dotted.rsplit_once('.').unwrap_or(("", dotted));
     let mut item = section?;
@@ -190,7 +190,7 @@ mod tests {
             ("[finger.1.geometry]\nghost_row = [-1, -1, -1, -1]\n", Some(2), "positive"),
             ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [0, 1, 0, 0]]\n", Some(2), "positive"),
             ("[finger.3.tendon]\nmaximum = 8\n", Some(2), "for its pretension"),
-            // The key is a default: the table that makes it impossible.
+            // The key has its default value, so the error names the table that makes the default impossible.
             ("[finger.tendon]\n\nminimum = 40\n", Some(1), "for its pretension"),
             ("[hand]\nrate = 500\n\n[finger.3.tendon]\nminimum = 40\n", Some(4), "for its pretension"),
             ("[hand]\nrate = nan\n", Some(2), "outside"),

@@ -1,6 +1,6 @@
-//! From TOML to the types of a configuration. General deserializers take an array that is longer than its type, and an
-//! array in the place of a table; this one takes only what a key can mean, and says of everything else where it stands
-//! and what belongs there.
+//! Conversion from TOML to the types of a configuration. General deserializers accept an array that is too long, and an
+//! array in place of a table. This one accepts only valid values, and reports the position of every other value and
+//! what is expected there.
 
 mod choice;
 mod content;
@@ -14,12 +14,12 @@ use serde::forward_to_deserialize_any;
 use std::ops::Range;
 use toml_edit::{Item, Table, TableLike, Value};
 
-/// Turns a table into a type of the configuration. Keys of the table that the type does not have are refused.
+/// Converts a table to a type of the configuration. Keys that the type does not have are refused.
 pub fn deserialize<T: DeserializeOwned>(table: &Table) -> Result<T, Wrong> {
     T::deserialize(Node { content: Content::Table(table), span: table.span() })
 }
 
-/// A value, or a table, and where it stands.
+/// A value or a table, with its position.
 struct Node<'a> {
     content: Content<'a>,
     span: Option<Range<usize>>,
@@ -105,7 +105,7 @@ impl<'de> serde::Deserializer<'de> for Node<'_> {
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
-        // A key that is left out does not come here.
+        // This is called only for a key that is present.
         visitor.visit_some(self)
     }
 
@@ -172,7 +172,7 @@ impl<'de> serde::Deserializer<'de> for Node<'_> {
     }
 }
 
-/// The entries of an array, one after the other.
+/// Iterates over the entries of an array.
 struct Entries<I> {
     entries: I,
 }
@@ -186,11 +186,11 @@ impl<'de, 'a, I: Iterator<Item = (usize, &'a Value)>> SeqAccess<'de> for Entries
     }
 }
 
-/// The keys of a table, one after the other.
+/// Iterates over the keys of a table.
 struct Keys<'a> {
     table: &'a dyn TableLike,
     rest: Box<dyn Iterator<Item = (&'a str, &'a Item)> + 'a>,
-    /// What belongs to the key that was given last.
+    /// The key that was returned last, with its value.
     item: Option<(&'a str, &'a Item)>,
 }
 
@@ -205,7 +205,7 @@ impl<'de> MapAccess<'de> for Keys<'_> {
     }
 
     fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Wrong> {
-        // Serde asks for a value after its key only.
+        // Serde asks for a value only after its key.
         let (key, item) = self.item.take().ok_or_else(|| Wrong::at(None, "has no value".into()))?;
         let span = || item.span().or_else(|| self.table.key(key)?.span());
         seed.deserialize(Node::item(item)).map_err(|wrong| wrong.or_at(span()).in_key(key))

@@ -1,4 +1,4 @@
-//! What is wrong with a configuration, and where.
+//! Errors in a configuration, with their positions.
 
 use crate::model::Shown;
 use serde::de::{Error, Expected, Unexpected};
@@ -6,24 +6,24 @@ use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 use toml_edit::TomlError;
 
-/// Text that is no TOML, a key that a table cannot have, or a value that a key cannot have.
+/// Text that is not valid TOML, an unknown key, or an invalid value.
 #[derive(Debug)]
 pub struct Wrong {
     /// Dotted path of the key, as far as it is known.
     pub path: String,
-    /// Where it stands in the text.
+    /// Position in the text.
     pub span: Option<Range<usize>>,
     /// What is wrong, without the path.
     pub reason: String,
 }
 
 impl Wrong {
-    /// A reason that stands at this place.
+    /// An error with this reason at this position.
     pub fn at(span: Option<Range<usize>>, reason: String) -> Self {
         Self { path: String::new(), span, reason }
     }
 
-    /// Text that is no TOML. The parser's messages hold nothing of the text.
+    /// A syntax error. The parser's messages contain nothing of the text.
     pub fn in_syntax(error: TomlError) -> Self {
         match error.span() {
             None => Self::at(None, "a key of 80 parts or more, which no configuration has".into()),
@@ -31,25 +31,25 @@ impl Wrong {
         }
     }
 
-    /// The same, standing here unless its place is known better.
+    /// The same error at this position, unless its position is known already.
     pub fn or_at(mut self, span: Option<Range<usize>>) -> Self {
         self.span = self.span.or(span);
         self
     }
 
-    /// The same inside of this key.
+    /// The same error inside this key.
     pub fn in_key(mut self, key: &str) -> Self {
         let point = if self.path.is_empty() || self.path.starts_with('[') { "" } else { "." };
         self.path = format!("{key}{point}{}", self.path);
         self
     }
 
-    /// The same inside of this entry of an array, counted from 0.
+    /// The same error inside this entry of an array, counted from 0.
     pub fn in_entry(self, index: usize) -> Self {
         self.in_key(&format!("[{index}]"))
     }
 
-    /// The line of `text` where it stands, counted from 1.
+    /// The line of `text` with the error, counted from 1.
     pub fn line(&self, text: &str) -> Option<usize> {
         let before = text.get(..self.span.as_ref()?.start)?;
         Some(before.matches('\n').count() + 1)
@@ -66,7 +66,7 @@ impl Display for Wrong {
 impl std::error::Error for Wrong {}
 
 impl Error for Wrong {
-    /// What serde finds by itself.
+    /// Called for errors that serde finds itself.
     fn custom<T: Display>(reason: T) -> Self {
         Self::at(None, Shown(&reason.to_string()).to_string())
     }
@@ -88,7 +88,7 @@ impl Error for Wrong {
     }
 }
 
-/// The names of which one is to be chosen.
+/// Formats the names to choose from.
 pub fn one_of(names: &[&str]) -> String {
     let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match names.len() {

@@ -1,19 +1,19 @@
-//! What the servo of one finger has left behind, as far as it was collected.
+//! Timings, losses and black box of one finger, as collected from its servo.
 
 use crate::finger::{BlackBox, Losses};
 use crate::realtime::{Consumer, CycleTiming, Histograms};
 
-/// What the servo of one finger leaves behind.
+/// The collected data of one finger.
 pub(super) struct Collected {
     pub arriving: Consumer<CycleTiming>,
     pub histograms: Histograms,
-    /// Up to the last reset.
+    /// Losses at the last reset.
     pub losses_before: Losses,
     pub black_box: BlackBox,
 }
 
 impl Collected {
-    /// Takes in what the servo has left.
+    /// Collects new data from the servo.
     pub fn collect(&mut self) {
         while let Some(timing) = self.arriving.pop() {
             self.histograms.record(&timing);

@@ -1,5 +1,6 @@
-//! Collects what the servos leave behind, so that none is lost while nobody asks, and has the black box of a finger
-//! that faults written. It allocates nothing before that: a planner that is out of memory keeps its hand.
+//! The thread that collects from the servos, so that nothing is lost while no planner calls. It has the black box of a
+//! finger written when the finger faults. Otherwise it allocates nothing: a planner that is out of memory keeps its
+//! hand.
 
 use crate::finger::Recording;
 use crate::hand::black_box_file::keep;
@@ -12,20 +13,20 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often timings and black boxes are collected. The rings of a servo hold many times what comes in between.
-const COLLECTING: Duration = Duration::from_millis(50);
+/// How often timings and black boxes are collected. The rings of a servo hold many times what arrives in between.
+const COLLECTING_INTERVAL: Duration = Duration::from_millis(50);
 
-/// What a copy of a black box takes with the thread that writes it, bytes.
+/// Memory for a copy of a black box and the thread that writes it, bytes.
 const MEMORY_OF_BLACK_BOX: usize = 4 << 20;
 
-/// Runs until `stopped` says so. `folder`: where black boxes are written, if they shall be.
+/// Runs until `stopped` is disconnected. Black boxes are written into `folder`, if there is one.
 pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopped: &Receiver<()>) {
     let mut ended = false;
     let mut writing = Vec::new();
     let mut planner = PlannerWatch::default();
     while !ended {
-        // Once more at the end: a finger may just have faulted.
-        ended = stopped.recv_timeout(COLLECTING) != Err(RecvTimeoutError::Timeout);
+        // Collects once more at the end, because a finger may just have faulted.
+        ended = stopped.recv_timeout(COLLECTING_INTERVAL) != Err(RecvTimeoutError::Timeout);
         planner.look();
         for collected in fingers {
             let mut collected = collected.lock();
@@ -41,17 +42,17 @@ pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopp
         }
     }
     for thread in writing {
-        // A panic while a black box is written loses that file only.
+        // A panic in such a thread loses only its file.
         let _ = thread.join();
     }
 }
 
-/// Writes a black box on a thread of its own: a disk may take longer to confirm a file than the rings of the other
-/// fingers last.
+/// Writes a black box in a separate thread, because a disk may take longer to confirm a file than the rings of the
+/// other fingers last.
 fn write(recording: Recording, folder: PathBuf) -> Option<JoinHandle<()>> {
     let shared = Arc::new((recording, folder));
-    let given = shared.clone();
-    match spawn("sun2xp writer", Priority::default(), move |_| keep(&given.0, &given.1)) {
+    let for_thread = shared.clone();
+    match spawn("sun2xp writer", Priority::default(), move |_| keep(&for_thread.0, &for_thread.1)) {
         Ok(thread) => Some(thread),
         Err(_) => {
             keep(&shared.0, &shared.1);

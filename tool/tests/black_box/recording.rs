@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use sun2xp::board::protocol::Status;
 use sun2xp::calibration::{Progress, Task};
 use sun2xp::finger::Recording;
-use sun2xp::hand::{Calibrating, Hand, Standing};
+use sun2xp::hand::{Calibrating, CalibrationState, Hand};
 use sun2xp::model::configuration::{Configuration, Scheme, ZeroingMethod};
 
 /// The black box files in a folder. A file that is being written has another name.
@@ -102,7 +102,7 @@ fn refused_and_superseded_adjustments_are_not_kept() {
     }
     // The controllers before the order, with the order, for the calibration, the newest and the one that it replaced.
     assert!(kept(2) <= 5, "{}", kept(2));
-    wait_until("calibrated", || matches!(calibrating.poll(&hand), Ok(Standing::Done(_))));
+    wait_until("calibrated", || matches!(calibrating.poll(&hand), Ok(CalibrationState::Done(_))));
     hand.send_position(2, [0.1, 0.5, 1.0]).expect("sent");
     cycles(&hand, 50);
     assert_eq!(hand.recording(2).expect("a recording").replay().expect("replayable").different, 0);

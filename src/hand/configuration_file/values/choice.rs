@@ -1,4 +1,4 @@
-//! One of several names: alone as a text, or as the only key of a table.
+//! An enum: one of several names, as a string or as the only key of a table.
 
 use crate::hand::configuration_file::wrong::Wrong;
 use serde::de::value::StrDeserializer;
@@ -6,7 +6,7 @@ use serde::de::{DeserializeSeed, EnumAccess, VariantAccess, Visitor};
 use serde::{Deserializer, de::Error};
 use std::ops::Range;
 
-/// The name that was chosen, where it stands, and what stands behind it.
+/// The chosen name, its position, and its value.
 pub(super) struct Choice<'a, T> {
     pub name: &'a str,
     pub span: Option<Range<usize>>,

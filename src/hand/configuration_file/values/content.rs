@@ -1,4 +1,4 @@
-//! What a value of a TOML file is, whether it stands in a table, in an array or in a line.
+//! The kinds of TOML values, in a table, in an array or in one line.
 
 use crate::model::Shown;
 use toml_edit::{Array, Item, TableLike, Value};
@@ -12,7 +12,7 @@ pub(super) enum Content<'a> {
     Date,
     Array(&'a Array),
     Table(&'a dyn TableLike),
-    /// `[[name]]`, which no configuration has.
+    /// `[[name]]`, which no configuration contains.
     Tables,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// The kind, for a person; of a text what it says.
+    /// The kind for use in an error text, with the contents of a string.
     pub(super) fn kind(&self) -> String {
         let kind = match self {
             Self::Text(text) => return format!("the text \"{}\"", Shown(text)),

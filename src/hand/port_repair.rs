@@ -1,4 +1,4 @@
-//! What a port is mended with: its link, once the servo has lent it, and what its boards were at open.
+//! Repair of a port: reopens it and shakes hands again, and checks that its boards are the same as at open.
 
 use crate::board::protocol::{Configured, Identity, Status};
 use crate::board::{Link, LinkError, Port, Terms};
@@ -8,27 +8,27 @@ use crate::model::configuration::FINGERS;
 use crate::realtime::now;
 use std::path::PathBuf;
 
-/// How long a board may take to answer, ns, each time it is tried: short, because it is tried again.
+/// Time for a board to answer one attempt, ns. It is short, because the attempt is repeated.
 const ANSWER: u64 = 300_000_000;
 
-/// What a port is mended with.
-pub(super) struct Workshop {
+/// A port that may need repair, with its link while the servo has released it.
+pub(super) struct PortRepair {
     path: PathBuf,
     baud: u32,
-    /// Whether a port that has failed is opened again.
+    /// Whether the port is opened again after it has failed.
     pub reconnect: bool,
-    /// In the order of the servo's.
+    /// The boards, in the order of the servo's fingers.
     pub boards: Vec<KnownBoard>,
     handover: LinkRepairEnd<Port>,
-    /// The servo has lent its link, and not got it back.
+    /// Whether the servo has released its link and not got it back.
     released: bool,
-    /// That link, or a new one; none where the port is gone.
+    /// The released link or a new one; none while the port is gone.
     link: Option<Link<Port>>,
-    /// Its boards have answered, and are those of open.
+    /// Whether the boards have answered and are the same as at open.
     pub checked: bool,
 }
 
-/// What a board was at open.
+/// A board's properties at open.
 pub(super) struct KnownBoard {
     /// 1 to 3.
     pub finger: i32,
@@ -38,9 +38,9 @@ pub(super) struct KnownBoard {
     pub zero_valid: bool,
 }
 
-impl Workshop {
-    /// `path` and `baud`: how the port is opened. `reconnect`: whether it is, once it has failed. `boards` in the order
-    /// of the servo's fingers.
+impl PortRepair {
+    /// `reconnect` says whether the port, given by `path` and `baud`, is opened again after it has failed. `boards` are
+    /// in the order of the servo's fingers.
     pub fn new(
         path: PathBuf,
         baud: u32,
@@ -51,8 +51,8 @@ impl Workshop {
         Self { path, baud, reconnect, boards, handover, released: false, link: None, checked: false }
     }
 
-    /// Takes the link, if the servo has lent it.
-    pub fn fetch(&mut self) -> bool {
+    /// Takes the link if the servo has released it. Returns whether the link is here.
+    pub fn take_link(&mut self) -> bool {
         if let Some(released) = self.handover.released.pop() {
             (self.released, self.checked) = (true, false);
             self.link = (!released.failed).then_some(released.link);
@@ -60,13 +60,14 @@ impl Workshop {
         self.released
     }
 
-    /// Whether the servo has failed: it takes nothing back.
+    /// Whether the servo has ended, so that it does not take a link back.
     pub fn servo_ended(&self) -> bool {
         self.handover.released.is_abandoned()
     }
 
-    /// Opens the port where it is gone, and shakes hands with its boards: the same ones, with their zeros.
-    pub fn mend(&mut self) -> Result<[Option<Configured>; FINGERS], HandError> {
+    /// Opens the port if it is gone, and shakes hands with its boards. They must be the same as at open, with valid
+    /// zeros.
+    pub fn restore(&mut self) -> Result<[Option<Configured>; FINGERS], HandError> {
         self.checked = false;
         let first = self.boards.first().map_or(0, |board| board.finger);
         let mut link = match self.link.take() {
@@ -75,22 +76,21 @@ impl Workshop {
                 .map_err(|source| HandError::Link { finger: first as usize, source })?, // 1 to 3
             None => return Err(RecoveryError::NotReconnected(first).into()),
         };
-        let met = self.meet(&mut link);
-        // A port that has failed is closed here; the next attempt opens it.
-        if !matches!(met, Err(HandError::Link { source: LinkError::Port(_), .. })) {
+        let outcome = self.shake_hands(&mut link);
+        // A failed port is closed by dropping its link. The next attempt opens it.
+        if !matches!(outcome, Err(HandError::Link { source: LinkError::Port(_), .. })) {
             self.link = Some(link);
         }
-        self.checked = met.is_ok();
-        met
+        self.checked = outcome.is_ok();
+        outcome
     }
 
-    /// Shakes hands with the boards of the port: the same ones as at open, with their zeros.
-    fn meet(&self, link: &mut Link<Port>) -> Result<[Option<Configured>; FINGERS], HandError> {
+    /// Shakes hands with the boards of the port. They must be the same as at open, with valid zeros.
+    fn shake_hands(&self, link: &mut Link<Port>) -> Result<[Option<Configured>; FINGERS], HandError> {
         let mut all = [None; FINGERS];
         for (board, place) in self.boards.iter().zip(&mut all) {
             let KnownBoard { finger, address, ref terms, .. } = *board;
-            // One whose port had failed was not told to stop; cable and power may be back before its watchdog's time is
-            // over.
+            // A board whose port failed has not received a Stop. Cable and power may be back before its watchdog trips.
             let _ = link.stop(address, 0);
             let (identity, configured) = link
                 .shake_hands(address, terms, now() + ANSWER)
@@ -104,7 +104,7 @@ impl Workshop {
     pub fn give_back(&mut self, configured: [Option<Configured>; FINGERS], stop_calls: u32) {
         if let Some(link) = self.link.take() {
             self.released = false;
-            // There is room: the servo has taken the last one, or it would not have lent this one.
+            // The ring has room: the servo has taken the last link, because it has released another one since.
             let _ = self.handover.repaired.push(RepairedLink { link, configured, stop_calls });
         }
     }
@@ -129,7 +129,7 @@ mod tests {
     use crate::hand::identities::tests::identity;
     use crate::model::configuration::{ConfiguredFinger, ConfiguredHand};
 
-    /// So no two boards of a hand have one number after a recovery either.
+    /// This also keeps the numbers of a hand's boards different after a recovery.
     #[test]
     fn a_board_with_another_number_is_not_the_one_of_open() {
         let terms = Terms::new(&ConfiguredHand::default(), &ConfiguredFinger::default());
