@@ -9,7 +9,9 @@ use crate::capi::forked::is_forked_child;
 use crate::capi::process;
 use crate::capi::refusal::{Refusal, refuse};
 use crate::hand::HandError;
-use crate::realtime::{DeferredCancellation, Environment, Errand, NoCancellation, SignalsBlocked, is_memory_free};
+use crate::realtime::{
+    DeferredCancellation, DelegatedCall, Environment, NoCancellation, SignalsBlocked, is_memory_free,
+};
 use std::ffi::c_int;
 use std::mem::ManuallyDrop;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -52,8 +54,8 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
             // The planner may handle SIGSEGV and SIGBUS to make pages accessible that `prepare` reads.
             let call = blocked.faults_let_in(prepare)?;
             let start = |source| HandError::System { doing: "start a thread for this call", source };
-            let errand = Errand::begin(&blocked, || caught(call)).map_err(start)?;
-            errand.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked))
+            let delegated = DelegatedCall::begin(&blocked, || caught(call)).map_err(start)?;
+            delegated.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked))
         })
     })
 }
@@ -65,8 +67,8 @@ pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<()
     uncancelled(|| {
         let blocked = SignalsBlocked::all();
         slow(name, &blocked, || {
-            match is_memory_free(MEMORY_OF_THREAD).then(|| Errand::begin(&blocked, move || caught(call))) {
-                Some(Ok(errand)) => errand.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked)),
+            match is_memory_free(MEMORY_OF_THREAD).then(|| DelegatedCall::begin(&blocked, move || caught(call))) {
+                Some(Ok(delegated)) => delegated.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked)),
                 _ => {
                     let _whole = NoCancellation::begin();
                     let environment = Environment::enter_default();

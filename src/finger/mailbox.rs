@@ -84,12 +84,12 @@ fn shared<T: Clone + Send>(initial: &T, memory: &mut LockedMemory) -> (Input<T>,
 impl Mailbox {
     /// The newest report.
     pub fn report(&self) -> FingerReport {
-        self.look(|report| *report)
+        self.with_report(|report| *report)
     }
 
-    /// Calls `look` with the newest report in place, because a report is large.
-    pub fn look<R>(&self, look: impl FnOnce(&FingerReport) -> R) -> R {
-        look(self.planners.lock().reports.read())
+    /// Calls `use_report` with the newest report in place, because a report is large.
+    pub fn with_report<R>(&self, use_report: impl FnOnce(&FingerReport) -> R) -> R {
+        use_report(self.planners.lock().reports.read())
     }
 
     /// Whether the servo has finished with the finger. Returns none while a planner's call uses the mailbox. That call

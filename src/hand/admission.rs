@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};
 /// The limits of one finger, and the geometry of its tip.
 #[derive(Clone, Debug)]
 pub(super) struct Admission {
-    /// 1 to 3.
+    /// Number of the finger, 1 to 3.
     pub finger: i32,
     /// Lower and upper joint limits, rad.
     pub joint_limits: (Vector3<f64>, Vector3<f64>),
@@ -124,7 +124,7 @@ impl Admission {
 /// that sends both.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampingAdmission {
-    /// 1 to 3.
+    /// Number of the finger, 1 to 3.
     pub finger: i32,
     /// The damping that the finger's controller admits.
     pub admissible: AdmissibleDamping,

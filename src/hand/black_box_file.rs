@@ -21,7 +21,7 @@ pub fn save_recording(recording: &Recording, path: &Path) -> Result<(), HandErro
 }
 
 /// Writes the recording of a fault into a new file in `folder`, and reports the file or the failure on standard error.
-pub(super) fn keep(recording: &Recording, folder: &Path) {
+pub(super) fn save_at_fault(recording: &Recording, folder: &Path) {
     let finger = recording.origin.finger;
     print_notice(&match write_new(recording, folder) {
         Ok(path) => {

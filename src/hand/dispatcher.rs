@@ -23,7 +23,7 @@ use std::thread::JoinHandle;
 
 /// The planners' side of one finger.
 pub(super) struct Member {
-    /// 1 to 3.
+    /// Number of the finger, 1 to 3.
     pub number: i32,
     pub admission: RwLock<Admission>,
     pub mailbox: Mailbox,
@@ -77,7 +77,7 @@ impl Dispatcher {
 
     /// Joints 0, 1, 2 of a finger that is not faulted, rad.
     pub fn position(&self, finger: i32) -> Result<[f64; 3], HandError> {
-        self.member(finger)?.mailbox.look(|report| match report.stage {
+        self.member(finger)?.mailbox.with_report(|report| match report.stage {
             finger::Stage::Faulted(fault) => Err(HandError::Faulted { finger, fault }),
             _ => Ok(report.cycle.joints.into()),
         })

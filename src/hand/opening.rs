@@ -27,7 +27,7 @@ const UNCOLLECTED: f64 = 0.8;
 
 /// A finger after the handshake. Its servo side is in a [`ServedPort`].
 pub(super) struct Reached {
-    /// 0 to 2.
+    /// Index of the finger, 0 to 2.
     pub index: usize,
     /// The planners' end.
     pub mailbox: Mailbox,
@@ -51,7 +51,7 @@ pub(super) struct Connected {
 
 /// A port with its fingers, and the number of the thread that will serve it.
 pub(super) struct Line {
-    /// 1 to 3.
+    /// Number of the servo thread, 1 to 3.
     pub thread: u8,
     pub port: ServedPort<Port>,
 }

@@ -30,7 +30,7 @@ pub(super) struct PortRepair {
 
 /// A board's properties at open.
 pub(super) struct KnownBoard {
-    /// 1 to 3.
+    /// Number of the finger, 1 to 3.
     pub finger: i32,
     pub address: u8,
     pub terms: Terms,

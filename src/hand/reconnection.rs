@@ -15,7 +15,7 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A port with its repair data. It may outlive its hand while a repair is in progress.
 pub(super) struct RepairablePort {
-    /// 1 to 3.
+    /// Numbers of the fingers, 1 to 3.
     pub fingers: Vec<i32>,
     /// Number of repairs after which the link was given back to the servo. The fingers' numbers of recoveries reach it
     /// when the servo takes the link.

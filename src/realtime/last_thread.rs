@@ -22,7 +22,7 @@ pub struct PlannerWatch {
 
 impl PlannerWatch {
     /// Checks once a second. It must be called more often than that.
-    pub fn look(&mut self) {
+    pub fn check(&mut self) {
         if self.ending || now() < self.next_check {
             return;
         }

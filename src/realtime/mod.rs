@@ -3,7 +3,7 @@
 
 mod cancellation;
 mod clock;
-mod errand;
+mod delegated_call;
 mod floating_point;
 mod follower;
 mod free_memory;
@@ -24,7 +24,7 @@ mod wake_up;
 
 pub use cancellation::{DeferredCancellation, NoCancellation};
 pub use clock::{Clock, MonotonicClock, now};
-pub use errand::Errand;
+pub use delegated_call::DelegatedCall;
 pub use floating_point::Environment;
 pub use follower::Follower;
 pub use free_memory::is_memory_free;

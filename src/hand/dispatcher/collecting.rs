@@ -3,7 +3,7 @@
 //! hand.
 
 use crate::finger::Recording;
-use crate::hand::black_box_file::keep;
+use crate::hand::black_box_file::save_at_fault;
 use crate::hand::dispatcher::collected::Collected;
 use crate::realtime::{PlannerWatch, Priority, is_memory_free, print_line, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError};
@@ -27,7 +27,7 @@ pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopp
     while !ended {
         // Collects once more at the end, because a finger may just have faulted.
         ended = stopped.recv_timeout(COLLECTING_INTERVAL) != Err(RecvTimeoutError::Timeout);
-        planner.look();
+        planner.check();
         for collected in fingers {
             let mut collected = collected.lock();
             collected.collect();
@@ -52,10 +52,10 @@ pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopp
 fn write(recording: Recording, folder: PathBuf) -> Option<JoinHandle<()>> {
     let shared = Arc::new((recording, folder));
     let for_thread = shared.clone();
-    match spawn("sun2xp writer", Priority::default(), move |_| keep(&for_thread.0, &for_thread.1)) {
+    match spawn("sun2xp writer", Priority::default(), move |_| save_at_fault(&for_thread.0, &for_thread.1)) {
         Ok(thread) => Some(thread),
         Err(_) => {
-            keep(&shared.0, &shared.1);
+            save_at_fault(&shared.0, &shared.1);
             None
         }
     }

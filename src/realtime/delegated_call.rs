@@ -17,7 +17,7 @@ use std::thread::JoinHandle;
 const CHECK_INTERVAL: libc::c_long = 100_000_000;
 
 /// Work that has started.
-pub struct Errand<T>(Arc<Outcome<T>>);
+pub struct DelegatedCall<T>(Arc<Outcome<T>>);
 
 /// The place where the working thread leaves the result.
 struct Outcome<T> {
@@ -32,7 +32,7 @@ thread_local! {
     static WORKER: RefCell<Option<JoinHandle<()>>> = const { RefCell::new(None) };
 }
 
-impl<T: Send + 'static> Errand<T> {
+impl<T: Send + 'static> DelegatedCall<T> {
     /// Starts a thread that does `work`, which must not panic.
     ///
     /// # Errors
@@ -112,16 +112,16 @@ mod tests {
             std::thread::sleep(Duration::from_millis(20));
             std::thread::current().id() != own
         };
-        let errand = Errand::begin(&blocked, work).expect("a thread");
-        assert_eq!(errand.wait(&blocked, || false), Some(true));
+        let call = DelegatedCall::begin(&blocked, work).expect("a thread");
+        assert_eq!(call.wait(&blocked, || false), Some(true));
     }
 
     #[test]
     fn a_wait_ends_when_there_is_a_reason_to_give_up() {
         let blocked = SignalsBlocked::all();
         let (stay, leave) = std::sync::mpsc::channel::<()>();
-        let errand = Errand::begin(&blocked, move || leave.recv().is_err()).expect("a thread");
-        assert_eq!(errand.wait(&blocked, || true), None);
+        let call = DelegatedCall::begin(&blocked, move || leave.recv().is_err()).expect("a thread");
+        assert_eq!(call.wait(&blocked, || true), None);
         drop(stay);
     }
 }
