@@ -14,10 +14,10 @@ pub const USABLE_SHARE: f64 = 0.8;
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error(
     "{fingers} finger(s) at {rate} Hz do not fit on a port at {baud} baud: a command of {command} bytes takes \
-     {command_us:.0} us, the board {turnaround} us to answer, and {fingers} replies of {reply} bytes {replies_us:.0} \
-     us (10 bits a byte), {needed_us:.0} us in all, but {share:.0} % of a period are {usable_us:.0} us. Set baud = \
-     {least_baud} or more for every finger of the port and in its board, set hand.rate = {fastest_rate:.0} or less, or \
-     put fewer fingers on the port",
+     {command_us:.0} us, the response of the board {turnaround} us, and {fingers} replies of {reply} bytes \
+     {replies_us:.0} us (10 bits a byte), {needed_us:.0} us in all, but only {share:.0} % of a period, {usable_us:.0} \
+     us, are usable. Set baud = {least_baud} or more for every finger of the port and in its board, set hand.rate = \
+     {fastest_rate:.0} or less, or put fewer fingers on the port",
     command = Kind::Command.wire_length(), reply = Kind::Reply.wire_length(), turnaround = TURNAROUND_MICROSECONDS,
     share = 100.0 * USABLE_SHARE
 )]
@@ -100,7 +100,7 @@ mod tests {
         // 170 us command, 100 us turnaround, 840 us replies.
         assert!((refusal.needed_us - 1110.0).abs() < 1e-9);
         let text = refusal.to_string();
-        for part in ["1110 us in all", "80 % of a period are 800 us", "baud = 2000000", "hand.rate = 720"] {
+        for part in ["1110 us in all", "80 % of a period, 800 us, are usable", "baud = 2000000", "hand.rate = 720"] {
             assert!(text.contains(part), "{part:?} is not in: {text}");
         }
         assert!(capacity(2_000_000, 3, 1000.0).is_ok());

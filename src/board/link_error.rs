@@ -13,7 +13,7 @@ pub enum LinkError {
     Port(#[from] PortError),
     /// No byte was received.
     #[error(
-        "the board does not answer: not one byte came in {milliseconds} ms. Check that it is switched on, that its \
+        "the board does not answer: no byte was received in {milliseconds} ms. Check that it is switched on, that its \
          cable is plugged in, that finger.port is its port and that transmit and receive are not crossed"
     )]
     Silent {
@@ -22,8 +22,8 @@ pub enum LinkError {
     },
     /// Bytes were received, but no valid frame.
     #[error(
-        "{bytes} bytes came, but no valid frame ({damaged} damaged): finger.baud differs from the baud rate of the \
-         board, or the device at this port does not speak this protocol. Check finger.baud and finger.port"
+        "{bytes} bytes were received, but no valid frame ({damaged} damaged): finger.baud differs from the baud rate \
+         of the board, or the device at this port uses another protocol. Check finger.baud and finger.port"
     )]
     Unintelligible {
         /// Bytes received.
@@ -34,7 +34,8 @@ pub enum LinkError {
     /// Valid frames were received, but not the answer to the request.
     #[error(
         "finger address {address} does not answer a {request:?} frame, although the board sends valid frames: its \
-         firmware is faulty, or several boards share the port. Update the firmware, and connect one board to a port"
+         firmware is faulty, or several boards share the port. Update the firmware, and connect only one board to a \
+         port"
     )]
     Unanswered {
         /// The finger's address.
@@ -53,8 +54,8 @@ pub enum LinkError {
     },
     /// Board and library have no common protocol version.
     #[error(
-        "the board speaks protocol versions {lowest} to {highest}, this library speaks {VERSION}: update the older of \
-         the two"
+        "the board supports protocol versions {lowest} to {highest}, and this library supports version {VERSION}: \
+         update the older of the two"
     )]
     WrongVersion {
         /// The board's lowest version.
@@ -74,7 +75,7 @@ pub enum LinkError {
         refused: Refused,
     },
     /// The board confirmed terms that differ from those it was sent.
-    #[error("finger address {address} confirms other terms than it was sent: its firmware is faulty. Update it")]
+    #[error("finger address {address} confirms terms that differ from those it was sent: update its faulty firmware")]
     OtherTerms {
         /// The finger's address.
         address: u8,

@@ -18,7 +18,7 @@ pub enum PortError {
              again", ShownPath(.0))]
     Forbidden(PathBuf),
     /// EBUSY.
-    #[error("{path} is in use by another program: close it (fuser -v {path} names it), or configure another \
+    #[error("{path} is in use by another program: end it (fuser -v {path} names it), or configure another \
              port", path = ShownPath(.0))]
     Busy(PathBuf),
     /// ENOTTY.
@@ -26,7 +26,8 @@ pub enum PortError {
     NotASerialPort(PathBuf),
     /// EINVAL.
     #[error(
-        "{} cannot run at {wanted} baud, it offers {offered}: set finger.baud to a rate that the adapter has",
+        "{} cannot run at {wanted} baud and selected {offered} instead: set finger.baud to a rate that the adapter \
+         supports",
         ShownPath(path)
     )]
     Baud {
@@ -59,8 +60,8 @@ pub enum PortError {
     },
     /// EIO: hang-up.
     #[error(
-        "the port has gone away: the cable was unplugged, the adapter or the board lost its power, or the simulated \
-         board has ended. Plug it in"
+        "the port no longer exists: the cable was unplugged, the adapter or the board lost its power, or the simulated \
+         board has ended. Restore the connection"
     )]
     Vanished,
     /// EBADF: the descriptor is closed, or its number now belongs to another file.
@@ -119,7 +120,7 @@ fn opening(source: &io::Error) -> String {
         Some(libc::ENXIO | libc::ENODEV) => {
             format!("{source}: no device is behind it. Check the cable, the adapter's driver (dmesg) and finger.port")
         }
-        Some(libc::EIO) => format!("{source}: the adapter does not respond. Unplug it and plug it in again"),
+        Some(libc::EIO) => format!("{source}: the adapter does not respond. Unplug and replug it"),
         _ => with_remedy(source),
     }
 }
@@ -127,7 +128,7 @@ fn opening(source: &io::Error) -> String {
 fn failing(source: &io::Error) -> String {
     match remedy(source) {
         Some(remedy) => format!("{source}: {remedy}"),
-        None => format!("{source}. Unplug the adapter and plug it in"),
+        None => format!("{source}. Unplug and replug the adapter"),
     }
 }
 
@@ -154,7 +155,7 @@ mod tests {
             (libc::ENFILE, "fs.file-max"),
             (libc::ENXIO, "no device"),
             (libc::ENODEV, "no device"),
-            (libc::EIO, "plug it in again"),
+            (libc::EIO, "Unplug and replug"),
             (libc::ENOMEM, "memory"),
             (libc::EPERM, "container"),
         ] {

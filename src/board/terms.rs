@@ -39,9 +39,9 @@ pub struct Terms {
 pub enum TermsError {
     /// The configured watchdog is shorter than the board's minimum, which is longer than the protocol permits.
     #[error(
-        "its shortest watchdog is {shortest} ms, though the protocol allows {LONGEST_NEEDED_MS} ms, and {wanted} ms \
-         are configured: update its firmware, or raise hand.watchdog_ms to {shortest}, after which its motors go on \
-         for as long when commands stop"
+        "its shortest watchdog time is {shortest} ms, but hand.watchdog_ms is {wanted} and the protocol permits at \
+         most {LONGEST_NEEDED_MS} ms: update its firmware, or raise hand.watchdog_ms to {shortest}, so that its motors \
+         continue for that time when commands stop"
     )]
     Watchdog {
         /// The board's minimum, ms.
@@ -50,11 +50,11 @@ pub enum TermsError {
         wanted: u16,
     },
     /// The board lacks *hold*.
-    #[error("it cannot hold its last torques: set hand.end_state = \"release\"")]
+    #[error("it does not support holding the last torques: set hand.end_state = \"release\"")]
     Hold,
     /// A configured torque limit exceeds the board's.
     #[error(
-        "it drives no motor beyond {strongest:.3} N cm, but motor {motor} is configured for {wanted:.3} N cm: lower \
+        "its largest motor torque is {strongest:.3} N cm, but motor {motor} is configured for {wanted:.3} N cm: lower \
          finger.motor.torque_limit"
     )]
     TorqueLimit {
@@ -66,7 +66,7 @@ pub enum TermsError {
         wanted: f64,
     },
     /// The board's torque unit is zero.
-    #[error("it reports 0 as its torque unit: its firmware is faulty. Update it")]
+    #[error("it reports a torque unit of 0: update its faulty firmware")]
     TorqueUnit,
     /// The board's torque unit is too coarse for the configured limits.
     #[error(

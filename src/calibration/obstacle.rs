@@ -9,7 +9,7 @@ pub enum Obstacle {
     /// A tendon does not become tight.
     #[error(
         "tendon {tendon} does not come under tension ({newton:.2} N): it is broken or off its pulley, its gauge is \
-         dead, or the sign of its motor is wrong. Check the tendon and its gauge; sun2xp calibrate finds signs"
+         dead, or the sign of its motor is wrong. Check the tendon and its gauge; sun2xp calibrate identifies signs"
     )]
     Slack {
         /// The tendon's number, 1 to 4.
@@ -19,7 +19,7 @@ pub enum Obstacle {
     },
     /// A motor does not follow its command.
     #[error(
-        "motor {motor} does not let its tendon out: it is blocked or without power, or its encoder is dead. Check the \
+        "motor {motor} does not unwind its tendon: it is blocked or has no power, or its encoder is dead. Check the \
          motor, its supply and its encoder"
     )]
     MotorStuck {
@@ -39,8 +39,8 @@ pub enum Obstacle {
     },
     /// A gauge reports the same with a tight and a slack tendon.
     #[error(
-        "gauge {tendon} changes by no more than {newton:.2} N when its tendon is let out: it is dead, or the tendon \
-         does not give way. Check the gauge, and whether the tendon is stuck"
+        "gauge {tendon} changes by no more than {newton:.2} N when its tendon is unwound: the gauge is dead, or the \
+         tendon is stuck. Check both"
     )]
     DeadGauge {
         /// The gauge's number, 1 to 4.
@@ -51,8 +51,8 @@ pub enum Obstacle {
     /// A gauge is far from its configured zero although its tendon is slack.
     #[error(
         "gauge {tendon} is {newton:.1} N from its configured zero with the motors off: its tendon is still under \
-         tension, or the gauge is damaged. If the gauge was exchanged, set gauge.zero to about what it shows at rest \
-         first"
+         tension, or the gauge is damaged. If the gauge was replaced, first set gauge.zero to its approximate \
+         count at rest"
     )]
     GaugeOffset {
         /// The gauge's number, 1 to 4.
@@ -69,7 +69,7 @@ pub enum Obstacle {
     /// The finger moved although it had to stay in its pose.
     #[error(
         "joint {joint} moved by {degrees:.2} degrees while the pose was read. Keep the finger still in \
-         zeroing.pose_degrees (nothing may push it, no set point may be on its way) and zero it again, or set \
+         zeroing.pose_degrees (nothing may push it, and it must have reached its set point) and zero it again, or set \
          zeroing.method = \"stops\""
     )]
     Moved {
@@ -80,7 +80,7 @@ pub enum Obstacle {
     },
     /// Nothing holds the limp finger in its pose.
     #[error(
-        "nothing holds the finger in its pose: joint {joint} gave way by {degrees:.1} degrees to a light push. Hold \
+        "nothing holds the finger in its pose: joint {joint} moved by {degrees:.1} degrees under a light push. Hold \
          the finger in zeroing.pose_degrees until it is zeroed, or set zeroing.method = \"stops\""
     )]
     NotHeld {
@@ -91,7 +91,7 @@ pub enum Obstacle {
     },
     /// A joint moved beyond the expected position of its stop.
     #[error(
-        "joint {joint} moved by {degrees:.0} degrees and met no stop: a tendon is off its pulley, or \
+        "joint {joint} moved by {degrees:.0} degrees and reached no stop: a tendon is off its pulley, or \
          zeroing.lower_stop_degrees or upper_stop_degrees is wrong. Check them"
     )]
     NoStop {
@@ -102,9 +102,9 @@ pub enum Obstacle {
     },
     /// The range of a joint between its stops is smaller than configured.
     #[error(
-        "joint {joint} moves {degrees:.1} degrees between its stops, and {expected:.1} are configured: something is in \
-         its way, zeroing.torque is too small for its friction, or zeroing.lower_stop_degrees or upper_stop_degrees is \
-         wrong. Check them"
+        "joint {joint} moves {degrees:.1} degrees between its stops, and {expected:.1} are configured: something \
+         blocks it, zeroing.torque is too small for its friction, or zeroing.lower_stop_degrees or upper_stop_degrees \
+         is wrong. Check them"
     )]
     EarlyStop {
         /// The joint, 0 to 2.
@@ -116,7 +116,7 @@ pub enum Obstacle {
     },
     /// A joint does not follow although it is away from its stops.
     #[error(
-        "joint {joint} does not move freely: something is in its way, or zeroing.torque is too small for its friction. \
+        "joint {joint} does not move freely: something blocks it, or zeroing.torque is too small for its friction. \
          Check both"
     )]
     JointBlocked {
@@ -125,7 +125,7 @@ pub enum Obstacle {
     },
     /// The measurements do not determine a value, or the value is impossible.
     #[error(
-        "{part}: {what} comes out as {value:.4}, which is impossible: the finger was touched, or two gauges \
+        "{part}: {what} was identified as {value:.4}, which is impossible: the finger was touched, or two gauges \
          or motors are swapped. Let nothing touch the finger, and check their cables"
     )]
     Implausible {
@@ -138,8 +138,8 @@ pub enum Obstacle {
     },
     /// A motor that turns both ways changes no tension.
     #[error(
-        "motor {motor} turns but tightens no tendon either way: its tendon is broken or very slack, or the gauges are \
-         dead. Check them"
+        "motor {motor} turns but tightens no tendon in either direction: its tendon is broken or very slack, or the \
+         gauges are dead. Check them"
     )]
     NothingTightens {
         /// The motor's number, 1 to 4.
@@ -147,9 +147,9 @@ pub enum Obstacle {
     },
     /// The pull of a motor appears first on the gauge of another tendon.
     #[error(
-        "the pull of motor {motor} shows first on gauge {gauge}: gauges {motor} and {gauge} are swapped, motors \
-         {motor} and {gauge} are swapped with their encoders, or a tendon is led to the wrong motor. Check the cables \
-         and the tendons"
+        "the pull of motor {motor} appears first on gauge {gauge}: gauges {motor} and {gauge} are swapped, motors \
+         {motor} and {gauge} are swapped with their encoders, or a tendon is routed to the wrong motor. Check the \
+         cables and the tendons"
     )]
     Swapped {
         /// The motor's number, 1 to 4.
@@ -179,7 +179,7 @@ pub enum Obstacle {
     },
     /// The routine exceeded its time limit.
     #[error(
-        "it was not finished after {seconds:.0} s: check that the finger can move freely, or raise zeroing.time_limit_s"
+        "it did not finish within {seconds:.0} s: check that the finger can move freely, or raise zeroing.time_limit_s"
     )]
     TimeLimit {
         /// The limit, s.

@@ -69,7 +69,7 @@ pub fn update_file<E>(
             }
         }
         if Instant::now() > deadline {
-            return Err(busy("it is changed again and again by another program").into());
+            return Err(busy("another program keeps changing it: end that program and try again").into());
         }
     }
 }
@@ -85,7 +85,9 @@ impl Locked {
                 Err(TryLockError::WouldBlock) if Instant::now() < deadline => sleep(LOOKING),
                 Err(TryLockError::WouldBlock) => {
                     let seconds = PATIENCE.as_secs();
-                    return Err(busy(&format!("another process has kept it locked for {seconds} s (fuser names it)")));
+                    return Err(busy(&format!(
+                        "another process has kept it locked for {seconds} s: end that process (fuser names it)"
+                    )));
                 }
                 Err(TryLockError::Error(error)) => return Err(unlockable(error)),
             }
@@ -108,7 +110,8 @@ fn busy(reason: &str) -> io::Error {
 fn unlockable(error: io::Error) -> io::Error {
     match error.raw_os_error() {
         Some(libc::ENOLCK | libc::ENOSYS | libc::EOPNOTSUPP) => {
-            let reason = format!("its file system has no locks ({error}): move the file to another one");
+            let reason =
+                format!("its file system does not support locks ({error}): move the file to another file system");
             io::Error::new(ErrorKind::Unsupported, reason)
         }
         _ => error,

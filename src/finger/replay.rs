@@ -83,8 +83,8 @@ impl Recording {
     /// Runs the controller over every cycle.
     ///
     /// # Errors
-    /// The configuration is one that OpenHand would refuse, a number is one that no servo records, or a controller is
-    /// missing. The first wrong number is named, and nothing is computed from it.
+    /// No hand opens with the configuration, a number is one that no servo records, or a controller is missing.
+    /// The first wrong number is named, and nothing is computed from it.
     pub fn replay(&self) -> Result<Replayed, NotReplayable> {
         self.check()?;
         let mut controllers = Controllers { recording: self, made: HashMap::new() };

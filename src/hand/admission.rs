@@ -23,7 +23,7 @@ pub(super) struct Admission {
     pub r: Matrix3x4<f64>,
     /// The damping that is admissible with a stiffness.
     pub damping: DampingAdmission,
-    /// The stiffness law that SendPos selects.
+    /// The stiffness law for set points in joint angles.
     pub law: Law,
     /// Refuse or clamp.
     pub out_of_range: OutOfRange,

@@ -25,10 +25,13 @@ pub(super) fn save_at_fault(recording: &Recording, folder: &Path) {
     let finger = recording.origin.finger;
     print_notice(&match write_new(recording, folder) {
         Ok(path) => {
-            format!("finger {finger} faulted: its last two seconds are in {} (see sun2xp replay)", ShownPath(&path))
+            format!(
+                "finger {finger} faulted: its last two seconds are in {} (sun2xp replay reads them)",
+                ShownPath(&path)
+            )
         }
         Err(error) => {
-            format!("finger {finger} faulted, and its black box cannot be written into {}: {error}", ShownPath(folder))
+            format!("finger {finger} faulted, but its black box cannot be written to {}: {error}", ShownPath(folder))
         }
     });
 }

@@ -52,7 +52,7 @@ fn change(path: &Path, text: &str, found: &[Found]) -> Result<Option<String>, Co
     let changed = like(text, document.to_string());
     match parse(&changed) {
         Ok(_) => Ok(Some(changed)),
-        Err(wrong) => Err(unusable(format!("with what was found, {wrong}"))),
+        Err(wrong) => Err(unusable(format!("with the new calibration, {wrong}"))),
     }
 }
 
@@ -248,7 +248,7 @@ mod tests {
             }
         }
         let error = try_to_store("", &[bound(1, 1e9)]).expect_err("beyond its range").to_string();
-        assert!(error.contains("with what was found, finger.1.stiffness.bound"), "{error}");
+        assert!(error.contains("with the new calibration, finger.1.stiffness.bound"), "{error}");
     }
 
     #[test]

@@ -88,12 +88,12 @@ impl Configured {
         let Some(file) = &self.file else {
             return Some(match raised_privileges() {
                 false => {
-                    "no configuration file: this is the simulated hand (SUN2XP_CONFIG or sun2xp.toml names a real one)"
+                    "no configuration file: the hand is simulated (to use a real hand, describe it in sun2xp.toml)"
                         .into()
                 }
                 true => format!(
-                    "no {}: this is the simulated hand (a program that is setuid or setgid, or has capabilities, \
-                     reads no other configuration file)",
+                    "no {}: the hand is simulated (a program that is setuid or setgid, or has capabilities, reads no \
+                     other configuration file)",
                     place::SYSTEM_FILE
                 ),
             });
@@ -107,7 +107,7 @@ impl Configured {
             _ => format!("for fingers {}: they are", unnamed.join(" and ")),
         };
         let file = ShownPath(file);
-        Some(format!("{file} names no port {fingers} simulated (port = \"simulated\" says so without this line)"))
+        Some(format!("{file} names no port {fingers} simulated (set port = \"simulated\" to confirm this)"))
     }
 }
 

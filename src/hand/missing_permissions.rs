@@ -8,11 +8,11 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum MissingPermission {
     /// SCHED_FIFO.
-    #[error("the servo cannot run under SCHED_FIFO ({0}): permit it by CAP_SYS_NICE or an rtprio limit (ulimit -r)")]
+    #[error("the servo cannot run under SCHED_FIFO ({0}): grant CAP_SYS_NICE or raise the rtprio limit (ulimit -r)")]
     Scheduling(io::Error),
     /// Locked memory.
     #[error(
-        "the servo's memory cannot be locked ({0}): permit it by CAP_IPC_LOCK or a memlock limit of 8 MiB (ulimit -l)"
+        "the servo's memory cannot be locked ({0}): grant CAP_IPC_LOCK or raise the memlock limit to 8 MiB (ulimit -l)"
     )]
     Memory(io::Error),
     /// The configured core.

@@ -175,8 +175,8 @@ pub fn ports(
 fn warn_of_latency(port: &Port) {
     if let Some(milliseconds) = port.latency_timer_ms().filter(|&milliseconds| milliseconds > 1) {
         print_notice(&format!(
-            "{} holds bytes back for {milliseconds} ms (its latency timer): write 1 to latency_timer under \
-             /sys/bus/usb-serial/devices, or let a udev rule do so",
+            "the adapter at {} delays bytes by up to {milliseconds} ms (its latency timer): write 1 to latency_timer \
+             under /sys/bus/usb-serial/devices, or add a udev rule that does so",
             ShownPath(port.path())
         ));
     }
@@ -186,9 +186,8 @@ fn warn_of_latency(port: &Port) {
 fn longer_watchdog(finger: usize, configured_ms: u16, agreed_ms: u16) -> Option<String> {
     (agreed_ms > configured_ms).then(|| {
         format!(
-            "the board of finger {finger} cannot keep a watchdog of less than {agreed_ms} ms: it keeps {agreed_ms} ms, \
-             though hand.watchdog_ms is {configured_ms}. Its motors may go on for as long, and 1 ms and 1 % more, \
-             after the last command"
+            "the shortest watchdog time of the board of finger {finger} is {agreed_ms} ms, but hand.watchdog_ms is \
+             {configured_ms}. After the last command its motors may continue for {agreed_ms} ms, plus 1 % and 1 ms"
         )
     })
 }
@@ -208,7 +207,8 @@ fn shake_hands(
     longer.iter().for_each(|text| print_notice(text));
     let counts = identity.counts_per_revolution;
     if counts != 0 && finger.encoder.counts_per_revolution.iter().any(|&configured| configured != counts) {
-        let reason = format!("the board of finger {} says that its encoders have {counts}", index + 1);
+        let reason =
+            format!("the board of finger {} reports {counts} for its encoders: configure the same number", index + 1);
         return Err(unusable(Unusable { key: "encoder.counts_per_revolution", reason }).into());
     }
     let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;

@@ -1,5 +1,5 @@
 //! Recovery after a fault: ports are opened again, handshakes are repeated, and the finger takes up slack as after
-//! OpenHand.
+//! opening.
 //!
 //! The servo releases its link when every finger on it is at rest, because opening a port and shaking hands take too
 //! long for a servo. They run on the planner's thread in a recovery call. If `finger.reconnect` is set, a separate

@@ -133,7 +133,7 @@ fn accept(missing: Vec<MissingPermission>, real_time: RealTime) -> Result<(), Ha
         match real_time {
             RealTime::Enforce => return Err(HandError::NotRealTime { missing }),
             RealTime::Try | RealTime::Ignore => {
-                print_notice(&format!("{missing}. The hand runs without it, and cycles may be late"))
+                print_notice(&format!("{missing}. Until then the hand may miss deadlines"))
             }
         }
     }

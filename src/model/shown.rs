@@ -125,6 +125,6 @@ mod tests {
 
     #[test]
     fn a_message_is_one_line() {
-        assert_eq!(one_line("SendPos: \"ü\" \\ '\n\t\0\u{1b}[31m"), r#"SendPos: "ü" \ '\n\t\0\u{1b}[31m"#);
+        assert_eq!(one_line("a call: \"ü\" \\ '\n\t\0\u{1b}[31m"), r#"a call: "ü" \ '\n\t\0\u{1b}[31m"#);
     }
 }

@@ -29,7 +29,7 @@ impl PlannerWatch {
         self.next_check = now() + CHECK_INTERVAL;
         if planner_has_ended() {
             // The process ends as it would with its last thread: with status 0, after the exit handlers. They run in a
-            // thread of their own, because one of them may call CloseHand, which waits for the other threads of the
+            // thread of their own, because one of them may close the hand, which waits for the other threads of the
             // library. If the system refuses that thread now, a later check tries again.
             self.ending = spawn_alike("sun2xp exit", || exit(0)).is_ok();
         }

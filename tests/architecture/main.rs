@@ -1,6 +1,7 @@
 //! The rules of docs/architecture.md: imports run downward only, no circle hides behind a re-export, and files,
 //! functions and lines are short.
 
+mod c_names;
 mod circles;
 mod crate_tree;
 mod imports;
@@ -33,6 +34,16 @@ fn every_folder_has_a_floor() {
     let tree = library();
     let folders: BTreeSet<&str> = tree.files().filter_map(|file| file.module.first().map(String::as_str)).collect();
     assert_eq!(folders, FLOORS.concat().into_iter().collect());
+}
+
+#[test]
+fn only_the_c_interface_uses_its_names() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let names = c_names::exported(&source.join("capi"));
+    assert!(names.contains("OpenHand") && names.contains("RecoverHand"), "{names:?}");
+    let found = c_names::used(&names, &source, &source.join("capi"));
+    assert!(found.is_empty(), "names of the C interface in the Rust layers:\n{}", found.join("\n"));
+    assert!(!c_names::used(&names, &source, &source.join("hand")).is_empty(), "the C interface uses its own names");
 }
 
 #[test]

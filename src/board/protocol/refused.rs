@@ -85,7 +85,7 @@ impl fmt::Display for Refused {
         match self.reason {
             Reason::Version => write!(
                 f,
-                "it speaks protocol versions {} to {}. Update the older of board and library",
+                "it supports protocol versions {} to {}. Update the older of board and library",
                 detail & 0xFF,
                 detail >> 8
             ),
@@ -94,7 +94,7 @@ impl fmt::Display for Refused {
                 "it does not accept the value at byte {detail} of frame type {request} (docs/board-protocol.md). \
                  Update its firmware"
             ),
-            Reason::NotConfigured => write!(f, "it is not configured, because it has started anew. Check its power"),
+            Reason::NotConfigured => write!(f, "it is not configured, because it has restarted. Check its power"),
             Reason::Running => write!(f, "its motors follow the commands of another program. End that program"),
             Reason::Fault => {
                 write!(
@@ -104,10 +104,10 @@ impl fmt::Display for Refused {
                 )
             }
             Reason::UnknownFrame => {
-                write!(f, "it does not know frame type {request} with {detail} bytes. Update its firmware")
+                write!(f, "it does not support frame type {request} with {detail} bytes. Update its firmware")
             }
             Reason::Other(number) => {
-                write!(f, "its reason is number {number}, which this library does not know. Update the library")
+                write!(f, "it gives the reason number {number}, which is unknown to this library. Update the library")
             }
         }
     }

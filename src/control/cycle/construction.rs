@@ -53,7 +53,7 @@ impl Controller {
         let upper_reserve = state_feedback.as_ref().map_or(Vector4::zeros(), |law| law.upper_reserve);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
-        let soft = || Unusable { key: "tendon.stiffness", reason: "does not hold every joint".into() };
+        let soft = || Unusable { key: "tendon.stiffness", reason: "cannot hold every joint: check geometry.r".into() };
         let admissible = AdmissibleStiffness::new(finger, &tendons, rate).ok_or_else(soft)?;
         Ok(Self {
             spring_transition: SpringTransition::new(rate),

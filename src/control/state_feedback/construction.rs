@@ -87,7 +87,8 @@ impl Drives {
         let too_far = || Unusable {
             key: "tendon.stiffness",
             reason: format!(
-                "of {} N/m with {} kg of motor cannot be observed at {rate} Hz",
+                "of {} N/m with a motor mass of {} kg cannot be observed at {rate} Hz: check the finger's tendons and \
+                 motors",
                 tendon.stiffness, tendon.mass
             ),
         };
@@ -112,7 +113,7 @@ impl Drives {
 
 /// Returns R^T (R R^T)^-1.
 fn right_inverse(r: &Matrix3x4<f64>) -> Result<Matrix4x3<f64>, Unusable> {
-    let singular = || Unusable { key: "geometry.r", reason: "has no right inverse: is a sign wrong?".into() };
+    let singular = || Unusable { key: "geometry.r", reason: "has no right inverse: check its signs".into() };
     Ok(r.transpose() * (r * r.transpose()).try_inverse().ok_or_else(singular)?)
 }
 

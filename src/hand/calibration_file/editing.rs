@@ -75,5 +75,5 @@ pub(super) fn child<'a>(parent: &'a mut dyn TableLike, key: &str) -> Result<&'a 
         parent.insert(key, Item::Table(table));
     }
     let table = parent.get_mut(key).and_then(Item::as_table_like_mut);
-    table.ok_or_else(|| format!("`{key}` is no table"))
+    table.ok_or_else(|| format!("`{key}` is not a table"))
 }

@@ -33,7 +33,7 @@ pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopp
             collected.collect();
             let Some(folder) = folder.filter(|_| collected.black_box.faulted()) else { continue };
             if !is_memory_free(MEMORY_OF_BLACK_BOX) {
-                print_line("a finger faulted, and memory is too short to write its black box");
+                print_line("a finger faulted, but there is too little free memory to write its black box");
                 continue;
             }
             let recording = collected.black_box.recording();

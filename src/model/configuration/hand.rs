@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The behaviour of the motors when commands stop, because of CloseHand, exit, or the planner's death.
+/// The behaviour of the motors when commands stop because the hand is closed, or because the planner exits or dies.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndState {
@@ -35,16 +35,16 @@ pub enum OutOfRange {
     Clamp,
 }
 
-/// What OpenHand does to make the servo threads real-time: SCHED_FIFO, locked memory, and a core for each.
+/// What opening the hand does to make the servo threads real-time: SCHED_FIFO, locked memory, and a core for each.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RealTime {
-    /// OpenHand fails if any of these is not available.
+    /// Opening fails if any of these is not available.
     Enforce,
-    /// OpenHand continues without them, and reports it.
+    /// Opening continues without them, and reports it.
     #[default]
     Try,
-    /// OpenHand does not request them.
+    /// Opening does not request them.
     Ignore,
 }
 
@@ -76,7 +76,7 @@ pub struct ConfiguredHand {
     pub hold_time_ms: u16,
     /// Largest motor torque that *hold* keeps, N cm.
     pub hold_torque_limit: f64,
-    /// Time in which CloseHand ramps the torque down with *release*, ms: 0 to 5000.
+    /// Time in which closing the hand ramps the torque down with *release*, ms: 0 to 5000.
     pub release_ramp_ms: u16,
     /// Time without a command after which the board goes to its end state, ms: 2 to 1000.
     pub watchdog_ms: u16,

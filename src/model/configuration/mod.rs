@@ -97,7 +97,7 @@ pub struct ConfiguredFinger {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredStiffness {
-    /// Kx with which the finger holds its pose after OpenHand, N/cm, row-major.
+    /// Kx with which the finger holds its pose after opening, N/cm, row-major.
     pub initial: [[f64; 3]; 3],
     /// Bound of the largest eigenvalue of Kx, N/cm. Without it the bound is 6 from 1000 Hz up, and 5 below.
     pub bound: Option<f64>,

@@ -34,7 +34,7 @@ impl Configuration {
         }
         if self.address(first) == self.address(second) {
             let reason = format!(
-                "fingers {first_number} and {second_number} have the address {} on the one port {port}: leave \
+                "fingers {first_number} and {second_number} share the address {} on port {port}: leave \
                  `address` out, or give each finger the address that its board has",
                 self.address(first)
             );

@@ -1,0 +1,44 @@
+//! The names of the C interface and the files that use them.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// This name is also a type of the Rust library.
+const SHARED: &str = "HandError";
+
+/// The prefixes of constants in the C header.
+const PREFIXES: [&str; 3] = ["FAULT_", "TIMING_", "FINGER_"];
+
+/// Returns the names of the functions that `folder` exports to C.
+pub fn exported(folder: &Path) -> BTreeSet<String> {
+    let texts = files(folder).into_iter().map(|file| fs::read_to_string(file).expect("a source file"));
+    let names = |text: String| {
+        let after = text.split("extern \"C\" fn ").skip(1).map(|rest| rest.split(['(', '<']).next().map(str::to_owned));
+        after.flatten().filter(|name| name.starts_with(char::is_uppercase) && name != SHARED).collect::<Vec<_>>()
+    };
+    texts.flat_map(names).collect()
+}
+
+/// Returns the uses of these names, and of constants of the header, in the files of `folder` except its subfolder
+/// `except`: file, line and name.
+pub fn used(names: &BTreeSet<String>, folder: &Path, except: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for file in files(folder).into_iter().filter(|file| !file.starts_with(except)) {
+        let text = fs::read_to_string(&file).expect("a source file");
+        for (index, line) in text.lines().enumerate() {
+            let words = line.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
+            let constant = |word: &str| PREFIXES.iter().any(|prefix| word.starts_with(prefix) && word != *prefix);
+            let of_c = words.filter(|&word| names.contains(word) || constant(word));
+            found.extend(of_c.map(|word| format!("{}:{}: {word}", file.display(), index + 1)));
+        }
+    }
+    found
+}
+
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+    let below = folders.iter().flat_map(|folder| self::files(folder));
+    files.into_iter().filter(|file| file.extension().is_some_and(|end| end == "rs")).chain(below).collect()
+}
