@@ -689,12 +689,11 @@ const char *HandError(void);
 
 /* State of a finger (FingerStatus.State, FingerRecord.State) */
 #define FINGER_RUNNING 1            /* The fingertip is the spring that the planner has commanded. */
-#define FINGER_FAULTED 2            /* The finger has stopped by itself, and its motors are in the configured end
-                                       state. Its calls are refused with EIO and the reason until RecoverHand, or
-                                       CloseHand and OpenHand. */
-#define FINGER_LIMP 3               /* The motors are off after a refused calibration, which reported the reason. Set
-                                       points have no effect. Another calibration, or CloseHand and OpenHand, make
-                                       the finger a spring again. */
+#define FINGER_FAULTED 2            /* The finger has stopped by itself; its motors are in the configured end state.
+                                       Its calls are refused with EIO until RecoverHand, or CloseHand and OpenHand. */
+#define FINGER_LIMP 3               /* The motors are off after a refused calibration. Set points have no effect.
+                                       Another calibration, or CloseHand and OpenHand, make the finger a spring
+                                       again. */
 #define FINGER_CALIBRATING 4        /* ZeroFinger or IdentifyFinger moves the finger. Set points have no effect. */
 #define FINGER_TENSIONING 5         /* RecoverHand or the end of a calibration brings the tendons under tension. Set
                                        points have no effect. */
@@ -704,8 +703,7 @@ const char *HandError(void);
 /* Stage of a cycle (GetTiming, FingerTiming.Stage) */
 #define TIMING_WAKE_UP 0            /* From the scheduled start of a cycle to the thread's first instruction. */
 #define TIMING_WRITE 1              /* Passing the commands of the port to the system. */
-#define TIMING_WIRE 2               /* From there until the reply can be read: the line in both directions, and the
-                                       board. */
+#define TIMING_WIRE 2               /* From there until the reply can be read: the line both ways, and the board. */
 #define TIMING_READ 3               /* Reading the reply. */
 #define TIMING_DECODE 4             /* From bytes to the finger's reply, including all checks. */
 #define TIMING_COMPUTE 5            /* The controller. */
@@ -717,8 +715,7 @@ const char *HandError(void);
 struct FingerStatus {
     unsigned int Size;              /* In: sizeof (struct FingerStatus). Out: bytes written, at most that. */
     int State;                      /* FINGER_RUNNING to FINGER_CLOSED. */
-    int Realtime;                   /* 1: every servo thread of the hand runs under SCHED_FIFO. 0: at least one is an
-                                       ordinary thread. */
+    int Realtime;                   /* 1: all servo threads of the hand run under SCHED_FIFO. 0: one does not. */
     double Rate;                    /* Configured servo rate, Hz. */
     double MeasuredRate;            /* Measured servo rate since OpenHand, Hz. It falls while the servo does not run:
                                        the periods missing up to now count. */
@@ -729,18 +726,16 @@ struct FingerStatus {
                                        cycle, 0 to 1. The direction of the torque is kept. */
     unsigned long Cycles;           /* Cycles since OpenHand. */
     unsigned long SkippedPeriods;   /* Whole periods in which no cycle began because the previous cycle was not over
-                                       or the servo thread did not run, up to now. One late cycle may skip many
-                                       periods. */
+                                       or the servo thread did not run, up to now. One late cycle may skip many. */
     unsigned long LostReplies;      /* Cycles without a valid reply in time. */
-    unsigned long DamagedFrames;    /* Pieces of data on the finger's port that are no frame: damaged, truncated,
-                                       noise. Whole frames that nobody expected are in FingerTiming.ForeignFrames. */
+    unsigned long DamagedFrames;    /* Bad data on the finger's port, in pieces: damaged or truncated frames, noise.
+                                       Whole frames that nobody expected are in FingerTiming.ForeignFrames. */
     double Calibration;             /* Progress of a calibration, 0 to 1. 0 without a calibration. */
     int MemoryLocked;               /* 1: OpenHand has locked the memory of every servo thread, so that it never
                                        waits for a page. 0: at least one is not locked. If the planner calls
                                        munlockall later, this memory is unlocked too, and this member stays 1.
                                        CloseHand and OpenHand lock it again. */
-    int OnCore;                     /* 1: every servo thread with a configured core runs on it. 0: at least one does
-                                       not. */
+    int OnCore;                     /* 1: each servo thread with a configured core runs on it. 0: one does not. */
     double StiffnessScale;          /* Fraction of Kx in force in the last cycle, 0 to 1. It is below 1 where the
                                        tendons cannot carry more in this pose, for example near the straight pose. */
 };
@@ -758,15 +753,13 @@ struct FingerTiming {
     unsigned long P99;              /* 99 of 100 cycles took no longer. */
     unsigned long P999;             /* 999 of 1000 cycles took no longer. */
     unsigned long Maximum;          /* Longest time of the stage. */
-    unsigned long Cycles;           /* Cycles of the finger. This member and all below count cycles with and without
-                                       this stage. */
+    unsigned long Cycles;           /* All cycles of the finger. This and the members below do not depend on Stage. */
     unsigned long Overruns;         /* Cycles that were not over when the next one was due. */
     unsigned long SkippedPeriods;   /* Whole periods in which no cycle began because the previous cycle was not over
                                        or the servo thread did not run, up to the last cycle. */
     unsigned long LostReplies;      /* Cycles without a valid reply in time. */
     unsigned long LateReplies;      /* Replies that arrived after the end of their cycle. */
-    unsigned long CorruptReplies;   /* Pieces of data on the finger's port that are no frame: damaged, truncated,
-                                       noise. */
+    unsigned long CorruptReplies;   /* Bad data on the finger's port, in pieces: damaged or truncated frames, noise. */
     unsigned long DuplicateReplies; /* Replies that arrived a second time. */
     unsigned long ForeignFrames;    /* Whole frames on the finger's port that nobody expected. */
 };
@@ -774,13 +767,11 @@ struct FingerTiming {
 /* Result of GetTip. Vectors are in the finger's frame. */
 struct FingerTip {
     unsigned int Size;              /* In: sizeof (struct FingerTip). Out: bytes written, at most that. */
-    int Felt;                       /* Number of directions of Force that the joints can measure: 3, or fewer near a
-                                       singular pose. */
+    int Felt;                       /* Directions of Force that the joints can measure: 3, fewer near singular poses. */
     double Tip[3];                  /* Position of the tip: x, y, z, cm. */
     double Force[3];                /* Force of the tip on the object that it touches: x, y, z, N. It is computed
                                        from the measured tensions, so it includes friction, weight and inertia of the
-                                       finger. Never NaN: along a direction that the joints cannot measure it is
-                                       zero. */
+                                       finger. Never NaN: zero along directions that the joints cannot measure. */
     double Tensions[4];             /* Measured tendon tensions, N. */
 };
 
@@ -796,8 +787,7 @@ struct FingerRecord {
     int StatusBits;                 /* Status bits of the newest reply (docs/board-protocol.md). */
     int Computed;                   /* 1: the controller ran and computed the members below. 0: they are 0, because
                                        the finger was faulted already or the simulated finger waited. */
-    int Follows;                    /* 1: PosSent is the set point in force. 0: no set point is in force, and PosSent
-                                       is 0. */
+    int Follows;                    /* 1: PosSent is the set point in force. 0: none is in force, and PosSent is 0. */
     double Pos[3];                  /* Measured joint angles, rad. */
     double PosSent[3];              /* Joint angles at which the spring is anchored, rad. */
     double Tension[4];              /* Measured tendon tensions, N. */

@@ -38,7 +38,7 @@ pub struct FingerRecord {
     /// 1: the controller ran and computed the members below. 0: they are 0, because the finger was faulted already or
     /// the simulated finger waited.
     pub Computed: c_int,
-    /// 1: PosSent is the set point in force. 0: no set point is in force, and PosSent is 0.
+    /// 1: PosSent is the set point in force. 0: none is in force, and PosSent is 0.
     pub Follows: c_int,
     /// Measured joint angles, rad.
     pub Pos: [f64; 3],

@@ -19,13 +19,13 @@ use std::ffi::{CStr, c_char, c_int, c_uint};
 pub struct FingerTip {
     /// In: sizeof (struct FingerTip). Out: bytes written, at most that.
     pub Size: c_uint,
-    /// Number of directions of Force that the joints can measure: 3, or fewer near a singular pose.
+    /// Directions of Force that the joints can measure: 3, fewer near singular poses.
     pub Felt: c_int,
     /// Position of the tip: x, y, z, cm.
     pub Tip: [f64; 3],
     /// Force of the tip on the object that it touches: x, y, z, N. It is computed from the measured tensions, so it
-    /// includes friction, weight and inertia of the finger. Never NaN: along a direction that the joints cannot
-    /// measure it is zero.
+    /// includes friction, weight and inertia of the finger. Never NaN: zero along directions that the joints cannot
+    /// measure.
     pub Force: [f64; 3],
     /// Measured tendon tensions, N.
     pub Tensions: [f64; 4],

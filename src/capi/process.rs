@@ -1,4 +1,4 @@
-//! What the process around the hand does: fork, exit and errno.
+//! Handlers of fork and exit, standard descriptors, and errno.
 
 use crate::capi::fault_texts::compose_texts;
 use crate::capi::forked::{is_forked_child, mark_forked_child, mark_this_process};
@@ -6,20 +6,19 @@ use std::ffi::c_int;
 use std::panic::catch_unwind;
 use std::sync::OnceLock;
 
-/// What exit calls; set with the first open.
+/// Function that the exit handler calls. The first OpenHand sets it.
 static CLOSE: OnceLock<fn()> = OnceLock::new();
 
-/// Watches for fork and exit from now on, and keeps ports away from the standard descriptors. To be called at every
-/// open: a planner may have closed one since the last. `close`: what exit calls.
+/// Registers the handlers of fork and exit, and replaces closed standard descriptors. Must be called at every open,
+/// because a planner may have closed a descriptor since the previous one. The exit handler calls `close`.
 pub(super) fn watch(close: fn()) {
-    keep_standard_descriptors();
-    // Neither handler can be taken back.
+    replace_closed_standard_descriptors();
+    // Handlers cannot be unregistered, so they are registered once.
     CLOSE.get_or_init(|| {
         compose_texts();
         mark_this_process();
         // SAFETY: both handlers are functions of this library, which stays loaded (`-z nodelete`), and no panic leaves
-        // them. Out of memory is the only failure; then a planner's exit is what its death is: the boards' watchdogs
-        // act.
+        // them. Registration fails only without memory. The boards' watchdogs then end the motion at exit.
         unsafe {
             libc::pthread_atfork(None, None, Some(in_forked_child));
             libc::atexit(at_exit);
@@ -28,11 +27,11 @@ pub(super) fn watch(close: fn()) {
     });
 }
 
-/// Opens /dev/null as those of descriptors 0 to 2 that the planner has closed: a board's port must not become its
-/// standard error, or every text would go to the board.
-fn keep_standard_descriptors() {
+/// Opens /dev/null as each of the descriptors 0 to 2 that the planner has closed. Otherwise a board's port could become
+/// standard error, and every message would be sent to the board.
+fn replace_closed_standard_descriptors() {
     loop {
-        // SAFETY: a constant path; the descriptor that comes back is closed here or meant to stay.
+        // SAFETY: a constant path. The returned descriptor is closed here or stays open on purpose.
         unsafe {
             let descriptor = libc::open(c"/dev/null".as_ptr(), libc::O_RDWR);
             if descriptor > libc::STDERR_FILENO {
@@ -53,7 +52,7 @@ extern "C" fn at_exit() {
     if !is_forked_child()
         && let Some(&close) = CLOSE.get()
     {
-        // Whatever goes wrong here, the process ends, and the boards' watchdogs see to the motors.
+        // If this fails, the process ends anyway, and the boards' watchdogs end the motion.
         let _ = catch_unwind(close);
     }
 }

@@ -108,7 +108,7 @@ const KINDS: usize = 64;
 static PRINT: AtomicBool = AtomicBool::new(true);
 static PRINTED: Mutex<Vec<Kind>> = Mutex::new(Vec::new());
 
-/// Sets errno and the text of the calling thread, and prints the first refusal of its kind on standard error.
+/// Sets errno and the text of the calling thread. Prints the text on standard error if it is the first of its kind.
 pub(super) fn refuse(name: &str, refusal: &Refusal) {
     TEXT.with(|slot| {
         // The borrow fails if a signal handler has interrupted this function and makes a call that it may not make.

@@ -12,12 +12,12 @@ use std::ffi::{c_int, c_uint, c_ulong};
 /// The fingertip is the spring that the planner has commanded.
 pub const FINGER_RUNNING: c_int = 1;
 
-/// The finger has stopped by itself, and its motors are in the configured end state. Its calls are refused
-/// with EIO and the reason until RecoverHand, or CloseHand and OpenHand.
+/// The finger has stopped by itself; its motors are in the configured end state. Its calls are refused with EIO
+/// until RecoverHand, or CloseHand and OpenHand.
 pub const FINGER_FAULTED: c_int = 2;
 
-/// The motors are off after a refused calibration, which reported the reason. Set points have no effect. Another
-/// calibration, or CloseHand and OpenHand, make the finger a spring again.
+/// The motors are off after a refused calibration. Set points have no effect. Another calibration, or CloseHand
+/// and OpenHand, make the finger a spring again.
 pub const FINGER_LIMP: c_int = 3;
 
 /// ZeroFinger or IdentifyFinger moves the finger. Set points have no effect.
@@ -38,7 +38,7 @@ pub struct FingerStatus {
     pub Size: c_uint,
     /// FINGER_RUNNING to FINGER_CLOSED.
     pub State: c_int,
-    /// 1: every servo thread of the hand runs under SCHED_FIFO. 0: at least one is an ordinary thread.
+    /// 1: all servo threads of the hand run under SCHED_FIFO. 0: one does not.
     pub Realtime: c_int,
     /// Configured servo rate, Hz.
     pub Rate: f64,
@@ -57,11 +57,11 @@ pub struct FingerStatus {
     /// Cycles since OpenHand.
     pub Cycles: c_ulong,
     /// Whole periods in which no cycle began because the previous cycle was not over or the servo thread did not run,
-    /// up to now. One late cycle may skip many periods.
+    /// up to now. One late cycle may skip many.
     pub SkippedPeriods: c_ulong,
     /// Cycles without a valid reply in time.
     pub LostReplies: c_ulong,
-    /// Pieces of data on the finger's port that are no frame: damaged, truncated, noise. Whole frames that nobody
+    /// Bad data on the finger's port, in pieces: damaged or truncated frames, noise. Whole frames that nobody
     /// expected are in FingerTiming.ForeignFrames.
     pub DamagedFrames: c_ulong,
     /// Progress of a calibration, 0 to 1. 0 without a calibration.
@@ -70,7 +70,7 @@ pub struct FingerStatus {
     /// not locked. If the planner calls munlockall later, this memory is unlocked too, and this member stays 1.
     /// CloseHand and OpenHand lock it again.
     pub MemoryLocked: c_int,
-    /// 1: every servo thread with a configured core runs on it. 0: at least one does not.
+    /// 1: each servo thread with a configured core runs on it. 0: one does not.
     pub OnCore: c_int,
     /// Fraction of Kx in force in the last cycle, 0 to 1. It is below 1 where the tendons cannot carry more in this
     /// pose, for example near the straight pose.

@@ -19,7 +19,7 @@ pub const TIMING_WAKE_UP: c_int = 0;
 /// Passing the commands of the port to the system.
 pub const TIMING_WRITE: c_int = 1;
 
-/// From there until the reply can be read: the line in both directions, and the board.
+/// From there until the reply can be read: the line both ways, and the board.
 pub const TIMING_WIRE: c_int = 2;
 
 /// Reading the reply.
@@ -59,7 +59,7 @@ pub struct FingerTiming {
     pub P999: c_ulong,
     /// Longest time of the stage.
     pub Maximum: c_ulong,
-    /// Cycles of the finger. This member and all below count cycles with and without this stage.
+    /// All cycles of the finger. This and the members below do not depend on Stage.
     pub Cycles: c_ulong,
     /// Cycles that were not over when the next one was due.
     pub Overruns: c_ulong,
@@ -70,7 +70,7 @@ pub struct FingerTiming {
     pub LostReplies: c_ulong,
     /// Replies that arrived after the end of their cycle.
     pub LateReplies: c_ulong,
-    /// Pieces of data on the finger's port that are no frame: damaged, truncated, noise.
+    /// Bad data on the finger's port, in pieces: damaged or truncated frames, noise.
     pub CorruptReplies: c_ulong,
     /// Replies that arrived a second time.
     pub DuplicateReplies: c_ulong,
