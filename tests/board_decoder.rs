@@ -51,7 +51,7 @@ proptest! {
     }
 
     #[test]
-    fn anything_is_survived_and_the_frame_after_it_is_found(
+    fn the_decoder_survives_any_stream_and_finds_the_next_frame(
         rubbish in prop::collection::vec(any::<u8>(), 0..600), content in content(), chunk in 1usize..40
     ) {
         let mut decoder = Decoder::default();
@@ -97,7 +97,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_read_is_what_was_written(
+    fn every_frame_is_read_as_it_was_written(
         address in 0u8..16, sequence: u8, kind in prop::sample::select(&Kind::ALL[..]),
         body in prop::collection::vec(any::<u8>(), MAX_FRAME)
     ) {

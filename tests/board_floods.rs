@@ -159,7 +159,7 @@ fn a_receive_ends_though_its_clock_stands_still() {
 }
 
 #[test]
-fn a_handshake_ends_at_its_deadline_and_says_what_was_not_answered() {
+fn a_handshake_ends_at_its_deadline_and_names_the_unanswered_frame() {
     let deadline = 300 * MS;
     for frame in unasked() {
         for asked in [Kind::Hello, Kind::Configure] {
@@ -180,7 +180,7 @@ fn a_handshake_with_a_board_that_refuses_without_end_ends_at_its_deadline() {
     let flood = Flood::of(Frame::Refused(refused)).beginning_with(Kind::Configure);
     let mut link = Link::new(Flood { answers_all: true, ..flood });
     let error = link.shake_hands(1, &terms(), deadline).expect_err("refused");
-    assert!(matches!(error, LinkError::Refused { address: 1, refused: told } if told == refused), "{error}");
+    assert!(matches!(error, LinkError::Refused { address: 1, refused: reported } if reported == refused), "{error}");
     assert!(link.transport().now <= deadline + LATE);
 }
 

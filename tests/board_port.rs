@@ -80,7 +80,7 @@ fn a_port_that_was_closed_opens_again_while_a_forked_child_lives() {
 }
 
 #[test]
-fn a_deadline_is_kept_when_nothing_comes() {
+fn a_deadline_is_kept_when_nothing_arrives() {
     let board = board();
     let mut link = Link::open(&board.path(), 1_000_000).unwrap();
     let deadline = realtime::now() + 20 * MS;
@@ -89,7 +89,7 @@ fn a_deadline_is_kept_when_nothing_comes() {
 }
 
 #[test]
-fn a_port_has_one_user_at_a_time_also_after_one_that_left_no_word() {
+fn a_port_has_one_user_at_a_time_even_after_an_abrupt_end() {
     let board = board();
     let first = Link::open(&board.path(), 1_000_000).unwrap();
     let busy = Link::open(&board.path(), 1_000_000).unwrap_err();
@@ -148,7 +148,7 @@ fn exclusive_use_does_not_outlive_a_user_that_was_killed() {
 }
 
 #[test]
-fn answers_that_the_last_host_did_not_fetch_do_not_reach_the_next() {
+fn answers_that_one_host_left_unread_do_not_reach_the_next() {
     let board = board();
     let mut link = Link::open(&board.path(), 1_000_000).unwrap();
     link.shake_hands(1, &terms(), realtime::now() + 2000 * MS).unwrap();
@@ -175,7 +175,7 @@ fn the_end_of_the_board_is_an_error_and_not_a_silence() {
 }
 
 #[test]
-fn opening_what_cannot_be_opened_says_why() {
+fn a_hand_that_cannot_be_opened_names_the_reason() {
     let errno = |path: &str| Port::open(Path::new(path), 1_000_000).unwrap_err().errno();
     assert_eq!(errno("/nonexistent/port"), libc::ENOENT);
     assert_eq!(errno("/dev/null"), libc::ENOTTY);

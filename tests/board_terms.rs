@@ -38,7 +38,7 @@ fn newton_centimetres(count: i64, unit: u32) -> f64 {
 }
 
 #[test]
-fn a_unit_of_which_the_limit_is_half_is_refused() {
+fn a_torque_unit_of_nearly_twice_the_limit_is_refused() {
     // 0.54 units would round to one unit, which is 1.85 times the limit.
     let unit = (4.75e7f64 / 0.54) as u32;
     let error = terms(4.75, 1.0, 2.34).configure(&board(unit)).expect_err("too coarse");
@@ -61,8 +61,8 @@ fn the_coarsest_unit_that_is_taken_is_a_hundredth_of_the_smallest_limit() {
 /// A limit of a whole number of units is not rounded at all.
 #[test]
 fn whole_numbers_of_units_are_kept() {
-    let told = terms(4.75, 0.5, 2.34).configure(&board(2000)).expect("good terms");
-    assert_eq!((told.torque_limits, told.hold_torque_limit, told.torque_constants), ([23_750; 4], 2500, [23_400; 4]));
+    let sent = terms(4.75, 0.5, 2.34).configure(&board(2000)).expect("good terms");
+    assert_eq!((sent.torque_limits, sent.hold_torque_limit, sent.torque_constants), ([23_750; 4], 2500, [23_400; 4]));
     for count in -32_767..=32_767 {
         for unit in [1, 3, 158, 1584, 2000, 475_000] {
             assert_eq!(board(unit).torque_count(newton_centimetres(count.into(), unit)), count, "{unit} nN m");
@@ -79,8 +79,8 @@ fn a_limit_beyond_the_boards_is_refused() {
     let error = terms(5000.0, 1.0, 2.34).configure(&board(2000)).expect_err("too strong");
     assert!(matches!(error, TermsError::TorqueLimit { motor: 1, .. }), "{error}");
     // Less than one unit beyond the range: the board receives the largest torque that it can give.
-    let told = terms(4.7501, 1.0, 2.34).configure(&Identity { torque_limit: 23_750, ..board(2000) });
-    assert_eq!(told.expect("good terms").torque_limits, [23_750; 4]);
+    let sent = terms(4.7501, 1.0, 2.34).configure(&Identity { torque_limit: 23_750, ..board(2000) });
+    assert_eq!(sent.expect("good terms").torque_limits, [23_750; 4]);
 }
 
 /// The page allows a shortest watchdog of up to 20 ms. Such a board works with the default, but no board gets more than
@@ -107,11 +107,11 @@ proptest! {
     #[test]
     fn no_torque_is_larger_for_being_rounded(torque in -6000.0..6000.0f64, unit in 1u32..100_000_000) {
         let count = i64::from(board(unit).torque_count(torque));
-        let told = newton_centimetres(count, unit);
-        prop_assert!(told.abs() <= torque.abs() && told * torque >= 0.0, "{torque} N cm became {told}");
+        let sent = newton_centimetres(count, unit);
+        prop_assert!(sent.abs() <= torque.abs() && sent * torque >= 0.0, "{torque} N cm became {sent}");
         let saturated = count.abs() == 32_767;
         let next = newton_centimetres(count.abs() + 1, unit);
-        prop_assert!(saturated || torque.abs() < next, "{torque} N cm became {told}, though {next} is not too much");
+        prop_assert!(saturated || torque.abs() < next, "{torque} N cm became {sent}, though {next} is not too much");
     }
 
     #[test]
@@ -123,13 +123,13 @@ proptest! {
         match terms(limit, hold, constant).configure(&board(unit)) {
             Ok(configure) => {
                 let Configure { torque_limits, hold_torque_limit, torque_constants, .. } = configure;
-                let (told, constant_told) = (torque_limits[0], torque_constants[0]);
-                let told = newton_centimetres(told.into(), unit);
-                prop_assert!(told <= limit && told >= 0.99 * limit, "{limit} N cm became {told}");
+                let (sent, constant_sent) = (torque_limits[0], torque_constants[0]);
+                let sent = newton_centimetres(sent.into(), unit);
+                prop_assert!(sent <= limit && sent >= 0.99 * limit, "{limit} N cm became {sent}");
                 prop_assert!(newton_centimetres(hold_torque_limit.into(), unit) <= hold);
                 // The board divides by the constant to get a current, so a larger constant makes the torque smaller.
-                let constant_told = f64::from(constant_told) / 1e4;
-                prop_assert!(constant_told >= constant && constant_told < constant + 1.001e-4);
+                let constant_sent = f64::from(constant_sent) / 1e4;
+                prop_assert!(constant_sent >= constant && constant_sent < constant + 1.001e-4);
             }
             Err(error) => {
                 let coarse = f64::from(unit) > 0.01 * limit * 1e7;

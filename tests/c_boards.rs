@@ -10,6 +10,8 @@ mod pauses;
 #[allow(dead_code)]
 #[path = "common/priority.rs"]
 mod priority;
+#[path = "common/settling.rs"]
+mod settling;
 #[allow(dead_code)]
 #[path = "common/tools.rs"]
 mod tools;
@@ -21,6 +23,7 @@ use std::time::{Duration, Instant};
 
 use attempts::attempts;
 use pauses::Part;
+use settling::{Settling, distance};
 use sun2xp::hand::{Hand, HandError, read_configuration};
 use sun2xp::model::configuration::Configuration;
 
@@ -86,10 +89,12 @@ impl Board {
     }
 
     /// The true joint angles. The library infers them from encoders and gauges.
-    fn joints(&mut self) -> Vec<f64> {
+    fn joints(&mut self) -> [f64; 3] {
         let input = self.process.stdin.as_mut().expect("the board's input is a pipe");
         input.write_all(b"\n").expect("the board reads its input");
-        self.line().split(' ').map(|angle| angle.parse().expect("the board prints angles")).collect()
+        let line = self.line();
+        let angles: Vec<f64> = line.split(' ').map(|angle| angle.parse().expect("the board prints angles")).collect();
+        angles.try_into().expect("the board prints three angles")
     }
 
     fn kill(&mut self) {
@@ -107,39 +112,17 @@ impl Drop for Board {
 /// The result of an attempt. Errors are texts, because a fault and a finger in a wrong place count alike here.
 type Attempt = Result<(), String>;
 
-fn told(error: HandError) -> String {
+fn text(error: HandError) -> String {
     error.to_string()
 }
 
 /// Sends all fingers to their targets and waits until all have stayed there for a while.
 fn settle(hand: &Hand, targets: [[f64; 3]; 3]) -> Attempt {
     for (finger, target) in (1..).zip(targets) {
-        hand.send_position(finger, target).map_err(told)?;
+        hand.send_position(finger, target).map_err(text)?;
     }
-    let begin = Instant::now();
-    let mut since = None;
-    loop {
-        let mut positions = [[0.0; 3]; 3];
-        for (finger, position) in (1..).zip(&mut positions) {
-            *position = hand.position(finger).map_err(told)?;
-        }
-        let worst = positions
-            .iter()
-            .flatten()
-            .zip(targets.iter().flatten())
-            .map(|(is, wanted)| (is - wanted).abs())
-            .fold(0.0, f64::max);
-        // A finger that merely passes its target has not arrived.
-        let arrived = if worst < CLOSE { Some(*since.get_or_insert_with(Instant::now)) } else { None };
-        since = arrived;
-        if arrived.is_some_and(|instant| instant.elapsed() > Duration::from_millis(200)) {
-            return Ok(());
-        }
-        if begin.elapsed() > PATIENCE {
-            return Err(format!("after {PATIENCE:?} at {positions:?} instead of {targets:?}"));
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    let settling = Settling { tolerance: CLOSE, rest: Duration::from_millis(200), patience: PATIENCE };
+    settling.wait(hand, [(1, targets[0]), (2, targets[1]), (3, targets[2])]).map(drop)
 }
 
 #[test]
@@ -156,7 +139,7 @@ fn the_reference_firmware_settles_three_fingers() {
 }
 
 #[test]
-fn the_reference_firmware_holds_the_vectors_and_survives_noise() {
+fn the_reference_firmware_passes_the_vectors_and_survives_noise() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     // On Debian only gcc has the sanitizers installed with it.
     if tools::available("gcc", "under gcc, with sanitizers") {
@@ -174,12 +157,12 @@ fn make(folder: &Path, arguments: &[&str]) {
 }
 
 fn settles_three_fingers_and_notices_a_dead_board(program: &Path, folder: &Path) {
-    attempts("a hand on three boards in C", BEARS, |watch| {
+    attempts("a hand on three boards in C", TOLERATED_PAUSE, |watch| {
         let mut boards = [1, 2, 3].map(|address| Board::start(program, address));
         for board in &boards {
             watch.also(board.process.id(), Part::Board);
         }
-        let hand = Hand::open(configuration(&boards, folder)).map_err(told)?;
+        let hand = Hand::open(configuration(&boards, folder)).map_err(text)?;
         let settled = hold_and_settle(&hand, &mut boards);
         settled.and_then(|()| notices_a_dead_board(&hand, &mut boards[1])).map_err(|failure| {
             let losses = [1, 2, 3].map(|finger| hand.losses(finger).expect("a finger"));
@@ -190,7 +173,7 @@ fn settles_three_fingers_and_notices_a_dead_board(program: &Path, folder: &Path)
 
 /// A servo that receives nothing for 10 ms lets the motors go and starts again (docs/architecture.md). A hand survives
 /// that, but the frictionless fingers of these boards may not survive a pause of five times that length.
-const BEARS: Duration = Duration::from_millis(50);
+const TOLERATED_PAUSE: Duration = Duration::from_millis(50);
 
 fn configuration(boards: &[Board; 3], folder: &Path) -> Configuration {
     // The boards let a finger move for at most 2 ms after a Command, so a late Command is harmless at this rate. A busy
@@ -207,9 +190,9 @@ fn configuration(boards: &[Board; 3], folder: &Path) -> Configuration {
 fn hold_and_settle(hand: &Hand, boards: &mut [Board; 3]) -> Attempt {
     // The hand holds the pose in which it found the fingers.
     for finger in 1..=3 {
-        let position = hand.position(finger).map_err(told)?;
+        let position = hand.position(finger).map_err(text)?;
         let start = [0.0, 30.0_f64.to_radians(), 60.0_f64.to_radians()];
-        if position.iter().zip(start).any(|(is, was)| (is - was).abs() > CLOSE) {
+        if distance(position, start) > CLOSE {
             return Err(format!("finger {finger} begins at {position:?} instead of {start:?}"));
         }
     }
@@ -219,9 +202,8 @@ fn hold_and_settle(hand: &Hand, boards: &mut [Board; 3]) -> Attempt {
         settle(hand, targets)?;
         for (board, target) in boards.iter_mut().zip(targets) {
             let joints = board.joints();
-            let worst = joints.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max);
-            if worst > CLOSE {
-                return Err(format!("the finger is truly at {joints:?} instead of {target:?}"));
+            if distance(joints, target) > CLOSE {
+                return Err(format!("the true joints are {joints:?} instead of {target:?}"));
             }
         }
     }
@@ -238,16 +220,16 @@ fn notices_a_dead_board(hand: &Hand, board: &mut Board) -> Attempt {
             Ok(_) => std::thread::sleep(Duration::from_millis(5)),
         }
     };
-    let text = error.to_string();
-    if !(text.contains("finger 2 is faulted") && text.contains("port")) {
-        return Err(text);
+    let reason = error.to_string();
+    if !(reason.contains("finger 2 is faulted") && reason.contains("port")) {
+        return Err(reason);
     }
     // The other fingers are on boards of their own.
-    [1, 3].into_iter().try_for_each(|finger| hand.position(finger).map(drop).map_err(told))
+    [1, 3].into_iter().try_for_each(|finger| hand.position(finger).map(drop).map_err(text))
 }
 
 #[test]
-fn the_page_is_right_about_its_examples() {
+fn the_examples_of_the_page_agree_with_the_second_board() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let output = Command::new(compile(folder.path())).arg("--check").arg(PAGE).output().expect("the check runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));

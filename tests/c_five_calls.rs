@@ -57,7 +57,7 @@ fn the_shared_library_does_not_take_them_for_its_own() {
 
 /// As chapter 5 of the manual describes.
 #[test]
-fn the_static_library_gives_way_to_them() {
+fn the_static_library_links_beside_them() {
     let bench = Bench::new();
     let program = bench.path().join("static");
     let mut compiler = Command::new(c_compiler());

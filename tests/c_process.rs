@@ -37,7 +37,7 @@ fn arguments_may_lie_in_pages_that_a_handler_makes_accessible() {
 }
 
 #[test]
-fn a_child_that_ran_no_handler_of_the_library_is_refused_too() {
+fn a_child_in_which_no_fork_handler_ran_is_refused_too() {
     succeed(&["forked_raw.c"]);
 }
 
@@ -51,7 +51,7 @@ fn a_planner_may_have_much_thread_local_data() {
 }
 
 #[test]
-fn a_process_out_of_memory_keeps_its_hand_and_is_told() {
+fn a_process_out_of_memory_keeps_its_hand_and_gets_enomem() {
     // glibc offers its allocator under a second name, for a planner that replaces the first.
     if cfg!(target_env = "gnu") {
         succeed(&["no_memory.c"]);
@@ -87,7 +87,7 @@ fn a_small_stack_is_enough_for_every_call() {
 }
 
 #[test]
-fn a_call_that_was_jumped_out_of_goes_on_to_its_end() {
+fn a_call_that_was_jumped_out_of_completes() {
     let bench = bench();
     let program = bench.build(c_compiler(), STRICT, &["jumped.c"]);
     // A call that never returns would hang the test.

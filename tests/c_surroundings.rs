@@ -24,12 +24,12 @@ fn a_planner_that_closes_the_descriptors_up_to_255_keeps_its_hand() {
 }
 
 #[test]
-fn a_planner_that_closes_every_descriptor_is_told_and_keeps_its_files_to_itself() {
+fn a_planner_that_closes_every_descriptor_gets_a_fault_and_keeps_its_files_intact() {
     closes_descriptors("1024", "1023");
 }
 
 #[test]
-fn a_planner_that_may_have_few_descriptors_and_closes_all_is_told_and_keeps_its_files_to_itself() {
+fn a_planner_with_few_descriptors_that_closes_all_gets_a_fault_and_keeps_its_files_intact() {
     // No descriptor of the library is far from the planner's first ones.
     closes_descriptors("60", "255");
 }
@@ -46,7 +46,7 @@ fn closes_descriptors(limit: &str, highest: &str) {
 }
 
 #[test]
-fn limits_of_the_system_are_told_with_their_remedy_and_leave_nothing_behind() {
+fn limits_of_the_system_are_reported_with_their_remedy_and_leave_nothing_behind() {
     Bench::new().succeed(&strict(&[]), &["limits.c"]);
 }
 
@@ -63,7 +63,7 @@ fn a_sandbox_that_forbids_a_system_call_is_named_as_the_cause() {
 }
 
 #[test]
-fn a_planner_under_sched_deadline_is_told_what_its_threads_need() {
+fn a_planner_under_sched_deadline_is_refused_with_the_flag_that_its_threads_need() {
     let bench = Bench::new();
     let program = bench.build(c_compiler(), &strict(&[]), &["deadline.c"]);
     let run = bench.run(Command::new(program));
@@ -98,7 +98,7 @@ fn printed(run: &Output) -> (String, String) {
 }
 
 #[test]
-fn a_configuration_file_with_a_hostile_name_is_told_in_one_line() {
+fn a_configuration_file_with_a_hostile_name_is_refused_in_one_line() {
     let bench = Bench::new();
     let program = bench.build(c_compiler(), STRICT, &["opens.c"]);
     for name in hostile_names() {
@@ -114,15 +114,15 @@ fn a_configuration_file_with_a_hostile_name_is_told_in_one_line() {
             command.arg([b"SUN2XP_CONFIG=", &name[..]].concat().as_os_str()).arg(&program);
             let run = bench.run(command);
             assert_eq!(run.status.code(), Some(2), "{}", said(&run));
-            let (told, line) = printed(&run);
-            assert_one_line(&told, &format!("{errno}OpenHand: "));
+            let (message, line) = printed(&run);
+            assert_one_line(&message, &format!("{errno}OpenHand: "));
             assert_one_line(&line, "sun2xp: OpenHand: ");
         }
     }
 }
 
 #[test]
-fn a_black_box_with_a_hostile_name_is_told_in_one_line() {
+fn a_black_box_with_a_hostile_name_is_refused_in_one_line() {
     let bench = Bench::new();
     let program = bench.build(c_compiler(), &strict(&[]), &["hostile_name.c"]);
     for name in hostile_names() {
@@ -130,14 +130,14 @@ fn a_black_box_with_a_hostile_name_is_told_in_one_line() {
         command.arg([b"no/folder/", &name[..]].concat().as_os_str());
         let run = bench.run(command);
         assert!(run.status.success(), "{}", said(&run));
-        let (told, lines) = printed(&run);
-        assert_one_line(&told, "WriteBlackBox: ");
+        let (message, lines) = printed(&run);
+        assert_one_line(&message, "WriteBlackBox: ");
         assert_one_line(lines.lines().nth(1).expect("after the announcement"), "sun2xp: WriteBlackBox: ");
     }
 }
 
 #[test]
-fn tools_tell_hostile_names_in_one_line() {
+fn tools_print_hostile_names_in_one_line() {
     let run = |arguments: &[&OsStr]| {
         let run = Command::new(c::tool()).args(arguments).output().expect("the tool runs");
         assert_eq!(run.status.code(), Some(1), "{}", said(&run));

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use sun2xp::hand::{Fingers, Hand, read_configuration, stop_all};
 
 #[test]
-fn relative_paths_stay_what_they_were_when_the_hand_was_opened() {
+fn relative_paths_keep_the_working_directory_of_the_opening() {
     let folder = tempfile::tempdir().expect("a folder");
     set_current_dir(folder.path()).expect("gone there");
     fs::create_dir("boxes").expect("made");

@@ -159,7 +159,7 @@ fn printed_r_is_refused() {
 }
 
 #[test]
-fn bounds_without_a_pretension_between_them_are_refused() {
+fn bounds_that_leave_no_pretension_are_refused() {
     // R's null vector is (0.62, 1.09, 1.09, 0.62), so t_max must exceed 1.758 t_min.
     let tendons = tendons(None);
     assert!(TensionDistribution::new(&tendons, 5.0, Vector4::repeat(8.8)).is_ok());

@@ -72,13 +72,13 @@ proptest! {
                 prop_assert!((LINKS.tip(&joints) - tip).amax() < 2e-4);
                 prop_assert!((0..3).all(|joint| joints[joint] >= low[joint] && joints[joint] <= high[joint]));
             }
-            Err(OutOfReach::TooFar { distance: told, reach }) => {
-                prop_assert_eq!((told, reach), (distance(across), 9.08));
-                prop_assert!(told > reach && distance(-across) > reach);
+            Err(OutOfReach::TooFar { distance: reported, reach }) => {
+                prop_assert_eq!((reported, reach), (distance(across), 9.08));
+                prop_assert!(reported > reach && distance(-across) > reach);
             }
-            Err(OutOfReach::TooNear { distance: told, least }) => {
-                prop_assert_eq!(told, distance(across));
-                prop_assert!((least - 1.08).abs() < 1e-12 && told < least);
+            Err(OutOfReach::TooNear { distance: reported, least }) => {
+                prop_assert_eq!(reported, distance(across));
+                prop_assert!((least - 1.08).abs() < 1e-12 && reported < least);
             }
             Err(OutOfReach::BeyondLimits { joint, value, low: lowest, high: highest }) => {
                 prop_assert!(value < low[joint] || value > high[joint]);

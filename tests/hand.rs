@@ -3,7 +3,10 @@
 #[allow(dead_code)]
 #[path = "common/pauses.rs"]
 mod pauses;
+#[path = "common/settling.rs"]
+mod settling;
 
+use settling::{Settling, distance};
 use std::time::{Duration, Instant};
 use sun2xp::finger::Stage;
 use sun2xp::hand::{ConfigurationError, Hand, HandError};
@@ -18,22 +21,13 @@ fn open(configuration: Configuration) -> Hand {
 
 fn farthest(hand: &Hand, finger: i32, target: [f64; 3]) -> f64 {
     let position = hand.position(finger).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
-    position.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max)
+    distance(position, target)
 }
 
-/// Waits until the finger has been within `tolerance` of `target` for 100 ms.
-fn settles(hand: &Hand, finger: i32, target: [f64; 3], tolerance: f64) -> bool {
-    let limit = Instant::now() + Duration::from_secs(10);
-    let mut since = Instant::now();
-    while Instant::now() < limit {
-        if farthest(hand, finger, target) > tolerance {
-            since = Instant::now();
-        } else if since.elapsed() > Duration::from_millis(100) {
-            return true;
-        }
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    false
+/// Waits until the finger has been within 0.02 rad of `target` for 100 ms.
+fn settles(hand: &Hand, finger: i32, target: [f64; 3]) {
+    let settling = Settling { tolerance: 0.02, rest: Duration::from_millis(100), patience: Duration::from_secs(10) };
+    settling.wait(hand, [(finger, target)]).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
 }
 
 #[test]
@@ -48,7 +42,7 @@ fn every_finger_holds_its_pose_after_open_and_goes_where_it_is_sent() {
     }
     for finger in 1..=3 {
         let target = TARGET.map(|angle| angle + 0.05 * f64::from(finger));
-        assert!(settles(&hand, finger, target, 0.02), "finger {finger}: {:?}", hand.position(finger));
+        settles(&hand, finger, target);
         let report = hand.report(finger).expect("a report");
         assert_eq!(report.stage, Stage::Running);
         assert!(report.cycle.desired_tensions.min() > 5.0 - 1e-9, "{}", report.cycle.desired_tensions);
@@ -63,11 +57,11 @@ fn every_finger_holds_its_pose_after_open_and_goes_where_it_is_sent() {
 fn two_hands_live_in_one_process() {
     let (one, other) = (open(Configuration::default()), open(Configuration::default()));
     one.send_position(2, TARGET).expect("sent");
-    assert!(settles(&one, 2, TARGET, 0.02));
+    settles(&one, 2, TARGET);
     assert!(farthest(&other, 2, TARGET) > 0.1, "the other hand must not have moved");
     drop(one);
     other.send_position(2, TARGET).expect("sent");
-    assert!(settles(&other, 2, TARGET, 0.02));
+    settles(&other, 2, TARGET);
 }
 
 #[test]
@@ -80,7 +74,7 @@ fn all_fingers_on_one_thread_and_hold_as_end_state() {
         hand.send_position(finger, TARGET).expect("sent");
     }
     for finger in 1..=3 {
-        assert!(settles(&hand, finger, TARGET, 0.02), "finger {finger}: {:?}", hand.position(finger));
+        settles(&hand, finger, TARGET);
     }
 }
 
@@ -95,7 +89,7 @@ fn a_pushed_finger_gives_way_like_its_spring() {
         std::thread::sleep(Duration::from_millis(2));
     }
     hand.push_simulated(1, [0.0; 3]).expect("released");
-    assert!(settles(&hand, 1, before, 0.02));
+    settles(&hand, 1, before);
 }
 
 #[test]

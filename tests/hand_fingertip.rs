@@ -35,7 +35,7 @@ fn taken_in(hand: &Hand, finger: i32) {
 }
 
 #[test]
-fn a_tip_goes_where_it_is_sent_and_tells_what_it_presses() {
+fn a_tip_moves_to_its_set_point_and_reports_its_force() {
     let hand = open(Configuration::default());
     let wanted = Vector3::new(1.0, -6.0, 8.0);
     hand.send_tip(2, wanted.into()).expect("sent");
@@ -86,7 +86,7 @@ fn contacts_and_damping_arrive_at_the_servo() {
 }
 
 #[test]
-fn an_adjustment_is_taken_over_whole_or_not_at_all() {
+fn an_adjustment_takes_effect_completely_or_not_at_all() {
     let hand = open(Configuration::default());
     hand.adjust(1, "tendon.minimum = 9\ncontroller.scheme = 'figure 9'").expect("adjusted");
     until("the tendons have the new tension", || tip(&hand, 1).tensions.iter().all(|&tension| tension > 8.0));
@@ -122,7 +122,7 @@ fn an_adjustment_is_taken_over_whole_or_not_at_all() {
 }
 
 #[test]
-fn where_commands_are_clamped_the_set_point_follows_its_limits() {
+fn clamped_commands_follow_the_adjusted_limits() {
     let mut configuration = Configuration::default();
     configuration.hand.out_of_range = OutOfRange::Clamp;
     let hand = open(configuration);

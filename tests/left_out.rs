@@ -54,8 +54,8 @@ fn without_a_tool_a_test_passes_and_is_listed_and_with_ci_it_fails() {
     assert_eq!(tools::take_left_out(std::process::id()), Vec::<String>::new(), "lines of an earlier run");
 
     let run = run_without_tools("true");
-    let told = said(&run);
-    assert!(!run.status.success() && told.contains("apt-get install --no-install-recommends clang"), "{told}");
+    let output = said(&run);
+    assert!(!run.status.success() && output.contains("apt-get install --no-install-recommends clang"), "{output}");
     assert_eq!(tools::take_left_out(std::process::id()), Vec::<String>::new());
 }
 
@@ -100,27 +100,27 @@ const CLANG_AFTER_APT: (&str, &str) =
     ("looks-for-clang", "if [ -e \"$0.asked\" ]; then exit 0; fi; : > \"$0.asked\"; exit 1");
 
 #[test]
-fn nothing_is_installed_where_nothing_is_missing() {
-    let (passed, told) = run_script(&[CARGO, APT, SUDO, ("looks-for-clang", "exit 0")], None);
-    assert!(passed, "{told}");
-    assert_eq!(told, "CI=true: cargo test --locked --test hand\n");
+fn nothing_is_installed_if_nothing_is_missing() {
+    let (passed, output) = run_script(&[CARGO, APT, SUDO, ("looks-for-clang", "exit 0")], None);
+    assert!(passed, "{output}");
+    assert_eq!(output, "CI=true: cargo test --locked --test hand\n");
 }
 
 #[test]
-fn what_is_missing_is_named_and_installed() {
-    let (passed, told) = run_script(&[CARGO, APT, SUDO, CLANG_AFTER_APT], None);
-    assert!(passed, "{told}");
+fn missing_programs_are_named_and_installed() {
+    let (passed, output) = run_script(&[CARGO, APT, SUDO, CLANG_AFTER_APT], None);
+    assert!(passed, "{output}");
     let lines = [
         "missing: clang",
         "installing the Debian packages clang libc6-dev",
         "install --yes --no-install-recommends clang libc6-dev",
         "CI=true: cargo test --locked --test hand",
     ];
-    assert!(lines.iter().all(|line| told.contains(line)) && !told.contains("not-wanted"), "{told}");
+    assert!(lines.iter().all(|line| output.contains(line)) && !output.contains("not-wanted"), "{output}");
 }
 
 #[test]
-fn what_cannot_be_installed_is_told_with_the_remedy() {
+fn a_failed_installation_is_reported_with_the_remedy() {
     let remedy = "Run as root: apt-get install --no-install-recommends clang libc6-dev";
     let never = ("looks-for-clang", "exit 1");
     let failing = ("apt-get", "echo no network; exit 100");
@@ -130,8 +130,8 @@ fn what_cannot_be_installed_is_told_with_the_remedy() {
         (&[CARGO, SUDO, never], "apt-get is missing"),
         (&[APT, SUDO, never], "cargo is missing"),
     ] {
-        let (passed, told) = run_script(programs, None);
-        assert!(!passed && told.contains(reason) && !told.contains("cargo test --locked"), "{told}");
+        let (passed, output) = run_script(programs, None);
+        assert!(!passed && output.contains(reason) && !output.contains("cargo test --locked"), "{output}");
     }
 }
 
@@ -140,9 +140,9 @@ fn an_ordinary_user_needs_sudo() {
     // SAFETY: takes no arguments and has no preconditions.
     let user = if unsafe { libc::getuid() } == 0 { Some(NOBODY) } else { None };
     let never = ("looks-for-clang", "exit 1");
-    let (passed, told) = run_script(&[CARGO, APT, SUDO, never], user);
-    assert!(!passed && told.contains("sudo\napt-get -qq update\nsudo\napt-get -qq install --yes"), "{told}");
-    let (passed, told) = run_script(&[CARGO, APT, never], user);
+    let (passed, output) = run_script(&[CARGO, APT, SUDO, never], user);
+    assert!(!passed && output.contains("sudo\napt-get -qq update\nsudo\napt-get -qq install --yes"), "{output}");
+    let (passed, output) = run_script(&[CARGO, APT, never], user);
     let reason = "not root, and sudo is missing. Run as root: apt-get install --no-install-recommends clang libc6-dev";
-    assert!(!passed && told.contains(reason) && !told.contains("apt-get -qq"), "{told}");
+    assert!(!passed && output.contains(reason) && !output.contains("apt-get -qq"), "{output}");
 }

@@ -266,6 +266,6 @@ fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
     let ended = Transport::now(&rig.world) - good;
     let status = rig.world.place().cable.board().finger(1).expect("finger 1").status();
     assert!(status.has(Status::ENDED) && !status.has(Status::WATCHDOG_TRIPPED), "{status:?}");
-    assert!(ended <= 20 * MS, "told after {ended} ns");
-    println!("at rest {at_rest} ns after the last good reply, told to stop within {ended} ns");
+    assert!(ended <= 20 * MS, "stopped after {ended} ns");
+    println!("at rest {at_rest} ns after the last good reply, stopped within {ended} ns");
 }

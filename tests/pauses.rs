@@ -14,7 +14,7 @@ use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-const BEARS: Duration = Duration::from_millis(100);
+const TOLERATED_PAUSE: Duration = Duration::from_millis(100);
 
 /// A process that ends with the test.
 struct Process(Child);
@@ -57,7 +57,7 @@ fn waited(script: &str, beside: &[&str], meanwhile: impl Fn(u32)) -> (Duration, 
     std::thread::sleep(Duration::from_secs(2));
     let waits = watch.end();
     let span = Duration::from_millis(500);
-    (waits.of(Part::Board, span), waits.told(span))
+    (waits.of(Part::Board, span), waits.description(span))
 }
 
 const SPINS: &str = "while :; do :; done";
@@ -65,15 +65,15 @@ const SPINS: &str = "while :; do :; done";
 #[test]
 fn a_process_that_shares_its_core_is_found_waiting_and_one_that_sleeps_or_is_stopped_is_not() {
     // Three processes share a core, so each waits for about two thirds of the time.
-    let (shared, told) = waited(SPINS, &[SPINS, SPINS], |_| {});
-    assert!(shared > Duration::from_millis(150), "{told}");
+    let (shared, measured) = waited(SPINS, &[SPINS, SPINS], |_| {});
+    assert!(shared > Duration::from_millis(150), "{measured}");
     for (script, signal) in [("sleep 60", 0), (SPINS, libc::SIGSTOP)] {
         let stop = |process: u32| {
             // SAFETY: the process has not been waited for, so the number is still its own.
             unsafe { libc::kill(process as libc::pid_t, signal) };
         };
-        let (idle, told) = waited(script, &[SPINS, SPINS], stop);
-        assert!(idle < Duration::from_millis(150), "{script}: {told}");
+        let (idle, measured) = waited(script, &[SPINS, SPINS], stop);
+        assert!(idle < Duration::from_millis(150), "{script}: {measured}");
     }
 }
 
@@ -87,23 +87,23 @@ fn a_failure_without_a_pause_is_not_excused() {
             if count % 2 == 1 { Err("it shows".to_string()) } else { Ok(()) }
         })
     });
-    let told = *made.expect_err("excused").downcast::<String>().expect("a text");
-    assert!(told.contains("0 excused; it shows. No pause of the machine explains it"), "{told}");
+    let measured = *made.expect_err("excused").downcast::<String>().expect("a text");
+    assert!(measured.contains("0 excused; it shows. No pause of the machine explains it"), "{measured}");
 }
 
 #[test]
 fn failures_are_excused_only_as_long_as_the_passed_attempts_outnumber_them() {
-    let long = 2 * BEARS;
+    let long = 2 * TOLERATED_PAUSE;
     let judged = |outcomes: &[bool]| {
         let mut tally = Tally::default();
-        outcomes.iter().map(|&passed| tally.judge(passed, long, BEARS)).collect::<Vec<_>>()
+        outcomes.iter().map(|&passed| tally.judge(passed, long, TOLERATED_PAUSE)).collect::<Vec<_>>()
     };
     use Verdict::{Again, Hopeless, Passed};
     assert_eq!(judged(&[true]), [Passed]);
     assert_eq!(judged(&[false, true, true]), [Again, Again, Passed]);
     assert_eq!(judged(&[false, true, false, true, true]), [Again, Again, Again, Again, Passed]);
     assert_eq!(judged(&[false, false, false, false]), [Again, Again, Again, Hopeless]);
-    assert_eq!(Tally::default().judge(false, BEARS / 2, BEARS), Verdict::Failed);
+    assert_eq!(Tally::default().judge(false, TOLERATED_PAUSE / 2, TOLERATED_PAUSE), Verdict::Failed);
 }
 
 /// A defect shows in half of the attempts. On a machine that never pauses it must fail half of the runs. On a machine
@@ -111,11 +111,11 @@ fn failures_are_excused_only_as_long_as_the_passed_attempts_outnumber_them() {
 #[test]
 fn a_defect_that_shows_in_half_of_the_attempts_does_not_stay_green() {
     let mut random = Pcg64::seed_from_u64(1);
-    for (paused, least) in [(Duration::ZERO, 4_500), (2 * BEARS, 2_500)] {
+    for (paused, least) in [(Duration::ZERO, 4_500), (2 * TOLERATED_PAUSE, 2_500)] {
         let failed = (0..10_000).filter(|_| {
             let mut tally = Tally::default();
             loop {
-                match tally.judge(random.next_u32() % 2 == 0, paused, BEARS) {
+                match tally.judge(random.next_u32() % 2 == 0, paused, TOLERATED_PAUSE) {
                     Verdict::Again => {}
                     verdict => return verdict != Verdict::Passed,
                 }

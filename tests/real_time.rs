@@ -13,14 +13,14 @@ use sun2xp::hand::Hand;
 use sun2xp::model::configuration::{Configuration, RealTime};
 
 #[test]
-fn without_an_attempt_nothing_is_had() {
+fn real_time_that_is_ignored_gives_no_warning() {
     // Takes the turn of a bench and a slow rate, because a thread without real time waits for all other threads of the
     // machine.
     let _turn = Bench::new();
     let mut configuration = Configuration::default();
     (configuration.hand.real_time, configuration.hand.rate) = (RealTime::Ignore, 500.0);
     let hand = Hand::open(configuration).expect("the simulated hand");
-    let warned = hand.fault(1).expect("told").warning.map(|warning| warning.kind);
+    let warned = hand.fault(1).expect("the finger is open").warning.map(|warning| warning.kind);
     assert_ne!(warned, Some(FaultKind::RealtimeRefused), "nothing was refused");
     let status = hand.status(1).expect("status");
     assert_eq!((status.realtime, status.memory_locked, status.on_core), (false, false, true));
@@ -59,39 +59,39 @@ fn run_without(right: Right, configuration: &str, program: &str) -> (Option<i32>
 }
 
 #[test]
-fn a_planner_without_memlock_has_its_hand_and_is_told() {
+fn a_planner_without_memlock_gets_its_hand_and_a_message() {
     let right = (libc::RLIMIT_MEMLOCK, CAP_IPC_LOCK);
     let (status, _, printed) = opened_without(right, "[hand]\nrate = 500\n");
     assert_eq!(status, Some(0), "{printed}");
     let lines: Vec<_> = printed.lines().filter(|line| line.contains("memory cannot be locked")).collect();
     assert!(lines.len() == 1 && lines[0].contains("memlock"), "{printed}");
 
-    let (status, told, printed) = opened_without(right, "[hand]\nrate = 500\nreal_time = \"ignore\"\n");
-    assert_eq!(status, Some(0), "{told}{printed}");
+    let (status, output, printed) = opened_without(right, "[hand]\nrate = 500\nreal_time = \"ignore\"\n");
+    assert_eq!(status, Some(0), "{output}{printed}");
     assert!(!printed.contains("locked"), "{printed}");
 }
 
 #[test]
 fn a_planner_without_rtprio_is_warned_by_get_fault() {
-    let (status, told, printed) =
+    let (status, output, printed) =
         run_without((libc::RLIMIT_RTPRIO, CAP_SYS_NICE), "[hand]\nrate = 500\n", "realtime_refused.c");
-    assert_eq!(status, Some(0), "{told}{printed}");
+    assert_eq!(status, Some(0), "{output}{printed}");
 }
 
 #[test]
-fn enforced_real_time_is_had_or_refused_with_the_remedy() {
+fn enforced_real_time_is_available_or_refused_with_the_remedy() {
     let enforce = "[hand]\nreal_time = \"enforce\"\n";
-    let (status, told, _) = opened_without((libc::RLIMIT_RTPRIO, CAP_SYS_NICE), enforce);
-    assert_eq!(status, Some(2), "{told}");
-    assert!(told.contains("OpenHand: no real time: ") && told.contains("rtprio"), "{told}");
+    let (status, output, _) = opened_without((libc::RLIMIT_RTPRIO, CAP_SYS_NICE), enforce);
+    assert_eq!(status, Some(2), "{output}");
+    assert!(output.contains("OpenHand: no real time: ") && output.contains("rtprio"), "{output}");
 
-    let (status, told, _) = opened_without((libc::RLIMIT_MEMLOCK, CAP_IPC_LOCK), enforce);
-    assert_eq!(status, Some(2), "{told}");
+    let (status, output, _) = opened_without((libc::RLIMIT_MEMLOCK, CAP_IPC_LOCK), enforce);
+    assert_eq!(status, Some(2), "{output}");
     // A process that may not use SCHED_FIFO either gets that reason.
-    assert!(told.contains("memlock") || told.contains("rtprio"), "{told}");
+    assert!(output.contains("memlock") || output.contains("rtprio"), "{output}");
 
-    let (status, told, _) =
+    let (status, output, _) =
         opened_without((libc::RLIMIT_CORE, CAP_IPC_LOCK), &format!("{enforce}[finger]\ncore = 1023\n"));
-    assert_eq!(status, Some(2), "{told}");
-    assert!(told.contains("finger.core") || told.contains("rtprio"), "{told}");
+    assert_eq!(status, Some(2), "{output}");
+    assert!(output.contains("finger.core") || output.contains("rtprio"), "{output}");
 }

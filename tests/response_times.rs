@@ -130,7 +130,7 @@ proptest! {
 /// Without wake-up and waiting, and with equal phases, the bound is reached. This detects an analysis that is always
 /// too pessimistic.
 #[test]
-fn the_bound_is_reached() {
+fn the_bound_is_tight() {
     let threads = [(3, 7, 3), (2, 12, 3), (1, 20, 5)].map(|(priority, period, after)| PeriodicThread {
         core: Some(0),
         priority,

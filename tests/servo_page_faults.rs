@@ -24,7 +24,7 @@ fn page_faults() -> Vec<(String, u64)> {
 }
 
 #[test]
-fn a_servo_thread_meets_no_page_fault() {
+fn a_servo_thread_causes_no_page_fault() {
     // Slower without real time, because such threads wait for all other threads of the machine.
     for (real_time, rate, periods) in [(RealTime::Try, 1000.0, 1000), (RealTime::Ignore, 500.0, 400)] {
         let mut configuration = Configuration::default();

@@ -176,7 +176,7 @@ impl Rig {
 }
 
 #[test]
-fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
+fn a_simulated_finger_survives_a_machine_that_runs_nothing_in_time() {
     let none = Load::default();
     for load in [
         Load { carrier: 0.5, ..none },
@@ -212,7 +212,7 @@ fn a_simulated_finger_outlives_a_machine_that_runs_nothing_in_time() {
 
 /// What GetStatus counts while the servo does not run, and what the servo counts when it runs again.
 #[test]
-fn periods_that_are_missing_are_known_before_the_servo_runs_again() {
+fn skipped_periods_are_counted_before_the_servo_runs_again() {
     let mut rig = Rig::new(0, 60_000);
     rig.run_until(60.0, |report| report.stage != Stage::Opening);
     let before = rig.finger.mailbox.report();
@@ -233,7 +233,7 @@ fn periods_that_are_missing_are_known_before_the_servo_runs_again() {
 }
 
 #[test]
-fn a_command_or_reply_that_was_thrown_away_is_made_good() {
+fn a_discarded_command_or_reply_is_repeated() {
     let mut rig = Rig::new(0, 60_000);
     rig.run_until(60.0, |report| report.stage != Stage::Opening);
     for _ in 0..3 {
@@ -273,7 +273,7 @@ fn a_simulated_board_that_never_answers_again_faults_its_finger() {
 }
 
 #[test]
-fn a_finger_that_a_machine_keeps_from_opening_faults_when_its_time_is_over() {
+fn a_finger_that_an_overloaded_machine_keeps_from_opening_faults_at_the_time_out() {
     let mut rig = Rig::new(0, 1500);
     // Either nothing is carried, or every wake-up is late.
     for load in [Load { carrier: 1e9, ..Load::default() }, Load { servo: 30.0, ..Load::default() }] {

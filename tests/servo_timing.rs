@@ -109,7 +109,7 @@ impl Rig {
 }
 
 #[test]
-fn a_late_cycle_is_run_late_and_nothing_is_made_up() {
+fn a_late_cycle_runs_late_and_skipped_periods_are_not_made_up() {
     let mut rig = Rig::new(0.0, false);
     rig.cycles(10);
     let losses = rig.finger.mailbox.report().losses;

@@ -18,7 +18,7 @@ fn finger(scheme: Scheme) -> ConfiguredFinger {
 }
 
 #[test]
-fn the_default_finger_carries_what_it_is_said_to() {
+fn the_default_finger_carries_its_documented_stiffness() {
     for scheme in SCHEMES {
         for (rate, least) in [(500.0, 5.0), (1000.0, 6.0)] {
             let found = SEARCH.bound(&finger(scheme), rate).unwrap();
@@ -88,7 +88,7 @@ fn state_feedback_is_stable_at_every_rate() {
 }
 
 #[test]
-fn the_map_is_that_of_the_rate_that_was_asked_for() {
+fn the_map_is_that_of_the_requested_rate() {
     // The map of a rate must not be that of the next lower rate that the usual plant step divides.
     let rest = Rest {
         joints: Vector3::new(0.1, 0.5, 1.0),
@@ -102,7 +102,7 @@ fn the_map_is_that_of_the_rate_that_was_asked_for() {
 }
 
 #[test]
-fn a_loop_with_too_much_gain_or_no_damper_is_found_out() {
+fn a_loop_with_too_much_gain_or_no_damper_is_detected() {
     let whole = SEARCH.bound(&finger(Scheme::Figure10), 1000.0).unwrap().stiffness;
     let mut less_damped = finger(Scheme::Figure10);
     less_damped.controller.rate_time = Some(0.002);

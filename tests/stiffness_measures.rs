@@ -101,7 +101,7 @@ fn a_known_decay_shows_its_slowest_mode() {
 
 /// Two motions have no recurrence if only one of them meets an obstacle, and rounding errors satisfy any recurrence.
 #[test]
-fn a_decay_that_is_no_linear_one_does_not_grow() {
+fn a_nonlinear_decay_is_not_taken_for_growth() {
     let mut bent = decay(&[(0.97, 0.2), (0.9, 0.7)], 200);
     for (number, sample) in bent.iter_mut().enumerate() {
         let kinked = 1.0 + 0.3 * f64::from(u8::from(number % 7 < 3));
@@ -116,7 +116,7 @@ fn a_decay_that_is_no_linear_one_does_not_grow() {
 }
 
 #[test]
-fn what_is_not_a_number_is_the_worst() {
+fn not_a_number_counts_as_the_worst() {
     assert_eq!(parallel::worst([1.0, f64::NAN, 2.0]), f64::INFINITY);
     assert_eq!(parallel::least([1.0, f64::NAN, 2.0]), f64::NEG_INFINITY);
     let items: Vec<usize> = (0..100).collect();
@@ -125,7 +125,7 @@ fn what_is_not_a_number_is_the_worst() {
 
 /// Without compensation of the tendon stretch the tip is softer by about a third at 3 N/cm, and by half at 6 N/cm.
 #[test]
-fn a_controller_blind_to_tendon_stretch_is_found_out() {
+fn a_controller_that_ignores_tendon_stretch_is_detected() {
     let case = case(Scheme::Figure10);
     for (stiffness, least, most) in [(3.0, 0.1, 0.45), (6.0, 0.2, 0.7)] {
         for pose in case.poses() {
@@ -158,7 +158,7 @@ fn a_pose_that_carries_less_shows_its_scale_and_no_error() {
 /// A motor constant that is wrong by 20 % is harmless between tension and torque. It is harmful in (RM)^-T, where M is
 /// geometry: the joints, and with them the tip, are measured wrong by as much.
 #[test]
-fn a_motor_model_in_the_kinematics_is_found_out() {
+fn a_motor_model_in_the_kinematics_is_detected() {
     let case = case(Scheme::Figure11);
     for pose in case.poses() {
         let kx = Matrix3::identity() * 3.0;
@@ -180,7 +180,7 @@ fn a_motor_model_in_the_kinematics_is_found_out() {
 
 /// R as printed has one wrong sign and no inverse.
 #[test]
-fn the_printed_r_is_found_out() {
+fn the_printed_r_is_refused_by_every_scheme() {
     let case = case(Scheme::StateFeedback);
     let mut printed = case.finger(&Vector3::new(0.0, 0.5, 1.0), Friction::None);
     assert_eq!(printed.geometry.r[1][3], -1.09);
@@ -193,7 +193,7 @@ fn the_printed_r_is_found_out() {
 }
 
 #[test]
-fn a_controller_without_damping_is_found_out() {
+fn a_controller_without_damping_is_detected() {
     let case = case(Scheme::Figure10);
     for pose in case.poses() {
         let sample = Sample { pose, kx: Matrix3::identity() * 3.0, load: Vector3::new(0.05, -0.1, 0.1), wall: None };
@@ -209,7 +209,7 @@ fn a_controller_without_damping_is_found_out() {
 
 /// The eigenvalue must predict the decay of a released finger, measured separately over time.
 #[test]
-fn the_largest_eigenvalue_foretells_how_a_finger_comes_to_rest() {
+fn the_largest_eigenvalue_predicts_how_a_finger_comes_to_rest() {
     let case = case(Scheme::Figure10);
     for pose in case.poses() {
         let kx = Matrix3::identity() * 3.0;

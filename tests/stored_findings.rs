@@ -143,7 +143,7 @@ fn threads_and_processes_store_at_once() {
 }
 
 #[test]
-fn an_older_reading_reverts_nothing() {
+fn a_finding_based_on_an_old_reading_reverts_nothing() {
     let (_folder, path) = hand();
     let read_before = read_configuration(&path).expect("usable");
     WORKERS[0].work(&path, 1);
@@ -210,7 +210,7 @@ fn as_nobody(body: impl FnOnce() + Send) {
 }
 
 #[test]
-fn what_this_user_may_not_write_is_left_and_named() {
+fn a_file_that_this_user_may_not_write_stays_unchanged_and_is_named() {
     let (folder, path) = hand();
     let found = WORKERS[0].found(7, &read_configuration(&path).expect("usable"));
     let set = |path: &Path, mode| fs::set_permissions(path, Permissions::from_mode(mode)).expect("set");

@@ -8,8 +8,8 @@ use sun2xp::model::configuration::EndState;
 use sun2xp::simulated::*;
 
 #[test]
-fn a_frame_that_did_not_fit_costs_itself_only() {
-    /// Accepts only 5 bytes of the second write.
+fn a_truncated_frame_costs_only_its_own_cycle() {
+    /// Accepts only 5 bytes of the second Command.
     struct Narrow(SimulatedCable, u32);
     impl Transport for Narrow {
         fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError> {
@@ -53,7 +53,7 @@ fn a_refused_handshake_frame_that_comes_late_is_no_fault() {
 }
 
 #[test]
-fn endless_rubbish_holds_up_nobody() {
+fn endless_rubbish_delays_no_call() {
     /// Always has bytes to read. Each read takes 10 us.
     struct Babbler(u64);
     impl Transport for Babbler {

@@ -8,7 +8,7 @@ use sun2xp::model::configuration::{Configuration, EndState};
 use sun2xp::simulated::*;
 
 #[test]
-fn handshake_agrees_on_terms_and_tells_whole_counts() {
+fn a_handshake_agrees_on_terms_in_whole_counts() {
     let mut hand = Configuration::default();
     hand.fingers[2].encoder.zero = [1_000_000, -5, 0, 70_000];
     let board = SimulatedBoard::new(&hand, &[2]).unwrap();
@@ -50,7 +50,7 @@ fn good_but(change: impl Fn(&mut Message)) -> impl FnMut(Message) -> Vec<u8> {
 }
 
 #[test]
-fn handshake_names_what_is_wrong() {
+fn a_failed_handshake_names_its_reason() {
     let (error, when) = failure(|_| Vec::new());
     assert!(matches!(error, LinkError::Silent { milliseconds: 1000 }) && when == 1000 * MS, "{error}");
     assert_eq!(error.errno(), libc::ETIMEDOUT);

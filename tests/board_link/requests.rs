@@ -30,32 +30,32 @@ fn three_fingers_on_one_port_answer_in_the_order_of_their_commands() {
 fn duplicates_are_answered_and_damage_is_not_but_shows() {
     let mut board = board(&[1]);
     let mut answers = Vec::new();
-    let mut tell = |board: &mut SimulatedBoard, bytes: &[u8]| {
+    let mut send = |board: &mut SimulatedBoard, bytes: &[u8]| {
         answers.clear();
         board.receive(0, bytes, &mut |answer| answers.push(answer.to_vec()));
         answers.iter().map(|answer| read(answer)).collect::<Vec<_>>()
     };
     let wire = |sequence, frame| WireFrame::new(&Message { address: 1, sequence, frame }).as_bytes().to_vec();
     let configure = Configure { version: 1, watchdog_ms: 20, torque_limits: [100; 4], ..Default::default() };
-    assert_eq!(tell(&mut board, &wire(1, Frame::Configure(configure))).len(), 1);
+    assert_eq!(send(&mut board, &wire(1, Frame::Configure(configure))).len(), 1);
     let command = wire(7, Frame::Command(pull(50)));
-    assert_eq!(tell(&mut board, &[command.clone(), command.clone()].concat()).len(), 2);
+    assert_eq!(send(&mut board, &[command.clone(), command.clone()].concat()).len(), 2);
     let mut damaged = command.clone();
     damaged[5] ^= 0x10;
-    assert!(tell(&mut board, &damaged).is_empty());
+    assert!(send(&mut board, &damaged).is_empty());
     let status = |messages: &[Message]| match messages {
         [Message { frame: Frame::Reply(reply), .. }] => reply.status,
         other => panic!("not one reply: {other:?}"),
     };
-    assert!(status(&tell(&mut board, &command)).has(Status::DAMAGED_INPUT));
-    assert!(!status(&tell(&mut board, &command)).has(Status::DAMAGED_INPUT));
+    assert!(status(&send(&mut board, &command)).has(Status::DAMAGED_INPUT));
+    assert!(!status(&send(&mut board, &command)).has(Status::DAMAGED_INPUT));
     // Half a frame, followed by a delimiter and a whole frame.
-    assert_eq!(tell(&mut board, &[&command[..9], &[0], &command[..]].concat()).len(), 1);
+    assert_eq!(send(&mut board, &[&command[..9], &[0], &command[..]].concat()).len(), 1);
     // The type of an answer, the address of another finger, and address 0 with a type other than Hello.
-    assert!(tell(&mut board, &wire(1, Frame::Stopped(Stopped::default()))).is_empty());
+    assert!(send(&mut board, &wire(1, Frame::Stopped(Stopped::default()))).is_empty());
     let to = |address, frame| WireFrame::new(&Message { address, sequence: 1, frame }).as_bytes().to_vec();
-    assert!(tell(&mut board, &to(2, Frame::Stop(Stop))).is_empty());
-    assert!(tell(&mut board, &to(0, Frame::Stop(Stop))).is_empty());
+    assert!(send(&mut board, &to(2, Frame::Stop(Stop))).is_empty());
+    assert!(send(&mut board, &to(0, Frame::Stop(Stop))).is_empty());
 }
 
 #[test]

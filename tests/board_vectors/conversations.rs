@@ -60,7 +60,7 @@ fn check_answer(place: &str, answer: &Answer, sequence: u8, message: &Message) {
 }
 
 #[test]
-fn the_simulated_board_holds_every_conversation() {
+fn the_simulated_board_passes_every_conversation() {
     for (name, steps) in conversations() {
         let mut board = SimulatedBoard::new(&Configuration::default(), &[0]).unwrap();
         let mut now = 0;

@@ -204,7 +204,7 @@ fn refusals() -> Vec<Conversation> {
 /// Frames are damaged on the line.
 fn damage() -> Vec<Conversation> {
     vec![(
-        "damage is told in the next reply",
+        "damage is reported in the next reply",
         vec![
             Step::Send(vec![3, 0x31, 7, 0], None),
             configured(TERMS),

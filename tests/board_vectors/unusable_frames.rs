@@ -89,7 +89,7 @@ fn bad_frames_are_dropped_and_counted_and_cost_no_other() {
 }
 
 #[test]
-fn reasons_are_right() {
+fn reasons_are_correct() {
     for (name, reason, wire) in damaged() {
         let mut frame = [0; 512];
         let stuffed = &wire[..wire.len() - 1];

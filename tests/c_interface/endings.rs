@@ -12,7 +12,7 @@ fn a_finger_whose_board_dies_is_faulted() {
 }
 
 #[test]
-fn faults_are_told_by_number_and_in_words() {
+fn faults_are_reported_by_number_and_in_words() {
     succeed_while_the_board_dies("faults.c");
 }
 

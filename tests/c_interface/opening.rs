@@ -32,14 +32,14 @@ fn refusals_can_be_silent() {
 }
 
 #[test]
-fn clamping_is_not_refusing() {
+fn out_of_range_set_points_are_clamped_without_a_message() {
     let (status, _, printed) = opened_with("[hand]\nout_of_range = \"clamp\"\n");
     assert_eq!(status, Some(0), "{printed}");
     assert!(!printed.contains("SendPos: Pos["), "{printed}");
 }
 
 #[test]
-fn a_configuration_that_cannot_be_used_is_told_with_its_line() {
+fn an_unusable_configuration_is_refused_with_its_line() {
     for (configuration, line, word) in [
         ("[hand]\nrat = 1000.0\n", 2, "rat"),
         ("[finger.2]\n\nbaud = \"fast\"\n", 3, "fast"),
@@ -55,11 +55,11 @@ fn a_configuration_that_cannot_be_used_is_told_with_its_line() {
             "singular",
         ),
     ] {
-        let (status, told, printed) = opened_with(configuration);
-        assert_eq!(status, Some(2), "{configuration}: {told}{printed}");
-        assert!(told.starts_with("Invalid argument: OpenHand: "), "{told}");
-        assert!(told.contains(&format!("named.toml:{line}: ")), "{configuration}: {told}");
-        assert!(told.contains(word), "{configuration}: {told}");
+        let (status, output, printed) = opened_with(configuration);
+        assert_eq!(status, Some(2), "{configuration}: {output}{printed}");
+        assert!(output.starts_with("Invalid argument: OpenHand: "), "{output}");
+        assert!(output.contains(&format!("named.toml:{line}: ")), "{configuration}: {output}");
+        assert!(output.contains(word), "{configuration}: {output}");
     }
 }
 
@@ -85,8 +85,8 @@ fn the_nearest_configuration_file_counts() {
         command.args(["-u", "SUN2XP_CONFIG"]);
         command.arg(format!("XDG_CONFIG_HOME={}", user.display()));
         command.arg(format!("XDG_CONFIG_DIRS=relative:{}", system.display())).arg(&program);
-        let told = said(&bench.run(command));
-        assert!(told.contains(named), "{named}: {told}");
+        let output = said(&bench.run(command));
+        assert!(output.contains(named), "{named}: {output}");
         fs::remove_file(folder.join("sun2xp.toml")).expect("removed");
     }
 }
@@ -104,10 +104,10 @@ fn a_named_configuration_must_exist() {
 }
 
 #[test]
-fn a_port_that_does_not_exist_is_told() {
-    let (status, told, _) = opened_with("[finger.1]\nport = \"no/such/port\"\n");
-    assert_eq!(status, Some(2), "{told}");
-    assert!(told.starts_with("No such file or directory: OpenHand: ") && told.contains("no/such/port"), "{told}");
+fn a_port_that_does_not_exist_is_reported() {
+    let (status, output, _) = opened_with("[finger.1]\nport = \"no/such/port\"\n");
+    assert_eq!(status, Some(2), "{output}");
+    assert!(output.starts_with("No such file or directory: OpenHand: ") && output.contains("no/such/port"), "{output}");
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn the_simulated_hand_is_announced_in_one_line() {
 }
 
 #[test]
-fn fingers_that_no_file_gives_a_port_are_announced_in_one_line() {
+fn fingers_without_a_configured_port_are_announced_in_one_line() {
     for (configuration, announced) in [
         ("", Some("for any finger: the whole hand is simulated")),
         ("[finger.1]\nport = \"simulated\"\n", Some("for fingers 2 and 3: they are simulated")),

@@ -39,7 +39,7 @@ fn a_header_inside_extern_c_serves() {
 }
 
 #[test]
-fn own_declarations_and_addresses_are_served() {
+fn a_planners_own_declarations_and_addresses_of_calls_work() {
     succeed(&strict(&["-DSUN2XP_REAL=float", "-DREAL=float"]), &["own.c"]);
     succeed(&strict(&["-DSUN2XP_REAL=double", "-DREAL=double"]), &["own.c"]);
     succeed(&strict(&["-DSUN2XP_H", "-DANSI_DECLARATIONS", "-DREAL=float"]), &["own.c"]);
@@ -93,7 +93,7 @@ fn threads_may_call_at_once() {
 }
 
 #[test]
-fn a_planner_without_standard_descriptors_keeps_its_ports_to_itself() {
+fn a_planner_without_standard_descriptors_prints_nothing_to_its_ports() {
     succeed(STRICT, &["bare.c"]);
 }
 
@@ -108,7 +108,7 @@ fn a_finger_is_zeroed() {
 }
 
 #[test]
-fn a_finger_reads_what_it_does() {
+fn the_status_shows_the_state_of_a_finger() {
     succeed(&strict(&[]), &["states.c"]);
 }
 
@@ -131,12 +131,12 @@ fn a_black_box_is_written_and_replayed() {
 }
 
 #[test]
-fn the_status_tells_of_the_servo() {
+fn the_status_shows_the_state_of_the_servo() {
     succeed(&strict(&[]), &["status.c"]);
 }
 
 #[test]
-fn the_status_tells_of_a_servo_that_does_not_run() {
+fn the_status_shows_a_servo_that_does_not_run() {
     succeed(&strict(&["-std=gnu99"]), &["held.c"]);
 }
 
@@ -147,7 +147,7 @@ fn a_planner_that_packs_structs_and_redefines_words_of_c_is_served() {
 }
 
 #[test]
-fn the_timing_tells_where_the_time_goes() {
+fn the_timing_shows_every_stage_of_a_cycle() {
     succeed(&strict(&["-std=c99"]), &["timing.c"]);
 }
 

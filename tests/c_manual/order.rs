@@ -30,7 +30,7 @@ fn calls_report_the_first_refusal_of_their_entries() {
     }
     for entry in manual.entries.iter().filter(|entry| !entry.errnos().is_empty()) {
         let mut listed = entry.errnos().into_iter();
-        assert_eq!(listed.next(), Some("EPERM"), "{}: a forked child is told that first", entry.call);
+        assert_eq!(listed.next(), Some("EPERM"), "{}: a forked child gets this errno first", entry.call);
         let reported = reported.remove(entry.call.as_str()).unwrap_or_default();
         for (index, errno) in reported.iter().enumerate() {
             // Several reasons may share a line of the list.

@@ -14,7 +14,7 @@ fn sorted(mut names: Vec<&str>) -> Vec<&str> {
 }
 
 #[test]
-fn the_calls_that_return_no_int_are_named() {
+fn the_calls_that_do_not_return_int_are_listed() {
     let manual = Manual::read();
     let chapter = manual.chapter(2);
     let others = manual.entries.iter().filter(|entry| !entry.declaration.starts_with("int "));

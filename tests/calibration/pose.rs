@@ -175,7 +175,7 @@ fn a_spring_that_is_pushed_while_it_is_read() {
 }
 
 #[test]
-fn a_spring_that_is_let_go_while_it_is_read() {
+fn a_spring_that_is_released_while_it_is_read() {
     for scheme in SCHEMES {
         let tally = Tally::of(&format!("{scheme:?}, let go"), 50, |seed| {
             let mut trial = Trial::new(scheme, seed);
@@ -194,7 +194,7 @@ fn a_spring_that_is_let_go_while_it_is_read() {
 }
 
 #[test]
-fn a_spring_on_its_way() {
+fn a_moving_spring() {
     for scheme in SCHEMES {
         let tally = Tally::of(&format!("{scheme:?}, on its way"), 50, |seed| {
             let mut trial = Trial::new(scheme, seed);
@@ -232,7 +232,7 @@ fn a_limp_finger_that_nothing_holds() {
 }
 
 #[test]
-fn a_limp_finger_that_is_let_go_on_the_way() {
+fn a_limp_finger_that_is_released_during_the_reading() {
     let tally = Tally::of("limp, let go", 200, |seed| {
         let mut trial = Trial::new(Scheme::StateFeedback, seed);
         let at = trial.chance.between(0.0, 5.0);

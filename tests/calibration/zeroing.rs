@@ -29,7 +29,7 @@ fn joint_error(bench: Bench) -> f64 {
 }
 
 #[test]
-fn against_the_stops_from_anywhere() {
+fn zeroing_against_the_stops_works_from_any_pose() {
     let truth = truth();
     for (rate, start) in [(500.0, [0.0, 30.0, 60.0]), (1000.0, [40.0, -10.0, 100.0]), (2000.0, [-55.0, 90.0, 20.0])] {
         let mut actual = truth.clone();
@@ -87,7 +87,7 @@ fn a_board_that_kept_its_counts_keeps_the_zero_but_not_that_of_the_gauges() {
 
 /// The purpose of identification: a finger whose tendons are 10 % stiffer than configured becomes the commanded spring.
 #[test]
-fn a_calibrated_finger_is_the_spring_it_is_told_to_be() {
+fn a_calibrated_finger_is_the_commanded_spring() {
     let mut truth = truth();
     truth.simulation.tendon_stiffness = [330.0; 4];
     truth.simulation.joint_coulomb_friction = [0.5e-3; 3];

@@ -27,13 +27,13 @@ pub enum Verdict {
 }
 
 impl Tally {
-    /// Judges an attempt. `paused` is the longest pause of the machine, and `bears` is the longest pause that the
+    /// Judges an attempt. `paused` is the longest pause of the machine, and `tolerated` is the longest pause that the
     /// tested system must survive. For every excused failure another attempt has to pass, so that an intermittent
     /// defect cannot hide behind a machine that always pauses.
-    pub fn judge(&mut self, passed: bool, paused: Duration, bears: Duration) -> Verdict {
+    pub fn judge(&mut self, passed: bool, paused: Duration, tolerated: Duration) -> Verdict {
         match passed {
             true => self.passed += 1,
-            false if paused < bears => return Verdict::Failed,
+            false if paused < tolerated => return Verdict::Failed,
             false => self.excused += 1,
         }
         if self.passed > self.excused {
@@ -47,30 +47,34 @@ impl Tally {
 }
 
 /// Makes attempts until more have passed than failed, and returns the results of those that passed. An attempt may fail
-/// only if the machine was measured to pause the hand or its boards for at least `bears`. The attempt gets the watch,
-/// so that it can name the processes of its boards.
+/// only if the machine was measured to pause the hand or its boards for at least `tolerated`. The attempt gets the
+/// watch, so that it can name the processes of its boards.
 ///
 /// # Panics
 /// Panics if an attempt fails without such a pause, or if more than three fail.
-pub fn attempts<T>(what: &str, bears: Duration, mut attempt: impl FnMut(&PauseWatch) -> Result<T, String>) -> Vec<T> {
+pub fn attempts<T>(
+    what: &str,
+    tolerated: Duration,
+    mut attempt: impl FnMut(&PauseWatch) -> Result<T, String>,
+) -> Vec<T> {
     let (mut tally, mut found) = (Tally::default(), Vec::new());
     loop {
         let watch = PauseWatch::start();
         let result = attempt(&watch);
         let waits = watch.end();
-        let told = waits.told(bears);
-        let verdict = tally.judge(result.is_ok(), waits.most_within(bears), bears);
+        let measured = waits.description(tolerated);
+        let verdict = tally.judge(result.is_ok(), waits.most_within(tolerated), tolerated);
         let count = format!("{what}: {} passed, {} excused", tally.passed, tally.excused);
         match (result, verdict) {
             (Err(failure), Verdict::Failed) => {
-                panic!("{count}; {failure}. No pause of the machine explains it: {told}")
+                panic!("{count}; {failure}. No pause of the machine explains it: {measured}")
             }
-            (Err(failure), Verdict::Hopeless) => panic!("{count}; {failure}. The machine pauses too often: {told}"),
+            (Err(failure), Verdict::Hopeless) => panic!("{count}; {failure}. The machine pauses too often: {measured}"),
             // Written to the stream itself, which is not captured, so that the excused failures show in the test
             // report.
-            (Err(failure), _) => drop(writeln!(std::io::stderr(), "{count}: {told}; {failure}")),
+            (Err(failure), _) => drop(writeln!(std::io::stderr(), "{count}: {measured}; {failure}")),
             (Ok(value), verdict) => {
-                println!("{count}: {told}");
+                println!("{count}: {measured}");
                 found.push(value);
                 if verdict == Verdict::Passed {
                     return found;

@@ -106,7 +106,7 @@ pub fn name_pauses() -> &'static PauseWatch {
         let (shared, report) = (watch.shared.clone(), std::panic::take_hook());
         std::panic::set_hook(Box::new(move |panic| {
             report(panic);
-            eprintln!("{}", shared.waits().last(BEFORE_A_FAILURE).told(LONG));
+            eprintln!("{}", shared.waits().last(BEFORE_A_FAILURE).description(LONG));
         }));
         watch
     })

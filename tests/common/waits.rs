@@ -102,7 +102,7 @@ impl Waits {
     }
 
     /// Describes the measurements for a person.
-    pub fn told(&self, span: Duration) -> String {
+    pub fn description(&self, span: Duration) -> String {
         let milliseconds = |time: Duration| format!("{:.1} ms", 1e3 * time.as_secs_f64());
         let worst = self.worst(span);
         let parts: Vec<_> = worst.iter().map(|(part, time)| format!("{part} {}", milliseconds(*time))).collect();

@@ -22,7 +22,7 @@ fn refused(text: &str) -> (Option<usize>, String) {
 }
 
 #[test]
-fn numbers_that_are_none_are_refused_in_every_key() {
+fn unusable_numbers_are_refused_in_every_key() {
     let mut tried = 0;
     for key in keys(&with_optional_keys()).iter().filter(|key| !key.value.starts_with(['"', 't', 'f'])) {
         for number in ["nan", "-nan", "inf", "-inf", "1e400", "-1e400", "99999999999999999999"] {
@@ -36,7 +36,7 @@ fn numbers_that_are_none_are_refused_in_every_key() {
 }
 
 #[test]
-fn a_key_or_table_that_stands_there_twice_is_refused() {
+fn a_duplicate_key_or_table_is_refused() {
     for text in [
         "[hand]\nrate = 1000\nrate = 1000\n",
         "[hand]\nrate = 1000\n\"rate\" = 1000\n",
@@ -49,7 +49,7 @@ fn a_key_or_table_that_stands_there_twice_is_refused() {
 }
 
 #[test]
-fn what_editors_add_does_not_matter() {
+fn byte_order_marks_and_line_ends_of_editors_are_accepted() {
     for text in [
         "\u{feff}[hand]\nrate = 750\n",
         "[hand]\r\nrate = 750\r\n",
@@ -80,7 +80,7 @@ fn other_encodings_are_refused() {
 }
 
 #[test]
-fn no_depth_exhausts_the_stack() {
+fn no_nesting_depth_exhausts_the_stack() {
     let deep = |open: &str, close: &str| open.repeat(LARGE / 10) + &close.repeat(LARGE / 10);
     for (text, line) in [
         (format!("[hand]\nrate = {}", "[".repeat(LARGE)), Some(2)),
@@ -139,7 +139,7 @@ fn a_file_of_ten_megabytes_is_refused_by_its_size() {
 }
 
 #[test]
-fn what_a_file_says_is_shown_short_and_escaped() {
+fn texts_of_a_file_are_shown_shortened_and_escaped() {
     let hostile = "a\\n\\u001b[31mb".to_string() + &"c".repeat(LARGE / 2);
     for (text, line) in [
         (format!("\"{hostile}\" = 1\n"), 1),
@@ -167,7 +167,7 @@ fn what_a_file_says_is_shown_short_and_escaped() {
 }
 
 #[test]
-fn a_finger_that_is_not_there_is_told_which_fingers_are() {
+fn a_table_of_a_finger_that_does_not_exist_is_refused() {
     for (number, shown) in [("4", "4"), ("0", "0"), ("01", "01"), ("-1", "-1"), ("'2 '", "2 ")] {
         let (line, reason) = refused(&format!("[hand]\n[finger.{number}]\nport = '/dev/null'\n"));
         assert_eq!(line, Some(2));

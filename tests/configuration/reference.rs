@@ -49,7 +49,7 @@ fn every_key_of_every_table_is_in_it() {
 }
 
 #[test]
-fn the_optional_keys_say_what_counts_without_them() {
+fn the_optional_keys_name_their_defaults() {
     let (shown, default) = (usable(&with_optional_keys()), Configuration::default());
     for (index, finger) in shown.fingers.iter().enumerate() {
         let reference = &default.fingers[index];
@@ -105,7 +105,7 @@ fn every_key_is_read_and_a_misspelt_one_is_refused_with_its_line() {
 }
 
 /// Returns whether a comment contains a range that is not part of another one.
-fn tells(comment: &str, range: &str) -> bool {
+fn mentions(comment: &str, range: &str) -> bool {
     let numeric = |c: char| c.is_ascii_alphanumeric() || c == '-';
     comment.match_indices(range).any(|(start, _)| {
         let (before, after) = (&comment[..start], &comment[start + range.len()..]);
@@ -114,10 +114,10 @@ fn tells(comment: &str, range: &str) -> bool {
 }
 
 #[test]
-fn every_range_is_told() {
+fn every_range_is_documented() {
     // Values beyond every range, for floating-point numbers and for integers of 8, 16 and 32 bits.
     let beyond = ["1e300", "-1e300", "255", "0", "65535", "4294967295"];
-    let mut told = 0;
+    let mut documented = 0;
     for key in keys(&with_optional_keys()) {
         // Skips texts, choices, a surface, whose ranges are given together, and keys whose ranges [finger.1] gives.
         if key.value.starts_with(['"', '{', 't', 'f']) || matches!(key.table.as_str(), "finger.2" | "finger.3") {
@@ -131,9 +131,15 @@ fn every_range_is_told() {
             .filter_map(|(_, reason)| reason.split_once(" is outside ").map(|(_, range)| range.to_owned()))
             .collect();
         for range in ranges {
-            assert!(tells(&key.comment, &range), "{}.{}: {range:?} is not in {:?}", key.table, key.name, key.comment);
-            told += 1;
+            assert!(
+                mentions(&key.comment, &range),
+                "{}.{}: {range:?} is not in {:?}",
+                key.table,
+                key.name,
+                key.comment
+            );
+            documented += 1;
         }
     }
-    assert!(told > 40, "only {told} ranges found");
+    assert!(documented > 40, "only {documented} ranges found");
 }

@@ -35,7 +35,7 @@ fn a_lower_rate_is_the_other_remedy() {
 }
 
 #[test]
-fn what_two_fingers_of_a_port_have_differently_is_named() {
+fn a_key_that_differs_between_fingers_of_a_port_is_named() {
     let shared = "[finger]\nport = 'p'\nthread = 1\nbaud = 2000000\n";
     for (own, remedy) in [
         ("[finger.2]\nbaud = 3000000\n", "set baud in [finger]"),

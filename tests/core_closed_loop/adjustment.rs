@@ -91,7 +91,7 @@ fn an_adjustment_takes_effect() {
 
 /// A planner that adjusts in every cycle must neither freeze nor delay the torque.
 #[test]
-fn a_finger_that_is_adjusted_all_the_while_moves_and_settles() {
+fn a_finger_that_is_adjusted_in_every_cycle_moves_and_settles() {
     let target = Vector3::new(0.2, 0.7, 1.2);
     let mut servo = Loop::new(&quiet(Scheme::Figure10), 1000.0);
     let mut finger = quiet(Scheme::Figure10);

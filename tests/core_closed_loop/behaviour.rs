@@ -57,7 +57,7 @@ fn a_slack_finger_is_not_under_tension() {
 }
 
 #[test]
-fn a_lost_reply_repeats_the_command_but_lets_a_release_go_on() {
+fn a_lost_reply_repeats_the_command_but_does_not_stop_a_release() {
     let mut servo = Loop::new(&finger_with(Scheme::Figure10), 1000.0);
     let target = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
     servo.run(0.1, &target);
@@ -105,7 +105,7 @@ fn is_bumpless(scheme: Scheme, jump: f64) {
 }
 
 #[test]
-fn release_is_a_straight_ramp_from_what_was_pulled() {
+fn release_is_a_straight_ramp_from_the_last_pull() {
     let mut servo = Loop::new(&ConfiguredFinger::default(), 1000.0);
     servo.run(0.5, &spring(servo.plant.joints(), 3.0));
     let from = servo.report.motor_torques;

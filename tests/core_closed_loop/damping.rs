@@ -76,7 +76,7 @@ fn state_feedback_rests_at_both_ends_of_the_range() {
 
 /// With friction, the controllers of the report's figures hunt by more than this at any damping, 1 included.
 #[test]
-fn the_figures_rest_with_more_damping_where_nothing_rubs() {
+fn the_figures_rest_with_more_damping_without_friction() {
     for scheme in [Scheme::Figure9, Scheme::Figure10] {
         let finger = finger(scheme, false);
         for rate in [500.0, 1000.0, 2000.0] {
@@ -91,7 +91,7 @@ fn the_figures_rest_with_more_damping_where_nothing_rubs() {
 
 /// Pairs that were once admitted, although the finger never came to rest or broke a tendon.
 #[test]
-fn what_is_refused_would_not_rest() {
+fn refused_damping_would_not_rest() {
     let finger = finger(Scheme::StateFeedback, true);
     let admissible = AdmissibleDamping::new(&finger, 1000.0);
     for (stiffness, damping) in [(3.0, 3.0), (6.0, 2.0), (6.0, 0.5), (3.0, 0.2), (6.0, 0.2)] {

@@ -108,7 +108,7 @@ fn whatever_the_gauges_show_the_model_cannot_run_away() {
 }
 
 #[test]
-fn the_model_rests_where_tensions_say_nothing_about_the_motor() {
+fn the_model_keeps_its_estimate_while_tensions_carry_no_information() {
     let learnt = |finger: &ConfiguredFinger| {
         let mut stuck = Stuck::new(finger, WANTED);
         let learnt = stuck.estimate(100, Some(9.0));

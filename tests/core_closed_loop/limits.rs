@@ -66,7 +66,7 @@ fn a_joint_beyond_its_limit_is_pushed_back() {
 }
 
 #[test]
-fn a_motor_that_is_warm_is_limited_to_what_it_can_give_for_ever() {
+fn a_warm_motor_is_limited_to_its_continuous_torque() {
     let mut finger = finger_with(Scheme::StateFeedback);
     finger.motor.continuous_torque = [1.0; 4];
     finger.motor.thermal_time = 0.5;
@@ -94,7 +94,7 @@ fn a_motor_that_is_warm_is_limited_to_what_it_can_give_for_ever() {
 /// from all of them. Figure 11 is left out: it has no gain on the tension error and does not compensate the friction of
 /// the motors.
 #[test]
-fn a_warm_motor_does_not_turn_the_torque() {
+fn a_warm_motor_does_not_change_the_direction_of_the_torque() {
     for scheme in [Scheme::Figure9, Scheme::Figure10, Scheme::StateFeedback] {
         let mut finger = finger_with(scheme);
         finger.motor.continuous_torque[0] = 1.0;

@@ -69,7 +69,7 @@ fn the_joints_stay_where_they_are() {
 
 /// Pulling every tendon independently of the others makes the same fingers drift, so the test above can fail.
 #[test]
-fn without_regard_to_the_joints_they_do_not() {
+fn without_regard_to_the_joints_they_move() {
     let finger = ConfiguredFinger::default();
     let pretension = finger.tendons().expect("regular").pretension(finger.tendon.minimum);
     let [drift, mean, _] = worst(CASES[1], finger, 1000.0, &Activity::Tense(pretension));

@@ -175,7 +175,7 @@ fn push_error(way: f64, change: impl Fn(&mut ConfiguredFinger)) -> f64 {
 }
 
 #[test]
-fn friction_does_not_hold_the_finger_and_does_without_dither() {
+fn friction_holds_the_finger_only_without_dither() {
     assert!(push_error(0.2, |_| ()) < 0.05);
     let harsh = |finger: &mut ConfiguredFinger| {
         finger.simulation.joint_coulomb_friction = [2e-3; 3];
@@ -208,7 +208,7 @@ fn the_spring_begins_where_the_finger_is() {
 }
 
 #[test]
-fn a_reply_that_never_comes_leaves_the_command_where_it_was() {
+fn a_missing_reply_leaves_the_command_unchanged() {
     let mut servo = Loop::new(&finger(), 1000.0);
     let target = spring(Vector3::new(0.2, 0.7, 1.2), 3.0);
     servo.run(0.5, &target);

@@ -93,7 +93,7 @@ fn no_switch_of_the_spring_jumps() {
 
 /// A calibration takes over with a push that slackens the tendons, and tightens them after a rest.
 #[test]
-fn a_push_in_the_cycle_of_a_take_over_does_not_come_back() {
+fn a_push_in_the_cycle_of_a_take_over_is_not_repeated_later() {
     let finger = quiet(Scheme::StateFeedback);
     let mut servo = Loop::new(&finger, 1000.0);
     servo.run(0.5, &Activity::Follow(isotropic(3.0)));

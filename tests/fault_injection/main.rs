@@ -81,13 +81,13 @@ fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, Stri
     let ended = if warns { 0.0 } else { bench.ended().unwrap_or(f64::INFINITY) };
     // The servo knows its own command before the motors do, so it may name a fault earlier.
     let knowable = known.unwrap_or(found).min(found);
-    bench.mend();
+    bench.repair();
     if !warns {
         bench.recover();
     }
     bench.run(100);
     if let Some(fault) = bench.fault() {
-        return Err(format!("mended, and faults again: {fault}"));
+        return Err(format!("faults again after the repair: {fault}"));
     }
     Ok(Outcome { knowable, found: found - knowable, ended: if warns { 0.0 } else { ended - knowable } })
 }
@@ -136,7 +136,8 @@ fn inject_all(cases: &[Case], rate: f64, times: u64, warns: bool) -> Vec<String>
 
 fn inject_everything(times: u64) {
     println!(
-        "| injected | rate, Hz | reported as | detectable after, ms | then reported after, ms | then end state after, ms |"
+        "| injected | rate, Hz | reported as | detectable after, ms | then reported after, ms \
+         | then end state after, ms |"
     );
     println!("|---|---|---|---|---|---|");
     let mut wrong = inject_all(&of_the_finger(), 1000.0, times, false);
@@ -170,7 +171,7 @@ fn survive(fault: LineFault, probability: f64, seed: u64) -> Losses {
         let off = (report.cycle.tensions - bench.truth.tensions).amax();
         assert!(!answered || off < 0.2, "{fault:?}, {seed}: {off} N from the truth");
     }
-    bench.mend();
+    bench.repair();
     bench.run(5);
     assert_eq!(bench.fault(), None, "{fault:?}, {seed}");
     bench.report().losses.since(&before)
@@ -218,7 +219,7 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
             if fault != LineFault::Duplicate {
                 let share = report.losses.lost_replies as f64 / report.losses.cycles as f64;
                 assert!((0.03..0.07).contains(&share), "{scheme:?}, {fault:?}: {share}");
-                assert!(report.warnings.given() > 0, "nothing is told of a line like that");
+                assert!(report.warnings.given() > 0, "such a line must cause a warning");
             }
         }
     }
@@ -226,7 +227,7 @@ fn a_finger_in_motion_gives_no_false_alarm_on_a_line_that_loses_one_reply_in_twe
 
 /// A thread that does not run is not at fault. Predictions from before the pause must not be used after it.
 #[test]
-fn a_servo_that_now_and_then_does_not_run_for_twelve_milliseconds_keeps_its_finger() {
+fn a_servo_that_sometimes_pauses_for_twelve_milliseconds_keeps_its_finger() {
     for seed in 0..10 {
         let mut bench = Bench::new(Configuration::default(), seed);
         for _ in 0..60 {

@@ -257,7 +257,7 @@ impl Bench {
     }
 
     /// Removes every disturbance: of the line, of the finger and of its surroundings.
-    pub fn mend(&mut self) {
+    pub fn repair(&mut self) {
         self.wake_late(0);
         self.with_cable(|cable| {
             cable.set_plugged(true);

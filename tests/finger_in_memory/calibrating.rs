@@ -83,7 +83,7 @@ fn a_push_is_refused_and_the_finger_stays_the_spring_that_it_was() {
 }
 
 #[test]
-fn a_set_point_that_was_sent_in_the_cycle_before_is_on_its_way() {
+fn a_set_point_sent_in_the_previous_cycle_counts_as_motion() {
     let mut bench = standing(Scheme::StateFeedback);
     bench.mailbox.send(|set_point| set_point.joints.x += 0.2).expect("not faulted");
     order(&bench, Scheme::StateFeedback);
@@ -92,7 +92,7 @@ fn a_set_point_that_was_sent_in_the_cycle_before_is_on_its_way() {
 }
 
 #[test]
-fn what_was_adjusted_while_the_finger_was_read_is_in_force_after_a_refusal() {
+fn an_adjustment_during_a_calibration_is_in_force_after_its_refusal() {
     let mut bench = standing(Scheme::StateFeedback);
     order(&bench, Scheme::StateFeedback);
     bench.cycles(50);

@@ -16,12 +16,12 @@ impl Bench {
     fn exchanges(&mut self, lost: u32) -> bool {
         // After three lost periods the command decreases, and it reaches zero after ten.
         let left = f64::from(10 - lost.max(3)) / 7.0;
-        let (told, before) = (self.report().cycle.motor_torques * left, self.executed());
+        let (commanded, before) = (self.report().cycle.motor_torques * left, self.executed());
         let losses = self.report().losses.lost_replies;
         self.cycles(1);
         assert_eq!(self.stage(), Stage::Running);
         let (executed, answered) = (self.executed(), self.report().losses.lost_replies == losses);
-        let expected = if answered { told } else { before };
+        let expected = if answered { commanded } else { before };
         // A torque unit is 1.6e-4 N cm.
         assert!((executed - expected).amax() < 2e-4, "answered: {answered}, executed {executed}, expected {expected}");
         answered

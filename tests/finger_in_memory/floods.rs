@@ -21,9 +21,9 @@ fn a_flood_stops_its_finger_in_the_watchdogs_time() {
         // The flood may have begun just after a good reply.
         let milliseconds = (bench.world.now() - begun) as f64 / MILLISECOND as f64;
         assert!(milliseconds <= 19.0, "{frame:?}: {milliseconds} ms");
-        assert!(ended(&bench), "{frame:?}: the board was not told to stop");
+        assert!(ended(&bench), "{frame:?}: the board was not stopped");
         bench.end_flood();
-        bench.mend();
+        bench.repair();
         bench.opens();
         bench.goes(TARGET);
     }
@@ -38,7 +38,7 @@ fn a_flood_does_not_keep_a_finger_from_being_closed() {
         let begun = bench.world.now();
         bench.servo.run();
         assert!(matches!(bench.stage(), Stage::Closed | Stage::Faulted(_)), "{:?}", bench.stage());
-        assert!(ended(&bench), "{frame:?}: the board was not told to stop");
+        assert!(ended(&bench), "{frame:?}: the board was not stopped");
         // The time of the watchdog, plus the time that a board may take to confirm that it has stopped.
         let milliseconds = (bench.world.now() - begun) / MILLISECOND;
         assert!(milliseconds <= 18 + 2 + 100, "{frame:?}: {milliseconds} ms");

@@ -13,7 +13,7 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::simulated::{Defect, LineFault};
 
 #[test]
-fn a_joint_that_is_pushed_beyond_its_limit_is_said_to_be_at_its_stop() {
+fn a_joint_that_is_pushed_beyond_its_limit_is_reported_at_its_stop() {
     let mut bench = Bench::with(|configuration| {
         // The stop is close, at 12 degrees.
         (configuration.fingers[0].joints.minimum_degrees[0], configuration.fingers[0].joints.maximum_degrees[0]) =
@@ -54,7 +54,7 @@ fn a_tendon_that_is_without_tension_for_a_moment_is_no_fault() {
 }
 
 #[test]
-fn a_line_that_loses_replies_now_and_then_is_said_to_be_noisy() {
+fn a_line_that_loses_some_replies_is_reported_as_noisy() {
     let mut bench = Bench::new();
     bench.with_cable(|cable| cable.inject(LineFault::Drop, 0.05, u64::MAX, 3));
     let warning = bench.warns(FaultKind::LineNoise);
@@ -65,7 +65,7 @@ fn a_line_that_loses_replies_now_and_then_is_said_to_be_noisy() {
 }
 
 #[test]
-fn a_board_that_another_program_has_stopped_is_told_of() {
+fn a_board_that_another_program_has_stopped_is_reported() {
     let mut bench = Bench::new();
     bench.another_program_sends(Frame::Stop(Stop));
     let fault = bench.faults(FaultKind::BoardStopped);
@@ -73,18 +73,18 @@ fn a_board_that_another_program_has_stopped_is_told_of() {
 }
 
 #[test]
-fn a_board_that_refuses_this_fingers_frames_is_told_of_with_the_reason() {
+fn a_board_that_refuses_this_fingers_frames_is_reported_with_the_reason() {
     let mut bench = Bench::new();
     let reason = Reason::UnknownFrame;
     bench.answer_with(Frame::Refused(Refused { request: Kind::Command as u8, reason, detail: 9 }));
     let fault = bench.faults(FaultKind::CommandRefused);
     assert_eq!(fault.value, f64::from(reason.number()));
     bench.cycles(3);
-    assert!(bench.with_finger(|finger| finger.status().has(Status::ENDED)), "and is told to stop");
+    assert!(bench.with_finger(|finger| finger.status().has(Status::ENDED)), "the board must have ended");
 }
 
 #[test]
-fn a_port_that_fails_is_told_of_with_its_errno_and_its_board_is_told_to_stop() {
+fn a_port_that_fails_is_reported_with_its_errno_and_its_board_is_stopped() {
     let mut bench = Bench::new();
     bench.fail_port(PortError::Failed(io::Error::from_raw_os_error(libc::EIO)));
     let fault = bench.faults(FaultKind::PortFailed);
@@ -94,7 +94,7 @@ fn a_port_that_fails_is_told_of_with_its_errno_and_its_board_is_told_to_stop() {
 }
 
 #[test]
-fn a_servo_that_comes_late_says_so() {
+fn a_late_servo_gives_a_warning() {
     let mut bench = Bench::new();
     for _ in 0..100 {
         bench.cycles(19);
@@ -111,7 +111,7 @@ fn a_servo_that_comes_late_says_so() {
 }
 
 #[test]
-fn a_board_that_clips_torques_is_told_of() {
+fn a_board_that_clips_torques_is_reported() {
     let mut bench = Bench::believing(
         |configuration| configuration.fingers[0].motor.torque_limit = [1.0; 4],
         |configuration| configuration.fingers[0].motor.torque_limit = [4.75; 4],
@@ -123,7 +123,7 @@ fn a_board_that_clips_torques_is_told_of() {
 }
 
 #[test]
-fn a_torque_that_the_tension_limits_do_not_let_through_is_told_of() {
+fn a_torque_beyond_the_tension_limits_is_reported() {
     let mut bench = Bench::with(|configuration| configuration.fingers[0].tendon.maximum = 12.0);
     bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(0.0, 0.0, -1.5)));
     bench.mailbox.send(|set_point| set_point.joints = TARGET * 1.3).expect("not faulted");
@@ -155,7 +155,7 @@ fn a_calibration_that_gives_up_leaves_its_warning() {
 
 /// Detected by the library's own count of torque and time. The board reports nothing.
 #[test]
-fn a_motor_that_gives_more_than_it_can_for_ever_is_limited_and_then_stopped() {
+fn a_motor_above_its_continuous_torque_is_limited_and_then_stopped() {
     let mut bench = Bench::with(|configuration| {
         configuration.fingers[0].motor.continuous_torque = [0.8; 4];
         configuration.fingers[0].motor.thermal_time = 0.5;

@@ -28,7 +28,7 @@ fn opens_on_a_machine_with(bench: &mut Bench, pause: u64) -> (Fault, f64) {
 }
 
 #[test]
-fn an_overloaded_machine_is_told_of_when_the_time_is_over() {
+fn an_overloaded_machine_is_reported_at_the_time_out() {
     let mut bench = Bench::believing(impatient, |_| {});
     let (fault, lasted) = opens_on_a_machine_with(&mut bench, 15);
     assert!((1490.0..1550.0).contains(&lasted), "{lasted} ms: {fault}");
@@ -40,7 +40,7 @@ fn an_overloaded_machine_is_told_of_when_the_time_is_over() {
 }
 
 #[test]
-fn a_slack_tendon_is_told_of_when_the_time_is_over() {
+fn a_slack_tendon_is_reported_at_the_time_out() {
     // The motor unwinds its tendon instead of winding it. The machine is idle in the first run and busy in the second.
     for pause in [0, 3] {
         let mut bench = Bench::believing(impatient, |belief| belief.fingers[0].motor.sign = [1, 1, 1, -1]);
@@ -63,6 +63,6 @@ fn a_finger_that_recovers_has_as_much_time_again() {
         let later = cable.now() + 10_000 * MILLISECOND;
         cable.advance_to(later);
     });
-    bench.mend();
+    bench.repair();
     bench.opens();
 }

@@ -199,7 +199,7 @@ impl Bench {
     }
 
     /// Takes the link from the servo, shakes hands with the board and returns the link. The finger then takes up slack.
-    pub fn mend(&mut self) {
+    pub fn repair(&mut self) {
         self.until("at rest", |bench| !bench.repair_end.released.is_empty());
         let mut link = self.repair_end.released.pop().expect("released").link;
         let terms = Terms::new(&self.configuration.hand, &self.configuration.fingers[0]);

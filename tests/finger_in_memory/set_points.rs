@@ -39,14 +39,14 @@ fn a_stiffness_sent_first_after_open_leaves_the_finger_where_it_was_found() {
 }
 
 #[test]
-fn what_was_sent_before_a_fault_is_gone() {
+fn set_points_sent_before_a_fault_are_discarded() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
     let far = TARGET + Vector3::new(0.3, 0.3, 0.3);
     bench.mailbox.send(|set_point| set_point.joints = far).expect("not faulted");
     bench.cycles(20);
     stop(&mut bench);
-    bench.mend();
+    bench.repair();
     // A set point that is sent while slack is taken up does not count either.
     bench.mailbox.send(|set_point| set_point.joints = far).expect("not faulted");
     bench.opens();
@@ -62,7 +62,7 @@ fn of_two_that_send_within_a_period_after_recovery_none_is_overwritten() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
     stop(&mut bench);
-    bench.mend();
+    bench.repair();
     bench.opens();
     let near = bench.report().set_point.joints + Vector3::new(0.1, 0.0, 0.0);
     bench.mailbox.send(|set_point| set_point.joints = near).expect("not faulted");
@@ -73,7 +73,7 @@ fn of_two_that_send_within_a_period_after_recovery_none_is_overwritten() {
 }
 
 #[test]
-fn what_is_on_its_way_when_a_finger_faults_is_not_carried_out_after_recovery() {
+fn orders_in_transit_at_a_fault_are_not_executed_after_recovery() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
     bench.with_finger(|finger| finger.suffer(&Defect::EmergencyStop));
@@ -85,7 +85,7 @@ fn what_is_on_its_way_when_a_finger_faults_is_not_carried_out_after_recovery() {
     assert_eq!(order, Ok(Some(1)));
     bench.faults(FaultKind::EmergencyStopInput);
     bench.with_finger(|finger| finger.mend());
-    bench.mend();
+    bench.repair();
     bench.opens();
     bench.cycles(10);
     assert_eq!((bench.stage(), bench.report().orders), (Stage::Running, 1));
@@ -96,7 +96,7 @@ fn what_is_on_its_way_when_a_finger_faults_is_not_carried_out_after_recovery() {
 }
 
 #[test]
-fn what_was_sent_during_a_calibration_is_gone() {
+fn set_points_sent_during_a_calibration_are_discarded() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
     let mut configuration = Configuration::default();

@@ -9,6 +9,8 @@ mod machine;
 mod pauses;
 #[path = "../common/priority.rs"]
 mod priority;
+#[path = "../common/settling.rs"]
+mod settling;
 #[allow(dead_code)]
 #[path = "../common/tools.rs"]
 mod tools;
@@ -16,6 +18,7 @@ mod tools;
 use attempts::attempts;
 use machine::{Asked, Machine, build};
 use pauses::Part;
+use settling::{Settling, distance};
 use std::path::Path;
 use std::process::{Child, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -55,36 +58,20 @@ const CLOSE: f64 = 0.02;
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn farthest(found: [[f64; 3]; 3], wanted: [[f64; 3]; 3]) -> f64 {
-    let pairs = found.as_flattened().iter().zip(wanted.as_flattened());
-    pairs.map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max)
+    found.into_iter().zip(wanted).map(|(is, wanted)| distance(is, wanted)).fold(0.0, f64::max)
 }
 
-fn told(error: HandError) -> String {
+fn text(error: HandError) -> String {
     error.to_string()
 }
 
 /// Sends all fingers to their targets, and returns their positions when they have been at rest for a while.
 fn settled(hand: &Hand) -> Result<[[f64; 3]; 3], String> {
     for (finger, target) in (1..).zip(TARGETS) {
-        hand.send_position(finger, target).map_err(told)?;
+        hand.send_position(finger, target).map_err(text)?;
     }
-    let begin = Instant::now();
-    let mut since = begin;
-    loop {
-        let mut positions = [[0.0; 3]; 3];
-        for (finger, position) in (1..).zip(&mut positions) {
-            *position = hand.position(finger).map_err(told)?;
-        }
-        if farthest(positions, TARGETS) > CLOSE {
-            since = Instant::now();
-        } else if since.elapsed() > Duration::from_millis(500) {
-            return Ok(positions);
-        }
-        if begin.elapsed() > PATIENCE {
-            return Err(format!("after {PATIENCE:?} at {positions:?} instead of {TARGETS:?}"));
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    let settling = Settling { tolerance: CLOSE, rest: Duration::from_millis(500), patience: PATIENCE };
+    settling.wait(hand, [(1, TARGETS[0]), (2, TARGETS[1]), (3, TARGETS[2])])
 }
 
 /// Attempts to open a hand on the firmware and to work with it, each time on a new emulator. A busy machine may slow
@@ -92,10 +79,10 @@ fn settled(hand: &Hand) -> Result<[[f64; 3]; 3], String> {
 fn with_hand(what: &str, work: impl Fn(&Machine, &Hand) -> Result<(), String>) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let image = build(folder.path());
-    attempts(what, BEARS, |watch| {
+    attempts(what, TOLERATED_PAUSE, |watch| {
         let machine = Machine::start(&image);
         watch.also(machine.process(), Part::Board);
-        let hand = Hand::open(configuration(&machine.port, KEYS)).map_err(told)?;
+        let hand = Hand::open(configuration(&machine.port, KEYS)).map_err(text)?;
         work(&machine, &hand).map_err(|failure| {
             let losses = [1, 2, 3].map(|finger| hand.losses(finger).expect("a finger"));
             format!("{failure}; {losses:?}")
@@ -105,7 +92,7 @@ fn with_hand(what: &str, work: impl Fn(&Machine, &Hand) -> Result<(), String>) {
 
 /// A servo that receives nothing for 10 ms lets the motors go and starts again (docs/architecture.md). A hand survives
 /// that.
-const BEARS: Duration = Duration::from_millis(50);
+const TOLERATED_PAUSE: Duration = Duration::from_millis(50);
 
 const KEYS: &str = "rate = 500.0\nwatchdog_ms = 1000";
 
@@ -117,7 +104,7 @@ fn a_hand_settles_where_it_does_on_the_simulated_board() {
     with_hand("a hand on the firmware settles", |machine, hand| {
         let positions = settled(hand)?;
         let joints = [0, 1, 2].map(|finger| machine.finger(finger).plant.joints().into());
-        let losses = hand.losses(1).map_err(told)?;
+        let losses = hand.losses(1).map_err(text)?;
         let (from_simulated, from_truth) = (farthest(positions, expected), farthest(joints, expected));
         let found = format!(
             "{from_simulated:.4} rad from the simulated hand, {from_truth:.4} rad of it in truth, {} of {} replies \
@@ -139,11 +126,11 @@ fn its_emergency_stop_stops_the_hand() {
         assert!(noticed, "the emergency stop goes unnoticed");
         match hand.position(2).expect_err("it is faulted") {
             HandError::Faulted { fault, .. } if fault.kind == FaultKind::EmergencyStopInput => {}
-            error => return Err(told(error)),
+            error => return Err(text(error)),
         }
         assert_eq!(machine.finger(1).asked.currents, [0; 4]);
         // The fault input belongs to finger 2.
-        [1, 3].into_iter().try_for_each(|finger| hand.position(finger).map(drop).map_err(told))
+        [1, 3].into_iter().try_for_each(|finger| hand.position(finger).map(drop).map_err(text))
     });
 }
 
@@ -272,7 +259,7 @@ fn a_killed_planner_leaves_the_motors_in_their_end_state() {
     for end_state in [release, hold] {
         let in_end_state = |currents| if end_state == hold { held(currents) } else { none(currents) };
         let keys = format!("rate = 500.0\nwatchdog_ms = {WATCHDOG_MS}\n{end_state}");
-        attempts(&format!("SIGKILL on the firmware, {end_state}"), WATCHDOG_BEARS, |watch| {
+        attempts(&format!("SIGKILL on the firmware, {end_state}"), TOLERATED_BY_WATCHDOG, |watch| {
             let mut planner = Planner::start(&machine, &keys);
             watch.also(planner.0.id(), Part::Servo);
             watch.also(machine.process(), Part::Board);
@@ -290,4 +277,4 @@ fn a_killed_planner_leaves_the_motors_in_their_end_state() {
 const WATCHDOG_MS: u32 = 18;
 
 /// Two periods less than the watchdog: the servo stops a finger one period before its watchdog does.
-const WATCHDOG_BEARS: Duration = Duration::from_millis(14);
+const TOLERATED_BY_WATCHDOG: Duration = Duration::from_millis(14);

@@ -129,7 +129,7 @@ fn a_planner_that_returns_leaves_its_motors_holding_for_a_while() {
 }
 
 #[test]
-fn a_planner_that_leaves_past_every_handler_is_left_to_the_watchdogs() {
+fn a_planner_that_skips_its_exit_handlers_is_stopped_by_the_watchdogs() {
     let _turn = turn();
     let mut boards = three_boards();
     Planner::start(&boards, "", "_exit").ends();
@@ -172,7 +172,7 @@ fn an_emergency_stop_releases_at_once_or_holds_for_a_while_as_configured() {
 }
 
 #[test]
-fn what_an_emergency_stop_holds_is_said_where_people_look() {
+fn the_documentation_says_what_an_emergency_stop_holds() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let read = |file: &str| std::fs::read_to_string(root.join(file)).expect("a text");
     let after = |text: &str, begin: &str, end: &str| {

@@ -82,7 +82,7 @@ fn with_finger<R>(board: &SimulatedPort, finger: u8, act: impl FnOnce(&mut Simul
 }
 
 #[test]
-fn a_finger_that_lost_its_configuration_faults_and_its_neighbours_go_on() {
+fn a_finger_that_lost_its_configuration_faults_and_its_neighbours_keep_running() {
     let _turn = turn();
     let (board, hand) = own_board();
     goes(&hand, 2, TARGET);

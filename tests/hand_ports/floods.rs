@@ -19,7 +19,7 @@ use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
 /// bounded, a flood blocked a servo for longer.
 const PROMPT: Duration = Duration::from_secs(1);
 
-/// A board with finger 2 that repeats one frame while it is told to, and discards its answers meanwhile.
+/// A board with finger 2 that repeats one frame on request, and discards its answers meanwhile.
 struct FloodingBoard {
     port: String,
     flooding: Arc<AtomicBool>,

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use sun2xp::board::protocol::Status;
 
 /// Two periods less than the watchdog's 18 ms: the servo stops a finger one period before its watchdog does.
-const BEARS: Duration = Duration::from_millis(16);
+const TOLERATED_PAUSE: Duration = Duration::from_millis(16);
 
 /// Longest time to the motors' end state, ms, from the kill and from the last good reply.
 const WITHIN: f64 = 20.0;
@@ -102,7 +102,7 @@ fn a_killed_planners_motors_are_in_their_end_state_after_the_watchdogs_time() {
             if within { Ok(figures) } else { Err(format!("{name}: {figures:?}")) }
         };
         let figures: Vec<_> = (0..rounds)
-            .flat_map(|_| attempts(&format!("SIGKILL, {name}"), BEARS, &mut attempt).into_iter().flatten())
+            .flat_map(|_| attempts(&format!("SIGKILL, {name}"), TOLERATED_PAUSE, &mut attempt).into_iter().flatten())
             .collect();
         let worst = |of: fn(&(f64, f64)) -> f64| figures.iter().map(of).fold(0.0, f64::max);
         println!(

@@ -103,7 +103,7 @@ impl Bench {
         }
     }
 
-    fn mend(&self) {
+    fn repair(&self) {
         self.port.with_finger(self.finger as u8, |finger| finger.mend()).expect("the finger");
         self.port.clear();
         if self.port.path().as_os_str().is_empty() {
@@ -131,7 +131,7 @@ fn suffer(hand: &Hand, benches: &[Bench], troubles: &[Trouble]) {
         benches.iter().all(|bench| fault(hand, bench.finger).is_some())
     });
     for bench in benches {
-        bench.mend();
+        bench.repair();
         wait_until("recovered", || hand.recover(bench.finger).is_ok());
     }
 }

@@ -20,5 +20,7 @@ mod priority;
 mod reconnection;
 mod recovery;
 mod rig;
+#[path = "../common/settling.rs"]
+mod settling;
 
 use c::pauses;

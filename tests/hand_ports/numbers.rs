@@ -50,7 +50,7 @@ fn boards_that_differ_in_their_numbers_only_serve() {
 }
 
 #[test]
-fn built_in_boards_have_numbers_of_their_own_whatever_their_addresses() {
+fn built_in_boards_have_unique_numbers_whatever_their_addresses() {
     let _turn = turn();
     let mut configuration = Configuration::default();
     configuration.fingers.iter_mut().for_each(|finger| finger.address = 1);

@@ -81,7 +81,7 @@ fn a_silent_device() {
 }
 
 #[test]
-fn a_device_that_speaks_something_else() {
+fn a_device_with_another_protocol() {
     let _turn = turn();
     let (mut device, port) = TTYPort::pair().expect("a pseudo-terminal");
     let name = port.name().expect("its name");
@@ -103,7 +103,7 @@ fn a_device_that_speaks_something_else() {
 }
 
 #[test]
-fn what_is_no_port() {
+fn files_that_are_no_port() {
     let _turn = turn();
     let file = tempfile::NamedTempFile::new().expect("a file");
     for path in ["/dev/null", &file.path().to_string_lossy()] {

@@ -23,17 +23,17 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     configuration.fingers[1].reconnect = true;
     let hand = open(configuration);
     let refused = |kind: FaultKind| {
-        let mut told = None;
+        let mut reported = None;
         // At first the port may not exist yet.
         wait_until("refused for a fault", || match hand.recover(2) {
             Err(HandError::Faulted { finger: 2, fault }) => {
-                told = Some(fault.kind);
+                reported = Some(fault.kind);
                 true
             }
             Err(_) => false,
             Ok(()) => panic!("recovers"),
         });
-        assert_eq!(told, Some(kind));
+        assert_eq!(reported, Some(kind));
         assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished), "and stays as it was");
     };
     second.kill();
@@ -101,7 +101,7 @@ fn a_board_that_is_unplugged_again_and_again_recovers_and_nothing_leaks() {
 }
 
 #[test]
-fn nobody_recovers_a_finger_but_who_asks() {
+fn a_finger_recovers_only_on_request() {
     let _turn = turn();
     let folder = tempfile::tempdir().expect("a folder");
     let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));

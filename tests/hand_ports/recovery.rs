@@ -150,7 +150,7 @@ fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found()
 }
 
 #[test]
-fn two_that_recover_fingers_of_one_port_at_once_both_succeed() {
+fn two_threads_that_recover_fingers_of_one_port_both_succeed() {
     let _turn = turn();
     let (_board, hand) = one_port();
     stop_all();
@@ -170,7 +170,7 @@ fn two_that_recover_fingers_of_one_port_at_once_both_succeed() {
 /// A finger shows its fault until its servo has received the restored port. A caller that recovers it at this moment
 /// only waits.
 #[test]
-fn who_recovers_a_finger_that_was_just_mended_is_not_told_that_it_shares_its_port() {
+fn recovering_a_finger_that_was_just_repaired_does_not_report_a_shared_port() {
     let _turn = turn();
     let boards = three_boards();
     let hand = open(on_boards(&boards));

@@ -1,5 +1,6 @@
 //! Board programs, and hands that are configured for their ports.
 
+use crate::settling::{Settling, distance};
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command as Program, Stdio};
@@ -199,7 +200,7 @@ pub fn open(configuration: Configuration) -> Hand {
 
 pub fn farthest(hand: &Hand, finger: i32, target: [f64; 3]) -> f64 {
     let position = hand.position(finger).unwrap_or_else(|error| panic!("finger {finger}: {error}"));
-    position.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max)
+    distance(position, target)
 }
 
 /// Sends a finger to a pose and waits until it has been within 0.02 rad for 100 ms.
@@ -210,14 +211,9 @@ pub fn goes(hand: &Hand, finger: i32, target: [f64; 3]) {
 
 /// Waits until a finger has been within 0.02 rad of `target` for 100 ms.
 pub fn settles(hand: &Hand, finger: i32, target: [f64; 3]) {
-    let begun = Instant::now();
-    let mut since = Instant::now();
-    while since.elapsed() < Duration::from_millis(100) {
-        if farthest(hand, finger, target) > 0.02 {
-            since = Instant::now();
-        }
-        assert!(begun.elapsed() < LIMIT, "finger {finger} does not settle: {:?}", hand.report(finger));
-        std::thread::sleep(Duration::from_millis(2));
+    let settling = Settling { tolerance: 0.02, rest: Duration::from_millis(100), patience: LIMIT };
+    if let Err(error) = settling.wait(hand, [(finger, target)]) {
+        panic!("finger {finger} does not settle: {error}; {:?}", hand.report(finger));
     }
 }
 
@@ -232,12 +228,12 @@ pub fn wait_until(what: &str, mut wanted: impl FnMut() -> bool) {
 
 /// Closes a hand. If that never ends, the test fails instead of hanging.
 pub fn close(hand: Hand) {
-    let (closed, hear) = std::sync::mpsc::channel();
+    let (closed, receiver) = std::sync::mpsc::channel();
     std::thread::spawn(move || {
         hand.close();
         closed.send(())
     });
-    hear.recv_timeout(LIMIT).expect("the hand closes");
+    receiver.recv_timeout(LIMIT).expect("the hand closes");
 }
 
 /// Writes a configuration file with the values of [`on_ports`], and more keys of `[hand]`.

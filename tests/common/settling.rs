@@ -1,0 +1,43 @@
+//! Waits until fingers of an open hand have arrived at their targets and stay there.
+
+use std::time::{Duration, Instant};
+use sun2xp::hand::Hand;
+
+/// When fingers count as arrived.
+pub struct Settling {
+    /// Largest distance of a joint from its target, rad.
+    pub tolerance: f64,
+    /// Time within the tolerance. A finger that merely passes its target has not arrived.
+    pub rest: Duration,
+    /// Time after which the wait fails.
+    pub patience: Duration,
+}
+
+impl Settling {
+    /// Waits until all these fingers rest at their targets at the same time, and returns their positions.
+    pub fn wait<const N: usize>(&self, hand: &Hand, targets: [(i32, [f64; 3]); N]) -> Result<[[f64; 3]; N], String> {
+        let begun = Instant::now();
+        let mut since = begun;
+        loop {
+            let mut positions = [[0.0; 3]; N];
+            for (position, (finger, _)) in positions.iter_mut().zip(targets) {
+                *position = hand.position(finger).map_err(|error| error.to_string())?;
+            }
+            let distances = positions.iter().zip(targets).map(|(&position, (_, target))| distance(position, target));
+            if distances.fold(0.0, f64::max) > self.tolerance {
+                since = Instant::now();
+            } else if since.elapsed() > self.rest {
+                return Ok(positions);
+            }
+            if begun.elapsed() > self.patience {
+                return Err(format!("after {:?} at {positions:?} instead of {targets:?}", self.patience));
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+}
+
+/// The largest distance of a joint from its target, rad.
+pub fn distance(position: [f64; 3], target: [f64; 3]) -> f64 {
+    position.iter().zip(target).map(|(is, wanted)| (is - wanted).abs()).fold(0.0, f64::max)
+}
