@@ -67,8 +67,7 @@
        EIO        the finger is faulted: it has stopped by itself
        ENOTSUP    not for a finger on a real port
        ESHUTDOWN  the process is exiting, and the hand is closed (chapter 6)
-       others     a configuration file, a port, or enforced real time: errno of the system, or the
-                  nearest one
+       others     configuration file, port, enforced real time: errno of the system, or the nearest
 
    If several reasons apply, a call reports the first one in its entry. A call that succeeds changes
    neither errno nor HandError().
@@ -190,9 +189,9 @@
    not slow. These work even if malloc later returns NULL. OpenHand (12 MiB), RecoverHand,
    ZeroFinger, IdentifyFinger, AdjustFinger and WriteBlackBox (4 MiB) are refused with ENOMEM if
    that much memory is not free. If memory runs out while one of them runs, the process is aborted,
-   and the boards end the motion. A fault without 4 MiB for its black box is reported without one,
-   and a line on standard error says so. If the library was loaded with dlopen, the first call of a
-   thread needs memory for its thread-local data; without it the C library aborts the process.
+   and the boards end the motion. A fault that finds no 4 MiB for its black box is reported without
+   one, and a line on standard error says so. If the library was loaded with dlopen, the first call
+   of a thread needs memory for its thread-local data; without it the C library aborts the process.
 
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the planner's next
    cancellation point or, with asynchronous cancellation, when the call returns.
@@ -817,12 +816,10 @@ struct Fault {
    i        finger, 1 to 3
    Status   result; set Status->Size before the call
 
- Works on a faulted finger too.
-
- A servo thread does not run while a thread with a higher priority occupies its core, or while a
- debugger stops it. Then State stays that of the last cycle, and Cycles does not grow.
- SkippedPeriods grows with every period, so a planner can compare it with an earlier value to
- compute how old the pose of GetPos is.
+ Works on a faulted finger too. A servo thread does not run while a thread with a higher priority
+ occupies its core, or while a debugger stops it. Then State stays that of the last cycle, and Cycles
+ does not grow. SkippedPeriods grows with every period, so a planner can compare it with an earlier
+ value to compute how old the pose of GetPos is.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -957,8 +954,7 @@ int GetTip(int, struct FingerTip *);
             4   soft finger: three forces and a moment about the normal
    K        K[D][D] or K[D * D], row by row. Always double. For D = 1: N/cm along the normal. For
             D = 3 and 4, rows and columns 0 to 2 are x, y, z of the finger's frame, N/cm. For D = 4,
-            row and column 3 are the rotation about the normal: N cm/rad on the diagonal, N/rad
-            beside it
+            row and column 3 are the rotation about the normal: N cm/rad on the diagonal, else N/rad
    Normal   Normal[3]: the contact normal in the finger's frame, of any length but zero. Always
             double. Not used for D = 3, and may be null there
 
@@ -1014,8 +1010,7 @@ int SendContact(int, int, const double *, const double *);
    ENODEV   no hand is open
    EINVAL   no such finger; Ratio is NaN or infinite
    EIO      the finger is faulted
-   ERANGE   Ratio is outside its range, which HandError gives (hand.out_of_range = "clamp" clamps it
-            instead)
+   ERANGE   Ratio is outside the range that HandError gives (hand.out_of_range = "clamp" clamps it)
 
  Threads: any. Never waits for a servo. Takes about 100 ns.
  */
@@ -1166,7 +1161,7 @@ int WriteBlackBox(int, const char *);
 
  The default is "stops" if the finger is simulated or the configuration gives the positions of its
  stops, otherwise "pose". At the end the finger holds its present pose at its initial stiffness.
- While it was limp, a free finger may have moved by some tenths of a radian.
+ While it was limp, a free finger may have moved by up to some tenths of a radian.
 
  The zeros take effect at once. If OpenHand has read a configuration file, they are written into
  that file; all other keys and comments stay as they are in the file at that time. So several

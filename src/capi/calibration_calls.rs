@@ -26,7 +26,7 @@ use std::ffi::c_int;
 ///
 /// The default is "stops" if the finger is simulated or the configuration gives the positions of its
 /// stops, otherwise "pose". At the end the finger holds its present pose at its initial stiffness.
-/// While it was limp, a free finger may have moved by some tenths of a radian.
+/// While it was limp, a free finger may have moved by up to some tenths of a radian.
 ///
 /// The zeros take effect at once. If OpenHand has read a configuration file, they are written into
 /// that file; all other keys and comments stay as they are in the file at that time. So several

@@ -110,8 +110,7 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 ///            4   soft finger: three forces and a moment about the normal
 ///   K        K[D][D] or K[D * D], row by row. Always double. For D = 1: N/cm along the normal. For
 ///            D = 3 and 4, rows and columns 0 to 2 are x, y, z of the finger's frame, N/cm. For D = 4,
-///            row and column 3 are the rotation about the normal: N cm/rad on the diagonal, N/rad
-///            beside it
+///            row and column 3 are the rotation about the normal: N cm/rad on the diagonal, else N/rad
 ///   Normal   Normal[3]: the contact normal in the finger's frame, of any length but zero. Always
 ///            double. Not used for D = 3, and may be null there
 ///
@@ -184,8 +183,7 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; Ratio is NaN or infinite
 ///   EIO      the finger is faulted
-///   ERANGE   Ratio is outside its range, which HandError gives (hand.out_of_range = "clamp" clamps it
-///            instead)
+///   ERANGE   Ratio is outside the range that HandError gives (hand.out_of_range = "clamp" clamps it)
 ///
 /// Threads: any. Never waits for a servo. Takes about 100 ns.
 #[unsafe(no_mangle)]

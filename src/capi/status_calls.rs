@@ -84,12 +84,10 @@ pub struct FingerStatus {
 ///   i        finger, 1 to 3
 ///   Status   result; set Status->Size before the call
 ///
-/// Works on a faulted finger too.
-///
-/// A servo thread does not run while a thread with a higher priority occupies its core, or while a
-/// debugger stops it. Then State stays that of the last cycle, and Cycles does not grow.
-/// SkippedPeriods grows with every period, so a planner can compare it with an earlier value to
-/// compute how old the pose of GetPos is.
+/// Works on a faulted finger too. A servo thread does not run while a thread with a higher priority
+/// occupies its core, or while a debugger stops it. Then State stays that of the last cycle, and Cycles
+/// does not grow. SkippedPeriods grows with every period, so a planner can compare it with an earlier
+/// value to compute how old the pose of GetPos is.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
