@@ -64,8 +64,8 @@ pub enum RecordingError {
     Foreign(String, String),
     /// The file has another version of the format.
     #[error(
-        "{file} has version {found} of the format, this program reads {VERSION}: replay it with library {library}, \
-         which wrote it"
+        "{file} has format version {found}, and this program reads version {VERSION}: replay it with library \
+         {library}, which wrote it"
     )]
     Version {
         /// The file.
@@ -88,7 +88,7 @@ pub enum RecordingError {
         library: String,
     },
     /// Cycles are missing.
-    #[error("{file} ends after {found} of {expected} cycles: it was cut off, copy it again")]
+    #[error("{file} ends after {found} of {expected} cycles: the file is truncated, copy it again")]
     Short {
         /// The file.
         file: String,
@@ -98,7 +98,7 @@ pub enum RecordingError {
         expected: usize,
     },
     /// The file has more cycles than its first line announces, or than a black box can have.
-    #[error("{file} has more than {most} cycles: it is not a black box as it was written")]
+    #[error("{file} has more than {most} cycles: the file was altered after it was written")]
     Long {
         /// The file.
         file: String,
@@ -111,7 +111,7 @@ pub enum RecordingError {
 fn written_by(library: &str) -> String {
     match env!("CARGO_PKG_VERSION") {
         own if own == library => String::new(),
-        own => format!(". Library {library} wrote it and this is {own}: replay it with that one"),
+        own => format!(". Library {library} wrote it, and this is library {own}: replay it with library {library}"),
     }
 }
 

@@ -236,7 +236,7 @@ mod tests {
         // The change does not affect finger 2.
         stored(radius, &[zeros(2, [5; 4], 0.0)]);
         let error = try_to_store("[hand]\nrate = 500\n", &[bound(2, 7.0)]).expect_err("another rate").to_string();
-        assert!(error.contains("hand.rate is 500 there, and was 1000 when"), "{error}");
+        assert!(error.contains("hand.rate is 500 there, and was 1000 during the calibration"), "{error}");
         for (text, line, reason) in
             [("[hand]\nrate = \n", Some(2), ""), ("\n[finger.3.tendon]\nmaximum = 8\n", Some(3), "for its pretension")]
         {

@@ -24,20 +24,26 @@ fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
             "the calling thread runs under SCHED_DEADLINE, and the system lets such a thread start others only with \
              SCHED_FLAG_RESET_ON_FORK: set that flag (sched_setattr), or make this call in an ordinary thread",
         ),
-        libc::EMFILE => Some("this process may not open more files: close some, or raise its limit (ulimit -n)"),
-        libc::ENFILE => Some("the system may not open more files: end other programs, or raise fs.file-max (sysctl)"),
+        libc::EMFILE => {
+            Some("this process has reached its limit of open files: close some, or raise the limit (ulimit -n)")
+        }
+        libc::ENFILE => {
+            Some("the system has reached its limit of open files: end other programs, or raise fs.file-max (sysctl)")
+        }
         libc::EAGAIN => Some(
-            "this user may not start more threads: end other programs, or raise the limit of the user (ulimit -u), of \
-             the service or container (TasksMax, pids.max) or of the system (kernel.threads-max); raise the \
-             limits of memory too (ulimit -v, and ulimit -l after mlockall)",
+            "a limit of threads or memory has been reached: end other programs, or raise the thread limit of the user \
+             (ulimit -u), of the service or container (TasksMax, pids.max) or of the system (kernel.threads-max), and \
+             the memory limits (ulimit -v, and ulimit -l after mlockall)",
         ),
         // The two errors with which sandboxes refuse a system call. EPERM is also what the device rules of a container
         // answer.
         libc::EPERM | libc::ENOSYS => Some(
-            "a sandbox (seccomp) or a container forbids a system call that this needs: permit it there (strace -f \
-             shows which one), or run outside",
+            "a sandbox (seccomp) or a container forbids a necessary system call: permit it there (strace -f shows \
+             which one), or run the program outside",
         ),
-        libc::ENOMEM => Some("memory is short: end other programs, or raise the limit of this process (ulimit -v)"),
+        libc::ENOMEM => {
+            Some("there is too little free memory: end other programs, or raise the limit of this process (ulimit -v)")
+        }
         libc::ENOSPC => Some(
             "no pseudo-terminal is free: end programs that hold one, such as terminal windows, or raise kernel.pty.max \
              (sysctl)",

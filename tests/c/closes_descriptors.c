@@ -127,7 +127,7 @@ static void check_fingers(int all)
         /* If the descriptors of a simulated board are closed first, the board ends and its port vanishes. */
         CHECK(Fault.Number == FAULT_PORT_CLOSED || Fault.Number == FAULT_PORT_VANISHED);
         CHECK(GetPos(finger, Pos) == -1 && errno == EIO);
-        CHECK(strstr(HandError(), "CloseHand and OpenHand") != NULL);
+        CHECK(strstr(HandError(), "CloseHand, OpenHand") != NULL);
     }
 }
 

@@ -210,7 +210,7 @@ int main(void)
     without_hand();
     CHECK(OpenHand() == 0);
     CHECK(setenv("SUN2XP_CONFIG", "missing.toml", 1) == 0);
-    REFUSED("OpenHand", OpenHand(), "open already");
+    REFUSED("OpenHand", OpenHand(), "already open");
     small_structs();
     CHECK(StopHand() == 0);
     for (finger = 1; finger <= 3; finger++)

@@ -97,7 +97,7 @@ int main(void)
     leaves_a_refused_struct_alone();
 
     errno = 0;
-    REFUSED(OpenHand(), EBUSY, "open already");
+    REFUSED(OpenHand(), EBUSY, "already open");
     CHECK(SendPos(1, Fine) == 0);
     CHECK(GetPos(1, Output) == 0);
     CHECK(Output[0] != 7.0f);

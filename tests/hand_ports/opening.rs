@@ -122,7 +122,7 @@ fn a_tendon_that_stays_slack_closes_the_whole_hand_again() {
     // The motor unwinds its tendon instead of winding it.
     configuration.fingers[2].motor.sign = [1, 1, 1, -1];
     let error = refusal(configuration);
-    assert_names(&error, libc::EIO, &["finger 3", "tendon 4", "sign or zero of motor or gauge"]);
+    assert_names(&error, libc::EIO, &["finger 3", "tendon 4", "sign or zero of a motor or gauge"]);
     for (index, board) in boards.iter_mut().enumerate() {
         let state = board.state(index + 1);
         assert!(state.has(Status::ENDED) && state.limp(), "finger {}: {state:?}", index + 1);

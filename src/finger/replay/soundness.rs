@@ -67,11 +67,11 @@ impl Recording {
             }
             computed = computed.saturating_add(skipped + 1);
             if computed > MOST_COMPUTED {
-                return wrong("skipped", format!("makes more than {MOST_COMPUTED} cycles to compute in all"));
+                return wrong("skipped", format!("gives more than {MOST_COMPUTED} cycles to compute"));
             }
             if fading.is_some_and(|fading| !fading.possible(hand)) {
                 let most = hand.hold_torque_limit;
-                return wrong("fading", format!("has a left outside 0 to 1, or a rest outside 0 to {most} N cm"));
+                return wrong("fading", format!("has `left` outside 0 to 1, or `rest` outside 0 to {most} N cm"));
             }
             if let Err((key, reason)) = within_bounds(&control.input, "") {
                 return wrong(key.trim_start_matches('.'), reason);
@@ -93,7 +93,7 @@ fn check_numbers(value: &Value, key: &str) -> Result<(), (String, String)> {
     match value {
         Value::Number(number) => match number.as_f64() {
             Some(number) if number.abs() <= LARGEST => Ok(()),
-            _ => Err((key.into(), format!("is {number}: nothing of a finger is beyond {LARGEST:e}"))),
+            _ => Err((key.into(), format!("is {number}: the limit of every number is {LARGEST:e}"))),
         },
         Value::Array(values) => {
             let indexed = |(index, value)| check_numbers(value, &format!("{key}[{index}]"));

@@ -26,7 +26,7 @@ impl Wrong {
     /// A syntax error. The parser's messages contain nothing of the text.
     pub fn in_syntax(error: TomlError) -> Self {
         match error.span() {
-            None => Self::at(None, "a key of 80 parts or more, which no configuration has".into()),
+            None => Self::at(None, "a key has 80 parts or more, which no key of a configuration has".into()),
             span => Self::at(span, error.message().into()),
         }
     }

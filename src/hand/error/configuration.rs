@@ -23,8 +23,8 @@ pub enum ConfigurationError {
     },
     /// The environment names a configuration file, but the program has raised privileges.
     #[error(
-        "SUN2XP_CONFIG names {}, but this program is setuid or setgid, or has capabilities, so that its environment is \
-         not trusted: unset SUN2XP_CONFIG, and describe the hand in {system}",
+        "SUN2XP_CONFIG names {}, but this program is setuid or setgid, or has capabilities, and therefore does not \
+         trust its environment: unset SUN2XP_CONFIG, and describe the hand in {system}",
         ShownPath(path)
     )]
     UntrustedEnvironment {
