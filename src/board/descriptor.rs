@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn it_has_a_high_number_and_closes_at_exec() {
+    fn a_descriptor_has_a_high_number_and_closes_at_exec() {
         let descriptor = open();
         assert!(descriptor.number() >= 256 && descriptor.is_own(), "{descriptor:?}");
         // SAFETY: the descriptor is open.
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_one_is_not_taken_for_another_file_of_its_number_and_leaves_that_open() {
+    fn a_closed_descriptor_does_not_match_or_close_another_file_with_its_number() {
         // No other test uses this number, even if it is free.
         const ALONE: RawFd = 900;
         // SAFETY: the descriptor is open, and nothing else uses the number.
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn a_call_that_failed_says_why() {
+    fn a_failed_call_returns_its_errno() {
         // SAFETY: the path is a constant C string.
         let result = unsafe { libc::open(c"/nonexistent/file".as_ptr(), libc::O_RDWR) };
         assert_eq!(Descriptor::opened(result).expect_err("refused").raw_os_error(), Some(libc::ENOENT));

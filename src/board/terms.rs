@@ -5,8 +5,8 @@ use crate::model::configuration::{ConfiguredFinger, ConfiguredHand, EndState};
 use nalgebra::Vector4;
 use thiserror::Error;
 
-/// The longest minimum watchdog time that the protocol permits a board, ms. A board up to this limit gets its minimum
-/// even if a shorter watchdog is configured.
+/// The protocol limits a board's shortest watchdog time to this value, ms. A board within this limit gets its shortest
+/// time even if the configured one is shorter.
 const LONGEST_NEEDED_MS: u16 = 20;
 
 /// The largest torque unit of a board, as a part of a motor's torque limit. Rounding lowers the limit by up to one
@@ -19,8 +19,8 @@ const MICRO_PER_CENTI: f64 = 1e4;
 /// The terms in physical units. [`Terms::configure`] converts them to a [`Configure`] with the board's [`Identity`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terms {
-    /// Silence after which the board enters its end state, ms. A board with a longer minimum, up to 20 ms, gets its
-    /// minimum.
+    /// Silence after which the board enters its end state, ms. A board whose shortest time is longer, up to 20 ms, gets
+    /// its shortest time.
     pub watchdog_ms: u16,
     /// What the board does when commands stop.
     pub end_state: EndState,
@@ -37,14 +37,14 @@ pub struct Terms {
 /// Terms that a board cannot meet.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum TermsError {
-    /// The configured watchdog is shorter than the board's minimum, which is longer than the protocol permits.
+    /// The board's shortest watchdog time exceeds both the configured time and the protocol's limit.
     #[error(
         "its shortest watchdog time is {shortest} ms, but hand.watchdog_ms is {wanted} and the protocol permits at \
          most {LONGEST_NEEDED_MS} ms: update its firmware, or raise hand.watchdog_ms to {shortest}, so that its motors \
          continue for that time when commands stop"
     )]
     Watchdog {
-        /// The board's minimum, ms.
+        /// The board's shortest time, ms.
         shortest: u16,
         /// The configured time, ms.
         wanted: u16,

@@ -7,7 +7,7 @@
 
 use super::average::Average;
 use super::instruments::Instruments;
-use super::joint_lead::JointLead;
+use super::joint_guide::JointGuide;
 use super::obstacle::Obstacle;
 use super::step::Sample;
 use crate::model::Part;
@@ -53,7 +53,7 @@ impl Balance {
         &mut self,
         instruments: &Instruments,
         sample: &Sample,
-        lead: &mut JointLead,
+        guide: &mut JointGuide,
     ) -> Result<Option<Vector4<f64>>, Obstacle> {
         self.seconds += instruments.period;
         let high = self.leg >= 3;
@@ -63,17 +63,17 @@ impl Balance {
             0.0
         };
         let rise = RISING * instruments.period;
-        lead.common += (level - lead.common).clamp(-rise, rise);
+        guide.common += (level - guide.common).clamp(-rise, rise);
         // Leg 0 of a level only brings the finger there.
-        let way = self.leg % 3;
-        let target = self.centre.add_scalar(if way == 1 { -SWING } else { SWING });
-        (0..3).for_each(|joint| lead.advance(joint, target[joint], SPEED * instruments.period));
-        let there = lead.anchor == target && lead.common == level;
-        if way > 0 && self.seconds > RUN_UP && !there {
+        let leg = self.leg % 3;
+        let target = self.centre.add_scalar(if leg == 1 { -SWING } else { SWING });
+        (0..3).for_each(|joint| guide.advance(joint, target[joint], SPEED * instruments.period));
+        let there = guide.anchor == target && guide.common == level;
+        if leg > 0 && self.seconds > RUN_UP && !there {
             let averages = if high { &mut self.high } else { &mut self.low };
-            averages[way - 1].add(instruments.tensions(sample.feedback));
+            averages[leg - 1].add(instruments.tensions(sample.feedback));
         }
-        let blocked = (0..3).find(|&joint| lead.strained(joint));
+        let blocked = (0..3).find(|&joint| guide.strained(joint));
         self.strained = if blocked.is_some() { self.strained + instruments.period } else { 0.0 };
         if let Some(joint) = blocked.filter(|_| self.strained > BLOCKED) {
             return Err(Obstacle::JointBlocked { joint: joint as u8 });

@@ -50,7 +50,7 @@ impl GaugeZero {
         self.seconds += instruments.period;
         let travel = instruments.travel(sample.feedback);
         let start = *self.start.get_or_insert(travel);
-        let inside = (travel - start).map(|way| way > -LET_OUT);
+        let inside = (travel - start).map(|distance| distance > -LET_OUT);
         let Some(out_at) = self.out_at else {
             if inside.iter().all(|inside| !inside) {
                 self.out_at = Some(self.seconds);

@@ -2,7 +2,7 @@
 //! stops. A joint that is held does not yield.
 
 use super::instruments::Instruments;
-use super::joint_lead::JointLead;
+use super::joint_guide::JointGuide;
 use super::obstacle::Obstacle;
 use super::standstill::TOLERANCE;
 use super::step::Sample;
@@ -20,7 +20,7 @@ const RESTING: f64 = 0.3;
 /// The sequence of pushes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grip {
-    lead: JointLead,
+    guide: JointGuide,
     /// Joint angles at the beginning, rad.
     start: Vector3<f64>,
     /// Joint and direction of the push: 0 to 5. 6 when all pushes are done.
@@ -32,8 +32,8 @@ pub(super) struct Grip {
 impl Grip {
     /// `torque`: the largest torque of a push, N cm.
     pub fn new(instruments: &Instruments, sample: &Sample, torque: f64) -> Self {
-        let lead = JointLead::new(instruments, sample, torque);
-        Self { lead, start: lead.joints, push: 0, seconds: 0.0 }
+        let guide = JointGuide::new(instruments, sample, torque);
+        Self { guide, start: guide.joints, push: 0, seconds: 0.0 }
     }
 
     /// Runs one cycle. Returns the activity, and whether all joints were pushed and the finger is at rest again.
@@ -44,8 +44,8 @@ impl Grip {
         sample: &Sample,
         speed: f64,
     ) -> Result<(Activity, bool), Obstacle> {
-        self.lead.measure(instruments, sample);
-        let (joint, distance) = (self.lead.joints - self.start).abs().argmax();
+        self.guide.measure(instruments, sample);
+        let (joint, distance) = (self.guide.joints - self.start).abs().argmax();
         if distance > GIVES_WAY {
             return Err(Obstacle::NotHeld { joint: joint as u8, degrees: distance.to_degrees() });
         }
@@ -54,15 +54,15 @@ impl Grip {
         let target = |other: usize| if other == joint { self.start[other] + direction } else { self.start[other] };
         for other in 0..3 {
             let target = target(other);
-            self.lead.advance(other, target, step);
+            self.guide.advance(other, target, step);
         }
-        let pushed = joint > 2 || self.lead.strained(joint);
+        let pushed = joint > 2 || self.guide.strained(joint);
         self.seconds = if pushed { self.seconds + instruments.period } else { 0.0 };
         if joint < 3 && self.seconds >= PUSHING {
             (self.push, self.seconds) = (self.push + 1, 0.0);
         }
         let done = joint > 2 && self.seconds >= RESTING;
-        Ok((self.lead.activity(instruments, sample), done))
+        Ok((self.guide.activity(instruments, sample), done))
     }
 
     /// Refuses a finger that was read at other joint angles, rad, than it had before the pushes.

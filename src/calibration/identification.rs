@@ -6,7 +6,7 @@ use super::balance::Balance;
 use super::findings::Identified;
 use super::instruments::Instruments;
 use super::joint_friction::JointFriction;
-use super::joint_lead::JointLead;
+use super::joint_guide::JointGuide;
 use super::motor_friction::MotorFriction;
 use super::pressing::Pressing;
 use super::step::{Sample, Stepped};
@@ -35,11 +35,11 @@ pub(super) struct Identification {
 #[derive(Clone, Copy, Debug)]
 enum Phase {
     Tighten(TakeUp),
-    Balance { lead: JointLead, balance: Balance },
-    Seek { lead: JointLead, joint: usize, search: StopSearch },
-    Swing { lead: JointLead, friction: JointFriction, joint: usize },
+    Balance { guide: JointGuide, balance: Balance },
+    Seek { guide: JointGuide, joint: usize, search: StopSearch },
+    Swing { guide: JointGuide, friction: JointFriction, joint: usize },
     Press { pressing: Pressing, stiffness: TendonStiffness, friction: MotorFriction },
-    Return { lead: JointLead, joint: usize, strained: f64, found: Identified },
+    Return { guide: JointGuide, joint: usize, strained: f64, found: Identified },
 }
 
 impl Identification {
@@ -62,14 +62,14 @@ impl Identification {
     pub fn step(&mut self, instruments: &mut Instruments, sample: &Sample) -> Stepped {
         match self.phase {
             Phase::Tighten(take_up) => self.take_up_slack(take_up, instruments, sample),
-            Phase::Balance { lead, balance } => self.compare_gauges(lead, balance, instruments, sample),
-            Phase::Seek { lead, joint, search } => self.seek_stop(lead, joint, search, instruments, sample),
-            Phase::Swing { lead, friction, joint } => self.swing_joint(lead, friction, joint, instruments, sample),
+            Phase::Balance { guide, balance } => self.compare_gauges(guide, balance, instruments, sample),
+            Phase::Seek { guide, joint, search } => self.seek_stop(guide, joint, search, instruments, sample),
+            Phase::Swing { guide, friction, joint } => self.swing_joint(guide, friction, joint, instruments, sample),
             Phase::Press { pressing, stiffness, friction } => {
                 self.press_against_stops(pressing, stiffness, friction, instruments, sample)
             }
-            Phase::Return { lead, joint, strained, found } => {
-                self.lead_back(lead, joint, strained, found, instruments, sample)
+            Phase::Return { guide, joint, strained, found } => {
+                self.return_to_start(guide, joint, strained, found, instruments, sample)
             }
         }
     }

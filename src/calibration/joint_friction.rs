@@ -4,7 +4,7 @@
 //! friction b. Gravity g does not change with direction, and is discarded.
 
 use super::instruments::Instruments;
-use super::joint_lead::JointLead;
+use super::joint_guide::JointGuide;
 use super::least_squares::LeastSquares;
 use super::obstacle::Obstacle;
 use super::step::Sample;
@@ -46,27 +46,27 @@ impl JointFriction {
         &mut self,
         instruments: &Instruments,
         sample: &Sample,
-        lead: &mut JointLead,
+        guide: &mut JointGuide,
     ) -> Result<Option<(f64, f64)>, Obstacle> {
         let joint = self.joint;
         let clear = self.stop + CLEAR;
         let (speed, target) = match self.leg {
             0 => (IN_BETWEEN, clear),
             leg @ 1..=4 => {
-                let (speed, way) = SWINGS[(leg - 1) / 2];
-                (speed, if leg % 2 == 1 { clear + way } else { clear })
+                let (speed, amplitude) = SWINGS[(leg - 1) / 2];
+                (speed, if leg % 2 == 1 { clear + amplitude } else { clear })
             }
             _ => (IN_BETWEEN, self.stop - CLEAR),
         };
-        let from = *self.from.get_or_insert(lead.anchor[joint]);
-        lead.advance(joint, target, speed * instruments.period);
-        let anchor = lead.anchor[joint];
+        let from = *self.from.get_or_insert(guide.anchor[joint]);
+        guide.advance(joint, target, speed * instruments.period);
+        let anchor = guide.anchor[joint];
         if (1..=4).contains(&self.leg) && (anchor - from).abs() > RUN_UP * speed && anchor != target {
             let torque = instruments.tendons.r.row(joint).transpose().dot(&instruments.tensions(sample.feedback));
             let sign = (target - from).signum();
             self.fit.add(&Vector3::new(1.0, sign, sign * speed), torque);
         }
-        let strained = lead.strained(joint);
+        let strained = guide.strained(joint);
         self.strained = if strained { self.strained + instruments.period } else { 0.0 };
         let last = self.leg == 5;
         if self.strained > BLOCKED && !last {

@@ -13,7 +13,7 @@ mod grip;
 mod identification;
 mod instruments;
 mod joint_friction;
-mod joint_lead;
+mod joint_guide;
 mod least_squares;
 mod motor_friction;
 mod obstacle;

@@ -92,14 +92,14 @@ impl SignSearch {
     /// Runs one cycle of the current phase. After a rest every motor is pushed, then every motor sweeps, then the
     /// wiring is checked.
     pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> Stepped {
-        let way = self.measure(instruments, sample.feedback);
+        let travel = self.measure(instruments, sample.feedback);
         let progress = Progress { step: Step::TryingMotors, part: self.part() };
         let torques = match self.phase {
-            Phase::Rest { seconds } => self.rest(seconds, instruments, &way),
-            Phase::Push { seconds, push, from } => self.push_motor(seconds, push, &from, instruments, &way)?,
-            Phase::Pause { seconds } => self.pause(seconds, instruments, &way),
-            Phase::Sweep(sweep) => self.sweep_motor(sweep, instruments, sample, &way)?,
-            Phase::Wiring(wiring) => match self.check_wiring(wiring, instruments, sample, &way)? {
+            Phase::Rest { seconds } => self.rest(seconds, instruments, &travel),
+            Phase::Push { seconds, push, from } => self.push_motor(seconds, push, &from, instruments, &travel)?,
+            Phase::Pause { seconds } => self.pause(seconds, instruments, &travel),
+            Phase::Sweep(sweep) => self.sweep_motor(sweep, instruments, sample, &travel)?,
+            Phase::Wiring(wiring) => match self.check_wiring(wiring, instruments, sample, &travel)? {
                 Some(torques) => torques,
                 None => return self.findings().map(Break),
             },
@@ -120,17 +120,17 @@ impl SignSearch {
     fn measure(&mut self, instruments: &Instruments, feedback: &Feedback) -> Vector4<f64> {
         let start = *self.start.get_or_insert(feedback.motor_counts);
         let counts = |motor: usize| f64::from(feedback.motor_counts[motor].wrapping_sub(start[motor]));
-        let way = Vector4::from_fn(|motor, _| counts(motor) * self.cm_per_count[motor]);
+        let travel = Vector4::from_fn(|motor, _| counts(motor) * self.cm_per_count[motor]);
         let gain = (SPEED_CORNER * instruments.period).min(0.7);
-        self.speed += ((way - self.last) / instruments.period - self.speed) * gain;
-        self.last = way;
-        way
+        self.speed += ((travel - self.last) / instruments.period - self.speed) * gain;
+        self.last = travel;
+        travel
     }
 
     /// Returns the torques that hold every motor at its target, N cm.
-    fn hold(&self, instruments: &Instruments, way: &Vector4<f64>) -> Vector4<f64> {
+    fn hold(&self, instruments: &Instruments, travel: &Vector4<f64>) -> Vector4<f64> {
         let strongest = STRONGEST_HOLD * instruments.minimum;
-        let pulls = (self.target - way) * HOLD - self.speed * DAMPING;
+        let pulls = (self.target - travel) * HOLD - self.speed * DAMPING;
         let pulls = pulls.map(|pull| pull.clamp(-strongest, strongest));
         pulls.component_mul(&Vector4::from(self.agrees)).component_mul(&instruments.radius)
     }
@@ -142,15 +142,15 @@ impl SignSearch {
         mut wiring: Wiring,
         instruments: &Instruments,
         sample: &Sample,
-        way: &Vector4<f64>,
+        travel: &Vector4<f64>,
     ) -> Result<Option<Vector4<f64>>, Obstacle> {
         let scale = self.newton_per_count.component_mul(&Vector4::from(self.gauges));
         let tensions = Vector4::from(sample.feedback.gauge_counts.map(f64::from)).component_mul(&scale);
-        let jerk = wiring.step(instruments, &tensions)?;
+        let pulse = wiring.step(instruments, &tensions)?;
         self.phase = Phase::Wiring(wiring);
         let inward = Vector4::from(self.agrees).component_mul(&Vector4::from(self.tightens));
-        let torques = |jerk: Vector4<f64>| jerk.component_mul(&inward).component_mul(&instruments.radius);
-        Ok(jerk.map(|jerk| self.hold(instruments, way) + torques(jerk)))
+        let torques = |pulse: Vector4<f64>| pulse.component_mul(&inward).component_mul(&instruments.radius);
+        Ok(pulse.map(|pulse| self.hold(instruments, travel) + torques(pulse)))
     }
 
     fn findings(&self) -> Result<Findings, Obstacle> {

@@ -57,14 +57,14 @@ mod tests {
     }
 
     #[test]
-    fn noise_and_shaking_are_no_motion() {
+    fn noise_and_oscillation_do_not_count_as_motion() {
         assert_eq!(moved(|_| 0.5), None);
         assert_eq!(moved(|seconds| 0.5 + 0.005 * (seconds * 600.0).sin()), None);
         assert_eq!(moved(|seconds| 0.5 + 0.012 * seconds), None);
     }
 
     #[test]
-    fn a_step_a_drift_and_a_bump_are_motion() {
+    fn a_step_a_drift_and_a_bump_count_as_motion() {
         let step = |seconds: f64| if seconds > 0.25 { 0.51 } else { 0.5 };
         assert!(matches!(moved(step), Some((1, distance)) if distance > 0.006), "{:?}", moved(step));
         assert!(matches!(moved(|seconds| 0.5 + 0.05 * seconds), Some((1, _))));

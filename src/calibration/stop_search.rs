@@ -1,7 +1,7 @@
 //! Moves one joint against a stop until it no longer moves.
 
 use super::instruments::Instruments;
-use super::joint_lead::JointLead;
+use super::joint_guide::JointGuide;
 use super::obstacle::Obstacle;
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ const DWELL: f64 = 0.25;
 pub(super) struct StopSearch {
     joint: usize,
     /// Largest permitted distance, rad, with the sign of its direction.
-    way: f64,
+    range: f64,
     start: Option<f64>,
     /// Angle at which the joint stopped, rad, and the time since, s.
     still_at: f64,
@@ -21,9 +21,9 @@ pub(super) struct StopSearch {
 }
 
 impl StopSearch {
-    /// `way`: the distance within which the joint must reach its stop, rad, with the sign of its direction.
-    pub fn new(joint: usize, way: f64) -> Self {
-        Self { joint, way, start: None, still_at: f64::NAN, still: 0.0 }
+    /// `range`: the distance within which the joint must reach its stop, rad, with the sign of its direction.
+    pub fn new(joint: usize, range: f64) -> Self {
+        Self { joint, range, start: None, still_at: f64::NAN, still: 0.0 }
     }
 
     /// Moves the joint by one cycle. Returns the angle of the stop, rad by the configured zero, when the joint has
@@ -31,17 +31,17 @@ impl StopSearch {
     pub fn step(
         &mut self,
         instruments: &Instruments,
-        lead: &mut JointLead,
+        guide: &mut JointGuide,
         speed: f64,
     ) -> Result<Option<f64>, Obstacle> {
-        let angle = lead.joints[self.joint];
+        let angle = guide.joints[self.joint];
         let start = *self.start.get_or_insert(angle);
-        lead.advance(self.joint, angle + PI.copysign(self.way), speed * instruments.period);
-        if (angle - start).abs() > self.way.abs() {
+        guide.advance(self.joint, angle + PI.copysign(self.range), speed * instruments.period);
+        if (angle - start).abs() > self.range.abs() {
             let degrees = (angle - start).abs().to_degrees();
             return Err(Obstacle::NoStop { joint: self.joint as u8, degrees });
         }
-        if lead.strained(self.joint) && (angle - self.still_at).abs() < STILL {
+        if guide.strained(self.joint) && (angle - self.still_at).abs() < STILL {
             self.still += instruments.period;
         } else {
             (self.still, self.still_at) = (0.0, angle);

@@ -9,7 +9,7 @@ use super::obstacle::Obstacle;
 use nalgebra::Vector4;
 
 /// A pulse: its pull, in t_min, and its duration, s.
-const JERK: f64 = 2.0;
+const PULSE: f64 = 2.0;
 const LENGTH: f64 = 0.006;
 /// Time for which the gauges are observed from the start of a pulse, s.
 const WATCHED: f64 = 0.010;
@@ -18,16 +18,16 @@ const REST: f64 = 0.15;
 /// Last part of the rest, in which the gauges are averaged, s.
 const BASE: f64 = 0.05;
 /// Number of pulses of each motor.
-const JERKS: u32 = 4;
+const PULSES: u32 = 4;
 /// Another gauge leads if it rises by more than this factor times the rise of the motor's own gauge, and by more than
 /// this value, N.
-const AHEAD: f64 = 1.1;
-const LEAST: f64 = 0.2;
+const LEADING_RATIO: f64 = 1.1;
+const LEADING_RISE: f64 = 0.2;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wiring {
     motor: usize,
-    jerks: u32,
+    pulses: u32,
     seconds: f64,
     base: Vector4<f64>,
     bases: f64,
@@ -39,7 +39,7 @@ pub(super) struct Wiring {
 impl Wiring {
     pub fn new() -> Self {
         let zeros = Vector4::zeros();
-        Self { motor: 0, jerks: 0, seconds: 0.0, base: zeros, bases: 0.0, risen: zeros, samples: 0.0 }
+        Self { motor: 0, pulses: 0, seconds: 0.0, base: zeros, bases: 0.0, risen: zeros, samples: 0.0 }
     }
 
     /// Returns the pulls of this cycle, N at each tendon, or `None` when every motor has been checked. `tensions`, N,
@@ -61,20 +61,20 @@ impl Wiring {
         self.risen += tensions - self.base / self.bases;
         self.samples += 1.0;
         if since > WATCHED.max(3.0 * instruments.period) {
-            (self.jerks, self.seconds, self.base, self.bases) = (self.jerks + 1, 0.0, Vector4::zeros(), 0.0);
-            if self.jerks == JERKS {
+            (self.pulses, self.seconds, self.base, self.bases) = (self.pulses + 1, 0.0, Vector4::zeros(), 0.0);
+            if self.pulses == PULSES {
                 self.check(self.risen / self.samples)?;
                 *self = Self { motor: self.motor + 1, ..Self::new() };
             }
         }
-        let jerk = if self.seconds > REST && since < LENGTH { JERK * instruments.minimum } else { 0.0 };
-        let pull = |motor: usize| if motor == self.motor { jerk } else { 0.0 };
+        let pulse = if self.seconds > REST && since < LENGTH { PULSE * instruments.minimum } else { 0.0 };
+        let pull = |motor: usize| if motor == self.motor { pulse } else { 0.0 };
         Ok((self.motor < 4).then(|| Vector4::from_fn(|motor, _| pull(motor))))
     }
 
     fn check(&self, risen: Vector4<f64>) -> Result<(), Obstacle> {
         let first = risen.imax();
-        if first != self.motor && risen[first] > LEAST && risen[first] > AHEAD * risen[self.motor] {
+        if first != self.motor && risen[first] > LEADING_RISE && risen[first] > LEADING_RATIO * risen[self.motor] {
             return Err(Obstacle::Swapped { motor: self.motor as u8 + 1, gauge: first as u8 + 1 });
         }
         Ok(())

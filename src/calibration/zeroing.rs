@@ -9,7 +9,7 @@ use super::findings::{Findings, Zeros};
 use super::gauge_zero::GaugeZero;
 use super::grip::Grip;
 use super::instruments::Instruments;
-use super::joint_lead::JointLead;
+use super::joint_guide::JointGuide;
 use super::obstacle::Obstacle;
 use super::step::{Progress, Sample, Step};
 use super::stop_search::StopSearch;
@@ -32,7 +32,7 @@ pub(super) struct Zeroing {
     first: Option<Reading>,
     /// Gauge offsets, N.
     offset: Vector4<f64>,
-    met: (Vector3<f64>, Vector3<f64>),
+    stops_found: (Vector3<f64>, Vector3<f64>),
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -50,21 +50,21 @@ enum Phase {
         reading: Reading,
     },
     Seek {
-        lead: JointLead,
+        guide: JointGuide,
         joint: usize,
         upper: bool,
         search: StopSearch,
     },
     Return {
-        lead: JointLead,
+        guide: JointGuide,
         joint: usize,
     },
     Rest {
-        lead: JointLead,
+        guide: JointGuide,
         seconds: f64,
     },
     ReadAgain {
-        lead: JointLead,
+        guide: JointGuide,
         reading: Reading,
     },
 }
@@ -90,7 +90,7 @@ impl Zeroing {
             phase: Phase::Start,
             first: None,
             offset: Vector4::zeros(),
-            met: (Vector3::zeros(), Vector3::zeros()),
+            stops_found: (Vector3::zeros(), Vector3::zeros()),
         }
     }
 
@@ -104,12 +104,12 @@ impl Zeroing {
             Phase::Tighten(take_up) => self.take_up_slack(take_up, instruments, sample),
             Phase::Try(grip) => self.try_pose(grip, instruments, sample),
             Phase::ReadPose { grip, reading } => self.read_pose(grip, reading, instruments, sample),
-            Phase::Seek { lead, joint, upper, search } => {
-                self.seek_stop(lead, joint, upper, search, instruments, sample)
+            Phase::Seek { guide, joint, upper, search } => {
+                self.seek_stop(guide, joint, upper, search, instruments, sample)
             }
-            Phase::Return { lead, joint } => self.return_to_middle(lead, joint, instruments, sample),
-            Phase::Rest { lead, seconds } => self.rest(lead, seconds, instruments, sample),
-            Phase::ReadAgain { lead, reading } => self.read_between_stops(lead, reading, instruments, sample),
+            Phase::Return { guide, joint } => self.return_to_middle(guide, joint, instruments, sample),
+            Phase::Rest { guide, seconds } => self.rest(guide, seconds, instruments, sample),
+            Phase::ReadAgain { guide, reading } => self.read_between_stops(guide, reading, instruments, sample),
         }
     }
 

@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_regular_file_is_refused_by_its_kind_at_once() {
+    fn a_path_to_anything_but_a_regular_file_is_refused_with_its_kind() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = |name: &str| folder.path().join(name);
         assert!(Command::new("mkfifo").arg(path("fifo")).status().expect("mkfifo").success());
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_without_a_size_is_read_no_further_than_the_limit() {
+    fn a_file_without_a_size_is_read_up_to_the_limit() {
         // The kernel reports no size for files in /proc.
         let maps = Path::new("/proc/self/maps");
         assert!(read_regular_file(maps, 1 << 20).expect("read").contains("[stack]"));
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn the_line_that_is_no_text_is_named() {
+    fn the_error_names_the_line_that_is_not_text() {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("file");
         write(&file, b"one\ntwo\n\xff\nfour\n").expect("written");

@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_made_or_replaced() {
+    fn a_file_is_created_or_replaced() {
         let (folder, file) = folder();
         for text in ["one", "another"] {
             replace_file(&file, write(text)).expect("written");
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fails_changes_nothing_and_leaves_nothing() {
+    fn a_failed_write_changes_nothing_and_leaves_no_file() {
         let (folder, file) = folder();
         let fail = |output: &mut dyn Write| {
             output.write_all(b"the first half")?;
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn permissions_of_the_old_file_stay_but_for_special_bits() {
+    fn permissions_are_inherited_without_special_bits() {
         let (_folder, file) = folder();
         fs::write(&file, "old").expect("written");
         for (before, after) in [(0o600, 0o600), (0o664, 0o664), (0o4750, 0o750)] {
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_taken_name_is_left_to_its_file() {
+    fn a_file_with_the_wanted_name_is_not_overwritten() {
         let (folder, file) = folder();
         fs::write(&file, "old").expect("written");
         symlink("nowhere", folder.path().join("link")).expect("made");
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn temporary_names_cannot_be_foretold() {
+    fn temporary_names_differ() {
         let (folder, _) = folder();
         let made: std::collections::BTreeSet<PathBuf> =
             (0..100).map(|_| create_unpredictable(folder.path(), 0o600).expect("made").0).collect();

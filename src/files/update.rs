@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn updates_of_many_threads_are_all_there() {
+    fn no_update_of_several_threads_is_lost() {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("file");
         fs::write(&file, "").expect("written");
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_program_without_the_lock_writes_meanwhile_is_read_again() {
+    fn a_change_without_the_lock_is_read_again() {
         let folder = tempfile::tempdir().expect("a folder");
         let (file, other) = (folder.path().join("file"), folder.path().join("other"));
         fs::write(&file, "old\n").expect("written");
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_link_stays_and_the_file_behind_it_is_replaced() {
+    fn a_link_is_kept_and_its_target_is_replaced() {
         let folder = tempfile::tempdir().expect("a folder");
         let (file, link) = (folder.path().join("file"), folder.path().join("link"));
         fs::write(&file, "").expect("written");
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lock_that_is_kept_is_not_waited_for_without_end() {
+    fn a_held_lock_is_awaited_only_until_the_deadline() {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("file");
         fs::write(&file, "old").expect("written");
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refused_change_and_none_leave_the_file() {
+    fn a_refused_change_and_no_change_leave_the_file_unchanged() {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("file");
         fs::write(&file, "old").expect("written");

@@ -66,8 +66,7 @@ impl SimulatedFinger {
         gravity: Vector3<f64>,
     ) -> Result<Self, TendonsError> {
         let strongest = finger.motor.torque_limit.into_iter().fold(0.0, f64::max);
-        // The finest unit, in whole nN m, in which the limit of the strongest motor is at most 30 000 units. 1 N cm is
-        // 1e7 nN m.
+        // The finest unit, in whole nN m (1e-7 N cm), in which the strongest motor's limit is at most 30 000 units.
         let torque_unit = (strongest * 1e7 / 30_000.0).ceil().max(1.0);
         let counts = finger.encoder.counts_per_revolution;
         Ok(Self {
@@ -111,13 +110,12 @@ impl SimulatedFinger {
         self.clock
     }
 
-    /// Returns when the last obeyed Command arrived, ns on the board's clock. `None`: not since the last Configure.
+    /// Returns when the last obeyed Command arrived, board time in ns. `None`: not since the last Configure.
     pub fn commanded_at(&self) -> Option<u64> {
         self.commanded_at
     }
 
-    /// Returns when silence or a Stop led to the end state, ns on the board's clock. `None`: not since the last
-    /// Configure.
+    /// Returns when silence or a Stop led to the end state, board time in ns. `None`: not since the last Configure.
     pub fn ended_at(&self) -> Option<u64> {
         self.ended_at
     }

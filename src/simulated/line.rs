@@ -181,13 +181,13 @@ mod tests {
     }
 
     #[test]
-    fn a_good_line_carries_everything_at_once() {
+    fn a_line_without_faults_delivers_everything_at_once() {
         let came = out(&mut SimulatedLine::new(), 5);
         assert_eq!(came, [(0, 0), (1000, 1), (2000, 2), (3000, 3), (4000, 4)]);
     }
 
     #[test]
-    fn faults_do_what_they_are_called_and_end() {
+    fn each_fault_has_its_effect_until_its_end() {
         let with = |fault| {
             let mut line = SimulatedLine::new();
             line.inject(fault, 1.0, 2000, 1);
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_are_frames_wherever_they_are_cut() {
+    fn bytes_are_split_into_frames_at_delimiters() {
         let mut line = SimulatedLine::new();
         let mut came = Vec::new();
         let mut put = |line: &mut SimulatedLine, now: u64, bytes: &[u8]| {
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn chance_is_seeded() {
+    fn the_same_seed_gives_the_same_losses() {
         let lossy = |seed| {
             let mut line = SimulatedLine::new();
             line.inject(LineFault::Drop, 0.5, u64::MAX, seed);

@@ -19,7 +19,7 @@ impl Port {
         port.lock()?;
         let set_up = |source| PortError::SetUp { path: path.to_owned(), source };
         let offered = port.configure(baud).map_err(set_up)?;
-        // A UART tolerates 3 %. A driver that does not support the rate offers a very different one.
+        // A UART tolerates a difference of 3 %. A driver that does not support the rate offers a very different one.
         if offered.abs_diff(baud) > baud / 33 {
             return Err(PortError::Baud { path: path.to_owned(), wanted: baud, offered });
         }

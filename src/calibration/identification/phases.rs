@@ -5,7 +5,7 @@ use crate::calibration::balance::{Balance, SWING};
 use crate::calibration::findings::{Findings, Identified};
 use crate::calibration::instruments::Instruments;
 use crate::calibration::joint_friction::JointFriction;
-use crate::calibration::joint_lead::JointLead;
+use crate::calibration::joint_guide::JointGuide;
 use crate::calibration::motor_friction::MotorFriction;
 use crate::calibration::obstacle::Obstacle;
 use crate::calibration::pressing::Pressing;
@@ -39,27 +39,27 @@ impl Identification {
             self.phase = Phase::Tighten(take_up);
             return going(Step::TakingUpSlack, 0.0, activity);
         }
-        let lead = JointLead::new(instruments, sample, BALANCING);
-        self.start = lead.joints;
-        self.phase = Phase::Balance { lead, balance: self.balance_near(&lead) };
-        going(Step::ComparingGauges, 0.0, lead.activity(instruments, sample))
+        let guide = JointGuide::new(instruments, sample, BALANCING);
+        self.start = guide.joints;
+        self.phase = Phase::Balance { guide, balance: self.balance_near(&guide) };
+        going(Step::ComparingGauges, 0.0, guide.activity(instruments, sample))
     }
 
     pub(super) fn compare_gauges(
         &mut self,
-        mut lead: JointLead,
+        mut guide: JointGuide,
         mut balance: Balance,
         instruments: &mut Instruments,
         sample: &Sample,
     ) -> Stepped {
-        lead.measure(instruments, sample);
-        let found = balance.step(instruments, sample, &mut lead)?;
-        let activity = lead.activity(instruments, sample);
+        guide.measure(instruments, sample);
+        let found = balance.step(instruments, sample, &mut guide)?;
+        let activity = guide.activity(instruments, sample);
         self.phase = match found {
-            None => Phase::Balance { lead, balance },
+            None => Phase::Balance { guide, balance },
             Some(gain) => {
                 instruments.gain = gain;
-                self.search_of(0, JointLead::new(instruments, sample, self.torque))
+                self.search_of(0, JointGuide::new(instruments, sample, self.torque))
             }
         };
         going(Step::ComparingGauges, 0.02, activity)
@@ -67,49 +67,49 @@ impl Identification {
 
     pub(super) fn seek_stop(
         &mut self,
-        mut lead: JointLead,
+        mut guide: JointGuide,
         joint: usize,
         mut search: StopSearch,
         instruments: &Instruments,
         sample: &Sample,
     ) -> Stepped {
-        lead.measure(instruments, sample);
-        let met = search.step(instruments, &mut lead, self.speed)?;
-        if let Some(angle) = met {
+        guide.measure(instruments, sample);
+        let found = search.step(instruments, &mut guide, self.speed)?;
+        if let Some(angle) = found {
             self.stop[joint] = angle;
         }
-        self.phase = match met {
-            None => Phase::Seek { lead, joint, search },
-            Some(_) if joint < 2 => self.search_of(joint + 1, lead),
-            Some(_) => self.swing_of(0, lead),
+        self.phase = match found {
+            None => Phase::Seek { guide, joint, search },
+            Some(_) if joint < 2 => self.search_of(joint + 1, guide),
+            Some(_) => self.swing_of(0, guide),
         };
-        going(Step::SeekingStops, 0.05 + 0.05 * joint as f64, lead.activity(instruments, sample))
+        going(Step::SeekingStops, 0.05 + 0.05 * joint as f64, guide.activity(instruments, sample))
     }
 
     pub(super) fn swing_joint(
         &mut self,
-        mut lead: JointLead,
+        mut guide: JointGuide,
         mut friction: JointFriction,
         joint: usize,
         instruments: &Instruments,
         sample: &Sample,
     ) -> Stepped {
-        lead.measure(instruments, sample);
-        let found = friction.step(instruments, sample, &mut lead)?;
+        guide.measure(instruments, sample);
+        let found = friction.step(instruments, sample, &mut guide)?;
         if let Some((coulomb, viscous)) = found {
             self.joint_coulomb[joint] = coulomb;
             self.joint_viscous[joint] = viscous;
         }
         self.phase = match found {
-            None => Phase::Swing { lead, friction, joint },
-            Some(_) if joint < 2 => self.swing_of(joint + 1, lead),
+            None => Phase::Swing { guide, friction, joint },
+            Some(_) if joint < 2 => self.swing_of(joint + 1, guide),
             Some(_) => Phase::Press {
                 pressing: Pressing::new(instruments),
                 stiffness: TendonStiffness::new(instruments),
                 friction: MotorFriction::new(),
             },
         };
-        going(Step::MovingJoints, 0.2 + 0.1 * joint as f64, lead.activity(instruments, sample))
+        going(Step::MovingJoints, 0.2 + 0.1 * joint as f64, guide.activity(instruments, sample))
     }
 
     pub(super) fn press_against_stops(
@@ -130,53 +130,53 @@ impl Identification {
             return going(Step::Pressing, part, Activity::Tense(instruments.for_controller(tensions)));
         }
         let found = self.identified(&stiffness, &friction, instruments)?;
-        let mut lead = JointLead::new(instruments, sample, self.torque);
+        let mut guide = JointGuide::new(instruments, sample, self.torque);
         // The finger still presses against its stops, so the return begins at its present pose.
-        lead.anchor = lead.joints;
-        self.phase = Phase::Return { lead, joint: 0, strained: 0.0, found };
-        going(Step::Returning, 0.9, lead.activity(instruments, sample))
+        guide.anchor = guide.joints;
+        self.phase = Phase::Return { guide, joint: 0, strained: 0.0, found };
+        going(Step::Returning, 0.9, guide.activity(instruments, sample))
     }
 
-    pub(super) fn lead_back(
+    pub(super) fn return_to_start(
         &mut self,
-        mut lead: JointLead,
+        mut guide: JointGuide,
         mut joint: usize,
         strained: f64,
         found: Identified,
         instruments: &Instruments,
         sample: &Sample,
     ) -> Stepped {
-        lead.measure(instruments, sample);
-        lead.advance(joint, self.start[joint], self.speed * instruments.period);
-        let strained = if lead.strained(joint) { strained + instruments.period } else { 0.0 };
+        guide.measure(instruments, sample);
+        guide.advance(joint, self.start[joint], self.speed * instruments.period);
+        let strained = if guide.strained(joint) { strained + instruments.period } else { 0.0 };
         if strained > BLOCKED {
             return Err(Obstacle::JointBlocked { joint: joint as u8 });
         }
-        if (lead.joints[joint] - self.start[joint]).abs() < NEAR {
+        if (guide.joints[joint] - self.start[joint]).abs() < NEAR {
             if joint == 2 {
                 return Ok(Break(Findings::Identified(found)));
             }
             joint += 1;
         }
-        self.phase = Phase::Return { lead, joint, strained, found };
-        going(Step::Returning, 0.95, lead.activity(instruments, sample))
+        self.phase = Phase::Return { guide, joint, strained, found };
+        going(Step::Returning, 0.95, guide.activity(instruments, sample))
     }
 
     /// Creates a comparison of the gauges about the present pose, or about the nearest one that leaves room for the
     /// swing.
-    fn balance_near(&self, lead: &JointLead) -> Balance {
+    fn balance_near(&self, guide: &JointGuide) -> Balance {
         let room = SWING + ROOM;
         let (low, high) = (self.stops.0.add_scalar(room), self.stops.1.add_scalar(-room));
-        Balance::new(lead.joints.zip_zip_map(&low, &high, |joint, low, high| joint.min(high).max(low)))
+        Balance::new(guide.joints.zip_zip_map(&low, &high, |joint, low, high| joint.min(high).max(low)))
     }
 
-    fn search_of(&self, joint: usize, lead: JointLead) -> Phase {
+    fn search_of(&self, joint: usize, guide: JointGuide) -> Phase {
         let range = self.stops.1[joint] - self.stops.0[joint];
-        Phase::Seek { lead, joint, search: StopSearch::new(joint, -(range + BEYOND)) }
+        Phase::Seek { guide, joint, search: StopSearch::new(joint, -(range + BEYOND)) }
     }
 
-    fn swing_of(&self, joint: usize, lead: JointLead) -> Phase {
-        Phase::Swing { lead, friction: JointFriction::new(joint, self.stop[joint]), joint }
+    fn swing_of(&self, joint: usize, guide: JointGuide) -> Phase {
+        Phase::Swing { guide, friction: JointFriction::new(joint, self.stop[joint]), joint }
     }
 
     /// Combines all results, with the mean of the gauge gains from the configured reference.

@@ -19,9 +19,9 @@ const REST: f64 = 0.2;
 
 impl SignSearch {
     /// Lets the finger come to rest before the first push. Like the other phases, returns the motor torques, N cm.
-    pub(super) fn rest(&mut self, seconds: f64, instruments: &Instruments, way: &Vector4<f64>) -> Vector4<f64> {
+    pub(super) fn rest(&mut self, seconds: f64, instruments: &Instruments, travel: &Vector4<f64>) -> Vector4<f64> {
         let seconds = seconds + instruments.period;
-        self.phase = if seconds > REST { first_push(instruments, way) } else { Phase::Rest { seconds } };
+        self.phase = if seconds > REST { first_push(instruments, travel) } else { Phase::Rest { seconds } };
         Vector4::zeros()
     }
 
@@ -32,11 +32,11 @@ impl SignSearch {
         push: f64,
         from: &Vector4<f64>,
         instruments: &Instruments,
-        way: &Vector4<f64>,
+        travel: &Vector4<f64>,
     ) -> Result<Vector4<f64>, Obstacle> {
         let motor = self.motor;
         let seconds = seconds + instruments.period;
-        let moved = way - from;
+        let moved = travel - from;
         let mut torques = Vector4::zeros();
         self.phase = if moved[motor].abs() > TURNED {
             self.agrees[motor] = moved[motor].signum();
@@ -58,22 +58,22 @@ impl SignSearch {
     }
 
     /// Lets the pushed motor come to rest before the next push, or before the first sweep.
-    pub(super) fn pause(&mut self, seconds: f64, instruments: &Instruments, way: &Vector4<f64>) -> Vector4<f64> {
+    pub(super) fn pause(&mut self, seconds: f64, instruments: &Instruments, travel: &Vector4<f64>) -> Vector4<f64> {
         let seconds = seconds + instruments.period;
         self.phase = if seconds <= PUSH {
             Phase::Pause { seconds }
         } else if self.motor < 3 {
             self.motor += 1;
-            first_push(instruments, way)
+            first_push(instruments, travel)
         } else {
             self.motor = 0;
-            self.target = *way;
-            Phase::Sweep(Sweep::first(way[0]))
+            self.target = *travel;
+            Phase::Sweep(Sweep::first(travel[0]))
         };
         Vector4::zeros()
     }
 }
 
-fn first_push(instruments: &Instruments, way: &Vector4<f64>) -> Phase {
-    Phase::Push { seconds: 0.0, push: FIRST_PUSH * instruments.minimum, from: *way }
+fn first_push(instruments: &Instruments, travel: &Vector4<f64>) -> Phase {
+    Phase::Push { seconds: 0.0, push: FIRST_PUSH * instruments.minimum, from: *travel }
 }

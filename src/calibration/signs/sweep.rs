@@ -4,10 +4,10 @@ use crate::calibration::average::Average;
 use nalgebra::Vector4;
 
 /// Smallest and largest amplitude, cm. The amplitude is doubled until one side is tight and the other slack.
-const FIRST_WAY: f64 = 0.05;
-const LONGEST_WAY: f64 = 1.0;
+const SMALLEST_AMPLITUDE: f64 = 0.05;
+const LARGEST_AMPLITUDE: f64 = 1.0;
 /// Positions at which the motor stops, in amplitudes.
-const PLACES: [f64; 5] = [0.5, 1.0, -0.5, -1.0, 0.0];
+const POSITIONS: [f64; 5] = [0.5, 1.0, -0.5, -1.0, 0.0];
 /// Settling time and reading time at each position, s.
 const SETTLING: f64 = 0.15;
 const READING: f64 = 0.1;
@@ -22,8 +22,8 @@ const SLACK: f64 = 0.25;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sweep {
     pub centre: f64,
-    pub way: f64,
-    place: usize,
+    pub amplitude: f64,
+    position: usize,
     /// Time at the position, s.
     seconds: f64,
     gauges: Average,
@@ -34,23 +34,23 @@ pub(super) struct Sweep {
 impl Sweep {
     /// The smallest sweep about `centre`, cm.
     pub fn first(centre: f64) -> Self {
-        Self::new(centre, FIRST_WAY)
+        Self::new(centre, SMALLEST_AMPLITUDE)
     }
 
     /// Returns a sweep of twice the amplitude, or `None` if that is too large.
     pub fn wider(&self) -> Option<Self> {
-        let way = self.way * 2.0;
-        (way <= LONGEST_WAY).then(|| Self::new(self.centre, way))
+        let amplitude = self.amplitude * 2.0;
+        (amplitude <= LARGEST_AMPLITUDE).then(|| Self::new(self.centre, amplitude))
     }
 
-    fn new(centre: f64, way: f64) -> Self {
+    fn new(centre: f64, amplitude: f64) -> Self {
         let read = [Vector4::zeros(); 4];
-        Self { centre, way, place: 0, seconds: 0.0, gauges: Average::default(), read, stalled: [false; 4] }
+        Self { centre, amplitude, position: 0, seconds: 0.0, gauges: Average::default(), read, stalled: [false; 4] }
     }
 
     /// Returns the current target of the motor, cm.
     pub fn aim(&self) -> f64 {
-        self.centre + PLACES[self.place] * self.way
+        self.centre + POSITIONS[self.position] * self.amplitude
     }
 
     /// Adds a cycle at the current position: the raw counts of the gauges, newtons per count, and the lag of the motor,
@@ -63,12 +63,12 @@ impl Sweep {
         if self.seconds < SETTLING + READING {
             return false;
         }
-        if let Some(read) = self.read.get_mut(self.place) {
+        if let Some(read) = self.read.get_mut(self.position) {
             *read = self.gauges.mean().component_mul(newton_per_count);
-            self.stalled[self.place] = lag > STALLED.0 + STALLED.1 * self.way;
+            self.stalled[self.position] = lag > STALLED.0 + STALLED.1 * self.amplitude;
         }
-        (self.place, self.seconds, self.gauges) = (self.place + 1, 0.0, Average::default());
-        self.place == PLACES.len()
+        (self.position, self.seconds, self.gauges) = (self.position + 1, 0.0, Average::default());
+        self.position == POSITIONS.len()
     }
 
     /// Returns the difference of the gauges between the two ends of the sweep, N.

@@ -19,9 +19,9 @@ impl SignSearch {
         mut sweep: Sweep,
         instruments: &Instruments,
         sample: &Sample,
-        way: &Vector4<f64>,
+        travel: &Vector4<f64>,
     ) -> Result<Vector4<f64>, Obstacle> {
-        let complete = self.advance(&mut sweep, instruments, sample, way);
+        let complete = self.advance(&mut sweep, instruments, sample, travel);
         self.phase = if !complete {
             Phase::Sweep(sweep)
         } else if let Some(side) = sweep.tight_side() {
@@ -29,7 +29,7 @@ impl SignSearch {
         } else {
             Phase::Sweep(sweep.wider().ok_or(Obstacle::NothingTightens { motor: self.motor as u8 + 1 })?)
         };
-        Ok(self.hold(instruments, way))
+        Ok(self.hold(instruments, travel))
     }
 
     /// Stores the signs that a sweep has shown. Continues with the next motor, or with the wiring after the last one.
@@ -37,7 +37,7 @@ impl SignSearch {
         self.tightens[self.motor] = side;
         self.note_gauges(sweep, side)?;
         // The motor stays on the tight side, which takes up some slack for the motors that follow.
-        self.target[self.motor] = sweep.centre + 0.5 * side * sweep.way;
+        self.target[self.motor] = sweep.centre + 0.5 * side * sweep.amplitude;
         if self.motor == 3 {
             return Ok(Phase::Wiring(Wiring::new()));
         }
@@ -46,7 +46,13 @@ impl SignSearch {
     }
 
     /// Moves the motor by one cycle. Returns whether it has been at every position.
-    fn advance(&mut self, sweep: &mut Sweep, instruments: &Instruments, sample: &Sample, way: &Vector4<f64>) -> bool {
+    fn advance(
+        &mut self,
+        sweep: &mut Sweep,
+        instruments: &Instruments,
+        sample: &Sample,
+        travel: &Vector4<f64>,
+    ) -> bool {
         let motor = self.motor;
         let aim = sweep.aim();
         let step = SPEED * instruments.period;
@@ -54,7 +60,7 @@ impl SignSearch {
         if self.target[motor] != aim {
             return false;
         }
-        let lag = (aim - way[motor]).abs();
+        let lag = (aim - travel[motor]).abs();
         sweep.dwell(instruments.period, sample.feedback.gauge_counts, &self.newton_per_count, lag)
     }
 

@@ -3,7 +3,7 @@
 use super::{Phase, Stepped, Zeroing, going};
 use crate::calibration::encoder_zero::Reading;
 use crate::calibration::instruments::Instruments;
-use crate::calibration::joint_lead::JointLead;
+use crate::calibration::joint_guide::JointGuide;
 use crate::calibration::obstacle::Obstacle;
 use crate::calibration::step::{Sample, Step};
 use crate::calibration::stop_search::StopSearch;
@@ -23,94 +23,94 @@ const RESTING: f64 = 0.3;
 impl Zeroing {
     pub(super) fn seek_stop(
         &mut self,
-        mut lead: JointLead,
+        mut guide: JointGuide,
         joint: usize,
         upper: bool,
         mut search: StopSearch,
         instruments: &Instruments,
         sample: &Sample,
     ) -> Stepped {
-        lead.measure(instruments, sample);
-        self.phase = match (search.step(instruments, &mut lead, self.speed)?, upper) {
-            (None, _) => Phase::Seek { lead, joint, upper, search },
+        guide.measure(instruments, sample);
+        self.phase = match (search.step(instruments, &mut guide, self.speed)?, upper) {
+            (None, _) => Phase::Seek { guide, joint, upper, search },
             (Some(angle), false) => {
-                self.met.0[joint] = angle;
-                self.search_upper(joint, lead)
+                self.stops_found.0[joint] = angle;
+                self.search_upper(joint, guide)
             }
             (Some(angle), true) => {
-                self.met.1[joint] = angle;
+                self.stops_found.1[joint] = angle;
                 self.check_range(joint)?;
-                Phase::Return { lead, joint }
+                Phase::Return { guide, joint }
             }
         };
         let part = 0.3 + 0.2 * (joint as f64 + if upper { 0.5 } else { 0.0 });
-        going(Step::SeekingStops, part, lead.activity(instruments, sample))
+        going(Step::SeekingStops, part, guide.activity(instruments, sample))
     }
 
     pub(super) fn return_to_middle(
         &mut self,
-        mut lead: JointLead,
+        mut guide: JointGuide,
         joint: usize,
         instruments: &Instruments,
         sample: &Sample,
     ) -> Stepped {
-        let middle = 0.5 * (self.met.0[joint] + self.met.1[joint]);
-        lead.measure(instruments, sample);
-        lead.advance(joint, middle, self.speed * instruments.period);
-        let arrived = (lead.joints[joint] - middle).abs() < NEAR;
+        let middle = 0.5 * (self.stops_found.0[joint] + self.stops_found.1[joint]);
+        guide.measure(instruments, sample);
+        guide.advance(joint, middle, self.speed * instruments.period);
+        let arrived = (guide.joints[joint] - middle).abs() < NEAR;
         self.phase = match (arrived, joint) {
-            (false, _) => Phase::Return { lead, joint },
-            (true, 0 | 1) => self.search_lower(joint + 1, lead),
-            (true, _) => Phase::Rest { lead, seconds: 0.0 },
+            (false, _) => Phase::Return { guide, joint },
+            (true, 0 | 1) => self.search_lower(joint + 1, guide),
+            (true, _) => Phase::Rest { guide, seconds: 0.0 },
         };
-        going(Step::SeekingStops, 0.3 + 0.2 * (joint as f64 + 0.9), lead.activity(instruments, sample))
+        going(Step::SeekingStops, 0.3 + 0.2 * (joint as f64 + 0.9), guide.activity(instruments, sample))
     }
 
     pub(super) fn rest(
         &mut self,
-        mut lead: JointLead,
+        mut guide: JointGuide,
         seconds: f64,
         instruments: &Instruments,
         sample: &Sample,
     ) -> Stepped {
         let seconds = seconds + instruments.period;
-        lead.measure(instruments, sample);
+        guide.measure(instruments, sample);
         self.phase = if seconds >= RESTING {
-            Phase::ReadAgain { lead, reading: Reading::default() }
+            Phase::ReadAgain { guide, reading: Reading::default() }
         } else {
-            Phase::Rest { lead, seconds }
+            Phase::Rest { guide, seconds }
         };
-        going(Step::ReadingEncoders, 0.95, lead.activity(instruments, sample))
+        going(Step::ReadingEncoders, 0.95, guide.activity(instruments, sample))
     }
 
     pub(super) fn read_between_stops(
         &mut self,
-        mut lead: JointLead,
+        mut guide: JointGuide,
         mut reading: Reading,
         instruments: &Instruments,
         sample: &Sample,
     ) -> Stepped {
-        lead.measure(instruments, sample);
+        guide.measure(instruments, sample);
         if !reading.step(instruments, sample) {
-            self.phase = Phase::ReadAgain { lead, reading };
-            return going(Step::ReadingEncoders, 0.95, lead.activity(instruments, sample));
+            self.phase = Phase::ReadAgain { guide, reading };
+            return going(Step::ReadingEncoders, 0.95, guide.activity(instruments, sample));
         }
         // The instruments have already subtracted the offsets.
         let none = Vector4::zeros();
         // A wrong stiffness shifts the two stops of a joint in opposite directions, so their mean is correct.
-        let too_far = (self.met.0 + self.met.1 - self.stops.0 - self.stops.1) * 0.5;
+        let too_far = (self.stops_found.0 + self.stops_found.1 - self.stops.0 - self.stops.1) * 0.5;
         let joints = reading.joints(instruments, &none) - too_far;
         let zeros = reading.zeros(instruments, &none, &joints, self.configured);
-        let range = (self.met.1 - self.met.0) - (self.stops.1 - self.stops.0);
+        let range = (self.stops_found.1 - self.stops_found.0) - (self.stops.1 - self.stops.0);
         Ok(Break(self.findings(instruments, zeros, too_far, Some(range))))
     }
 
-    pub(super) fn search_lower(&self, joint: usize, lead: JointLead) -> Phase {
-        Phase::Seek { lead, joint, upper: false, search: StopSearch::new(joint, -self.longest(joint)) }
+    pub(super) fn search_lower(&self, joint: usize, guide: JointGuide) -> Phase {
+        Phase::Seek { guide, joint, upper: false, search: StopSearch::new(joint, -self.longest(joint)) }
     }
 
-    fn search_upper(&self, joint: usize, lead: JointLead) -> Phase {
-        Phase::Seek { lead, joint, upper: true, search: StopSearch::new(joint, self.longest(joint)) }
+    fn search_upper(&self, joint: usize, guide: JointGuide) -> Phase {
+        Phase::Seek { guide, joint, upper: true, search: StopSearch::new(joint, self.longest(joint)) }
     }
 
     /// Returns the largest distance that a joint may move in search of a stop, rad.
@@ -119,7 +119,8 @@ impl Zeroing {
     }
 
     fn check_range(&self, joint: usize) -> Result<(), Obstacle> {
-        let (found, expected) = (self.met.1[joint] - self.met.0[joint], self.stops.1[joint] - self.stops.0[joint]);
+        let (found, expected) =
+            (self.stops_found.1[joint] - self.stops_found.0[joint], self.stops.1[joint] - self.stops.0[joint]);
         let number = joint as u8;
         if found < expected - TOLERANCE {
             let (degrees, expected) = (found.to_degrees(), expected.to_degrees());

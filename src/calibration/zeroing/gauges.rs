@@ -4,7 +4,7 @@ use super::{Phase, Stepped, Zeroing, going};
 use crate::calibration::gauge_zero::GaugeZero;
 use crate::calibration::grip::Grip;
 use crate::calibration::instruments::Instruments;
-use crate::calibration::joint_lead::JointLead;
+use crate::calibration::joint_guide::JointGuide;
 use crate::calibration::obstacle::Obstacle;
 use crate::calibration::step::{Progress, Sample, Step};
 use crate::calibration::take_up::TakeUp;
@@ -81,8 +81,8 @@ impl Zeroing {
             self.phase = Phase::Try(Grip::new(instruments, sample, self.torque));
             return going(Step::TryingPose, 0.3, Activity::Tighten(instruments.offset));
         }
-        let lead = JointLead::new(instruments, sample, self.torque);
-        self.phase = self.search_lower(0, lead);
-        going(Step::SeekingStops, 0.3, lead.activity(instruments, sample))
+        let guide = JointGuide::new(instruments, sample, self.torque);
+        self.phase = self.search_lower(0, guide);
+        going(Step::SeekingStops, 0.3, guide.activity(instruments, sample))
     }
 }

@@ -11,7 +11,7 @@ use nalgebra::{Vector3, Vector4};
 const SMOOTHING: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct JointLead {
+pub(super) struct JointGuide {
     pub anchor: Vector3<f64>,
     /// Motion of the anchor in this cycle, rad.
     moved: Vector3<f64>,
@@ -25,7 +25,7 @@ pub(super) struct JointLead {
     pub common: f64,
 }
 
-impl JointLead {
+impl JointGuide {
     /// Holds the current pose of the finger.
     pub fn new(instruments: &Instruments, sample: &Sample, limit: f64) -> Self {
         let tensions = instruments.tensions(sample.feedback);
