@@ -83,7 +83,7 @@ pub use model::configuration::{
     ConfiguredStiffness, ConfiguredTendon, ConfiguredZeroing, EndState, GaugeReference, Law, OnFault, OutOfRange,
     PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
 };
-pub use model::{Contact, ContactError, Part};
+pub use model::{Contact, ContactError, FingerNumber, Part};
 pub use realtime::Distribution;
 
 /// The matrix library of the public signatures.

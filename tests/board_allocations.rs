@@ -4,6 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use sun2xp::board::protocol::Command;
 use sun2xp::board::*;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
 use sun2xp::realtime::{Priority, now};
 use sun2xp::simulated::*;
@@ -42,7 +43,7 @@ static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn a_cycle_allocates_nothing_whether_answered_or_not() {
-    let board = SimulatedBoard::new(&Configuration::default(), &[0]).unwrap();
+    let board = SimulatedBoard::new(&Configuration::default(), &[FingerNumber::ONE]).unwrap();
     let board = SimulatedPort::start(board, Pace::RealTime, Priority::default()).unwrap();
     let mut link = Link::open(&board.path(), 1_000_000).unwrap();
     let terms = Terms::new(&ConfiguredHand { watchdog_ms: 500, ..Default::default() }, &ConfiguredFinger::default());

@@ -2,6 +2,7 @@
 
 use sun2xp::board::protocol::*;
 use sun2xp::board::{Link, LinkError, PortError, Terms, Transport};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
 use sun2xp::simulated::SimulatedBoard;
 
@@ -37,7 +38,7 @@ struct Flood {
 impl Flood {
     fn of(frame: Frame) -> Self {
         Self {
-            board: SimulatedBoard::new(&Configuration::default(), &[0]).expect("a board"),
+            board: SimulatedBoard::new(&Configuration::default(), &[FingerNumber::ONE]).expect("a board"),
             frame,
             sequence: 200,
             begins_with: None,

@@ -4,6 +4,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::board::protocol::*;
 use sun2xp::board::*;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
 use sun2xp::simulated::*;
 
@@ -68,7 +69,7 @@ impl Transport for NoisyCable {
 #[test]
 fn noise_costs_the_periods_that_it_hits_and_no_wrong_value_passes() {
     let finger = ConfiguredFinger::default();
-    let board = SimulatedBoard::new(&Configuration::default(), &[0]).unwrap();
+    let board = SimulatedBoard::new(&Configuration::default(), &[FingerNumber::ONE]).unwrap();
     let cable =
         NoisyCable { cable: SimulatedCable::new(board), random: Pcg64::seed_from_u64(7), one_in: 0, hit: false };
     let mut link = Link::new(cable);

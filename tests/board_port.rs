@@ -6,6 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use sun2xp::board::protocol::*;
 use sun2xp::board::*;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
 use sun2xp::realtime::{self, Priority};
 use sun2xp::simulated::*;
@@ -13,7 +14,7 @@ use sun2xp::simulated::*;
 const MS: u64 = 1_000_000;
 
 fn board() -> SimulatedPort {
-    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).unwrap();
+    let board = SimulatedBoard::new(&Configuration::default(), &FingerNumber::ALL).unwrap();
     SimulatedPort::start(board, Pace::RealTime, Priority::default()).unwrap()
 }
 

@@ -4,6 +4,7 @@ use std::fs;
 use sun2xp::calibration::{Findings, Obstacle, Step, Zeros};
 use sun2xp::finger::Stage;
 use sun2xp::hand::{Calibrating, Fingers, Found, Hand, HandError, read_configuration, store_findings};
+use sun2xp::model::FingerNumber;
 
 const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500\n[finger.zeroing]\nspeed = 2.0\n[finger.encoder]\n\
      zero = [700, -20, 30, 4000] # last year\n[finger.2.gauge]\n\
@@ -42,8 +43,8 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
 
     // Meanwhile another process has stored zeros of finger 1.
     let other = Zeros { encoder: [5, 6, 7, 8], gauge: [0.0; 4], joint_error: Default::default(), range_error: None };
-    let other = Found::by_calibration(&Findings::Zeros(other), 1, &read_configuration(&path).expect("usable"))
-        .expect("a finger");
+    let other =
+        Found::by_calibration(&Findings::Zeros(other), FingerNumber::ONE, &read_configuration(&path).expect("usable"));
     store_findings(&path, &[other]).expect("stored");
     assert!(hand.store_calibration(2).expect("stored"));
     assert!(!hand.store_calibration(2).expect("nothing is left to store"));
@@ -58,7 +59,10 @@ fn a_finger_is_calibrated_and_its_file_rewritten() {
     fs::remove_file(&path).expect("removed");
     hand.find_signs(3, |_| {}).expect("signs");
     let refused = hand.store_calibration(3).expect_err("nowhere to store");
-    assert!(matches!(&refused, HandError::NotStored { finger: 3, .. }) && refused.errno() == libc::ENOENT, "{refused}");
+    assert!(
+        matches!(&refused, HandError::NotStored { finger: FingerNumber::THREE, .. }) && refused.errno() == libc::ENOENT,
+        "{refused}"
+    );
 }
 
 #[test]
@@ -69,15 +73,17 @@ fn a_refused_calibration_leaves_the_finger_limp_and_says_why() {
     let hand = Hand::open(configuration.clone()).expect("open");
     let mut calibrating = Calibrating::begin(&hand, 1, sun2xp::calibration::Task::Zero).expect("begun");
     let second = Calibrating::begin(&hand, 1, sun2xp::calibration::Task::Zero);
-    assert!(matches!(second, Err(HandError::Busy(1))), "{second:?}");
+    assert!(matches!(second, Err(HandError::Busy(FingerNumber::ONE))), "{second:?}");
     let refused = loop {
         match calibrating.poll(&hand) {
             Ok(_) => std::thread::sleep(std::time::Duration::from_millis(5)),
             Err(error) => break error,
         }
     };
-    let expected =
-        matches!(refused, HandError::Calibration { finger: 1, limp: true, obstacle: Obstacle::TimeLimit { .. } });
+    let expected = matches!(
+        refused,
+        HandError::Calibration { finger: FingerNumber::ONE, limp: true, obstacle: Obstacle::TimeLimit { .. } }
+    );
     assert!(expected, "{refused}");
     assert_eq!(refused.errno(), libc::ETIMEDOUT);
     assert_eq!(hand.report(1).expect("a report").stage, Stage::Limp);

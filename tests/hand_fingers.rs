@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use sun2xp::finger::Stage;
 use sun2xp::hand::{Fingers, Hand, HandError, Recovering};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
@@ -26,7 +27,7 @@ fn a_finger_is_opened_without_the_ports_of_the_others() {
     let mut configuration = slow();
     configuration.fingers[1].port = NOWHERE.into();
     let whole = Hand::open_limp(configuration.clone(), None, Fingers::ALL).err().expect("refused");
-    assert!(matches!(whole, HandError::Link { finger: 2, .. }), "{whole}");
+    assert!(matches!(whole, HandError::Link { finger: FingerNumber::TWO, .. }), "{whole}");
 
     let hand = Hand::open_limp(configuration, None, fingers(&[1, 3])).expect("open");
     for finger in [1, 3] {
@@ -48,7 +49,7 @@ fn a_finger_is_opened_without_the_ports_of_the_others() {
         Recovering::begin(&hand, 2).err(),
     ] {
         let refused = refused.expect("refused");
-        assert!(matches!(refused, HandError::NotOpened(2)), "{refused}");
+        assert!(matches!(refused, HandError::NotOpened(FingerNumber::TWO)), "{refused}");
         assert_eq!(refused.errno(), libc::ENODEV);
     }
     assert!(matches!(hand.position(4), Err(HandError::NoSuchFinger(4))));
@@ -58,13 +59,13 @@ fn a_finger_is_opened_without_the_ports_of_the_others() {
 #[test]
 fn one_of_three_fingers_on_a_port() {
     let mut configuration = slow();
-    let board = SimulatedBoard::new(&configuration, &[0, 1, 2]).expect("a board");
+    let board = SimulatedBoard::new(&configuration, &FingerNumber::ALL).expect("a board");
     let port = SimulatedPort::start(board, Pace::patient(500.0), Priority::default()).expect("a port");
     for finger in &mut configuration.fingers {
         (finger.port, finger.baud, finger.thread) = (port.path().display().to_string(), 2_000_000, 1);
     }
     let hand = Hand::open_limp(configuration, Some(PathBuf::from("hand.toml")), fingers(&[2])).expect("open");
-    assert!(matches!(hand.report(1), Err(HandError::NotOpened(1))));
+    assert!(matches!(hand.report(1), Err(HandError::NotOpened(FingerNumber::ONE))));
     // A busy machine may lose its replies soon, but the board has obeyed some commands.
     let obeyed = |finger| port.with_finger(finger, |finger| finger.commanded_at()).expect("the board has it");
     let patience = Instant::now() + Duration::from_secs(10);
@@ -75,5 +76,5 @@ fn one_of_three_fingers_on_a_port() {
     assert!(obeyed(1).is_none() && obeyed(3).is_none());
     // Nothing was found for finger 2, and nothing can be found for a finger that is not open.
     assert!(!hand.store_calibration(2).expect("nothing to store"));
-    assert!(matches!(hand.store_calibration(1), Err(HandError::NotOpened(1))));
+    assert!(matches!(hand.store_calibration(1), Err(HandError::NotOpened(FingerNumber::ONE))));
 }

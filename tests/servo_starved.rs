@@ -15,6 +15,7 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use sun2xp::board::{PortError, Transport};
 use sun2xp::finger::{Fault, FaultKind, FingerReport, Stage};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Clock;
 use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
@@ -145,7 +146,7 @@ impl Rig {
             now: 0,
             load: Load::default(),
             random: Pcg64::seed_from_u64(seed),
-            board: SimulatedBoard::new(&configuration, &[0]).expect("a board"),
+            board: SimulatedBoard::new(&configuration, &[FingerNumber::ONE]).expect("a board"),
             time: PacedTime::new(Pace::patient(configuration.hand.rate), 0),
             to_board: Vec::new(),
             carried: Vec::new(),

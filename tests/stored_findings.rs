@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use sun2xp::calibration::{Findings, Identified, Zeros};
 use sun2xp::hand::{ConfigurationError, Found, read_configuration, store_findings};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use tempfile::{TempDir, tempdir};
 
@@ -17,7 +18,7 @@ const FILE: &str = "# The hand on the desk.\n[hand]\nrate = 500 # slow cable\n\n
 /// A worker that stores the same kind of finding repeatedly. No two workers store the same kind.
 #[derive(Clone, Copy, Debug)]
 struct Worker {
-    finger: i32,
+    finger: FingerNumber,
     what: What,
 }
 
@@ -30,12 +31,12 @@ enum What {
 
 /// A bound of finger 1 or 3 would become invalid with the friction that other workers store.
 const WORKERS: [Worker; 6] = [
-    Worker { finger: 1, what: What::Zeros },
-    Worker { finger: 1, what: What::Friction },
-    Worker { finger: 2, what: What::Zeros },
-    Worker { finger: 2, what: What::Bound },
-    Worker { finger: 3, what: What::Zeros },
-    Worker { finger: 3, what: What::Friction },
+    Worker { finger: FingerNumber::ONE, what: What::Zeros },
+    Worker { finger: FingerNumber::ONE, what: What::Friction },
+    Worker { finger: FingerNumber::TWO, what: What::Zeros },
+    Worker { finger: FingerNumber::TWO, what: What::Bound },
+    Worker { finger: FingerNumber::THREE, what: What::Zeros },
+    Worker { finger: FingerNumber::THREE, what: What::Friction },
 ];
 
 impl Worker {
@@ -59,16 +60,15 @@ impl Worker {
                 joint_coulomb: Vector3::repeat(number),
                 joint_viscous: Vector3::repeat(0.05),
             }),
-            What::Bound => return Found::bound(10.0 + number, self.finger, configuration).expect("a finger"),
+            What::Bound => return Found::bound(10.0 + number, self.finger, configuration),
         };
-        Found::by_calibration(&findings, self.finger, configuration).expect("a finger")
+        Found::by_calibration(&findings, self.finger, configuration)
     }
 
     /// Returns whether the file contains the finding of a turn.
     fn is_stored(self, turn: i32, path: &Path) -> bool {
         let hand = read_configuration(path).unwrap_or_else(|error| panic!("{self:?}, turn {turn}: {error}"));
-        let index = self.finger as usize - 1;
-        let ConfiguredFinger { encoder, gauge, tendon, friction, stiffness, .. } = &hand.fingers[index];
+        let ConfiguredFinger { encoder, gauge, tendon, friction, stiffness, .. } = &hand.fingers[self.finger.index()];
         let number = f64::from(turn + 1);
         match self.what {
             What::Zeros => encoder.zero == [turn; 4] && gauge.zero == [number; 4],

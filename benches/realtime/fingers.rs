@@ -3,6 +3,7 @@
 use crate::Failure;
 use sun2xp::board::{Link, Port, Terms};
 use sun2xp::finger::{BlackBox, FingerServo, Mailbox, ServedPort};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{Consumer, ring};
 use sun2xp::realtime::{CycleTiming, Priority, Schedule, now};
@@ -22,22 +23,22 @@ pub struct Finger {
 /// Connects to all fingers of a hand, each on its own port. `period` is in ns, and the phases are staggered.
 pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> Result<Vec<Finger>, Failure> {
     let first = now() + 100_000_000;
-    let reach_one = |index: usize| {
-        let finger = &configuration.fingers[index];
-        let board = SimulatedBoard::new(configuration, &[index])?;
+    let reach_one = |number: FingerNumber| {
+        let finger = &configuration.fingers[number.index()];
+        let board = SimulatedBoard::new(configuration, &[number])?;
         let pace = Pace::patient(configuration.hand.rate);
         let board = SimulatedPort::start(board, pace, Priority { fifo: board_priority, core: None })?;
         let mut link = Link::open(&board.path(), finger.baud)?;
         let terms = Terms::new(&configuration.hand, finger);
         let deadline = now() + 10_000_000_000;
-        let (identity, configured) = link.shake_hands(configuration.address(index), &terms, deadline)?;
+        let (identity, configured) = link.shake_hands(configuration.address(number), &terms, deadline)?;
         let (producer, timings) = ring(16);
         let stiffness = finger.initial_stiffness();
-        let (recorder, black_box) = BlackBox::new(configuration, index);
+        let (recorder, black_box) = BlackBox::new(configuration, number);
         let (servo, mailbox) =
-            FingerServo::new(configuration, index, stiffness, &identity, &configured, producer, recorder)
+            FingerServo::new(configuration, number, stiffness, &identity, &configured, producer, recorder)
                 .map_err(|unusable| unusable.reason)?;
-        let schedule = Schedule::new(first + period * index as u64 / FINGERS as u64, period);
+        let schedule = Schedule::new(first + period * number.index() as u64 / FINGERS as u64, period);
         Ok(Finger {
             mailbox,
             port: ServedPort::new(link, vec![servo]),
@@ -46,5 +47,5 @@ pub fn reach(configuration: &Configuration, period: u64, board_priority: u8) -> 
             uncollected: (timings, black_box),
         })
     };
-    (0..FINGERS).map(reach_one).collect()
+    FingerNumber::ALL.into_iter().map(reach_one).collect()
 }

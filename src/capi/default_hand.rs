@@ -102,7 +102,7 @@ pub(super) fn calibrate(finger: i32, task: Task) -> Result<(), Refusal> {
         sleep(POLLING_PERIOD);
     }
     // The hand is not locked here, so that CloseHand waits neither for a slow disk nor for other processes that store.
-    match with(|hand| Ok::<_, hand::HandError>(hand.to_store(finger)))? {
+    match with(|hand| Ok::<_, hand::HandError>(hand.to_store(finger.try_into()?)))? {
         Some(calibration) => Ok(calibration.store()?),
         None => Ok(()),
     }

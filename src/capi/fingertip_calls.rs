@@ -152,7 +152,8 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
         default_hand::command(|hand| -> Result<(), HandError> {
             // Reports a wrong finger number before an unusable contact.
             hand.report(i)?;
-            hand.send_contact(i, contact.map_err(|source: ContactError| SetPointError::Contact { finger: i, source })?)
+            let finger = i.try_into()?;
+            hand.send_contact(i, contact.map_err(|source: ContactError| SetPointError::Contact { finger, source })?)
         })
     })
 }
@@ -233,7 +234,8 @@ pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
             default_hand::command(|hand| -> Result<(), HandError> {
                 hand.report(i)?;
                 let reason = "is not UTF-8".to_string();
-                let refused = |_| ConfigurationError::Adjustment { finger: i, line: 1, reason };
+                let finger = i.try_into()?;
+                let refused = |_| ConfigurationError::Adjustment { finger, line: 1, reason };
                 hand.adjust(i, keys.to_str().map_err(refused)?)
             })
         })

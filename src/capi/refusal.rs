@@ -148,13 +148,14 @@ pub(super) fn text() -> *const c_char {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::FingerNumber;
 
     #[test]
     fn refusals_of_the_hand_have_different_kinds() {
         let no_finger = Refusal::Hand(hand::HandError::NoSuchFinger(7));
-        let not_simulated = Refusal::Hand(hand::HandError::NotSimulated(1));
+        let not_simulated = Refusal::Hand(hand::HandError::NotSimulated(FingerNumber::ONE));
         assert_ne!(no_finger.kind(), not_simulated.kind());
-        let negative = hand::SetPointError::Negative { finger: 1, smallest: -1.0 };
+        let negative = hand::SetPointError::Negative { finger: FingerNumber::ONE, smallest: -1.0 };
         let no_contact = hand::SetPointError::NoSuchContact(2);
         assert_ne!(Refusal::Hand(negative.into()).kind(), Refusal::Hand(no_contact.into()).kind());
         assert_eq!(no_finger.kind(), Refusal::Hand(hand::HandError::NoSuchFinger(8)).kind());

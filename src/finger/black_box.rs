@@ -9,6 +9,7 @@
 use crate::control::State;
 use crate::finger::recording::{Origin, Recording};
 use crate::finger::{ControllerSource, CycleRecord, KeptRecord, Stage};
+use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand};
 use crate::realtime::{Consumer, LockedMemory, Producer, ring};
 use nalgebra::Vector3;
@@ -55,10 +56,10 @@ pub struct BlackBox {
 }
 
 impl BlackBox {
-    /// Both ends of an empty black box for the finger with this index, 0 to 2. `configuration` describes its first
+    /// Both ends of an empty black box for the finger with this number. `configuration` describes its first
     /// controller.
-    pub fn new(configuration: &Configuration, index: usize) -> (Recorder, Self) {
-        let (hand, finger) = (&configuration.hand, configuration.fingers[index].clone());
+    pub fn new(configuration: &Configuration, number: FingerNumber) -> (Recorder, Self) {
+        let (hand, finger) = (&configuration.hand, configuration.fingers[number.index()].clone());
         let cycles = |seconds: f64| (seconds * hand.rate).ceil() as usize;
         let apart = cycles(1.0 / KEYFRAMES);
         let (records, arriving) = ring(cycles(UNCOLLECTED));
@@ -71,9 +72,9 @@ impl BlackBox {
             records: VecDeque::with_capacity(cycles(KEPT + UNCOLLECTED + 2.0 / KEYFRAMES)),
             keyframes: VecDeque::with_capacity(cycles(KEPT + UNCOLLECTED).div_ceil(apart) + 4),
             length: cycles(KEPT) as u64,
-            finger: index as i32 + 1, // 1 to 3
+            finger: number.get(),
             hand: hand.clone(),
-            controllers: vec![ControllerSource { number: 0, gravity: configuration.gravity(index), finger }],
+            controllers: vec![ControllerSource { number: 0, gravity: configuration.gravity(number), finger }],
             awaited: None,
             faulted: false,
         };

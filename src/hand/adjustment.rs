@@ -9,6 +9,7 @@ use crate::hand::dispatcher::Member;
 use crate::hand::opening::{admission, check};
 use crate::hand::{ConfigurationError, Hand, HandError, SetPointError};
 use crate::model::Contact;
+use crate::model::FingerNumber;
 use crate::model::configuration::{ConfiguredFinger, ConfiguredStiffness, Unusable};
 use nalgebra::Matrix6;
 use toml_edit::{Document, Item, Table};
@@ -46,18 +47,19 @@ impl Hand {
     /// configuration that cannot be used; limits that the set point sent last is outside of, unless commands are
     /// clamped; finger faulted. Nothing is changed then.
     pub fn adjust(&self, finger: i32, keys: &str) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;
-        let index = finger as usize - 1; // the member is there: 1 to 3
         // The lock is held throughout, so that of two adjustments the second starts from the result of the first.
         let mut configuration = self.configuration.write();
         let mut changed = configuration.clone();
-        changed.fingers[index] = adjusted(finger, &configuration.fingers[index], keys, configuration.hand.rate)?;
+        changed.fingers[finger.index()] =
+            adjusted(finger, &configuration.fingers[finger.index()], keys, configuration.hand.rate)?;
         check(&changed)?;
         let unusable =
             |unusable: Unusable| ConfigurationError::Unusable { section: format!("finger.{finger}"), unusable };
-        let adjustable = Adjustable::new(&changed, index).map_err(unusable)?;
+        let adjustable = Adjustable::new(&changed, finger).map_err(unusable)?;
         self.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
-            adjust_member(member, admission(&changed, index), adjustable)
+            adjust_member(member, admission(&changed, finger), adjustable)
         })?;
         *configuration = changed;
         Ok(())
@@ -91,7 +93,7 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
 
 /// The configuration of a finger, with `keys` replacing some of its values. `rate` is in Hz.
 fn adjusted(
-    number: i32,
+    number: FingerNumber,
     finger: &ConfiguredFinger,
     keys: &str,
     rate: f64,
@@ -137,7 +139,8 @@ mod tests {
     use super::*;
 
     fn changed(keys: &str) -> ConfiguredFinger {
-        adjusted(1, &ConfiguredFinger::default(), keys, 1000.0).unwrap_or_else(|error| panic!("{error}"))
+        adjusted(FingerNumber::ONE, &ConfiguredFinger::default(), keys, 1000.0)
+            .unwrap_or_else(|error| panic!("{error}"))
     }
 
     #[test]
@@ -152,7 +155,7 @@ mod tests {
         expected.geometry.ghost_row = Some([1.0; 4]);
         expected.simulation.surface =
             Some(crate::model::configuration::Surface::Ball { centre: [0.0, 1.0, 9.0], radius: 2.0, stiffness: 30.0 });
-        let mut again = adjusted(1, &expected, "tendon.maximum = 50", 1000.0).expect("usable");
+        let mut again = adjusted(FingerNumber::ONE, &expected, "tendon.maximum = 50", 1000.0).expect("usable");
         assert_eq!(again.tendon.maximum, 50.0);
         again.tendon.maximum = 60.0;
         assert_eq!(again, expected);
@@ -171,7 +174,7 @@ mod tests {
             (Some(11.2), 1000.0, "tendon.maximum = 50", Some(11.2)),
         ] {
             finger.stiffness.bound = configured;
-            let changed = adjusted(1, &finger, keys, rate).expect("usable");
+            let changed = adjusted(FingerNumber::ONE, &finger, keys, rate).expect("usable");
             assert_eq!(changed.stiffness.bound, expected, "{keys}");
         }
     }
@@ -186,11 +189,12 @@ mod tests {
             "tendon.minimum = 6\nsimulation.seed = 3",
             "[stiffness]\nbound = 5\ninitial = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
         ] {
-            let refusal = adjusted(1, &ConfiguredFinger::default(), keys, 1000.0).expect_err("refused");
+            let refusal = adjusted(FingerNumber::ONE, &ConfiguredFinger::default(), keys, 1000.0).expect_err("refused");
             assert!(matches!(refusal, ConfigurationError::Permanent { .. }), "{refusal}");
             assert_eq!(refusal.errno(), libc::EBUSY);
         }
-        let refusal = adjusted(1, &ConfiguredFinger::default(), "simulation.seed = 3", 1000.0).expect_err("refused");
+        let refusal = adjusted(FingerNumber::ONE, &ConfiguredFinger::default(), "simulation.seed = 3", 1000.0)
+            .expect_err("refused");
         assert!(refusal.to_string().starts_with("`simulation` cannot change"), "{refusal}");
     }
 
@@ -203,8 +207,8 @@ mod tests {
             ("\"tendon\\n\" = 1", 1, "unknown key `tendon\\n`"),
             ("\ntendon.stiffness = [300, 300, 300, 300, 300]", 2, "tendon.stiffness: has 5 entries, and must have 4"),
         ] {
-            match adjusted(2, &ConfiguredFinger::default(), keys, 1000.0).expect_err("refused") {
-                ConfigurationError::Adjustment { finger: 2, line, reason } => {
+            match adjusted(FingerNumber::TWO, &ConfiguredFinger::default(), keys, 1000.0).expect_err("refused") {
+                ConfigurationError::Adjustment { finger: FingerNumber::TWO, line, reason } => {
                     assert_eq!(line, place, "{keys}: {reason}");
                     assert!(reason.contains(word), "{reason}");
                 }

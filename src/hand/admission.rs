@@ -2,6 +2,7 @@
 
 use crate::control::{AdmissibleDamping, SetPoint, spatial};
 use crate::hand::SetPointError;
+use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Law, OutOfRange};
 use crate::model::{Contact, ContactError, Links, spring};
@@ -11,7 +12,7 @@ use nalgebra::{Matrix3, Matrix3x4, Matrix6, Vector3};
 #[derive(Clone, Debug)]
 pub(super) struct Admission {
     /// Number of the finger, 1 to 3.
-    pub finger: i32,
+    pub finger: FingerNumber,
     /// Lower and upper joint limits, rad.
     pub joint_limits: (Vector3<f64>, Vector3<f64>),
     /// Bound on the largest eigenvalue of Kx, N/cm.
@@ -125,7 +126,7 @@ impl Admission {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampingAdmission {
     /// Number of the finger, 1 to 3.
-    pub finger: i32,
+    pub finger: FingerNumber,
     /// The damping that the finger's controller admits.
     pub admissible: AdmissibleDamping,
     /// Converts a rotational stiffness, cm: the length of the last link.

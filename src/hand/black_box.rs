@@ -3,6 +3,7 @@
 use crate::finger::{KeptRecord, Recording};
 use crate::hand::black_box_file::save_recording;
 use crate::hand::{Hand, HandError};
+use crate::model::FingerNumber;
 use std::path::Path;
 
 impl Hand {
@@ -11,6 +12,7 @@ impl Hand {
     /// # Errors
     /// No such finger.
     pub fn recording(&self, finger: i32) -> Result<Recording, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.recording(finger)?.ok_or(HandError::NoAnswer(finger))
     }
 
@@ -19,6 +21,7 @@ impl Hand {
     /// # Errors
     /// No such finger, a cycle that is not kept.
     pub fn record(&self, finger: i32, cycle: Option<u64>) -> Result<KeptRecord, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.record(finger, cycle)?.ok_or(HandError::NoRecord { finger, cycle: cycle.unwrap_or_default() })
     }
 

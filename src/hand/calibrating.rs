@@ -6,6 +6,7 @@ use crate::finger::{Adjustable, CalibrationRun, Fault, Order, Stage};
 use crate::hand::calibration_file::store_findings;
 use crate::hand::opening::check;
 use crate::hand::{Found, Hand, HandError};
+use crate::model::FingerNumber;
 use crate::model::UnusableConfiguration;
 use crate::model::configuration::ConfiguredFinger;
 use std::path::PathBuf;
@@ -23,7 +24,7 @@ const ANSWER: Duration = Duration::from_secs(5);
 /// A calibration in progress. It runs without further calls; [`Calibrating::poll`] reports its progress.
 #[derive(Debug)]
 pub struct Calibrating {
-    finger: i32,
+    finger: FingerNumber,
     /// While this exists, nobody else can calibrate the finger.
     _claim: Claim,
     order: u32,
@@ -68,14 +69,14 @@ impl Calibrating {
     /// # Errors
     /// No such finger, finger faulted or busy, a configuration that the routine cannot work with.
     pub fn begin(hand: &Hand, finger: i32, task: Task) -> Result<Self, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         let member = hand.dispatcher.member(finger)?;
-        let index = finger as usize - 1; // 1 to 3: the member is there
         let mut configuration = hand.configuration.read().clone();
         let rate = configuration.hand.rate;
         let refused = |unusable| refusal(finger, unusable);
-        let calibration = Calibration::new(task, &configuration.fingers[index], rate).map_err(refused)?;
-        configuration.fingers[index] = Calibration::controlled(&configuration.fingers[index], rate);
-        let adjustable = Adjustable::new(&configuration, index).map_err(refused)?;
+        let calibration = Calibration::new(task, &configuration.fingers[finger.index()], rate).map_err(refused)?;
+        configuration.fingers[finger.index()] = Calibration::controlled(&configuration.fingers[finger.index()], rate);
+        let adjustable = Adjustable::new(&configuration, finger).map_err(refused)?;
         let claim = Claim::take(&member.calibrated).ok_or_else(|| match member.mailbox.report().stage {
             Stage::Faulted(fault) => HandError::Faulted { finger, fault },
             _ => HandError::Busy(finger),
@@ -87,7 +88,7 @@ impl Calibrating {
         Ok(Self { finger, _claim: claim, order, found: None, asked: Instant::now() })
     }
 
-    fn ordered(finger: i32, given: Result<Option<u32>, Fault>) -> Result<u32, HandError> {
+    fn ordered(finger: FingerNumber, given: Result<Option<u32>, Fault>) -> Result<u32, HandError> {
         given.map_err(|fault| HandError::Faulted { finger, fault })?.ok_or(HandError::Busy(finger))
     }
 
@@ -121,15 +122,14 @@ impl Calibrating {
                 Err(HandError::Calibration { finger, limp: report.stage == Stage::Limp, obstacle })
             }
             Some(Verdict::Found(found)) => {
-                let index = finger as usize - 1; // 1 to 3: it has reported
                 // The lock is held throughout, so that a concurrent adjustment is not lost.
                 let mut configuration = hand.configuration.write();
                 let mut changed = configuration.clone();
-                found.apply(&mut changed.fingers[index]);
+                found.apply(&mut changed.fingers[finger.index()]);
                 check(&changed)?;
-                let adjustable = Adjustable::new(&changed, index).map_err(|unusable| refusal(finger, unusable))?;
+                let adjustable = Adjustable::new(&changed, finger).map_err(|unusable| refusal(finger, unusable))?;
                 let limp = matches!(found, Findings::Signs(_));
-                let to_store = Found::by_calibration(&found, finger, &changed)?;
+                let to_store = Found::by_calibration(&found, finger, &changed);
                 let member = hand.dispatcher.member(finger)?;
                 self.order = hand.dispatcher.hand_over(finger, &changed, adjustable, |adjustable| {
                     Self::ordered(finger, member.mailbox.restart(adjustable, limp))
@@ -185,8 +185,9 @@ impl Hand {
     /// # Errors
     /// No such finger.
     pub fn calibrated(&self, finger: i32) -> Result<ConfiguredFinger, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?;
-        Ok(self.configuration.read().fingers[finger as usize - 1].clone()) // the member is there: 1 to 3
+        Ok(self.configuration.read().fingers[finger.index()].clone())
     }
 
     /// Writes the calibration results of finger 1, 2 or 3 since the last such call into the configuration file that the
@@ -196,12 +197,13 @@ impl Hand {
     /// No such finger; [`HandError::NotStored`] with the reason. The results then stay in force until the hand is
     /// closed, and a later call does not store them.
     pub fn store_calibration(&self, finger: i32) -> Result<bool, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?;
         self.to_store(finger).map_or(Ok(false), |calibration| calibration.store().map(|()| true))
     }
 
     /// What [`Hand::store_calibration`] would write, for a caller that writes it without the hand.
-    pub(crate) fn to_store(&self, finger: i32) -> Option<ToStore> {
+    pub(crate) fn to_store(&self, finger: FingerNumber) -> Option<ToStore> {
         let mut all = self.found.lock();
         let place = all.iter().position(|found| found.finger() == finger)?;
         let found = all.swap_remove(place);
@@ -231,6 +233,6 @@ impl ToStore {
     }
 }
 
-fn refusal(finger: i32, unusable: crate::model::configuration::Unusable) -> HandError {
-    UnusableConfiguration { finger: Some(finger as usize - 1), unusable }.into() // 1 to 3: the finger was found
+fn refusal(finger: FingerNumber, unusable: crate::model::configuration::Unusable) -> HandError {
+    UnusableConfiguration { finger: Some(finger), unusable }.into()
 }

@@ -70,7 +70,7 @@ fn like(before: &str, mut changed: String) -> String {
 /// Writes the results of one finger. Returns whether anything changed.
 fn write_finger(document: &mut DocumentMut, found: &Found, before: &Configuration) -> Result<bool, String> {
     let number = found.finger();
-    let present = &before.fingers[number as usize - 1]; // 1 to 3: it was found
+    let present = &before.fingers[number.index()];
     let mut changed = false;
     for FoundValue { section, key, numbers } in found.values() {
         let present = numbers_at(present, section, key);
@@ -102,6 +102,7 @@ fn numbers_at(finger: &ConfiguredFinger, section: &str, key: &str) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::calibration::{Findings, Identified, Signs, Zeros};
+    use crate::model::FingerNumber;
     use nalgebra::Vector3;
     use std::fs;
 
@@ -126,18 +127,18 @@ mod tests {
         after
     }
 
-    fn zeros(finger: i32, encoder: [i32; 4], gauge: f64) -> Found {
+    fn zeros(finger: FingerNumber, encoder: [i32; 4], gauge: f64) -> Found {
         let findings =
             Findings::Zeros(Zeros { encoder, gauge: [gauge; 4], joint_error: Vector3::zeros(), range_error: None });
-        Found::by_calibration(&findings, finger, &Configuration::default()).expect("a finger")
+        Found::by_calibration(&findings, finger, &Configuration::default())
     }
 
-    fn signs(finger: i32, motor: [i8; 4], gauge: [i8; 4]) -> Found {
+    fn signs(finger: FingerNumber, motor: [i8; 4], gauge: [i8; 4]) -> Found {
         let findings = Findings::Signs(Signs { motor, encoder: [1; 4], gauge });
-        Found::by_calibration(&findings, finger, &Configuration::default()).expect("a finger")
+        Found::by_calibration(&findings, finger, &Configuration::default())
     }
 
-    fn identified(finger: i32, stiffness: [f64; 4], conduit: f64) -> Found {
+    fn identified(finger: FingerNumber, stiffness: [f64; 4], conduit: f64) -> Found {
         let findings = Findings::Identified(Identified {
             tendon_stiffness: stiffness.into(),
             travel_residual: 0.0,
@@ -149,12 +150,12 @@ mod tests {
             joint_viscous: Vector3::repeat(0.05),
         });
         let mut configuration = Configuration::default();
-        findings.apply(&mut configuration.fingers[finger as usize - 1]);
-        Found::by_calibration(&findings, finger, &configuration).expect("a finger")
+        findings.apply(&mut configuration.fingers[finger.index()]);
+        Found::by_calibration(&findings, finger, &configuration)
     }
 
-    fn bound(finger: i32, bound: f64) -> Found {
-        Found::bound(bound, finger, &Configuration::default()).expect("a finger")
+    fn bound(finger: FingerNumber, bound: f64) -> Found {
+        Found::bound(bound, finger, &Configuration::default())
     }
 
     const FILE: &str = "# The hand in the corner.\n\n[hand]\nrate = 500 # slow cable\n\n[finger.encoder]\n\
@@ -164,19 +165,25 @@ mod tests {
     #[test]
     fn what_stands_there_already_changes_nothing() {
         assert_eq!(stored(FILE, &[]), FILE);
-        assert_eq!(stored(FILE, &[zeros(1, [1, 2, 3, 4], 0.0), signs(3, [1; 4], [1; 4])]), FILE);
+        assert_eq!(
+            stored(FILE, &[zeros(FingerNumber::ONE, [1, 2, 3, 4], 0.0), signs(FingerNumber::THREE, [1; 4], [1; 4])]),
+            FILE
+        );
     }
 
     #[test]
     fn what_is_found_replaces_its_numbers_and_nothing_else() {
-        let text = stored(FILE, &[identified(2, [330.0, 301.123_456_789, 310.0, 300.0], 0.05)]);
+        let text = stored(FILE, &[identified(FingerNumber::TWO, [330.0, 301.123_456_789, 310.0, 300.0], 0.05)]);
         let expected = FILE.replace("[ 300.0, 300,", "[ 330.0, 301.123,");
         assert_eq!(text, expected + "stiffness_tolerance = 0.03\n");
     }
 
     #[test]
     fn what_all_fingers_share_is_overridden_for_one() {
-        let text = stored(FILE, &[zeros(1, [5, 6, 7, -8], 0.0), signs(1, [1, -1, 1, 1], [1; 4])]);
+        let text = stored(
+            FILE,
+            &[zeros(FingerNumber::ONE, [5, 6, 7, -8], 0.0), signs(FingerNumber::ONE, [1, -1, 1, 1], [1; 4])],
+        );
         assert!(text.starts_with(FILE), "{text}");
         assert!(text.contains("[finger.1.encoder]\nzero = [5, 6, 7, -8]"), "{text}");
         assert!(text.contains("[finger.1.motor]\nsign = [1, -1, 1, 1]"), "{text}");
@@ -185,7 +192,10 @@ mod tests {
     #[test]
     fn inline_tables_take_it_too() {
         let text = "finger.3 = { encoder = { zero = [0, 0, 0, 0] } }\n";
-        let text = stored(text, &[zeros(3, [9, 0, 0, 0], 0.0), identified(3, [300.0; 4], 0.07)]);
+        let text = stored(
+            text,
+            &[zeros(FingerNumber::THREE, [9, 0, 0, 0], 0.0), identified(FingerNumber::THREE, [300.0; 4], 0.07)],
+        );
         assert!(text.contains("zero = [9, 0, 0, 0]"), "{text}");
         assert!(text.contains("conduit = [0.07, 0.07, 0.07, 0.07]"), "{text}");
     }
@@ -193,7 +203,7 @@ mod tests {
     #[test]
     fn a_single_number_keeps_its_comment_or_is_added() {
         let file = "[finger.1.stiffness]\nbound = 4.0 # N/cm, by hand\n";
-        let text = stored(file, &[bound(1, 8.300000001), bound(3, 7.0)]);
+        let text = stored(file, &[bound(FingerNumber::ONE, 8.300000001), bound(FingerNumber::THREE, 7.0)]);
         let expected = "[finger.1.stiffness]\nbound = 8.3 # N/cm, by hand\n\n[finger.3.stiffness]\nbound = 7.0\n";
         assert_eq!(text, expected);
     }
@@ -201,8 +211,9 @@ mod tests {
     #[test]
     fn others_findings_stay() {
         // Both results were found with the file as it was at the beginning.
-        let (first, second) = (zeros(1, [5, 6, 7, 8], 200.0), zeros(2, [9, 9, 9, 9], 190.0));
-        let bound = Found::bound(7.5, 1, &parse(FILE).expect("usable")).expect("a finger");
+        let (first, second) =
+            (zeros(FingerNumber::ONE, [5, 6, 7, 8], 200.0), zeros(FingerNumber::TWO, [9, 9, 9, 9], 190.0));
+        let bound = Found::bound(7.5, FingerNumber::ONE, &parse(FILE).expect("usable"));
         let text = stored(&stored(FILE, &[first]), &[second, bound]);
         let hand = parse(&text).expect("usable");
         assert_eq!(hand.fingers.each_ref().map(|finger| finger.encoder.zero[0]), [5, 9, 1]);
@@ -213,41 +224,44 @@ mod tests {
     #[test]
     fn signs_are_given_to_the_sizes_that_are_there() {
         let file = "[finger.1.gauge]\nnewton_per_count = [0.0312345678, 0.02, -0.03, 0.04] # measured\n";
-        let text = stored(file, &[signs(1, [1; 4], [1, -1, -1, 1])]);
+        let text = stored(file, &[signs(FingerNumber::ONE, [1; 4], [1, -1, -1, 1])]);
         assert_eq!(text, file.replace("0.02,", "-0.02,"));
     }
 
     #[test]
     fn what_editors_of_other_systems_write_stays() {
         for file in [FILE.replace('\n', "\r\n"), format!("\u{feff}{FILE}")] {
-            let text = stored(&file, &[zeros(1, [5, 6, 7, 8], 0.0)]);
+            let text = stored(&file, &[zeros(FingerNumber::ONE, [5, 6, 7, 8], 0.0)]);
             assert!(text.starts_with(&file), "{text:?}");
             assert_eq!(text.contains("\nzero = [5, 6, 7, 8]\n"), !file.contains('\r'), "{text:?}");
         }
-        let text = stored("[hand]\nrate = 1000 # no line end", &[zeros(1, [5, 6, 7, 8], 0.0)]);
+        let text = stored("[hand]\nrate = 1000 # no line end", &[zeros(FingerNumber::ONE, [5, 6, 7, 8], 0.0)]);
         assert_eq!(text, "[hand]\nrate = 1000 # no line end\n\n[finger.1.encoder]\nzero = [5, 6, 7, 8]\n");
     }
 
     #[test]
     fn a_file_that_no_longer_fits_is_left_and_the_reason_told() {
         let radius = "[finger.1.geometry]\nmotor_radius = [0.05, 0.05, 0.05, 0.05]\n";
-        let error = try_to_store(radius, &[zeros(1, [5; 4], 0.0)]).expect_err("other motors").to_string();
+        let error =
+            try_to_store(radius, &[zeros(FingerNumber::ONE, [5; 4], 0.0)]).expect_err("other motors").to_string();
         assert!(error.contains("finger.1.geometry.motor_radius is [0.05, 0.05, 0.05, 0.05] there"), "{error}");
         // The change does not affect finger 2.
-        stored(radius, &[zeros(2, [5; 4], 0.0)]);
-        let error = try_to_store("[hand]\nrate = 500\n", &[bound(2, 7.0)]).expect_err("another rate").to_string();
+        stored(radius, &[zeros(FingerNumber::TWO, [5; 4], 0.0)]);
+        let error = try_to_store("[hand]\nrate = 500\n", &[bound(FingerNumber::TWO, 7.0)])
+            .expect_err("another rate")
+            .to_string();
         assert!(error.contains("hand.rate is 500 there, and was 1000 during the calibration"), "{error}");
         for (text, line, reason) in
             [("[hand]\nrate = \n", Some(2), ""), ("\n[finger.3.tendon]\nmaximum = 8\n", Some(3), "for its pretension")]
         {
-            match try_to_store(text, &[zeros(1, [5; 4], 0.0)]).expect_err("unusable") {
+            match try_to_store(text, &[zeros(FingerNumber::ONE, [5; 4], 0.0)]).expect_err("unusable") {
                 ConfigurationError::Invalid { line: found, reason: told, .. } => {
                     assert!(found == line && told.contains(reason), "{found:?} {told}");
                 }
                 other => panic!("{other}"),
             }
         }
-        let error = try_to_store("", &[bound(1, 1e9)]).expect_err("beyond its range").to_string();
+        let error = try_to_store("", &[bound(FingerNumber::ONE, 1e9)]).expect_err("beyond its range").to_string();
         assert!(error.contains("with the new calibration, finger.1.stiffness.bound"), "{error}");
     }
 

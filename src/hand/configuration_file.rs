@@ -98,8 +98,11 @@ impl Configured {
                 ),
             });
         };
-        let unnamed: Vec<String> =
-            fingers.indices().filter(|&index| !self.ports_named[index]).map(|index| (index + 1).to_string()).collect();
+        let unnamed: Vec<String> = fingers
+            .members()
+            .filter(|number| !self.ports_named[number.index()])
+            .map(|number| number.to_string())
+            .collect();
         let fingers = match unnamed.len() {
             0 => return None,
             1 => format!("for finger {}: it is", unnamed[0]),

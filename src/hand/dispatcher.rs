@@ -5,11 +5,12 @@ mod collected;
 mod collecting;
 
 use crate::finger::{self, Adjustable, BlackBox, FingerReport, KeptRecord, Losses, Mailbox, Recording};
+use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::dispatcher::collected::Collected;
 use crate::hand::dispatcher::collecting::collect;
 use crate::hand::opening::Reached;
-use crate::hand::{Fingers, HandError};
+use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredFinger};
 use crate::realtime::{CycleStage, Distribution, Histograms, Priority, spawn};
 use crossbeam_channel::{Sender, bounded};
@@ -24,7 +25,7 @@ use std::thread::JoinHandle;
 /// The planners' side of one finger.
 pub(super) struct Member {
     /// Number of the finger, 1 to 3.
-    pub number: i32,
+    pub number: FingerNumber,
     pub admission: RwLock<Admission>,
     pub mailbox: Mailbox,
     /// Whether a caller has the right to calibrate the finger.
@@ -44,7 +45,7 @@ impl Dispatcher {
         let (mut members, mut collected) = (Vec::new(), Vec::new());
         for finger in fingers {
             members.push(Member {
-                number: finger.index as i32 + 1, // 1 to 3
+                number: finger.number,
                 admission: RwLock::new(finger.admission),
                 mailbox: finger.mailbox,
                 calibrated: Arc::default(),
@@ -76,7 +77,7 @@ impl Dispatcher {
     }
 
     /// Joints 0, 1, 2 of a finger that is not faulted, rad.
-    pub fn position(&self, finger: i32) -> Result<[f64; 3], HandError> {
+    pub fn position(&self, finger: FingerNumber) -> Result<[f64; 3], HandError> {
         self.member(finger)?.mailbox.with_report(|report| match report.stage {
             finger::Stage::Faulted(fault) => Err(HandError::Faulted { finger, fault }),
             _ => Ok(report.cycle.joints.into()),
@@ -84,7 +85,7 @@ impl Dispatcher {
     }
 
     /// The newest report of a finger that is not faulted.
-    pub fn report(&self, finger: i32) -> Result<FingerReport, HandError> {
+    pub fn report(&self, finger: FingerNumber) -> Result<FingerReport, HandError> {
         let report = self.last_report(finger)?;
         match report.stage {
             finger::Stage::Faulted(fault) => Err(HandError::Faulted { finger, fault }),
@@ -93,48 +94,48 @@ impl Dispatcher {
     }
 
     /// The newest report of a finger, faulted or not.
-    pub fn last_report(&self, finger: i32) -> Result<FingerReport, HandError> {
+    pub fn last_report(&self, finger: FingerNumber) -> Result<FingerReport, HandError> {
         Ok(self.member(finger)?.mailbox.report())
     }
 
     /// The timing of a stage.
-    pub fn timing(&self, finger: i32, stage: CycleStage) -> Result<Distribution, HandError> {
+    pub fn timing(&self, finger: FingerNumber, stage: CycleStage) -> Result<Distribution, HandError> {
         let mut collected = self.collected(finger)?;
         collected.collect();
         Ok(collected.histograms.distribution(stage))
     }
 
     /// Counts of cycles and errors.
-    pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
-        let index = self.index(finger)?;
+    pub fn losses(&self, finger: FingerNumber) -> Result<Losses, HandError> {
+        let place = self.place(finger)?;
         // The report is read under the lock, so that a reset by another thread comes before both or after both. A servo
         // publishes the report of a cycle before its timing. A caller that reads the timing first therefore never
         // counts a timing whose cycle is not reported yet.
         let collected = self.collected(finger)?;
-        Ok(self.members[index].mailbox.report().losses.since(&collected.losses_before))
+        Ok(self.members[place].mailbox.report().losses.since(&collected.losses_before))
     }
 
     /// Resets timings and losses.
-    pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
-        let index = self.index(finger)?;
+    pub fn reset_timing(&self, finger: FingerNumber) -> Result<(), HandError> {
+        let place = self.place(finger)?;
         let mut collected = self.collected(finger)?;
         // The report is read before the timings for the same reason. The timings of uncounted cycles are then discarded
         // here, except for a cycle that is just being published.
-        collected.losses_before = self.members[index].mailbox.report().losses;
+        collected.losses_before = self.members[place].mailbox.report().losses;
         collected.collect();
         collected.histograms.reset();
         Ok(())
     }
 
     /// The last two seconds; none before the first cycle.
-    pub fn recording(&self, finger: i32) -> Result<Option<Recording>, HandError> {
+    pub fn recording(&self, finger: FingerNumber) -> Result<Option<Recording>, HandError> {
         let mut collected = self.collected(finger)?;
         collected.collect();
         Ok(collected.black_box.recording())
     }
 
     /// A record of the last two seconds.
-    pub fn record(&self, finger: i32, cycle: Option<u64>) -> Result<Option<KeptRecord>, HandError> {
+    pub fn record(&self, finger: FingerNumber, cycle: Option<u64>) -> Result<Option<KeptRecord>, HandError> {
         let mut collected = self.collected(finger)?;
         collected.collect();
         Ok(collected.black_box.record(cycle))
@@ -144,7 +145,7 @@ impl Dispatcher {
     /// stores the configuration that it was made from. If it is refused, the black box stores nothing.
     pub fn hand_over<T>(
         &self,
-        finger: i32,
+        finger: FingerNumber,
         configuration: &Configuration,
         adjustable: Adjustable,
         give: impl FnOnce(Adjustable) -> Result<T, HandError>,
@@ -155,7 +156,7 @@ impl Dispatcher {
     /// Like [`Dispatcher::hand_over`], for the data that a calibration computes with when it takes over.
     pub fn hand_over_calibration<T>(
         &self,
-        finger: i32,
+        finger: FingerNumber,
         configuration: &Configuration,
         adjustable: Adjustable,
         give: impl FnOnce(Adjustable) -> Result<T, HandError>,
@@ -165,27 +166,27 @@ impl Dispatcher {
 
     fn announce<T>(
         &self,
-        finger: i32,
+        finger: FingerNumber,
         configuration: &Configuration,
         mut adjustable: Adjustable,
         give: impl FnOnce(Adjustable) -> Result<T, HandError>,
         announce: impl FnOnce(&mut BlackBox, ConfiguredFinger, Vector3<f64>, u32),
     ) -> Result<T, HandError> {
-        let index = self.index(finger)?;
+        let place = self.place(finger)?;
         // The lock is held throughout, so that no record that names the controller is collected before the black box
         // has its source.
         let mut collected = self.collected(finger)?;
-        let taken = self.members[index].mailbox.report().controller;
+        let taken = self.members[place].mailbox.report().controller;
         collected.collect();
         adjustable.number = collected.black_box.next_number();
         let given = give(adjustable)?;
-        let (finger, gravity) = (configuration.fingers[index].clone(), configuration.gravity(index));
+        let (finger, gravity) = (configuration.fingers[finger.index()].clone(), configuration.gravity(finger));
         announce(&mut collected.black_box, finger, gravity, taken);
         Ok(given)
     }
 
-    fn collected(&self, finger: i32) -> Result<MutexGuard<'_, Collected>, HandError> {
-        Ok(self.collected[self.index(finger)?].lock())
+    fn collected(&self, finger: FingerNumber) -> Result<MutexGuard<'_, Collected>, HandError> {
+        Ok(self.collected[self.place(finger)?].lock())
     }
 
     /// Every member, in the order of their numbers.
@@ -194,16 +195,13 @@ impl Dispatcher {
     }
 
     /// The member with a number.
-    pub fn member(&self, finger: i32) -> Result<&Member, HandError> {
-        self.index(finger).map(|index| &self.members[index])
+    pub fn member(&self, finger: FingerNumber) -> Result<&Member, HandError> {
+        self.place(finger).map(|place| &self.members[place])
     }
 
-    fn index(&self, finger: i32) -> Result<usize, HandError> {
-        let index = self.members.iter().position(|member| member.number == finger);
-        index.ok_or_else(|| match Fingers::only(finger) {
-            Ok(_) => HandError::NotOpened(finger),
-            Err(there_is_none) => there_is_none,
-        })
+    fn place(&self, finger: FingerNumber) -> Result<usize, HandError> {
+        let place = self.members.iter().position(|member| member.number == finger);
+        place.ok_or(HandError::NotOpened(finger))
     }
 }
 

@@ -16,6 +16,7 @@ use crate::board::LinkError;
 use crate::calibration::Obstacle;
 use crate::finger::{Fault, FaultKind};
 use crate::hand::missing_permissions::MissingPermission;
+use crate::model::FingerNumber;
 use crate::model::{ShownPath, UnusableConfiguration};
 use crate::realtime::{with_remedy, with_terminal_remedy};
 use std::path::PathBuf;
@@ -29,7 +30,7 @@ pub enum HandError {
     NoSuchFinger(i32),
     /// The hand was opened without this finger.
     #[error("the hand was opened without finger {0}: open it with this finger")]
-    NotOpened(i32),
+    NotOpened(FingerNumber),
     /// The number of a stage of the cycle does not exist.
     #[error("there is no stage {0}: the stages of a cycle are 0 to 7")]
     NoSuchStage(i32),
@@ -45,8 +46,8 @@ pub enum HandError {
     /// The finger has stopped because of a fault.
     #[error("finger {finger} is faulted (fault {}): {fault}", fault.kind.number())]
     Faulted {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// The fault.
         fault: Fault,
     },
@@ -57,16 +58,16 @@ pub enum HandError {
         fault.kind.number()
     )]
     FaultedAtOpening {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// The fault.
         fault: Fault,
     },
     /// The port or the board does not work.
     #[error("finger {finger}: {source} (fault {})", Fault::from(source).kind.number())]
     Link {
-        /// 1 to 3.
-        finger: usize,
+        /// The finger.
+        finger: FingerNumber,
         /// What is wrong with the port or the board.
         source: LinkError,
     },
@@ -79,7 +80,7 @@ pub enum HandError {
     )]
     SameNumber {
         /// 1 to 3.
-        fingers: [i32; 2],
+        fingers: [FingerNumber; 2],
         /// Their ports.
         ports: [PathBuf; 2],
         /// The bytes of the number in hexadecimal.
@@ -108,8 +109,8 @@ pub enum HandError {
         if *limp { "its motors are off" } else { "it holds its pose" }
     )]
     Calibration {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// True if the finger is limp now. Otherwise it controls the stiffness that it had before.
         limp: bool,
         /// The cause and the remedy.
@@ -117,18 +118,18 @@ pub enum HandError {
     },
     /// The finger is busy.
     #[error("finger {0} is being opened, calibrated or closed: wait until this is done")]
-    Busy(i32),
+    Busy(FingerNumber),
     /// The servo does not respond.
     #[error(
         "finger {0} does not respond: the hand was closed or opened again during the call, or its servo thread does \
          not run. Check the finger's status; to start the thread again, close the hand and open it again"
     )]
-    NoAnswer(i32),
+    NoAnswer(FingerNumber),
     /// A calibration is in force, but it could not be stored.
     #[error("the calibration of finger {finger} is in force until the hand is closed, but it is not stored: {source}")]
     NotStored {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// The reason.
         source: ConfigurationError,
     },
@@ -150,8 +151,8 @@ pub enum HandError {
          which span the last two seconds, or 0 for the newest"
     )]
     NoRecord {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// The requested cycle; 0: the newest.
         cycle: u64,
     },
@@ -161,8 +162,8 @@ pub enum HandError {
          use a smaller one"
     )]
     TooMuchForce {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// The largest component, N.
         force: f64,
         /// The bound, N.
@@ -170,7 +171,7 @@ pub enum HandError {
     },
     /// Only a simulated finger can be pushed.
     #[error("finger {0} has a real port: only a simulated finger (`port = \"simulated\"`) can be pushed")]
-    NotSimulated(i32),
+    NotSimulated(FingerNumber),
 }
 
 impl From<UnusableConfiguration> for HandError {

@@ -2,6 +2,7 @@
 
 use crate::finger::{Fault, FaultKind, Stage};
 use crate::hand::{Hand, HandError};
+use crate::model::FingerNumber;
 
 /// The result of [`Hand::fault`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +21,8 @@ impl Hand {
     /// # Errors
     /// No such finger.
     pub fn fault(&self, finger: i32) -> Result<FingerFault, HandError> {
-        let report = self.report(finger)?;
+        let finger = FingerNumber::try_from(finger)?;
+        let report = self.dispatcher.last_report(finger)?;
         let stopped = match report.stage {
             Stage::Faulted(fault) => Some(fault),
             _ => None,

@@ -1,6 +1,7 @@
 //! The selection of a hand's fingers that are opened.
 
 use crate::hand::HandError;
+use crate::model::FingerNumber;
 use crate::model::configuration::FINGERS;
 
 /// A selection of at least one finger. The ports of other fingers are not opened, and calls for other fingers are
@@ -25,8 +26,7 @@ impl Fingers {
     /// # Errors
     /// No such finger.
     pub fn and(mut self, finger: i32) -> Result<Self, HandError> {
-        let index = usize::try_from(finger).ok().and_then(|number| number.checked_sub(1));
-        *index.and_then(|index| self.0.get_mut(index)).ok_or(HandError::NoSuchFinger(finger))? = true;
+        self.0[FingerNumber::try_from(finger)?.index()] = true;
         Ok(self)
     }
 
@@ -43,12 +43,21 @@ impl Fingers {
 
     /// The numbers of the fingers, 1 to 3, in rising order.
     pub fn numbers(self) -> impl Iterator<Item = i32> {
-        self.indices().map(|index| index as i32 + 1) // 1 to 3
+        self.members().map(FingerNumber::get)
     }
 
-    /// The indices of the fingers in a configuration, 0 to 2.
-    pub(super) fn indices(self) -> impl Iterator<Item = usize> {
-        (0..FINGERS).filter(move |&index| self.0[index])
+    /// Returns the fingers, in the order of their numbers.
+    pub(super) fn members(self) -> impl Iterator<Item = FingerNumber> {
+        FingerNumber::ALL.into_iter().filter(move |finger| self.0[finger.index()])
+    }
+}
+
+/// Calls take plain numbers, as in C. Here they become fingers.
+impl TryFrom<i32> for FingerNumber {
+    type Error = HandError;
+
+    fn try_from(number: i32) -> Result<Self, HandError> {
+        Self::new(number).ok_or(HandError::NoSuchFinger(number))
     }
 }
 
@@ -62,7 +71,7 @@ mod tests {
         assert_eq!(fingers.expect("fingers 1 and 3").numbers().collect::<Vec<_>>(), [1, 3]);
         assert_eq!(Fingers::of(&[2, 1, 2]).expect("fingers 1 and 2").numbers().collect::<Vec<_>>(), [1, 2]);
         assert_eq!(Fingers::of(&[]).expect("every finger"), Fingers::ALL);
-        assert_eq!(Fingers::ALL.indices().collect::<Vec<_>>(), [0, 1, 2]);
+        assert_eq!(Fingers::ALL.members().collect::<Vec<_>>(), FingerNumber::ALL);
     }
 
     #[test]

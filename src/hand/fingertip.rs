@@ -3,6 +3,7 @@
 use crate::finger::FingerReport;
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError};
+use crate::model::FingerNumber;
 use nalgebra::{Matrix3, Vector3};
 
 /// Limit of observability, cm per rad. If the fingertip moves by less than this in a direction for a turn of the joints
@@ -31,6 +32,7 @@ impl Hand {
     /// # Errors
     /// No such finger, finger faulted.
     pub fn fingertip(&self, finger: i32) -> Result<FingerTip, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         let report = self.dispatcher.report(finger)?;
         Ok(FingerTip::new(&self.dispatcher.member(finger)?.admission.read(), &report))
     }

@@ -2,8 +2,8 @@
 //! with.
 
 use crate::calibration::Findings;
-use crate::hand::HandError;
-use crate::model::configuration::{Configuration, FINGERS};
+use crate::model::FingerNumber;
+use crate::model::configuration::Configuration;
 use std::collections::BTreeMap;
 use toml_edit::Item;
 
@@ -29,7 +29,7 @@ const RATE: &str = "hand.rate";
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// Number of the finger, 1 to 3.
-    finger: i32,
+    finger: FingerNumber,
     values: Vec<FoundValue>,
     /// Keys and tables of keys that the values depend on.
     held_by: &'static [&'static str],
@@ -60,11 +60,8 @@ pub(super) enum Numbers {
 
 impl Found {
     /// The results of a calibration. `configuration` is the one that is in force with them.
-    ///
-    /// # Errors
-    /// No such finger.
-    pub fn by_calibration(findings: &Findings, finger: i32, configuration: &Configuration) -> Result<Self, HandError> {
-        let of = &configuration.fingers[index(finger)?];
+    pub fn by_calibration(findings: &Findings, finger: FingerNumber, configuration: &Configuration) -> Self {
+        let of = &configuration.fingers[finger.index()];
         let values = match findings {
             Findings::Signs(signs) => vec![
                 value("motor", "sign", whole(signs.motor)),
@@ -90,26 +87,23 @@ impl Found {
     }
 
     /// The bound of Kx of a finger, N/cm, found with `configuration`.
-    ///
-    /// # Errors
-    /// No such finger.
-    pub fn bound(bound: f64, finger: i32, configuration: &Configuration) -> Result<Self, HandError> {
+    pub fn bound(bound: f64, finger: FingerNumber, configuration: &Configuration) -> Self {
         let values = vec![value("stiffness", "bound", Numbers::One(bound))];
         Self::new(finger, values, HELD_BY_BOUND, configuration)
     }
 
     fn new(
-        finger: i32,
+        finger: FingerNumber,
         values: Vec<FoundValue>,
         held_by: &'static [&'static str],
         configuration: &Configuration,
-    ) -> Result<Self, HandError> {
-        let holds_for = excerpt(configuration, index(finger)?, held_by);
-        Ok(Self { finger, values, held_by, holds_for })
+    ) -> Self {
+        let holds_for = excerpt(configuration, finger, held_by);
+        Self { finger, values, held_by, holds_for }
     }
 
-    /// Number of the finger, 1 to 3.
-    pub fn finger(&self) -> i32 {
+    /// Returns the number of the finger.
+    pub fn finger(&self) -> FingerNumber {
         self.finger
     }
 
@@ -132,7 +126,7 @@ impl Found {
 
     /// The first key that the results depend on and that has another value in `configuration`; none if all are equal.
     pub(super) fn misfit(&self, configuration: &Configuration) -> Option<Misfit> {
-        let present = excerpt(configuration, self.finger as usize - 1, self.held_by); // 1 to 3, as `new` has checked
+        let present = excerpt(configuration, self.finger, self.held_by);
         let keys = self.holds_for.keys().chain(present.keys());
         keys.map(|key| (key, self.holds_for.get(key), present.get(key))).find(|(_, was, is)| was != is).map(
             |(key, was, is)| {
@@ -160,11 +154,6 @@ pub(super) fn with_signs(sizes: &[f64], signs: [i8; 4]) -> Vec<f64> {
     sizes.iter().zip(signs).map(|(size, sign)| size.abs() * f64::from(sign)).collect()
 }
 
-fn index(finger: i32) -> Result<usize, HandError> {
-    let index = usize::try_from(finger).ok().and_then(|number| number.checked_sub(1));
-    index.filter(|&index| index < FINGERS).ok_or(HandError::NoSuchFinger(finger))
-}
-
 fn value(section: &'static str, key: &'static str, numbers: Numbers) -> FoundValue {
     FoundValue { section, key, numbers }
 }
@@ -174,10 +163,10 @@ fn whole<T: Into<i64>>(values: [T; 4]) -> Numbers {
 }
 
 /// The values of some keys, as text. A table stands for all of its keys. A key that is not set is left out.
-fn excerpt(configuration: &Configuration, index: usize, keys: &[&str]) -> BTreeMap<String, String> {
+fn excerpt(configuration: &Configuration, finger: FingerNumber, keys: &[&str]) -> BTreeMap<String, String> {
     let mut leaves = BTreeMap::new();
     // Every configuration can be serialised, because it was or could have been read from such a text.
-    let finger = toml_edit::ser::to_document(&configuration.fingers[index]).unwrap_or_default();
+    let finger = toml_edit::ser::to_document(&configuration.fingers[finger.index()]).unwrap_or_default();
     for &key in keys {
         if key == RATE {
             leaves.insert(key.into(), configuration.hand.rate.to_string());
@@ -215,22 +204,19 @@ mod tests {
     #[test]
     fn a_run_holds_its_own_keys_and_no_others() {
         let configuration = Configuration::default();
-        let found = Found::by_calibration(&zeros(), 2, &configuration).expect("a finger");
+        let found = Found::by_calibration(&zeros(), FingerNumber::TWO, &configuration);
         assert_eq!(keys(&found), ["encoder.zero", "gauge.zero"]);
-        let found = Found::bound(7.0, 2, &configuration).expect("a finger");
+        let found = Found::bound(7.0, FingerNumber::TWO, &configuration);
         assert_eq!(keys(&found), ["stiffness.bound"]);
-        for finger in [0, 4, i32::MIN] {
-            assert!(matches!(Found::bound(7.0, finger, &configuration), Err(HandError::NoSuchFinger(_))));
-        }
     }
 
     #[test]
     fn later_runs_are_added_key_by_key() {
         let configuration = Configuration::default();
-        let mut found = Found::by_calibration(&zeros(), 1, &configuration).expect("a finger");
+        let mut found = Found::by_calibration(&zeros(), FingerNumber::ONE, &configuration);
         found.values.push(value("gauge", "newton_per_count", Numbers::Real(vec![1.0, 2.0, -3.0, 4.0])));
         let signs = Findings::Signs(Signs { motor: [1; 4], encoder: [-1; 4], gauge: [-1, 1, 1, -1] });
-        found.add(Found::by_calibration(&signs, 1, &configuration).expect("a finger"));
+        found.add(Found::by_calibration(&signs, FingerNumber::ONE, &configuration));
         assert_eq!(
             keys(&found),
             ["encoder.zero", "gauge.zero", "gauge.newton_per_count", "motor.sign", "encoder.sign"]
@@ -241,8 +227,8 @@ mod tests {
     #[test]
     fn what_findings_depend_on_is_compared() {
         let found = |configuration: &Configuration| {
-            let calibration = Found::by_calibration(&zeros(), 2, configuration).expect("a finger");
-            [calibration, Found::bound(7.0, 2, configuration).expect("a finger")]
+            let calibration = Found::by_calibration(&zeros(), FingerNumber::TWO, configuration);
+            [calibration, Found::bound(7.0, FingerNumber::TWO, configuration)]
         };
         type Change = fn(&mut Configuration);
         let changes: [(Change, Option<&str>, Option<&str>); 6] = [

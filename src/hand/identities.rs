@@ -3,6 +3,7 @@
 
 use crate::board::protocol::Identity;
 use crate::hand::HandError;
+use crate::model::FingerNumber;
 use std::path::{Path, PathBuf};
 
 /// The boards found so far.
@@ -11,7 +12,7 @@ pub(super) struct Identities(Vec<KnownNumber>);
 
 struct KnownNumber {
     /// Number of the finger, 1 to 3.
-    finger: i32,
+    finger: FingerNumber,
     port: PathBuf,
     number: [u8; 12],
 }
@@ -21,7 +22,7 @@ impl Identities {
     ///
     /// # Errors
     /// A board at another port has the same number. Fingers on one port may share a number.
-    pub fn add(&mut self, finger: i32, port: &Path, identity: &Identity) -> Result<(), HandError> {
+    pub fn add(&mut self, finger: FingerNumber, port: &Path, identity: &Identity) -> Result<(), HandError> {
         let number = identity.unique_number;
         match self.0.iter().find(|known| known.number == number && known.port != port) {
             Some(known) => Err(HandError::SameNumber {
@@ -62,11 +63,15 @@ pub(super) mod tests {
     #[test]
     fn each_port_has_its_own_number_and_its_fingers_may_share_it() {
         let mut identities = Identities::default();
-        assert!(identities.add(1, Path::new("/dev/left"), &identity(5)).is_ok());
-        assert!(identities.add(2, Path::new("/dev/left"), &identity(5)).is_ok());
-        assert!(identities.add(3, Path::new("/dev/right"), &identity(6)).is_ok());
-        let error =
-            identities.add(3, Path::new("/dev/right"), &identity(5)).expect_err("the number of fingers 1 and 2");
-        assert!(matches!(error, HandError::SameNumber { fingers: [1, 3], .. }), "{error}");
+        assert!(identities.add(FingerNumber::ONE, Path::new("/dev/left"), &identity(5)).is_ok());
+        assert!(identities.add(FingerNumber::TWO, Path::new("/dev/left"), &identity(5)).is_ok());
+        assert!(identities.add(FingerNumber::THREE, Path::new("/dev/right"), &identity(6)).is_ok());
+        let error = identities
+            .add(FingerNumber::THREE, Path::new("/dev/right"), &identity(5))
+            .expect_err("the number of fingers 1 and 2");
+        assert!(
+            matches!(error, HandError::SameNumber { fingers: [FingerNumber::ONE, FingerNumber::THREE], .. }),
+            "{error}"
+        );
     }
 }

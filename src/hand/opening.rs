@@ -11,6 +11,7 @@ use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
 use crate::hand::port_repair::{KnownBoard, PortRepair};
 use crate::hand::{ConfigurationError, HandError, SetPointError};
+use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
 use crate::model::{Shown, ShownPath, UnusableConfiguration};
@@ -27,8 +28,7 @@ const UNCOLLECTED: f64 = 0.8;
 
 /// A finger after the handshake. Its servo side is in a [`ServedPort`].
 pub(super) struct Reached {
-    /// Index of the finger, 0 to 2.
-    pub index: usize,
+    pub number: FingerNumber,
     /// The planners' end.
     pub mailbox: Mailbox,
     /// The checks of its commands.
@@ -60,10 +60,10 @@ pub(super) struct Line {
 /// lines.
 pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration> {
     configuration.check()?;
-    for index in 0..FINGERS {
-        let refused = |unusable| UnusableConfiguration { finger: Some(index), unusable };
-        initial_stiffness(configuration, index).map_err(refused)?;
-        carries(configuration, index).map_err(refused)?;
+    for number in FingerNumber::ALL {
+        let refused = |unusable| UnusableConfiguration { finger: Some(number), unusable };
+        initial_stiffness(configuration, number).map_err(refused)?;
+        carries(configuration, number).map_err(refused)?;
     }
     Ok(())
 }
@@ -92,14 +92,14 @@ pub fn simulate(
     fingers: Fingers,
 ) -> Result<[Option<SimulatedPort>; FINGERS], HandError> {
     let mut ports = [const { None }; FINGERS];
-    for index in fingers.indices() {
-        let finger = &configuration.fingers[index];
+    for number in fingers.members() {
+        let finger = &configuration.fingers[number.index()];
         if !finger.simulated() {
             continue;
         }
-        let board = SimulatedBoard::new(configuration, &[index]).map_err(|error| {
+        let board = SimulatedBoard::new(configuration, &[number]).map_err(|error| {
             let unusable = Unusable { key: "simulation", reason: error.to_string() };
-            UnusableConfiguration { finger: Some(index), unusable }
+            UnusableConfiguration { finger: Some(number), unusable }
         })?;
         let fifo = match configuration.hand.real_time {
             RealTime::Ignore => 0,
@@ -108,7 +108,7 @@ pub fn simulate(
         let priority = Priority { fifo, core: None };
         let port = SimulatedPort::start(board, Pace::patient(configuration.hand.rate), priority)
             .map_err(HandError::SimulatedPort)?;
-        ports[index] = Some(port);
+        ports[number.index()] = Some(port);
     }
     Ok(ports)
 }
@@ -126,12 +126,12 @@ pub(super) fn reach(
     let mut identities = Identities::default();
     for (path, sharing) in ports(configuration, fingers, simulated) {
         let first = sharing[0];
-        let failed = |source| HandError::Link { finger: first + 1, source };
-        let mut link = Link::open(&path, configuration.fingers[first].baud).map_err(failed)?;
+        let failed = |source| HandError::Link { finger: first, source };
+        let mut link = Link::open(&path, configuration.fingers[first.index()].baud).map_err(failed)?;
         warn_of_latency(link.transport());
         let (mut servos, mut boards) = (Vec::new(), Vec::new());
-        for &index in &sharing {
-            let (servo, finger, board) = shake_hands(configuration, index, &mut link)?;
+        for &number in &sharing {
+            let (servo, finger, board) = shake_hands(configuration, number, &mut link)?;
             identities.add(board.finger, &path, &board.identity)?;
             let servo = servo.with(alarm.clone());
             servos.push(if limp { servo.limp() } else { servo });
@@ -143,29 +143,31 @@ pub(super) fn reach(
             thread: configuration.thread(first),
             port: ServedPort::new(link, servos).with_handover(handover),
         });
-        let baud = configuration.fingers[first].baud;
+        let baud = configuration.fingers[first.index()].baud;
         // A built-in board's port is not reopened: when it is gone, its path may name a pseudo-terminal of the planner.
-        let reconnects = |&index: &usize| configuration.fingers[index].reconnect && simulated[index].is_none();
+        let reconnects = |&number: &FingerNumber| {
+            configuration.fingers[number.index()].reconnect && simulated[number.index()].is_none()
+        };
         let reconnect = sharing.iter().any(reconnects);
         repairs.push(PortRepair::new(path, baud, reconnect, boards, repair_end));
     }
-    reached.sort_by_key(|finger| finger.index);
+    reached.sort_by_key(|finger| finger.number);
     Ok(Connected { lines, reached, repairs })
 }
 
-/// The ports of these fingers, each with the indices, 0 to 2, of at least one finger.
+/// The ports of these fingers, each with at least one finger.
 pub fn ports(
     configuration: &Configuration,
     fingers: Fingers,
     simulated: &[Option<SimulatedPort>; FINGERS],
-) -> Vec<(PathBuf, Vec<usize>)> {
-    let mut ports: Vec<(PathBuf, Vec<usize>)> = Vec::new();
-    for index in fingers.indices() {
-        let named = || PathBuf::from(&configuration.fingers[index].port);
-        let path = simulated[index].as_ref().map_or_else(named, |port| port.path());
+) -> Vec<(PathBuf, Vec<FingerNumber>)> {
+    let mut ports: Vec<(PathBuf, Vec<FingerNumber>)> = Vec::new();
+    for number in fingers.members() {
+        let named = || PathBuf::from(&configuration.fingers[number.index()].port);
+        let path = simulated[number.index()].as_ref().map_or_else(named, |port| port.path());
         match ports.iter_mut().find(|(known, _)| *known == path) {
-            Some((_, fingers)) => fingers.push(index),
-            None => ports.push((path, vec![index])),
+            Some((_, fingers)) => fingers.push(number),
+            None => ports.push((path, vec![number])),
         }
     }
     ports
@@ -183,7 +185,7 @@ fn warn_of_latency(port: &Port) {
 }
 
 /// The notice for a board that uses a longer watchdog than configured, because it does not support a shorter one.
-fn longer_watchdog(finger: usize, configured_ms: u16, agreed_ms: u16) -> Option<String> {
+fn longer_watchdog(finger: FingerNumber, configured_ms: u16, agreed_ms: u16) -> Option<String> {
     (agreed_ms > configured_ms).then(|| {
         format!(
             "the shortest watchdog time of the board of finger {finger} is {agreed_ms} ms, but hand.watchdog_ms is \
@@ -194,39 +196,38 @@ fn longer_watchdog(finger: usize, configured_ms: u16, agreed_ms: u16) -> Option<
 
 fn shake_hands(
     configuration: &Configuration,
-    index: usize,
+    number: FingerNumber,
     link: &mut Link<Port>,
 ) -> Result<(FingerServo, Reached, KnownBoard), HandError> {
-    let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
-    let unusable = |unusable| ConfigurationError::Unusable { section: format!("finger.{}", index + 1), unusable };
-    let (address, terms) = (configuration.address(index), Terms::new(hand, finger));
+    let (hand, finger) = (&configuration.hand, &configuration.fingers[number.index()]);
+    let unusable = |unusable| ConfigurationError::Unusable { section: format!("finger.{number}"), unusable };
+    let (address, terms) = (configuration.address(number), Terms::new(hand, finger));
     let deadline = now() + u64::from(hand.open_timeout_ms) * 1_000_000;
     let (identity, configured) =
-        link.shake_hands(address, &terms, deadline).map_err(|source| HandError::Link { finger: index + 1, source })?;
-    let longer = longer_watchdog(index + 1, hand.watchdog_ms, configured.terms.watchdog_ms);
+        link.shake_hands(address, &terms, deadline).map_err(|source| HandError::Link { finger: number, source })?;
+    let longer = longer_watchdog(number, hand.watchdog_ms, configured.terms.watchdog_ms);
     longer.iter().for_each(|text| print_notice(text));
     let counts = identity.counts_per_revolution;
     if counts != 0 && finger.encoder.counts_per_revolution.iter().any(|&configured| configured != counts) {
         let reason =
-            format!("the board of finger {} reports {counts} for its encoders: configure the same number", index + 1);
+            format!("the board of finger {number} reports {counts} for its encoders: configure the same number");
         return Err(unusable(Unusable { key: "encoder.counts_per_revolution", reason }).into());
     }
-    let stiffness = initial_stiffness(configuration, index).map_err(unusable)?;
+    let stiffness = initial_stiffness(configuration, number).map_err(unusable)?;
     let (producer, timings) = ring((UNCOLLECTED * hand.rate).ceil() as usize);
-    let (recorder, black_box) = BlackBox::new(configuration, index);
+    let (recorder, black_box) = BlackBox::new(configuration, number);
     let (servo, mailbox) =
-        FingerServo::new(configuration, index, stiffness, &identity, &configured, producer, recorder)
+        FingerServo::new(configuration, number, stiffness, &identity, &configured, producer, recorder)
             .map_err(unusable)?;
     let zero_valid = configured.status.has(Status::ZERO_VALID);
-    let board = KnownBoard { finger: index as i32 + 1, address, terms, identity, zero_valid }; // 1 to 3
-    Ok((servo, Reached { index, mailbox, admission: admission(configuration, index), timings, black_box }, board))
+    let board = KnownBoard { finger: number, address, terms, identity, zero_valid };
+    Ok((servo, Reached { number, mailbox, admission: admission(configuration, number), timings, black_box }, board))
 }
 
-pub(super) fn admission(configuration: &Configuration, index: usize) -> Admission {
-    let finger = &configuration.fingers[index];
+pub(super) fn admission(configuration: &Configuration, number: FingerNumber) -> Admission {
+    let finger = &configuration.fingers[number.index()];
     let joint_limits = finger.joint_limits();
     let (rate, out_of_range) = (configuration.hand.rate, configuration.hand.out_of_range);
-    let number = index as i32 + 1; // 1 to 3
     Admission {
         finger: number,
         joint_limits,
@@ -245,14 +246,14 @@ pub(super) fn admission(configuration: &Configuration, index: usize) -> Admissio
     }
 }
 
-fn initial_stiffness(configuration: &Configuration, index: usize) -> Result<Matrix3<f64>, Unusable> {
+fn initial_stiffness(configuration: &Configuration, number: FingerNumber) -> Result<Matrix3<f64>, Unusable> {
     let refused = |error: SetPointError| Unusable { key: "stiffness.initial", reason: error.to_string() };
-    admission(configuration, index).kx(configuration.fingers[index].stiffness.initial).map_err(refused)
+    admission(configuration, number).kx(configuration.fingers[number.index()].stiffness.initial).map_err(refused)
 }
 
 /// Checks that the line of a finger can carry all of its traffic at the configured rate.
-fn carries(configuration: &Configuration, index: usize) -> Result<(), Unusable> {
-    let finger = &configuration.fingers[index];
+fn carries(configuration: &Configuration, number: FingerNumber) -> Result<(), Unusable> {
+    let finger = &configuration.fingers[number.index()];
     if finger.simulated() {
         // A pseudo-terminal has no bit rate.
         return Ok(());
@@ -270,8 +271,8 @@ mod tests {
 
     #[test]
     fn only_a_board_that_keeps_a_longer_watchdog_is_announced() {
-        assert_eq!(longer_watchdog(2, 18, 18), None);
-        let text = longer_watchdog(2, 18, 20).expect("longer");
+        assert_eq!(longer_watchdog(FingerNumber::TWO, 18, 18), None);
+        let text = longer_watchdog(FingerNumber::TWO, 18, 20).expect("longer");
         assert!(
             text.contains("finger 2") && text.contains("20 ms") && text.contains("hand.watchdog_ms is 18"),
             "{text}"

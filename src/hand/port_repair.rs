@@ -4,6 +4,7 @@ use crate::board::protocol::{Configured, Identity, Status};
 use crate::board::{Link, LinkError, Port, Terms};
 use crate::finger::{Fault, FaultKind, LinkRepairEnd, RepairedLink};
 use crate::hand::{HandError, RecoveryError};
+use crate::model::FingerNumber;
 use crate::model::configuration::FINGERS;
 use crate::realtime::now;
 use std::path::PathBuf;
@@ -31,7 +32,7 @@ pub(super) struct PortRepair {
 /// A board's properties at open.
 pub(super) struct KnownBoard {
     /// Number of the finger, 1 to 3.
-    pub finger: i32,
+    pub finger: FingerNumber,
     pub address: u8,
     pub terms: Terms,
     pub identity: Identity,
@@ -69,11 +70,12 @@ impl PortRepair {
     /// zeros.
     pub fn restore(&mut self) -> Result<[Option<Configured>; FINGERS], HandError> {
         self.checked = false;
-        let first = self.boards.first().map_or(0, |board| board.finger);
+        let Some(first) = self.boards.first().map(|board| board.finger) else { return Ok([None; FINGERS]) };
         let mut link = match self.link.take() {
             Some(link) => link,
-            None if self.reconnect => Link::open(&self.path, self.baud)
-                .map_err(|source| HandError::Link { finger: first as usize, source })?, // 1 to 3
+            None if self.reconnect => {
+                Link::open(&self.path, self.baud).map_err(|source| HandError::Link { finger: first, source })?
+            }
             None => return Err(RecoveryError::NotReconnected(first).into()),
         };
         let outcome = self.shake_hands(&mut link);
@@ -94,7 +96,7 @@ impl PortRepair {
             let _ = link.stop(address, 0);
             let (identity, configured) = link
                 .shake_hands(address, terms, now() + ANSWER)
-                .map_err(|source| HandError::Link { finger: finger as usize, source })?; // 1 to 3
+                .map_err(|source| HandError::Link { finger, source })?;
             board.check(&identity, configured.status)?;
             *place = Some(configured);
         }
@@ -133,10 +135,11 @@ mod tests {
     #[test]
     fn a_board_with_another_number_is_not_the_one_of_open() {
         let terms = Terms::new(&ConfiguredHand::default(), &ConfiguredFinger::default());
-        let board = KnownBoard { finger: 1, address: 1, terms, identity: identity(5), zero_valid: false };
+        let board =
+            KnownBoard { finger: FingerNumber::ONE, address: 1, terms, identity: identity(5), zero_valid: false };
         assert!(board.check(&identity(5), Status::default()).is_ok());
         let error = board.check(&identity(6), Status::default()).expect_err("another board");
         let changed = |fault: Fault| fault.kind == FaultKind::IdentityChanged;
-        assert!(matches!(error, HandError::Faulted { finger: 1, fault } if changed(fault)), "{error}");
+        assert!(matches!(error, HandError::Faulted { finger: FingerNumber::ONE, fault } if changed(fault)), "{error}");
     }
 }

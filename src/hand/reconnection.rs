@@ -1,6 +1,7 @@
 //! The ports of a hand, and the thread that reopens those that are gone.
 
 use crate::hand::port_repair::PortRepair;
+use crate::model::FingerNumber;
 use crate::realtime::{Priority, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use parking_lot::Mutex;
@@ -16,7 +17,7 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 /// A port with its repair data. It may outlive its hand while a repair is in progress.
 pub(super) struct RepairablePort {
     /// Numbers of the fingers, 1 to 3.
-    pub fingers: Vec<i32>,
+    pub fingers: Vec<FingerNumber>,
     /// Number of repairs after which the link was given back to the servo. The fingers' numbers of recoveries reach it
     /// when the servo takes the link.
     pub repairs: AtomicU32,

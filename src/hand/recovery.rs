@@ -8,6 +8,7 @@
 use crate::finger::{Stage, stop_calls};
 use crate::hand::reconnection::RepairablePort;
 use crate::hand::{Hand, HandError, RecoveryError};
+use crate::model::FingerNumber;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::sleep;
@@ -32,14 +33,14 @@ pub struct Recovering {
 }
 
 struct Task {
-    finger: i32,
+    finger: FingerNumber,
     port: Arc<RepairablePort>,
     /// Number of recoveries of the finger at the beginning.
     recoveries: u32,
     /// Every finger of the port, with its number of recoveries at the beginning.
-    fingers: Vec<(i32, u32)>,
+    fingers: Vec<(FingerNumber, u32)>,
     /// One of these fingers that was not faulted at the beginning.
-    running: Option<i32>,
+    running: Option<FingerNumber>,
     stop_calls: u32,
 }
 
@@ -50,18 +51,19 @@ impl Recovering {
     /// # Errors
     /// No such finger.
     pub fn begin(hand: &Hand, finger: i32) -> Result<Self, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         let begun = Instant::now();
         // Emergency stops from here on stop the recovered finger.
         let stop_calls = stop_calls();
         let port = hand.recovery.ports.iter().find(|port| port.fingers.contains(&finger));
-        let report = hand.report(finger)?;
+        let report = hand.dispatcher.last_report(finger)?;
         let port = port.ok_or(HandError::NotOpened(finger))?.clone();
         if !matches!(report.stage, Stage::Faulted(_)) {
             return Ok(Self { task: None, begun });
         }
         let (mut fingers, mut running) = (Vec::new(), None);
         for &finger in &port.fingers {
-            let report = hand.report(finger)?;
+            let report = hand.dispatcher.last_report(finger)?;
             fingers.push((finger, report.recoveries));
             running = running.or((!matches!(report.stage, Stage::Faulted(_))).then_some(finger));
         }
@@ -113,7 +115,7 @@ impl Recovering {
     pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
         let mut done = true;
         for &(finger, before) in self.task.iter().flat_map(|task| &task.fingers) {
-            let report = hand.report(finger)?;
+            let report = hand.dispatcher.last_report(finger)?;
             match report.stage {
                 Stage::Faulted(_) if report.recoveries == before => {
                     if self.begun.elapsed() > STALL_LIMIT {
@@ -131,7 +133,7 @@ impl Recovering {
 
 /// The error for a servo that has not released the link of a finger within the permitted time; none before that.
 /// `running` is another finger of the port that was not faulted at the beginning.
-fn not_released(finger: i32, running: Option<i32>, waited: Duration) -> Option<RecoveryError> {
+fn not_released(finger: FingerNumber, running: Option<FingerNumber>, waited: Duration) -> Option<RecoveryError> {
     match running {
         Some(other) if waited > RELEASE_LIMIT => Some(RecoveryError::PortInUse { finger, other }),
         None if waited > STALL_LIMIT => Some(RecoveryError::ServoStalled(finger)),
@@ -163,15 +165,18 @@ mod tests {
     #[test]
     fn only_a_finger_that_runs_is_said_to_use_the_port() {
         for waited in [0, 100, 400].map(Duration::from_millis) {
-            assert!(not_released(1, None, waited).is_none() && not_released(1, Some(2), waited).is_none());
+            assert!(
+                not_released(FingerNumber::ONE, None, waited).is_none()
+                    && not_released(FingerNumber::ONE, Some(FingerNumber::TWO), waited).is_none()
+            );
         }
         assert!(matches!(
-            not_released(1, Some(2), 2 * RELEASE_LIMIT),
-            Some(RecoveryError::PortInUse { finger: 1, other: 2 })
+            not_released(FingerNumber::ONE, Some(FingerNumber::TWO), 2 * RELEASE_LIMIT),
+            Some(RecoveryError::PortInUse { finger: FingerNumber::ONE, other: FingerNumber::TWO })
         ));
         // The only finger of a port, whose servo does not run for a while.
-        assert!(not_released(1, None, 2 * RELEASE_LIMIT).is_none());
-        let text = not_released(1, None, 2 * STALL_LIMIT).expect("too long").to_string();
+        assert!(not_released(FingerNumber::ONE, None, 2 * RELEASE_LIMIT).is_none());
+        let text = not_released(FingerNumber::ONE, None, 2 * STALL_LIMIT).expect("too long").to_string();
         assert!(text.contains("no processor time") && text.contains("reduce the load"), "{text}");
     }
 }

@@ -6,6 +6,7 @@ use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach,
 use crate::hand::reconnection::Recovery;
 use crate::hand::servo_threads::{PortServo, RealtimeState, start};
 use crate::hand::{Configured, Fingers, Found, HandError, find_configuration};
+use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, FINGERS};
 use crate::realtime::{self, Distribution, MonotonicClock, now};
 use crate::simulated::{SimulatedFinger, SimulatedPort};
@@ -124,6 +125,7 @@ impl Hand {
     /// # Errors
     /// No such finger, finger faulted.
     pub fn position(&self, finger: i32) -> Result<[f64; 3], HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.position(finger)
     }
 
@@ -132,6 +134,7 @@ impl Hand {
     /// # Errors
     /// No such finger.
     pub fn report(&self, finger: i32) -> Result<FingerReport, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.last_report(finger)
     }
 
@@ -140,6 +143,7 @@ impl Hand {
     /// # Errors
     /// No such finger.
     pub fn timing(&self, finger: i32, stage: realtime::CycleStage) -> Result<Distribution, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.timing(finger, stage)
     }
 
@@ -148,6 +152,7 @@ impl Hand {
     /// # Errors
     /// No such finger.
     pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.losses(finger)
     }
 
@@ -156,6 +161,7 @@ impl Hand {
     /// # Errors
     /// No such finger.
     pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.reset_timing(finger)
     }
 
@@ -164,16 +170,16 @@ impl Hand {
     /// # Errors
     /// No such finger, NaN or infinity, a finger on a real port.
     pub fn push_simulated(&self, finger: i32, force: [f64; 3]) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?.admission.read().finite("Force", &force)?;
-        let index = finger as usize - 1; // the member is there: 1 to 3
-        let port = self.simulated[index].as_ref().ok_or(HandError::NotSimulated(finger))?;
+        let port = self.simulated[finger.index()].as_ref().ok_or(HandError::NotSimulated(finger))?;
         let largest = Vector3::from(force).amax();
         if largest > STRONGEST_PUSH {
             return Err(HandError::TooMuchForce { finger, force: largest, strongest: STRONGEST_PUSH });
         }
         let push = |finger: &mut SimulatedFinger| finger.plant().set_external_force(Vector3::from(force));
         // The board of a simulated finger has only this address.
-        port.with_finger(self.configuration.read().address(index), push);
+        port.with_finger(self.configuration.read().address(finger), push);
         Ok(())
     }
 

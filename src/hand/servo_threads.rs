@@ -6,7 +6,8 @@ use crate::hand::HandError;
 use crate::hand::missing_permissions::{MissingPermission, missing_permissions};
 use crate::hand::notice::print_notice;
 use crate::hand::opening::Line;
-use crate::model::configuration::{Configuration, FINGERS, PeriodClock, RealTime};
+use crate::model::FingerNumber;
+use crate::model::configuration::{Configuration, PeriodClock, RealTime};
 use crate::realtime::{LockedStack, MonotonicClock, Priority, RealtimeRefusals, Schedule, now, spawn, touch_stack};
 use crossbeam_channel::{Receiver, Sender, bounded};
 use std::collections::BTreeMap;
@@ -145,8 +146,8 @@ pub fn priority(configuration: &Configuration, thread: u8) -> Priority {
     if configuration.hand.real_time == RealTime::Ignore {
         return Priority::default();
     }
-    let own = (0..FINGERS).find(|&index| configuration.thread(index) == thread);
+    let own = FingerNumber::ALL.into_iter().find(|&number| configuration.thread(number) == thread);
     // Fingers on one thread have the same priority and core, because the configuration was checked.
-    let finger = own.map(|index| &configuration.fingers[index]);
+    let finger = own.map(|number| &configuration.fingers[number.index()]);
     finger.map_or_else(Priority::default, |finger| Priority { fifo: finger.priority, core: finger.core })
 }

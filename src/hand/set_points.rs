@@ -4,6 +4,7 @@ use crate::control::{Law, SetPoint};
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError, SetPointError};
 use crate::model::Contact;
+use crate::model::FingerNumber;
 
 impl Hand {
     /// Sends theta_d of finger 1, 2 or 3: joints 0, 1 and 2, rad. It takes effect within a cycle.
@@ -11,6 +12,7 @@ impl Hand {
     /// # Errors
     /// No such finger, NaN or infinity, beyond a joint limit, finger faulted.
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;
         let admission = member.admission.read();
         let (joints, law) = (admission.joints(joints)?, admission.law);
@@ -25,6 +27,7 @@ impl Hand {
     /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, too stiff for the
     /// damping sent last, finger faulted.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.send(finger, |admission| {
             let (stiffness, damping) = (admission.stiffness(rows)?, admission.damping);
             Ok(move |set_point: &mut SetPoint| {
@@ -43,6 +46,7 @@ impl Hand {
     /// No such finger, NaN or infinity, position out of reach or of the joint limits (even if commands are clamped),
     /// finger faulted.
     pub fn send_tip(&self, finger: i32, tip: [f64; 3]) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         let present = self.dispatcher.last_report(finger)?.cycle.joints;
         self.send(finger, |admission| {
             let joints = admission.tip(tip, &present)?;
@@ -60,6 +64,7 @@ impl Hand {
     /// No such finger, stiffer than the bound, too stiff for the damping sent last, finger faulted. A rotational
     /// stiffness k, N cm/rad, counts as k / l2^2 N/cm, by the motion of the last joint.
     pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.send(finger, |admission| {
             let (stiffness, damping) = (admission.contact(&contact)?, admission.damping);
             Ok(move |set_point: &mut SetPoint| {
@@ -76,6 +81,7 @@ impl Hand {
     /// # Errors
     /// No such finger, NaN or infinity, outside the range of the stiffness sent last, finger faulted.
     pub fn send_damping(&self, finger: i32, ratio: f64) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         self.send(finger, |admission| {
             admission.finite("Ratio", &[ratio])?;
             let damping = admission.damping;
@@ -90,7 +96,7 @@ impl Hand {
     /// itself may still refuse the set point that it starts from.
     fn send<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,
-        finger: i32,
+        finger: FingerNumber,
         admit: impl FnOnce(&Admission) -> Result<C, SetPointError>,
     ) -> Result<(), HandError> {
         let member = self.dispatcher.member(finger)?;

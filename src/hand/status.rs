@@ -3,6 +3,7 @@
 use crate::calibration::Verdict;
 use crate::finger::{Losses, Stage};
 use crate::hand::{Hand, HandError};
+use crate::model::FingerNumber;
 use crate::realtime::{self, Distribution, now};
 
 /// The status of a finger and of its servo thread.
@@ -39,6 +40,7 @@ impl Hand {
     /// # Errors
     /// No such finger.
     pub fn status(&self, finger: i32) -> Result<FingerStatus, HandError> {
+        let finger = FingerNumber::try_from(finger)?;
         let report = self.dispatcher.last_report(finger)?;
         let (rate, period) = {
             let hand = &self.configuration.read().hand;
@@ -55,7 +57,7 @@ impl Hand {
             on_core: self.real_time.core,
             rate,
             measured_rate: if seconds > 0.0 { intervals / seconds } else { 0.0 },
-            wake_up: self.timing(finger, realtime::CycleStage::WakeUp)?,
+            wake_up: self.dispatcher.timing(finger, realtime::CycleStage::WakeUp)?,
             losses,
             torque_scale: report.cycle.torque_scale,
             stiffness_scale: report.cycle.stiffness_scale,

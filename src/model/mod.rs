@@ -4,6 +4,7 @@
 pub mod configuration;
 mod contact;
 mod direction;
+mod finger_number;
 mod inverse_kinematics;
 mod kinematics;
 mod link_dynamics;
@@ -14,6 +15,7 @@ mod validation;
 
 pub use contact::{Contact, ContactError, spring};
 pub use direction::direction;
+pub use finger_number::FingerNumber;
 pub use inverse_kinematics::{InverseKinematics, OutOfReach};
 pub use kinematics::Links;
 pub use link_dynamics::LinkDynamics;

@@ -3,18 +3,16 @@
 mod ranges;
 mod sharing;
 
-use crate::model::TendonsError;
 use crate::model::configuration::Surface;
-use crate::model::configuration::{
-    Configuration, ConfiguredFinger, ConfiguredHand, FINGERS, RATES, RealTime, Unusable,
-};
+use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, RATES, RealTime, Unusable};
+use crate::model::{FingerNumber, TendonsError};
 use ranges::{each, path, unusable, within};
 
 /// A configuration that cannot be used: the finger or the hand, the key and the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnusableConfiguration {
-    /// Index of the finger, 0 to 2, or None for `[hand]`.
-    pub finger: Option<usize>,
+    /// The finger, or None for `[hand]`.
+    pub finger: Option<FingerNumber>,
     /// The key and the reason.
     pub unusable: Unusable,
 }
@@ -26,18 +24,18 @@ impl Configuration {
     /// The first unusable value found.
     pub fn check(&self) -> Result<(), UnusableConfiguration> {
         self.hand.check().map_err(|unusable| UnusableConfiguration { finger: None, unusable })?;
-        for (index, finger) in self.fingers.iter().enumerate() {
-            finger.check().map_err(|unusable| UnusableConfiguration { finger: Some(index), unusable })?;
+        for (number, finger) in FingerNumber::ALL.into_iter().zip(&self.fingers) {
+            finger.check().map_err(|unusable| UnusableConfiguration { finger: Some(number), unusable })?;
             if finger.priority == 0 && self.hand.real_time == RealTime::Enforce {
                 let reason = "0 is not a real-time priority, but hand.real_time is \"enforce\": set 1 to 99".into();
                 return Err(UnusableConfiguration {
-                    finger: Some(index),
+                    finger: Some(number),
                     unusable: Unusable { key: "priority", reason },
                 });
             }
         }
-        for second in 0..FINGERS {
-            for first in 0..second {
+        for (position, &second) in FingerNumber::ALL.iter().enumerate() {
+            for &first in &FingerNumber::ALL[..position] {
                 let between = self.check_sharing(first, second);
                 between.map_err(|unusable| UnusableConfiguration { finger: Some(second), unusable })?;
             }

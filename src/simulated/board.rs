@@ -5,6 +5,7 @@
 use crate::board::protocol::{
     ANY_ADDRESS, Decoder, Frame, HIGHEST_ADDRESS, Kind, Malformed, Message, Packet, Reason, Refused, WireFrame,
 };
+use crate::model::FingerNumber;
 use crate::model::TendonsError;
 use crate::model::configuration::Configuration;
 use crate::plant::PLANT_STEP_SECONDS;
@@ -45,16 +46,16 @@ const _: () = assert!(STEP == 100_000, "the conversion to whole nanoseconds lost
 impl SimulatedBoard {
     /// Creates a board with these `fingers` (0 to 2) of a hand at their configured addresses. The fingers are braked at
     /// their start poses. Each finger has its own noise.
-    pub fn new(hand: &Configuration, fingers: &[usize]) -> Result<Self, SimulatedBoardError> {
+    pub fn new(hand: &Configuration, fingers: &[FingerNumber]) -> Result<Self, SimulatedBoardError> {
         let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), time: None };
-        for &index in fingers {
-            let address = hand.address(index);
-            let mut configured = hand.fingers[index].clone();
-            configured.simulation.seed = configured.simulation.seed.wrapping_add(index as u64);
+        for &number in fingers {
+            let address = hand.address(number);
+            let mut configured = hand.fingers[number.index()].clone();
+            configured.simulation.seed = configured.simulation.seed.wrapping_add(number.index() as u64);
             if !(1..=HIGHEST_ADDRESS).contains(&address) || board.finger(address).is_some() {
                 return Err(SimulatedBoardError::Address(address));
             }
-            let finger = SimulatedFinger::new(index, address, &configured, hand.gravity(index))
+            let finger = SimulatedFinger::new(number, address, &configured, hand.gravity(number))
                 .map_err(|source| SimulatedBoardError::Tendons { address, source })?;
             board.fingers.push(finger);
         }

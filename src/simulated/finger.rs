@@ -4,6 +4,7 @@ mod greeting;
 mod identity;
 
 use crate::board::protocol::{Command, Configure, Configured, Frame, Reason, Refused, Reply, Status, Stopped, VERSION};
+use crate::model::FingerNumber;
 use crate::model::TendonsError;
 use crate::model::configuration::{ConfiguredFinger, EndState};
 use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
@@ -58,9 +59,9 @@ pub struct SimulatedFinger {
 }
 
 impl SimulatedFinger {
-    /// `index`: the finger in its hand, 0 to 2. `gravity`: in the finger's frame, m/s^2.
+    /// `number`: the finger in its hand. `gravity`: in the finger's frame, m/s^2.
     pub(super) fn new(
-        index: usize,
+        number: FingerNumber,
         address: u8,
         finger: &ConfiguredFinger,
         gravity: Vector3<f64>,
@@ -71,7 +72,7 @@ impl SimulatedFinger {
         let counts = finger.encoder.counts_per_revolution;
         Ok(Self {
             address,
-            unique_number: identity::unique_number(index, address),
+            unique_number: identity::unique_number(number, address),
             plant: Plant::new(finger, gravity)?,
             sensors: Sensors::new(finger),
             state: State::Idle,

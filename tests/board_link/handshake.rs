@@ -4,6 +4,7 @@ use crate::other_end::OtherEnd;
 use crate::rig::{MS, board, cycle, in_time, link, pull, read, terms};
 use sun2xp::board::protocol::*;
 use sun2xp::board::*;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, EndState};
 use sun2xp::simulated::*;
 
@@ -11,7 +12,7 @@ use sun2xp::simulated::*;
 fn a_handshake_agrees_on_terms_in_whole_counts() {
     let mut hand = Configuration::default();
     hand.fingers[2].encoder.zero = [1_000_000, -5, 0, 70_000];
-    let board = SimulatedBoard::new(&hand, &[2]).unwrap();
+    let board = SimulatedBoard::new(&hand, &[FingerNumber::THREE]).unwrap();
     let mut link = Link::new(SimulatedCable::new(board));
     let deadline = in_time(&mut link, 500);
     let (identity, configured) = link.shake_hands(3, &terms(EndState::Hold), deadline).unwrap();

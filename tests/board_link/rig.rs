@@ -3,6 +3,7 @@
 use nalgebra::Vector4;
 use sun2xp::board::protocol::*;
 use sun2xp::board::*;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, EndState};
 use sun2xp::simulated::*;
 
@@ -15,7 +16,7 @@ pub fn finger() -> ConfiguredFinger {
 pub fn board(addresses: &[u8]) -> SimulatedBoard {
     let mut hand = Configuration::default();
     hand.fingers.iter_mut().zip(addresses).for_each(|(finger, &address)| finger.address = address);
-    SimulatedBoard::new(&hand, &[0, 1, 2][..addresses.len()]).unwrap()
+    SimulatedBoard::new(&hand, &FingerNumber::ALL[..addresses.len()]).unwrap()
 }
 
 pub fn link(addresses: &[u8]) -> Link<SimulatedCable> {

@@ -5,6 +5,7 @@ use super::json::{hex, list, object, text};
 use super::scripts::conversations;
 use super::steps::{Answer, Step};
 use sun2xp::board::protocol::*;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::simulated::SimulatedBoard;
 
@@ -62,7 +63,7 @@ fn check_answer(place: &str, answer: &Answer, sequence: u8, message: &Message) {
 #[test]
 fn the_simulated_board_passes_every_conversation() {
     for (name, steps) in conversations() {
-        let mut board = SimulatedBoard::new(&Configuration::default(), &[0]).unwrap();
+        let mut board = SimulatedBoard::new(&Configuration::default(), &[FingerNumber::ONE]).unwrap();
         let mut now = 0;
         board.advance(now);
         for (number, step) in steps.iter().enumerate() {

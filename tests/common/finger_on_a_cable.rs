@@ -5,6 +5,7 @@ use std::rc::Rc;
 use sun2xp::board::protocol::Identity;
 use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::finger::{BlackBox, FingerServo, LinkRepairEnd, Mailbox, ServedPort, Servo, link_handover};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, Consumer, CycleTiming, Schedule, ring};
 use sun2xp::simulated::{SimulatedBoard, SimulatedCable};
@@ -51,7 +52,7 @@ impl<H> Clone for World<H> {
 impl<H> World<H> {
     /// A cable to a simulated board with finger 1.
     pub fn new(configuration: &Configuration, hooks: H) -> Self {
-        let board = SimulatedBoard::new(configuration, &[0]).expect("a board");
+        let board = SimulatedBoard::new(configuration, &[FingerNumber::ONE]).expect("a board");
         Self(Rc::new(RefCell::new(Place { cable: SimulatedCable::new(board), hooks })))
     }
 
@@ -118,10 +119,11 @@ impl<W: Transport + Clock + Clone> ServedFinger<W> {
         let (identity, configured) =
             link.shake_hands(1, &Terms::new(hand, finger), deadline).expect("the board answers");
         let (producer, timings) = ring(100_000);
-        let (recorder, black_box) = BlackBox::new(configuration, 0);
+        let (recorder, black_box) = BlackBox::new(configuration, FingerNumber::ONE);
         let stiffness = finger.initial_stiffness();
         let (finger, mailbox) =
-            FingerServo::new(belief, 0, stiffness, &identity, &configured, producer, recorder).expect("a finger");
+            FingerServo::new(belief, FingerNumber::ONE, stiffness, &identity, &configured, producer, recorder)
+                .expect("a finger");
         let (handover, repair_end) = link_handover();
         let ports = vec![ServedPort::new(link, vec![finger]).with_handover(handover)];
         let schedule = Schedule::new(Clock::now(world) + period, period);

@@ -3,6 +3,7 @@
 use crate::reading::{REFERENCE, keys, read, usable, with_numbers, with_optional_keys};
 use std::collections::BTreeSet;
 use sun2xp::control::Controller;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use toml_edit::{DocumentMut, Item, Table};
 
@@ -51,10 +52,10 @@ fn every_key_of_every_table_is_in_it() {
 #[test]
 fn the_optional_keys_name_their_defaults() {
     let (shown, default) = (usable(&with_optional_keys()), Configuration::default());
-    for (index, finger) in shown.fingers.iter().enumerate() {
-        let reference = &default.fingers[index];
+    for (number, finger) in FingerNumber::ALL.into_iter().zip(&shown.fingers) {
+        let reference = &default.fingers[number.index()];
         assert!(finger.base.is_some() && finger.turn_degrees.is_some() && finger.core.is_some());
-        assert_eq!(shown.finger_to_palm(index), default.finger_to_palm(index));
+        assert_eq!(shown.finger_to_palm(number), default.finger_to_palm(number));
         assert!(finger.stiffness.bound.is_some());
         assert_eq!(finger.stiffness_bound(1000.0), reference.stiffness_bound(1000.0));
         assert!(finger.geometry.ghost_row.is_some());

@@ -1,6 +1,7 @@
 //! Fingers on one port: each refusal names the key and a value that works.
 
 use crate::reading::{read, usable};
+use sun2xp::model::FingerNumber;
 
 fn refusal(text: &str) -> String {
     match read(text) {
@@ -22,7 +23,10 @@ fn the_refusals_lead_to_three_fingers_on_one_port() {
         text += "\n";
     }
     let hand = usable(&text);
-    assert!((0..3).all(|finger| (hand.thread(finger), hand.address(finger)) == (1, finger as u8 + 1)));
+    let expected = |finger: FingerNumber| (1, finger.get() as u8);
+    assert!(
+        FingerNumber::ALL.into_iter().all(|finger| (hand.thread(finger), hand.address(finger)) == expected(finger))
+    );
 }
 
 #[test]

@@ -5,6 +5,7 @@ use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
 use sun2xp::calibration::{Calibration, Findings, Obstacle, Task, Verdict};
 use sun2xp::finger::{Adjustable, CalibrationRun, Order, Stage};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, Scheme, ZeroingMethod};
 
 fn configuration(scheme: Scheme) -> Configuration {
@@ -30,7 +31,7 @@ fn order(bench: &Bench, scheme: Scheme) {
     let rate = configuration.hand.rate;
     let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], rate).expect("usable");
     configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], rate);
-    let mut adjustable = Adjustable::new(&configuration, 0).expect("usable");
+    let mut adjustable = Adjustable::new(&configuration, FingerNumber::ONE).expect("usable");
     adjustable.number = 1;
     let run = CalibrationRun { calibration, adjustable };
     bench.mailbox.order(Order::Calibrate(run)).expect("not faulted").expect("idle");
@@ -96,7 +97,7 @@ fn an_adjustment_during_a_calibration_is_in_force_after_its_refusal() {
     let mut bench = standing(Scheme::StateFeedback);
     order(&bench, Scheme::StateFeedback);
     bench.cycles(50);
-    let mut adjusted = Adjustable::new(&configuration(Scheme::Figure10), 0).expect("usable");
+    let mut adjusted = Adjustable::new(&configuration(Scheme::Figure10), FingerNumber::ONE).expect("usable");
     adjusted.number = 2;
     bench.mailbox.adjust(adjusted).expect("not faulted");
     bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(1.0, 0.0, 0.0)));

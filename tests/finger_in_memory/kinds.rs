@@ -8,6 +8,7 @@ use sun2xp::board::protocol::{Frame, Kind, Reason, Refused, Status, Stop};
 use sun2xp::board::{PortError, Transport};
 use sun2xp::calibration::{Calibration, Task};
 use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::Part;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::simulated::{Defect, LineFault};
@@ -137,7 +138,8 @@ fn a_calibration_that_gives_up_leaves_its_warning() {
     let mut configuration = Configuration::default();
     let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
     configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], configuration.hand.rate);
-    let adjustable = Adjustable { number: 1, ..Adjustable::new(&configuration, 0).expect("a controller") };
+    let adjustable =
+        Adjustable { number: 1, ..Adjustable::new(&configuration, FingerNumber::ONE).expect("a controller") };
     let order = Order::Calibrate(CalibrationRun { calibration, adjustable });
     assert_eq!(bench.mailbox.order(order), Ok(Some(1)));
     // Before that, the finger is a spring whose monitors would detect the fault.

@@ -5,6 +5,7 @@ use crate::rig::{Bench, TARGET};
 use nalgebra::Vector3;
 use sun2xp::calibration::{Calibration, Task, Verdict};
 use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ZeroingMethod};
 use sun2xp::simulated::Defect;
 
@@ -80,7 +81,8 @@ fn orders_in_transit_at_a_fault_are_not_executed_after_recovery() {
     // The servo has not reported the fault yet.
     let configuration = Configuration::default();
     let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
-    let adjustable = Adjustable { number: 1, ..Adjustable::new(&configuration, 0).expect("a controller") };
+    let adjustable =
+        Adjustable { number: 1, ..Adjustable::new(&configuration, FingerNumber::ONE).expect("a controller") };
     let order = bench.mailbox.order(Order::Calibrate(CalibrationRun { calibration, adjustable }));
     assert_eq!(order, Ok(Some(1)));
     bench.faults(FaultKind::EmergencyStopInput);
@@ -103,7 +105,8 @@ fn set_points_sent_during_a_calibration_are_discarded() {
     configuration.fingers[0].zeroing.method = Some(ZeroingMethod::Pose);
     let task = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
     configuration.fingers[0] = Calibration::controlled(&configuration.fingers[0], configuration.hand.rate);
-    let adjustable = Adjustable { number: 1, ..Adjustable::new(&configuration, 0).expect("a controller") };
+    let adjustable =
+        Adjustable { number: 1, ..Adjustable::new(&configuration, FingerNumber::ONE).expect("a controller") };
     let order = Order::Calibrate(CalibrationRun { calibration: task, adjustable });
     assert_eq!(bench.mailbox.order(order), Ok(Some(1)));
     bench.cycles(10);

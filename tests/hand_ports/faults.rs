@@ -4,6 +4,7 @@ use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three
 use sun2xp::board::protocol::Status;
 use sun2xp::finger::{Fault, FaultKind};
 use sun2xp::hand::Hand;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedFinger, SimulatedPort};
@@ -70,7 +71,7 @@ fn a_board_that_falls_silent_faults_its_finger_and_its_watchdog_ends_it() {
 
 /// A board in this process, for disturbances that the program has no order for.
 fn own_board() -> (SimulatedPort, Hand) {
-    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
+    let board = SimulatedBoard::new(&Configuration::default(), &FingerNumber::ALL).expect("a board");
     let port = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None })
         .expect("a pseudo-terminal");
     let hand = open(on_one_port(&port.path().to_string_lossy(), 2_000_000));

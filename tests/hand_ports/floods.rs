@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use sun2xp::board::protocol::{Frame, Message, Reply, Stopped, WireFrame};
 use sun2xp::finger::{FaultKind, Stage};
 use sun2xp::hand::{Hand, stop_all};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::now;
 use sun2xp::simulated::{Pace, PacedTime, SimulatedBoard};
@@ -41,7 +42,7 @@ impl FloodingBoard {
                 run_first();
                 // Open here too, so that the host may open and close it.
                 let _port = port;
-                let mut board = SimulatedBoard::new(&Configuration::default(), &[1]).expect("a board");
+                let mut board = SimulatedBoard::new(&Configuration::default(), &[FingerNumber::TWO]).expect("a board");
                 let mut clock = PacedTime::new(Pace::patient(500.0), now());
                 let mut input = [0; 512];
                 // Position at which the flood continues after a partial write, so that every frame is whole.

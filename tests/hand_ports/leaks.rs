@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::{Duration, Instant};
 use sun2xp::hand::Hand;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Defect, LineFault, Pace, SimulatedBoard, SimulatedPort};
@@ -78,11 +79,14 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(folder: &Path, index: usize) -> Self {
-        let board = SimulatedBoard::new(&Configuration::default(), &[index]).expect("a board");
+    fn new(folder: &Path, number: FingerNumber) -> Self {
+        let board = SimulatedBoard::new(&Configuration::default(), &[number]).expect("a board");
         let port = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None });
-        let bench =
-            Self { finger: index as i32 + 1, port: port.expect("a port"), link: folder.join(format!("board-{index}")) };
+        let bench = Self {
+            finger: number.get(),
+            port: port.expect("a port"),
+            link: folder.join(format!("board-{}", number.index())),
+        };
         bench.name();
         bench
     }
@@ -143,7 +147,7 @@ fn everything_that_happens_to_a_finger_is_recovered_from_and_nothing_leaks() {
     let _rest = name_pauses().rest();
     let rounds = std::env::var("SUN2XP_ROUNDS").map_or(1, |rounds| rounds.parse().expect("a number"));
     let folder = tempfile::tempdir().expect("a folder");
-    let benches = [0, 1, 2].map(|index| Bench::new(folder.path(), index));
+    let benches = FingerNumber::ALL.map(|number| Bench::new(folder.path(), number));
     let links = benches.each_ref().map(|bench| bench.link.to_string_lossy());
     let mut configuration = on_ports(links.each_ref().map(|link| &**link));
     configuration.fingers.iter_mut().for_each(|finger| finger.reconnect = true);

@@ -2,6 +2,7 @@
 
 use crate::rig::{START, TARGET, close, goes, on_ports, open, turn};
 use sun2xp::hand::Hand;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
@@ -12,7 +13,7 @@ fn start(board: SimulatedBoard) -> SimulatedPort {
 
 /// Boards with finger 1 that differ in nothing but these numbers.
 fn copies(numbers: [u32; 3]) -> [SimulatedPort; 3] {
-    let board = || SimulatedBoard::new(&Configuration::default(), &[0]).expect("a board");
+    let board = || SimulatedBoard::new(&Configuration::default(), &[FingerNumber::ONE]).expect("a board");
     numbers.map(|number| start(board().numbered(number)))
 }
 

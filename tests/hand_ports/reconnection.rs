@@ -8,6 +8,7 @@ use std::path::Path;
 use sun2xp::board::protocol::Status;
 use sun2xp::finger::FaultKind;
 use sun2xp::hand::HandError;
+use sun2xp::model::FingerNumber;
 
 /// Another board, or a board that has lost its zero, is not accepted as the finger's.
 #[test]
@@ -26,7 +27,7 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
         let mut reported = None;
         // At first the port may not exist yet.
         wait_until("refused for a fault", || match hand.recover(2) {
-            Err(HandError::Faulted { finger: 2, fault }) => {
+            Err(HandError::Faulted { finger: FingerNumber::TWO, fault }) => {
                 reported = Some(fault.kind);
                 true
             }

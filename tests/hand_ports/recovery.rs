@@ -5,6 +5,7 @@ use std::fs::read_dir;
 use sun2xp::board::protocol::Status;
 use sun2xp::finger::{FaultKind, Stage};
 use sun2xp::hand::{Hand, HandError, Recovering, stop_all};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, OnFault};
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Defect, Pace, SimulatedBoard, SimulatedPort};
@@ -27,7 +28,7 @@ pub fn recovers(hand: &Hand, finger: i32) {
 
 /// A hand whose three fingers are on one simulated port.
 fn one_port() -> (SimulatedPort, Hand) {
-    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
+    let board = SimulatedBoard::new(&Configuration::default(), &FingerNumber::ALL).expect("a board");
     let board = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None }).expect("a port");
     let hand = open(on_one_port(&board.path().to_string_lossy(), 2_000_000));
     (board, hand)

@@ -11,6 +11,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use sun2xp::board::protocol::check;
 use sun2xp::hand;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::model::{ShownPath, one_line};
 use sun2xp::realtime::Priority;
@@ -128,7 +129,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(seed) = arguments.seed {
         configuration.fingers.iter_mut().for_each(|finger| finger.simulation.seed = seed);
     }
-    let fingers: Vec<usize> = arguments.fingers.iter().map(|&number| usize::from(number) - 1).collect();
+    let fingers: Vec<FingerNumber> =
+        arguments.fingers.iter().filter_map(|&number| FingerNumber::new(number.into())).collect();
     let mut board = SimulatedBoard::new(&configuration, &fingers)?.numbered(number(arguments.link.as_deref())?);
     for action in [&arguments.force, &arguments.wall, &arguments.ball].into_iter().flatten() {
         for finger in board.fingers() {
@@ -211,10 +213,7 @@ struct Session<'a> {
 impl Session<'_> {
     /// Executes an order and returns the answer.
     fn carry_out(&self, order: &Order) -> Result<String, Failure> {
-        let address = |number: u8| {
-            let index = usize::from(number).checked_sub(1).filter(|&index| index < FINGERS)?;
-            Some(self.configuration.address(index))
-        };
+        let address = |number: u8| Some(self.configuration.address(FingerNumber::new(number.into())?));
         match order {
             Order::For(number, action) => {
                 let found =

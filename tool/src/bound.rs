@@ -7,6 +7,7 @@ use serde::de::value::{Error, StrDeserializer};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use sun2xp::hand::{self, Fingers, Found};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RATES, Scheme};
 use sun2xp::stability::{Limit, Search, StiffnessBound};
@@ -66,23 +67,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     configuration.hand.rate = arguments.rate.unwrap_or(configuration.hand.rate);
     let search = Search { samples: arguments.samples, seed: arguments.seed };
-    let mut found: Vec<(usize, StiffnessBound)> = Vec::new();
+    let mut found: Vec<(FingerNumber, StiffnessBound)> = Vec::new();
     for number in Fingers::of(&arguments.fingers)?.numbers() {
-        let index = number as usize - 1; // 1 to 3
-        let finger = &configuration.fingers[index];
-        let twin = found.iter().find(|&&(other, _)| alike(finger, &configuration.fingers[other]));
+        let number = FingerNumber::try_from(number)?;
+        let finger = &configuration.fingers[number.index()];
+        let twin = found.iter().find(|&&(other, _)| alike(finger, &configuration.fingers[other.index()]));
         let bound = match twin {
             Some(&(_, bound)) => bound,
             None => search
                 .bound(finger, configuration.hand.rate)
-                .map_err(|unusable| format!("finger {}: {} {}", index + 1, unusable.key, unusable.reason))?,
+                .map_err(|unusable| format!("finger {number}: {} {}", unusable.key, unusable.reason))?,
         };
-        report(&configuration, index, &bound, twin.map(|&(other, _)| other))?;
-        found.push((index, bound));
+        report(&configuration, number, &bound, twin.map(|&(other, _)| other))?;
+        found.push((number, bound));
     }
     let Some(path) = arguments.config.as_ref().filter(|_| arguments.write) else { return Ok(()) };
-    let bounds = found.iter().map(|(index, bound)| Found::bound(bound.stiffness, *index as i32 + 1, &configuration));
-    hand::store_findings(path, &bounds.collect::<Result<Vec<_>, _>>()?)?;
+    let bounds = found.iter().map(|&(number, bound)| Found::bound(bound.stiffness, number, &configuration));
+    hand::store_findings(path, &bounds.collect::<Vec<_>>())?;
     writeln!(io::stdout(), "written to {}", ShownPath(path))?;
     Ok(())
 }
@@ -95,12 +96,16 @@ fn alike(one: &ConfiguredFinger, other: &ConfiguredFinger) -> bool {
     parts(one) == parts(other) && one.friction == other.friction && one.controller == other.controller
 }
 
-fn report(configuration: &Configuration, index: usize, bound: &StiffnessBound, twin: Option<usize>) -> io::Result<()> {
+fn report(
+    configuration: &Configuration,
+    number: FingerNumber,
+    bound: &StiffnessBound,
+    twin: Option<FingerNumber>,
+) -> io::Result<()> {
     let mut output = io::stdout().lock();
-    let number = index + 1;
     writeln!(output, "finger {number}: {:.1} N/cm at {} Hz", bound.stiffness, configuration.hand.rate)?;
     if let Some(twin) = twin {
-        return writeln!(output, "    as for finger {}", twin + 1);
+        return writeln!(output, "    as for finger {twin}");
     }
     let degrees =
         |pose: sun2xp::nalgebra::Vector3<f64>| format!("{:.0?} degrees", pose.map(f64::to_degrees).as_slice());

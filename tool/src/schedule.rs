@@ -11,6 +11,7 @@ use std::thread::sleep;
 use std::time::Duration;
 use sun2xp::files::read_regular_file;
 use sun2xp::hand::{self, Hand};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, RATES};
 use sun2xp::realtime::{CycleStage, Distribution};
@@ -127,7 +128,7 @@ fn table(out: &mut impl Write, schedule: &[Scheduled], title: &str) -> io::Resul
     writeln!(out, "| thread | fingers | core | priority | computing | line busy | replies by | done by | deadlines |")?;
     writeln!(out, "|---|---|---|---|---|---|---|---|---|")?;
     for thread in schedule {
-        let fingers = thread.fingers.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+        let fingers = thread.fingers.iter().map(FingerNumber::to_string).collect::<Vec<_>>().join(", ");
         let core = thread.core.map_or("any".into(), |core| core.to_string());
         let by = |time: Option<f64>| time.map_or("-".into(), |time| format!("{time:.0} us"));
         writeln!(

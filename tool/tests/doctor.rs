@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 use sun2xp::board::Port;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
@@ -65,7 +66,7 @@ fn an_unusable_port_fails_with_its_remedy() {
     assert_eq!(missing["verdict"], "failure");
     assert!(missing["advice"].as_str().is_some_and(|advice| advice.contains("/dev/serial/by-id")), "{missing}");
 
-    let board = SimulatedBoard::new(&Configuration::default(), &[2]).expect("a board");
+    let board = SimulatedBoard::new(&Configuration::default(), &[FingerNumber::THREE]).expect("a board");
     let board = SimulatedPort::start(board, Pace::patient(500.0), Priority::default()).expect("a pseudo-terminal");
     let taken = Port::open(&board.path(), 1_000_000).expect("the port");
     let configuration = format!("[finger.3]\nport = '{}'\n", board.path().display());

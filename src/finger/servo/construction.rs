@@ -8,6 +8,7 @@ use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Mailbox, mailbox};
 use crate::finger::supervision::Supervision;
 use crate::finger::{FingerReport, Losses, Recorder, Stage, StopSignal, stop_calls};
+use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredHand, Unusable};
 use crate::realtime::{CycleTiming, Producer};
 use nalgebra::{Matrix3, Vector3};
@@ -26,11 +27,11 @@ impl Adjustable {
     ///
     /// # Errors
     /// A configuration that no controller can be made from.
-    pub fn new(configuration: &Configuration, index: usize) -> Result<Self, Unusable> {
-        let finger = &configuration.fingers[index];
+    pub fn new(configuration: &Configuration, number: FingerNumber) -> Result<Self, Unusable> {
+        let finger = &configuration.fingers[number.index()];
         let (low, high) = finger.joint_limits();
         let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
-        let controller = Controller::in_gravity(finger, &configuration.gravity(index), configuration.hand.rate)?;
+        let controller = Controller::in_gravity(finger, &configuration.gravity(number), configuration.hand.rate)?;
         Ok(Self { number: 0, controller, pose })
     }
 }
@@ -58,16 +59,16 @@ impl FingerServo {
     /// A configuration that no controller can be made from.
     pub fn new(
         configuration: &Configuration,
-        index: usize,
+        number: FingerNumber,
         stiffness: Matrix3<f64>,
         identity: &Identity,
         configured: &Configured,
         timings: Producer<CycleTiming>,
         black_box: Recorder,
     ) -> Result<(Self, Mailbox), Unusable> {
-        let (hand, finger) = (&configuration.hand, &configuration.fingers[index]);
-        let address = configuration.address(index);
-        let adjustable = Adjustable::new(configuration, index)?;
+        let (hand, finger) = (&configuration.hand, &configuration.fingers[number.index()]);
+        let address = configuration.address(number);
+        let adjustable = Adjustable::new(configuration, number)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
         let link = LinkWatch::new(hand, finger.simulated());

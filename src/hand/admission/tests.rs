@@ -1,6 +1,7 @@
 //! The checks of joints, stiffnesses, contacts and damping.
 
 use super::*;
+use crate::model::FingerNumber;
 use crate::model::configuration::ConfiguredFinger;
 use proptest::prelude::*;
 
@@ -8,14 +9,14 @@ fn admission(out_of_range: OutOfRange) -> Admission {
     let joint_limits = (Vector3::new(-1.0, -0.5, 0.1), Vector3::new(1.0, 1.7, 2.0));
     let links = Links([3.556, 5.080, 4.000]);
     Admission {
-        finger: 2,
+        finger: FingerNumber::TWO,
         joint_limits,
         inverse_kinematics: InverseKinematics::new(links, joint_limits),
         links,
         r: Matrix3x4::zeros(),
         stiffness_bound: 6.0,
         damping: DampingAdmission {
-            finger: 2,
+            finger: FingerNumber::TWO,
             admissible: AdmissibleDamping::new(&ConfiguredFinger::default(), 1000.0),
             lever: 4.0,
             out_of_range,
@@ -177,7 +178,7 @@ mod damping {
 
     fn admission(out_of_range: OutOfRange) -> DampingAdmission {
         let admissible = AdmissibleDamping::new(&ConfiguredFinger::default(), 1000.0);
-        DampingAdmission { finger: 2, admissible, lever: 4.0, out_of_range }
+        DampingAdmission { finger: FingerNumber::TWO, admissible, lever: 4.0, out_of_range }
     }
 
     #[test]

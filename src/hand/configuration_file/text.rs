@@ -46,7 +46,7 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wron
 /// An error for a value that the checks refuse, with its position in the file.
 fn unusable(root: &Table, refusal: &UnusableConfiguration) -> Wrong {
     let key = refusal.unusable.key;
-    let number = refusal.finger.map(|index| (index + 1).to_string());
+    let number = refusal.finger.map(|number| number.to_string());
     let (section, places) = match &number {
         None => ("hand".to_string(), [root.get("hand"), None]),
         Some(number) => {

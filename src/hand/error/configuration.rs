@@ -1,6 +1,7 @@
 //! The errors of a configuration.
 
 use crate::files::errno;
+use crate::model::FingerNumber;
 use crate::model::configuration::Unusable;
 use crate::model::{Shown, ShownPath, UnusableConfiguration};
 use std::path::PathBuf;
@@ -54,8 +55,8 @@ pub enum ConfigurationError {
     /// The keys to adjust cannot be read.
     #[error("finger {finger}, line {line} of the keys to adjust: {reason}")]
     Adjustment {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// Counted from 1.
         line: usize,
         /// What is wrong.
@@ -119,7 +120,7 @@ impl ConfigurationError {
 
 impl From<UnusableConfiguration> for ConfigurationError {
     fn from(refusal: UnusableConfiguration) -> Self {
-        let section = refusal.finger.map_or("hand".into(), |index| format!("finger.{}", index + 1));
+        let section = refusal.finger.map_or("hand".into(), |number| format!("finger.{number}"));
         Self::Unusable { section, unusable: refusal.unusable }
     }
 }

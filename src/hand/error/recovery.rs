@@ -1,6 +1,7 @@
 //! Why a faulted finger cannot recover.
 
 use crate::finger::FaultKind;
+use crate::model::FingerNumber;
 use thiserror::Error;
 
 /// A faulted finger that cannot recover.
@@ -12,30 +13,30 @@ pub enum RecoveryError {
          together: stop all fingers, then recover finger {finger}"
     )]
     PortInUse {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// The running finger.
-        other: i32,
+        other: FingerNumber,
     },
     /// The servo thread does not run, so that it does not release its port.
     #[error(
         "the servo thread of finger {0} gets no processor time: reduce the load of the machine or permit \
          real-time scheduling (README), then recover the finger again"
     )]
-    ServoStalled(i32),
+    ServoStalled(FingerNumber),
     /// The servo thread has ended.
     #[error(
         "the servo thread of finger {0} has failed (fault {number}) and cannot be restarted: close the hand and open \
          it again",
         number = FaultKind::ServoPanic.number()
     )]
-    ServoEnded(i32),
+    ServoEnded(FingerNumber),
     /// The port has failed, and the configuration does not permit opening it again.
     #[error(
         "the port of finger {0} has failed, and `finger.reconnect` is false: close the hand and open it again, or set \
          `finger.reconnect = true` so that recovering a finger reopens a real port"
     )]
-    NotReconnected(i32),
+    NotReconnected(FingerNumber),
 }
 
 impl RecoveryError {

@@ -1,5 +1,6 @@
 //! The errors of a set point.
 
+use crate::model::FingerNumber;
 use crate::model::{ContactError, OutOfReach};
 use thiserror::Error;
 
@@ -11,8 +12,8 @@ pub enum SetPointError {
     NotFinite {
         /// The name of the argument.
         what: &'static str,
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// The first entry that is not finite.
         value: f64,
     },
@@ -22,8 +23,8 @@ pub enum SetPointError {
          angle within the limits, change `finger.joints`, or set `hand.out_of_range = \"clamp\"`"
     )]
     BeyondJointLimit {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// 0 to 2.
         joint: usize,
         /// The requested angle, rad.
@@ -39,8 +40,8 @@ pub enum SetPointError {
          send a softer Kx, or set `hand.out_of_range = \"clamp\"`"
     )]
     TooStiff {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// Largest eigenvalue, N/cm.
         largest: f64,
         /// The bound, N/cm.
@@ -52,8 +53,8 @@ pub enum SetPointError {
          {difference:.3e} N/cm, more than a thousandth of its largest entry. Send a symmetric Kx"
     )]
     NotSymmetric {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// Row of the worst pair.
         row: usize,
         /// Column of the worst pair.
@@ -67,16 +68,16 @@ pub enum SetPointError {
          from its set point: send a Kx whose eigenvalues are zero or positive"
     )]
     Negative {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// Smallest eigenvalue, N/cm.
         smallest: f64,
     },
     /// The finger cannot reach the fingertip position.
     #[error("the tip of finger {finger} cannot be at {:.3}, {:.3}, {:.3} cm: {source}", tip[0], tip[1], tip[2])]
     OutOfReach {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// The requested position, cm.
         tip: [f64; 3],
         /// The reason.
@@ -85,8 +86,8 @@ pub enum SetPointError {
     /// The stiffness or normal of a contact is invalid.
     #[error("the contact of finger {finger}: {source}")]
     Contact {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// What is wrong.
         source: ContactError,
     },
@@ -103,8 +104,8 @@ pub enum SetPointError {
          `hand.out_of_range = \"clamp\"`"
     )]
     Damping {
-        /// 1 to 3.
-        finger: i32,
+        /// The finger.
+        finger: FingerNumber,
         /// The ratio to the damping that the controller chooses.
         ratio: f64,
         /// Largest eigenvalue of the stiffness in force, N/cm.

@@ -18,6 +18,7 @@ pub use mechanics::{ConfiguredFriction, ConfiguredLinks};
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use zeroing::{ConfiguredZeroing, ZeroingMethod};
 
+use crate::model::FingerNumber;
 use crate::model::kinematics::Links;
 use crate::model::tendons::{Tendons, TendonsError};
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
@@ -114,38 +115,38 @@ pub struct Configuration {
 
 impl Configuration {
     /// Returns the servo thread of a finger, 1 to 3.
-    pub fn thread(&self, finger: usize) -> u8 {
-        own_or(self.fingers[finger].thread, finger)
+    pub fn thread(&self, finger: FingerNumber) -> u8 {
+        own_or(self.fingers[finger.index()].thread, finger)
     }
 
     /// Returns the address of a finger on its board, 1 to 15.
-    pub fn address(&self, finger: usize) -> u8 {
-        own_or(self.fingers[finger].address, finger)
+    pub fn address(&self, finger: FingerNumber) -> u8 {
+        own_or(self.fingers[finger.index()].address, finger)
     }
 
     /// Returns the transformation from the finger's frame (Figure 8), cm, to the palm's. By default two fingers are
     /// side by side, and the thumb faces them.
-    pub fn finger_to_palm(&self, finger: usize) -> Isometry3<f64> {
+    pub fn finger_to_palm(&self, finger: FingerNumber) -> Isometry3<f64> {
         let (base, turn) = match finger {
-            0 => ([3.0, 3.5, 0.0], 0.0),
-            1 => ([-3.0, 3.5, 0.0], 0.0),
+            FingerNumber::ONE => ([3.0, 3.5, 0.0], 0.0),
+            FingerNumber::TWO => ([-3.0, 3.5, 0.0], 0.0),
             _ => ([0.0, -3.5, 0.0], 180.0),
         };
-        let configured = &self.fingers[finger];
+        let configured = &self.fingers[finger.index()];
         let base = Vector3::from(configured.base.unwrap_or(base));
         let turn = configured.turn_degrees.unwrap_or(turn).to_radians();
         Isometry3::new(base, Vector3::z() * turn)
     }
 
     /// Returns gravity in the finger's frame, m/s^2.
-    pub fn gravity(&self, finger: usize) -> Vector3<f64> {
+    pub fn gravity(&self, finger: FingerNumber) -> Vector3<f64> {
         self.finger_to_palm(finger).rotation.inverse() * Vector3::from(self.hand.gravity)
     }
 }
 
-fn own_or(configured: u8, finger: usize) -> u8 {
+fn own_or(configured: u8, finger: FingerNumber) -> u8 {
     // The conversion cannot fail, because a hand has three fingers.
-    if configured == 0 { finger as u8 + 1 } else { configured }
+    if configured == 0 { finger.get() as u8 } else { configured }
 }
 
 impl Default for ConfiguredFinger {

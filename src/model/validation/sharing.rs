@@ -1,20 +1,19 @@
 //! Conditions for fingers that share a thread or a port.
 
 use super::ranges::unusable;
-use crate::model::Shown;
 use crate::model::configuration::{Configuration, Unusable};
+use crate::model::{FingerNumber, Shown};
 
 impl Configuration {
-    /// Checks the threads and ports of two fingers, 0 to 2, against each other.
-    pub(super) fn check_sharing(&self, first: usize, second: usize) -> Result<(), Unusable> {
-        let (one, other) = (&self.fingers[first], &self.fingers[second]);
-        let (first_number, second_number) = (first + 1, second + 1);
+    /// Checks the threads and ports of two fingers against each other.
+    pub(super) fn check_sharing(&self, first: FingerNumber, second: FingerNumber) -> Result<(), Unusable> {
+        let (one, other) = (&self.fingers[first.index()], &self.fingers[second.index()]);
         let same_thread = self.thread(first) == self.thread(second);
         if same_thread && (one.core != other.core || one.priority != other.priority) {
             return unusable(
                 "thread",
                 format!(
-                    "fingers {first_number} and {second_number} share thread {}, but have different cores or \
+                    "fingers {first} and {second} share thread {}, but have different cores or \
                      priorities: set core and priority in [finger], for all of them",
                     self.thread(first)
                 ),
@@ -27,14 +26,14 @@ impl Configuration {
         if !same_thread {
             let thread = self.thread(first);
             let reason = format!(
-                "fingers {first_number} and {second_number} share the port {port}, and one thread serves all fingers \
+                "fingers {first} and {second} share the port {port}, and one thread serves all fingers \
                  of a port: set thread = {thread} for every finger of the port"
             );
             return unusable("thread", reason);
         }
         if self.address(first) == self.address(second) {
             let reason = format!(
-                "fingers {first_number} and {second_number} share the address {} on port {port}: leave \
+                "fingers {first} and {second} share the address {} on port {port}: leave \
                  `address` out, or give each finger the address that its board has",
                 self.address(first)
             );
@@ -42,7 +41,7 @@ impl Configuration {
         }
         if one.baud != other.baud {
             let reason = format!(
-                "fingers {first_number} and {second_number} share the port {port}, but one has {} baud and the other \
+                "fingers {first} and {second} share the port {port}, but one has {} baud and the other \
                  {}: set baud in [finger], for all of them",
                 one.baud, other.baud
             );

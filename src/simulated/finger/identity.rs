@@ -1,15 +1,16 @@
 //! Constants and the unique number of a simulated finger.
 
+use crate::model::FingerNumber;
+
 pub(super) const SHORTEST_WATCHDOG_MS: u16 = 2;
 
 /// Position of the board's number in the unique number.
 pub(super) const BOARD_NUMBER: std::ops::Range<usize> = 6..10;
 
-/// Returns the unique number of a finger, 0 to 2, with this address. Fingers of two built-in boards may have the same
+/// Returns the unique number of a finger with this address. Fingers of two built-in boards may have the same
 /// address, so the number contains both.
-pub(super) fn unique_number(index: usize, address: u8) -> [u8; 12] {
+pub(super) fn unique_number(finger: FingerNumber, address: u8) -> [u8; 12] {
     let mut number = *b"sun2xp\0\0\0\0\0\0";
-    // The index is at most 2.
-    number[BOARD_NUMBER.end..].copy_from_slice(&[index as u8 + 1, address]);
+    number[BOARD_NUMBER.end..].copy_from_slice(&[finger.get() as u8, address]);
     number
 }

@@ -11,6 +11,7 @@ use sun2xp::finger::REPLY_WINDOW;
 use sun2xp::hand::ports;
 use sun2xp::hand::priority;
 use sun2xp::hand::{Fingers, HandError};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{
@@ -35,7 +36,7 @@ pub(super) fn findings(
     let mut findings = Vec::new();
     for (path, fingers) in ports {
         let subject = format!("port {}", ShownPath(&path));
-        let mut link = match Link::open(&path, configuration.fingers[fingers[0]].baud) {
+        let mut link = match Link::open(&path, configuration.fingers[fingers[0].index()].baud) {
             Ok(link) => link,
             Err(error) => {
                 findings.push(Finding::new(Rating::Failure, subject, "cannot be opened", advice(&error, root, &path)));
@@ -103,13 +104,13 @@ struct Measured {
 fn round_trips(
     configuration: &Configuration,
     link: &mut Link<Port>,
-    fingers: &[usize],
+    fingers: &[FingerNumber],
     duration: Duration,
 ) -> Result<Measured, LinkError> {
     let hand = &configuration.hand;
     let deadline = now() + u64::from(hand.open_timeout_ms) * 1_000_000;
     for &finger in fingers {
-        let terms = Terms::new(hand, &configuration.fingers[finger]);
+        let terms = Terms::new(hand, &configuration.fingers[finger.index()]);
         link.shake_hands(configuration.address(finger), &terms, deadline)?;
     }
     let period = (1e9 / hand.rate).round() as u64;

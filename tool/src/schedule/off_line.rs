@@ -6,6 +6,7 @@ use serde::Deserialize;
 use sun2xp::board::{USABLE_SHARE, exchange_microseconds};
 use sun2xp::finger::REPLY_WINDOW;
 use sun2xp::hand::{Wrong, deserialize};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{PeriodicThread, response_times};
 use toml_edit::Document;
@@ -65,8 +66,8 @@ pub struct Scheduled {
     pub core: Option<usize>,
     /// SCHED_FIFO priority.
     pub priority: u8,
-    /// The fingers of the thread, 1 to 3, in the order in which they are served.
-    pub fingers: Vec<usize>,
+    /// The fingers of the thread, in the order in which they are served.
+    pub fingers: Vec<FingerNumber>,
     /// Part of a period in which the thread computes.
     pub load: f64,
     /// Part of a period in which the thread's busiest line is busy.
@@ -92,9 +93,11 @@ pub enum RateLimit {
 /// The schedule of a hand at a rate, Hz, with one entry per servo thread. A port that is `simulated` counts as a serial
 /// line of the configured baud rate.
 pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor: &Sensor) -> Vec<Scheduled> {
-    let numbers = (1..=FINGERS as u8).filter(|&number| (0..FINGERS).any(|index| hand.thread(index) == number));
-    let threads: Vec<(u8, Vec<usize>)> =
-        numbers.map(|number| (number, (0..FINGERS).filter(|&index| hand.thread(index) == number).collect())).collect();
+    let numbers =
+        (1..=FINGERS as u8).filter(|&number| FingerNumber::ALL.iter().any(|&finger| hand.thread(finger) == number));
+    let threads: Vec<(u8, Vec<FingerNumber>)> = numbers
+        .map(|number| (number, FingerNumber::ALL.into_iter().filter(|&finger| hand.thread(finger) == number).collect()))
+        .collect();
     let period = 1e6 / rate;
     let tasks: Vec<PeriodicThread> =
         threads.iter().map(|(_, fingers)| task(hand, fingers, period, costs, sensor)).collect();
@@ -112,7 +115,6 @@ pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor:
                 Some(_) => None,
             };
             let load = (task.before + task.after) as f64 * 1e-3 / period;
-            let fingers = fingers.iter().map(|index| index + 1).collect();
             Scheduled { thread, core: task.core, priority: task.priority, fingers, load, line, response, limit }
         })
         .collect()
@@ -132,9 +134,9 @@ pub fn fastest_rate(hand: &Configuration, costs: &Costs, sensor: &Sensor, most: 
     met_at
 }
 
-fn task(hand: &Configuration, fingers: &[usize], period: f64, costs: &Costs, sensor: &Sensor) -> PeriodicThread {
+fn task(hand: &Configuration, fingers: &[FingerNumber], period: f64, costs: &Costs, sensor: &Sensor) -> PeriodicThread {
     // Fingers on one thread have the same core and priority, because the configuration was checked.
-    let first = &hand.fingers[fingers[0]];
+    let first = &hand.fingers[fingers[0].index()];
     let ports = lines(hand, fingers).count() as f64;
     // Required times are rounded up, the available time is rounded down.
     let needed = |microseconds: f64| (microseconds * 1e3).ceil() as u64;
@@ -151,9 +153,11 @@ fn task(hand: &Configuration, fingers: &[usize], period: f64, costs: &Costs, sen
 
 /// The ports of a thread, each as one of its fingers and the number of fingers on it. Every simulated finger has a port
 /// of its own.
-fn lines<'a>(hand: &'a Configuration, fingers: &'a [usize]) -> impl Iterator<Item = (usize, usize)> + 'a {
-    let shares =
-        |a: usize, b: usize| a == b || (!hand.fingers[a].simulated() && hand.fingers[a].port == hand.fingers[b].port);
+fn lines<'a>(hand: &'a Configuration, fingers: &'a [FingerNumber]) -> impl Iterator<Item = (FingerNumber, usize)> + 'a {
+    let shares = |a: FingerNumber, b: FingerNumber| {
+        let (one, other) = (&hand.fingers[a.index()], &hand.fingers[b.index()]);
+        a == b || (!one.simulated() && one.port == other.port)
+    };
     fingers
         .iter()
         .filter(move |&&finger| !fingers.iter().any(|&earlier| earlier < finger && shares(earlier, finger)))
@@ -161,9 +165,9 @@ fn lines<'a>(hand: &'a Configuration, fingers: &'a [usize]) -> impl Iterator<Ite
 }
 
 /// Time of the longest exchange on the thread's ports, us.
-fn longest_exchange(hand: &Configuration, fingers: &[usize], sensor: &Sensor) -> f64 {
+fn longest_exchange(hand: &Configuration, fingers: &[FingerNumber], sensor: &Sensor) -> f64 {
     lines(hand, fingers)
-        .map(|(finger, sharing)| exchange_microseconds(hand.fingers[finger].baud, sharing, sensor.bytes))
+        .map(|(finger, sharing)| exchange_microseconds(hand.fingers[finger.index()].baud, sharing, sensor.bytes))
         .fold(0.0, f64::max)
 }
 
@@ -186,7 +190,7 @@ mod tests {
         for (index, thread) in schedule.iter().enumerate() {
             assert_eq!(
                 (thread.thread as usize, thread.core, &thread.fingers[..]),
-                (index + 1, Some(index), &[index + 1][..])
+                (index + 1, Some(index), &[FingerNumber::ALL[index]][..])
             );
             assert_eq!((thread.response, thread.limit), (Some((660.0, 680.0)), None));
             assert!((thread.load - 0.03).abs() < 1e-9 && (thread.line - 0.55).abs() < 1e-9);
@@ -228,7 +232,7 @@ mod tests {
         hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
         let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
         assert_eq!(schedule[0].response, Some((715.0, 775.0)));
-        assert_eq!((&schedule[0].fingers[..], schedule[0].limit), (&[1, 2, 3][..], None));
+        assert_eq!((&schedule[0].fingers[..], schedule[0].limit), (&FingerNumber::ALL[..], None));
     }
 
     /// A late wake-up is not the board's fault: the reply window begins at the wake-up.

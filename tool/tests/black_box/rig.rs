@@ -6,6 +6,7 @@ use std::process::{Command, Output};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use sun2xp::hand::Hand;
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, Scheme};
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
@@ -14,7 +15,7 @@ pub const RATE: f64 = 500.0;
 
 /// A hand whose fingers are on one board in this process, so that a test can cause events.
 pub fn own_board(scheme: Scheme, folder: Option<&Path>) -> (SimulatedPort, Hand) {
-    let board = SimulatedBoard::new(&Configuration::default(), &[0, 1, 2]).expect("a board");
+    let board = SimulatedBoard::new(&Configuration::default(), &FingerNumber::ALL).expect("a board");
     let port = SimulatedPort::start(board, Pace::patient(500.0), Priority { fifo: 20, core: None })
         .expect("a pseudo-terminal");
     let mut configuration = Configuration::default();
