@@ -64,7 +64,7 @@ pub enum HandError {
         fault: Fault,
     },
     /// The port or the board does not work.
-    #[error("finger {finger}: {source} (fault {})", Fault::from(source).kind.number())]
+    #[error("finger {finger} (fault {}): {source}", Fault::from(source).kind.number())]
     Link {
         /// The finger.
         finger: FingerNumber,
@@ -73,9 +73,9 @@ pub enum HandError {
     },
     /// The boards at two ports report the same unique number.
     #[error(
-        "the boards of fingers {} ({}) and {} ({}) report the same unique number, {number}, so that they cannot be \
-         distinguished: give every board its own number in its firmware, for example the number of its processor \
-         combined with the finger's address (fault {code})",
+        "the boards of fingers {} ({}) and {} ({}) report the same unique number, {number}, and cannot be \
+         distinguished (fault {code}): give every board its own number in its firmware, for example the number of its \
+         processor combined with the finger's address",
         fingers[0], ShownPath(&ports[0]), fingers[1], ShownPath(&ports[1]), code = FaultKind::SameNumber.number()
     )]
     SameNumber {

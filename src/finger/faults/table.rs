@@ -57,7 +57,7 @@ faults! {
          finger.gauge.newton_per_count", [Recover];
     4 GaugeStuck "GAUGE_STUCK" Fault Gauge Counts "gauge stuck",
         "the count of a strain gauge no longer changes",
-        "its wire is broken, or its amplifier or converter has failed",
+        "the wire of the gauge is broken, or its amplifier or converter has failed",
         "Check the wiring of the gauge and the board, then recover and zero the finger", [Recover, Zero];
     5 GaugeOutOfRange "GAUGE_OUT_OF_RANGE" Fault Gauge Counts "gauge out of range",
         "a strain gauge reads the end of its converter's range, or a value far below zero tension",
@@ -117,7 +117,7 @@ faults! {
         "Look up the status bits in docs/board-protocol.md, then recover the finger", [Recover];
     18 EmergencyStopInput "EMERGENCY_STOP_INPUT" Fault Finger Status "emergency stop, input",
         "the emergency stop input of the board is active, or was active",
-        "somebody pressed the button, or its wire is broken",
+        "somebody pressed the button, or the wire of the button is broken",
         "Make sure that the hand can move safely, release the button, then recover the finger", [Recover];
     19 EmergencyStopCall "EMERGENCY_STOP_CALL" Fault Finger Nothing "emergency stop, call",
         "the program requested an emergency stop",
@@ -172,7 +172,7 @@ faults! {
         "Follow the text of the refused call", [];
     31 BoardSilent "BOARD_SILENT" Refusal Finger Time "board silent",
         "no byte came from the board",
-        "it is off, the cable is unplugged, transmit and receive are crossed, or another device is at the port",
+        "the board is off, the cable is unplugged, transmit and receive are crossed, or another device is at the port",
         "Check the power, the cable and finger.port", [];
     32 Unintelligible "UNINTELLIGIBLE" Refusal Finger Nothing "no protocol",
         "bytes came, but no frame of the board protocol",
