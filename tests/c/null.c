@@ -35,7 +35,7 @@ int main(void)
     REFUSED(GetRecord(1, 0, NULL), "GetRecord: Record is a null pointer: pass the address of a struct FingerRecord");
     REFUSED(WriteBlackBox(1, NULL), "WriteBlackBox: Path is a null pointer: pass the name of a file");
     REFUSED(AdjustFinger(1, NULL), "AdjustFinger: Keys is a null pointer: pass a text");
-    REFUSED(SendContact(1, 3, NULL, NULL), "SendContact: K is a null pointer: pass the array of its matrix");
+    REFUSED(SendContact(1, 3, NULL, NULL), "SendContact: K is a null pointer: pass the array of the matrix");
     REFUSED(PushFinger(1, NULL), "PushFinger: Force is a null pointer: pass an array of 3 numbers");
     CHECK(CloseHand() == 0);
     return 0;
