@@ -165,7 +165,7 @@ fn a_handshake_ends_at_its_deadline_and_names_the_unanswered_frame() {
     for frame in unasked() {
         for asked in [Kind::Hello, Kind::Configure] {
             let mut link = Link::new(Flood::of(frame).beginning_with(asked));
-            let error = link.shake_hands(1, &terms(), deadline).expect_err("nobody answers");
+            let error = link.shake_hands(1, &terms(), deadline).expect_err("the flood is no answer");
             let unanswered = matches!(error, LinkError::Unanswered { address: 1, request } if request == asked);
             assert!(unanswered, "{frame:?} instead of the answer to {asked:?}: {error}");
             assert!(link.transport().now <= deadline + LATE, "{frame:?}, {asked:?}");

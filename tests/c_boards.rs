@@ -216,7 +216,7 @@ fn notices_a_dead_board(hand: &Hand, board: &mut Board) -> Attempt {
     let error = loop {
         match hand.position(2) {
             Err(error) => break error,
-            Ok(_) if begin.elapsed() > PATIENCE => return Err("a dead board goes unnoticed".into()),
+            Ok(_) if begin.elapsed() > PATIENCE => return Err("a dead board was not noticed".into()),
             Ok(_) => std::thread::sleep(Duration::from_millis(5)),
         }
     };

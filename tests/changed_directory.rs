@@ -9,7 +9,7 @@ use sun2xp::hand::{Fingers, Hand, read_configuration, stop_all};
 #[test]
 fn relative_paths_keep_the_working_directory_of_the_opening() {
     let folder = tempfile::tempdir().expect("a folder");
-    set_current_dir(folder.path()).expect("gone there");
+    set_current_dir(folder.path()).expect("the working directory can be changed");
     fs::create_dir("boxes").expect("made");
     let file = "[hand]\nrate = 500\nblack_box = \"boxes\"\n[finger]\nport = \"simulated\"\n";
     fs::write("hand.toml", file).expect("written");
@@ -19,7 +19,7 @@ fn relative_paths_keep_the_working_directory_of_the_opening() {
         Fingers::ALL,
     )
     .expect("open");
-    set_current_dir("/").expect("gone there");
+    set_current_dir("/").expect("the working directory can be changed");
 
     hand.find_signs(1, |_| {}).expect("signs");
     assert!(hand.store_calibration(1).unwrap_or_else(|error| panic!("{error}")));

@@ -66,7 +66,7 @@ fn run_script(programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
     let (tests, bin) = (folder.path().join("tests"), folder.path().join("bin"));
     fs::create_dir(&tests).expect("a folder");
     fs::create_dir(&bin).expect("a folder");
-    fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).expect("everybody may enter");
+    fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).expect("the folder's mode can be changed");
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/run");
     fs::copy(source, tests.join("run")).expect("a copy");
     fs::write(tests.join("tools.txt"), "# name\nhere | not-wanted | true\nclang | clang libc6-dev | looks-for-clang\n")

@@ -43,7 +43,7 @@ fn a_panic_in_a_cycle_stops_the_board_and_faults_the_finger() {
             finger.servo.cycle();
         }
         let pulling = world.place().cable.board().fingers()[0].motor_torques();
-        assert!(pulling.amax() > 0.1, "nothing to let go: {pulling}");
+        assert!(pulling.amax() > 0.1, "the motors must pull: {pulling}");
 
         // The call returns. A panic that escaped it would fail this test.
         finger.servo.run();

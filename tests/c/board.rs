@@ -42,7 +42,7 @@ impl Board {
 
     /// The largest true tension, N.
     pub fn tension(&mut self) -> f64 {
-        writeln!(self.orders, "state 1").expect("the board listens");
+        writeln!(self.orders, "state 1").expect("the board reads its input");
         let state = self.answer();
         let (_, tensions) = state.split_once("tensions ").unwrap_or_else(|| panic!("{state}"));
         tensions.split(' ').take(4).map(|tension| tension.parse::<f64>().expect("a number")).fold(0.0, f64::max)

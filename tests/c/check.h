@@ -3,11 +3,16 @@
 #include <stdlib.h>
 #include <time.h>
 
+/* Where CHECK prints. */
+#ifndef CHECK_OUTPUT
+#define CHECK_OUTPUT stderr
+#endif
+
 /* Ends the program with the source line and the library's reason if a condition does not hold. */
 #define CHECK(Condition) \
     do { \
         if (!(Condition)) { \
-            fprintf(stderr, "%s:%d: not so: %s (HandError: %s)\n", __FILE__, __LINE__, #Condition, HandError()); \
+            fprintf(CHECK_OUTPUT, "%s:%d: not so: %s (HandError: %s)\n", __FILE__, __LINE__, #Condition, HandError()); \
             exit(1); \
         } \
     } while (0)

@@ -7,16 +7,9 @@
 #include <unistd.h>
 #include "Sun2Xp.h"
 
-/* CHECK of check.h cannot be used, because it prints to standard error. */
-#include <stdio.h>
-#include <stdlib.h>
-#define HOLDS(Condition) \
-    do { \
-        if (!(Condition)) { \
-            printf("%s:%d: not so: %s (HandError: %s)\n", __FILE__, __LINE__, #Condition, HandError()); \
-            exit(1); \
-        } \
-    } while (0)
+/* Standard error is the object of this test. */
+#define CHECK_OUTPUT stdout
+#include "check.h"
 
 #define LARGEST 64
 
@@ -39,24 +32,24 @@ int main(void)
         full[number] = '.';
     limit.rlim_cur = limit.rlim_max = LARGEST;
     file = open("lines", O_RDWR | O_CREAT | O_APPEND, 0600);
-    HOLDS(file >= 0);
-    HOLDS(write(file, full, LARGEST) == LARGEST);
-    HOLDS(setrlimit(RLIMIT_FSIZE, &limit) == 0);
-    HOLDS(dup2(file, 2) == 2);
+    CHECK(file >= 0);
+    CHECK(write(file, full, LARGEST) == LARGEST);
+    CHECK(setrlimit(RLIMIT_FSIZE, &limit) == 0);
+    CHECK(dup2(file, 2) == 2);
 
     /* Without a hand, the first refusal of its kind prints a message. Opening the simulated hand prints another. */
-    HOLDS(SendPos(1, Pos) == -1 && errno == ENODEV);
-    HOLDS(OpenHand() == 0);
-    HOLDS(!is_pending());
+    CHECK(SendPos(1, Pos) == -1 && errno == ENODEV);
+    CHECK(OpenHand() == 0);
+    CHECK(!is_pending());
 
     /* A signal that was already pending must stay pending. */
     sigemptyset(&only);
     sigaddset(&only, SIGXFSZ);
-    HOLDS(sigprocmask(SIG_BLOCK, &only, NULL) == 0);
-    HOLDS(raise(SIGXFSZ) == 0);
-    HOLDS(SendPos(4, Pos) == -1 && errno == EINVAL);
-    HOLDS(is_pending());
-    HOLDS(CloseHand() == 0);
-    HOLDS(lseek(file, 0, SEEK_END) == LARGEST);
+    CHECK(sigprocmask(SIG_BLOCK, &only, NULL) == 0);
+    CHECK(raise(SIGXFSZ) == 0);
+    CHECK(SendPos(4, Pos) == -1 && errno == EINVAL);
+    CHECK(is_pending());
+    CHECK(CloseHand() == 0);
+    CHECK(lseek(file, 0, SEEK_END) == LARGEST);
     return 0;
 }

@@ -177,7 +177,7 @@ fn a_spring_that_is_pushed_while_it_is_read() {
 #[test]
 fn a_spring_that_is_released_while_it_is_read() {
     for scheme in SCHEMES {
-        let tally = Tally::of(&format!("{scheme:?}, let go"), 50, |seed| {
+        let tally = Tally::of(&format!("{scheme:?}, released"), 50, |seed| {
             let mut trial = Trial::new(scheme, seed);
             let at = trial.chance.between(0.02, 0.25);
             let mut bench = trial.spring();
@@ -233,7 +233,7 @@ fn a_limp_finger_that_nothing_holds() {
 
 #[test]
 fn a_limp_finger_that_is_released_during_the_reading() {
-    let tally = Tally::of("limp, let go", 200, |seed| {
+    let tally = Tally::of("limp, released", 200, |seed| {
         let mut trial = Trial::new(Scheme::StateFeedback, seed);
         let at = trial.chance.between(0.0, 5.0);
         trial.zero(&mut trial.limp(), |seconds, plant| {

@@ -27,9 +27,9 @@ pub enum Verdict {
 }
 
 impl Tally {
-    /// Judges an attempt. `paused` is the longest pause of the machine, and `tolerated` is the longest pause that the
-    /// tested system must survive. For every excused failure another attempt has to pass, so that an intermittent
-    /// defect cannot hide behind a machine that always pauses.
+    /// Judges an attempt. `paused` is the longest pause of the machine, and a pause of `tolerated` or longer excuses a
+    /// failure. For every excused failure another attempt has to pass, so that an intermittent defect cannot hide
+    /// behind a machine that always pauses.
     pub fn judge(&mut self, passed: bool, paused: Duration, tolerated: Duration) -> Verdict {
         match passed {
             true => self.passed += 1,

@@ -61,7 +61,7 @@ fn an_adjustment_does_not_jump() {
         if *would_jump {
             assert!(
                 replaced > adjusted + 1.0,
-                "{scheme:?}, {name}: blind, {replaced} N without a transition, {adjusted} N with it"
+                "{scheme:?}, {name}: the jump must be visible: {replaced} N without a transition, {adjusted} N with it"
             );
         }
     }

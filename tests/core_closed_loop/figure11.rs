@@ -119,7 +119,7 @@ fn the_model_keeps_its_estimate_while_tensions_carry_no_information() {
     let (mut stuck, before) = learnt(&finger());
     assert!((stuck.estimate(2000, Some(0.5)) - before).abs() < 1e-3);
     assert!((stuck.estimate(2000, None) - before).abs() < 1e-3);
-    assert!(stuck.estimate(100, Some(9.0)) < before - 0.05, "it goes on afterwards");
+    assert!(stuck.estimate(100, Some(9.0)) < before - 0.05, "the model must learn again afterwards");
 
     // A motor at its limit is commanded to the limit, so its estimate shows only when less is wanted.
     let mut weak = finger();
@@ -167,6 +167,6 @@ fn in_the_kinematics_the_adapted_model_moves_the_finger_off() {
         let (off, fastest) = with_adapted_kinematics(pose, false);
         assert!(off < 0.005 && fastest < 0.1, "{off} rad off, {fastest} rad/s");
         let (off, fastest) = with_adapted_kinematics(pose, true);
-        assert!(off > 0.1 || fastest > 1.0, "the control is blind: {off} rad off, {fastest} rad/s");
+        assert!(off > 0.1 || fastest > 1.0, "the error must be visible: {off} rad off, {fastest} rad/s");
     }
 }

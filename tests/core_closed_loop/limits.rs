@@ -87,7 +87,7 @@ fn a_warm_motor_is_limited_to_its_continuous_torque() {
         squares += servo.report.motor_torques.component_mul(&servo.report.motor_torques) / 1000.0;
     }
     assert!(squares.max() < 1.001, "{:?} N^2 cm^2", squares.as_slice());
-    assert!(squares.max() > 0.8, "{:?} N^2 cm^2: blind", squares.as_slice());
+    assert!(squares.max() > 0.8, "{:?} N^2 cm^2: the motor is not at its limit", squares.as_slice());
 }
 
 /// One motor that can give 21 N continuously, three that can give 53 N, and a torque against a stop that needs more

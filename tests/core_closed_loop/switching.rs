@@ -88,7 +88,7 @@ fn no_switch_of_the_spring_jumps() {
             println!("{scheme:?}, {rate} Hz: worst {worst:.3} N");
         }
     }
-    assert!(seen > 10.0, "blind: at once would be {seen} N");
+    assert!(seen > 10.0, "an immediate switch must be visible: {seen} N");
 }
 
 /// A calibration takes over with a push that slackens the tendons, and tightens them after a rest.

@@ -11,13 +11,13 @@ use sun2xp::simulated::{Defect, LineFault};
 pub struct Case {
     pub what: &'static str,
     /// The expected fault or warning.
-    pub called: FaultKind,
+    pub expected: FaultKind,
     /// Provokes the fault. Returns the affected part if the fault names one.
     pub inject: fn(&mut Bench) -> Injected,
     /// Changes to the default configuration.
     pub configure: fn(&mut Configuration),
     /// When the fault becomes detectable. `None` means at once.
-    pub knowable: Option<Knowable>,
+    pub detectable: Option<Detectable>,
 }
 
 /// The affected part, if the fault names one, and the speed of a drift, N/s.
@@ -30,7 +30,7 @@ pub struct Injected {
 /// A fault is detectable from the beginning of the first stretch of `lasts_ms` during which `holds` is true of the
 /// finger's true state.
 #[derive(Clone, Copy)]
-pub struct Knowable {
+pub struct Detectable {
     pub holds: fn(&Truth, &Injected, &ConfiguredFinger) -> bool,
     pub lasts_ms: f64,
 }
@@ -57,8 +57,8 @@ fn push(bench: &mut Bench, force: [f64; 3]) -> Injected {
     Injected::default()
 }
 
-fn case(what: &'static str, called: FaultKind, inject: fn(&mut Bench) -> Injected) -> Case {
-    Case { what, called, inject, configure: |_| {}, knowable: None }
+fn case(what: &'static str, expected: FaultKind, inject: fn(&mut Bench) -> Injected) -> Case {
+    Case { what, expected, inject, configure: |_| {}, detectable: None }
 }
 
 impl Case {
@@ -67,7 +67,7 @@ impl Case {
     }
 
     fn from(self, lasts_ms: f64, holds: fn(&Truth, &Injected, &ConfiguredFinger) -> bool) -> Self {
-        Self { knowable: Some(Knowable { holds, lasts_ms }), ..self }
+        Self { detectable: Some(Detectable { holds, lasts_ms }), ..self }
     }
 }
 

@@ -23,7 +23,7 @@ const PATIENCE: f64 = 10.0;
 #[derive(Clone, Copy)]
 struct Outcome {
     /// From the injection until the fault becomes detectable.
-    knowable: f64,
+    detectable: f64,
     /// From then until the fault is named.
     found: f64,
     /// From then until the motors are off; 0 for a warning.
@@ -48,20 +48,20 @@ fn inject(case: &Case, rate: f64, seed: u64) -> Result<(Bench, Injected), String
 
 fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, String> {
     let (mut bench, injected) = inject(case, rate, seed)?;
-    let (mut known, mut since, mut found) = (case.knowable.is_none().then_some(0.0), None, None);
+    let (mut known, mut since, mut found) = (case.detectable.is_none().then_some(0.0), None, None);
     bench.truth.time = 0.0;
     while (found.is_none() || known.is_none() || (!warns && bench.ended().is_none())) && bench.truth.time < PATIENCE {
         bench.cycle();
         let now = 1000.0 * bench.truth.time;
         let named = match warns {
-            true => bench.warning().is_some_and(|warning| warning.kind == case.called),
+            true => bench.warning().is_some_and(|warning| warning.kind == case.expected),
             false => bench.fault().is_some(),
         };
-        if let Some(knowable) = case.knowable.filter(|_| known.is_none()) {
-            let holds = (knowable.holds)(&bench.truth, &injected, bench.finger());
+        if let Some(detectable) = case.detectable.filter(|_| known.is_none()) {
+            let holds = (detectable.holds)(&bench.truth, &injected, bench.finger());
             since = since.filter(|_| holds).or(holds.then_some(now));
             // A fault that is named shortly before the stretch is over belongs to that stretch.
-            known = since.filter(|since| now - since >= knowable.lasts_ms || named);
+            known = since.filter(|since| now - since >= detectable.lasts_ms || named);
         }
         found = found.or(named.then_some(now));
     }
@@ -70,17 +70,17 @@ fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, Stri
         true if fault.is_some() => false,
         true => found.is_some(),
         false => fault.is_some_and(|fault| {
-            fault.kind == case.called && injected.part.is_none_or(|part| part == fault.part.number())
+            fault.kind == case.expected && injected.part.is_none_or(|part| part == fault.part.number())
         }),
     };
     if !named {
-        let called = fault.or(bench.warning()).map_or("nothing".into(), |fault| fault.to_string());
-        return Err(format!("part {:?} is called {called} after {found:?} ms", injected.part));
+        let reported = fault.or(bench.warning()).map_or("nothing".into(), |fault| fault.to_string());
+        return Err(format!("part {:?} is reported as {reported} after {found:?} ms", injected.part));
     }
     let found = found.unwrap_or(f64::INFINITY);
     let ended = if warns { 0.0 } else { bench.ended().unwrap_or(f64::INFINITY) };
     // The servo knows its own command before the motors do, so it may name a fault earlier.
-    let knowable = known.unwrap_or(found).min(found);
+    let detectable = known.unwrap_or(found).min(found);
     bench.repair();
     if !warns {
         bench.recover();
@@ -89,7 +89,7 @@ fn trial(case: &Case, rate: f64, seed: u64, warns: bool) -> Result<Outcome, Stri
     if let Some(fault) = bench.fault() {
         return Err(format!("faults again after the repair: {fault}"));
     }
-    Ok(Outcome { knowable, found: found - knowable, ended: if warns { 0.0 } else { ended - knowable } })
+    Ok(Outcome { detectable, found: found - detectable, ended: if warns { 0.0 } else { ended - detectable } })
 }
 
 fn median_and_worst(outcomes: &[Outcome], of: fn(&Outcome) -> f64) -> String {
@@ -110,9 +110,9 @@ fn inject_all(cases: &[Case], rate: f64, times: u64, warns: bool) -> Vec<String>
                 Err(error) => wrong.push(format!("{}, {time}: {error}", case.what)),
             }
         }
-        let name = case.called.description().name;
-        let knowable = match case.knowable {
-            Some(_) => median_and_worst(&outcomes, |outcome| outcome.knowable),
+        let name = case.expected.description().name;
+        let detectable = match case.detectable {
+            Some(_) => median_and_worst(&outcomes, |outcome| outcome.detectable),
             None => "0".into(),
         };
         let found = median_and_worst(&outcomes, |outcome| outcome.found);
@@ -121,7 +121,7 @@ fn inject_all(cases: &[Case], rate: f64, times: u64, warns: bool) -> Vec<String>
             false => median_and_worst(&outcomes, |outcome| outcome.ended),
         };
         println!(
-            "| {} | {rate} | {name} ({} of {times}) | {knowable} | {found} | {ended} |",
+            "| {} | {rate} | {name} ({} of {times}) | {detectable} | {found} | {ended} |",
             case.what,
             outcomes.len()
         );

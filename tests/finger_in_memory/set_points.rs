@@ -24,7 +24,7 @@ fn stop(bench: &mut Bench) {
 fn holds(bench: &mut Bench, joints: Vector3<f64>) {
     bench.cycles(1);
     let held = bench.report().set_point;
-    assert_eq!(held.joints, joints, "where it shall be");
+    assert_eq!(held.joints, joints, "the finger must hold its target");
     assert!((held.stiffness[(0, 0)] - 1.5).abs() < 1e-12, "{}", held.stiffness);
     bench.cycles(500);
     let moved = (bench.report().cycle.joints - joints).amax();

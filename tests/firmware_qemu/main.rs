@@ -123,7 +123,7 @@ fn its_emergency_stop_stops_the_hand() {
         assert_ne!(machine.finger(1).asked.currents, [0; 4]);
         machine.finger(1).faults = Status::EMERGENCY_STOP;
         let noticed = wait_until(PATIENCE, || matches!(hand.status(2).expect("a finger").stage, Stage::Faulted(_)));
-        assert!(noticed, "the emergency stop goes unnoticed");
+        assert!(noticed, "the emergency stop was not noticed");
         match hand.position(2).expect_err("it is faulted") {
             HandError::Faulted { fault, .. } if fault.kind == FaultKind::EmergencyStopInput => {}
             error => return Err(text(error)),
@@ -166,7 +166,7 @@ impl Planner {
 
     /// Kills the planner with SIGKILL.
     fn kill(&mut self) {
-        self.0.kill().expect("the planner lives");
+        self.0.kill().expect("the planner is running");
         self.0.wait().expect("the planner is ours");
     }
 }
@@ -194,7 +194,7 @@ fn wait_until(patience: Duration, mut holds: impl FnMut() -> bool) -> bool {
 /// another way: the planner then detects a fault and stops the fingers itself, with frames that may reach the firmware
 /// after the planner was killed.
 fn ended_by_watchdog(machine: &Machine) -> bool {
-    let mut link = Link::open(&machine.port, 1_000_000).expect("nobody else holds the port");
+    let mut link = Link::open(&machine.port, 1_000_000).expect("the port is free");
     // Discards what the killed planner did not read.
     while link.receive(now() + 100_000_000).expect("the port is there").is_some() {}
     (1..=3).all(|address| {
@@ -206,7 +206,7 @@ fn ended_by_watchdog(machine: &Machine) -> bool {
                 link.receive(now() + 100_000_000).expect("the port is there").map(|received| received.reply.status);
             status.is_some()
         });
-        assert!(answered, "finger {address} does not say how it is");
+        assert!(answered, "finger {address} does not report its state");
         status.is_some_and(|status| status.has(Status::WATCHDOG_TRIPPED))
     })
 }
@@ -227,7 +227,10 @@ fn kill_a_planner(
     let ran = ran && running();
     // Commands in transit still arrive, and the slowest watchdog has time to trip.
     let long_ago = |asked: Asked| asked.now.saturating_sub(asked.arrived_at) > 400_000;
-    assert!(wait_until(PATIENCE, || (0..3).all(|finger| long_ago(machine.finger(finger).asked))), "commands go on");
+    assert!(
+        wait_until(PATIENCE, || (0..3).all(|finger| long_ago(machine.finger(finger).asked))),
+        "commands still arrive"
+    );
     let asked = [0, 1, 2].map(|finger| machine.finger(finger).asked);
     if !ran {
         return Err("the planner's fingers did not all run when it was killed".into());
@@ -235,7 +238,7 @@ fn kill_a_planner(
     if !ended_by_watchdog(machine) {
         return Err("a finger was not ended by its watchdog".into());
     }
-    assert!(asked.iter().all(|asked| in_end_state(asked.currents)), "motors go on");
+    assert!(asked.iter().all(|asked| in_end_state(asked.currents)), "motors are not in their end state");
     match asked.map(|asked| asked.set_at.checked_sub(asked.arrived_at)) {
         [Some(one), Some(two), Some(three)] => Ok([one, two, three]),
         // The command came from a planner that had not yet noticed the end.
@@ -270,7 +273,7 @@ fn a_killed_planner_leaves_the_motors_in_their_end_state() {
             if figures.iter().all(|figure| expected.contains(figure)) { Ok(()) } else { Err(found) }
         });
         let over = wait_until(PATIENCE, || (0..3).all(|finger| none(machine.finger(finger).asked.currents)));
-        assert!(over, "held for ever");
+        assert!(over, "the hold does not end");
     }
 }
 

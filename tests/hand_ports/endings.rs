@@ -97,7 +97,7 @@ fn a_killed_planner_leaves_its_motors_holding_for_a_while() {
     for (index, board) in boards.iter_mut().enumerate() {
         let state = board.wait_for(index + 1, "released", |state| !holds(state));
         assert!(state.has(Status::ENDED) && state.has(Status::WATCHDOG_TRIPPED) && state.limp(), "{state:?}");
-        assert!(killed.elapsed() >= HOLD_TIME, "let go after {:?}", killed.elapsed());
+        assert!(killed.elapsed() >= HOLD_TIME, "released after {:?}", killed.elapsed());
     }
 }
 

@@ -7,8 +7,16 @@ use std::fs;
 use std::path::Path;
 use sun2xp::board::protocol::Status;
 use sun2xp::finger::FaultKind;
-use sun2xp::hand::HandError;
+use sun2xp::hand::{Hand, HandError};
 use sun2xp::model::FingerNumber;
+
+/// Three boards with a finger each, and their hand. The port of finger 2 is behind a link and may be reconnected.
+fn with_finger_2_on_a_link(folder: &Path) -> ([Board; 3], Hand) {
+    let boards = [Board::start(&["1"]), Board::start_at(&at(folder), &["2"]), Board::start(&["3"])];
+    let mut configuration = on_ports([&boards[0].port, &at(folder), &boards[2].port]);
+    configuration.fingers[1].reconnect = true;
+    (boards, open(configuration))
+}
 
 /// Another board, or a board that has lost its zero, is not accepted as the finger's.
 #[test]
@@ -18,11 +26,7 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
     let file = folder.path().join("other.toml");
     // The same kind and the same number, but other encoders.
     fs::write(&file, "[finger]\nencoder.counts_per_revolution = [4096, 4096, 4096, 4096]\n").expect("written");
-    let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
-    let mut second = Board::start_at(&at(folder.path()), &["2"]);
-    let mut configuration = on_ports([&first.port, &at(folder.path()), &third.port]);
-    configuration.fingers[1].reconnect = true;
-    let hand = open(configuration);
+    let ([_first, mut second, _third], hand) = with_finger_2_on_a_link(folder.path());
     let refused = |kind: FaultKind| {
         let mut reported = None;
         // At first the port may not exist yet.
@@ -35,7 +39,7 @@ fn a_finger_does_not_recover_on_another_board_or_without_its_zero() {
             Ok(()) => panic!("recovers"),
         });
         assert_eq!(reported, Some(kind));
-        assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished), "and stays as it was");
+        assert_eq!(fault(&hand, 2), Some(FaultKind::PortVanished), "the fault must stay");
     };
     second.kill();
     assert_eq!(faults(&hand, 2), FaultKind::PortVanished);
@@ -76,25 +80,21 @@ fn a_board_that_is_unplugged_again_and_again_recovers_and_nothing_leaks() {
     let _turn = turn();
     let rounds: u32 = std::env::var("SUN2XP_ROUNDS").map_or(3, |rounds| rounds.parse().expect("a number"));
     let folder = tempfile::tempdir().expect("a folder");
-    let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
-    let mut second = Board::start_at(&at(folder.path()), &["2"]);
-    let mut configuration = on_ports([&first.port, &at(folder.path()), &third.port]);
-    configuration.fingers[1].reconnect = true;
-    let hand = open(configuration);
+    let ([_first, mut second, _third], hand) = with_finger_2_on_a_link(folder.path());
     goes(&hand, 2, TARGET);
     let _rest = name_pauses().rest();
     let before = held();
     for round in 0..rounds {
         second.kill();
         assert_eq!(faults(&hand, 2), FaultKind::PortVanished);
-        let error = hand.recover(2).expect_err("nobody is there");
+        let error = hand.recover(2).expect_err("no board is there");
         assert!([libc::ENOENT, libc::EIO, libc::ENOTTY].contains(&error.errno()), "{error}");
         // The port is a new device behind the old name.
         second = Board::start_at(&at(folder.path()), &["2"]);
         wait_until("recovered", || hand.recover(2).is_ok());
         assert_eq!(hand.report(2).expect("a report").recoveries, round + 1);
         goes(&hand, 2, TARGET);
-        assert_eq!((fault(&hand, 1), fault(&hand, 3)), (None, None), "the others go on");
+        assert_eq!((fault(&hand, 1), fault(&hand, 3)), (None, None), "the others must keep running");
     }
     assert_eq!(held(), before, "descriptors and threads after {rounds} rounds");
     goes(&hand, 1, TARGET);
@@ -105,11 +105,7 @@ fn a_board_that_is_unplugged_again_and_again_recovers_and_nothing_leaks() {
 fn a_finger_recovers_only_on_request() {
     let _turn = turn();
     let folder = tempfile::tempdir().expect("a folder");
-    let (first, third) = (Board::start(&["1"]), Board::start(&["3"]));
-    let mut second = Board::start_at(&at(folder.path()), &["2"]);
-    let mut configuration = on_ports([&first.port, &at(folder.path()), &third.port]);
-    configuration.fingers[1].reconnect = true;
-    let hand = open(configuration);
+    let ([_first, mut second, _third], hand) = with_finger_2_on_a_link(folder.path());
     second.kill();
     faults(&hand, 2);
     let mut second = Board::start_at(&at(folder.path()), &["2"]);

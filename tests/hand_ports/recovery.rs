@@ -90,7 +90,7 @@ fn fingers_that_stop_together_recover_one_by_one() {
     }
     recovers(&hand, 1);
     goes(&hand, 1, START);
-    let error = hand.recover(2).expect_err("nobody answers");
+    let error = hand.recover(2).expect_err("no board answers");
     assert_eq!(error.errno(), libc::ETIMEDOUT, "{error}");
     boards[1].signal(libc::SIGCONT);
     // The board first answers the requests that arrived while it was stopped.
@@ -146,7 +146,7 @@ fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found()
     let found = hand.report(2).expect("a report").set_point.joints;
     hand.send_damping(2, 1.2).expect("sent");
     wait_until("taken", || hand.report(2).expect("a report").set_point.damping == 1.2);
-    assert_eq!(hand.report(2).expect("a report").set_point.joints, found, "it moves though nobody has sent it");
+    assert_eq!(hand.report(2).expect("a report").set_point.joints, found, "the finger moves without a set point");
     close(hand);
 }
 
@@ -215,7 +215,7 @@ fn a_hand_is_closed_and_its_ports_free_while_somebody_recovers_a_finger() {
     assert_eq!(faults(&hand, 2), FaultKind::LostReplies);
     let [mending, late] = [(); 2].map(|()| Recovering::begin(&hand, 2).expect("begun"));
     // The recovery has the finger's link, but no board answers there.
-    assert_eq!(mending.reconnect().expect_err("nobody answers").errno(), libc::ETIMEDOUT);
+    assert_eq!(mending.reconnect().expect_err("no board answers").errno(), libc::ETIMEDOUT);
     hand.close();
     let error = late.reconnect().expect_err("closed");
     assert!(error.to_string().contains("was closed"), "{error}");
