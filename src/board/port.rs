@@ -141,7 +141,8 @@ impl Drop for Port {
         if self.process == std::process::id() && self.descriptor.is_own() {
             // Closing a UART waits up to 30 s for bytes that cannot leave. They are discarded, because all requests
             // that matter have been answered before. The mark of exclusive use would otherwise remain while another
-            // process has the port open, and the lock while a forked child runs. SAFETY: no call takes a pointer.
+            // process has the port open, and the lock while a forked child runs.
+            // SAFETY: no call takes a pointer.
             unsafe {
                 libc::tcflush(self.descriptor.number(), libc::TCOFLUSH);
                 libc::ioctl(self.descriptor.number(), libc::TIOCNXCL);
