@@ -163,7 +163,7 @@ mod tests {
          # As measured in May:\nstiffness = [ 300.0, 300, # new\n  310.0, 300.0 ] # N/cm\n";
 
     #[test]
-    fn what_stands_there_already_changes_nothing() {
+    fn values_that_are_present_change_nothing() {
         assert_eq!(stored(FILE, &[]), FILE);
         assert_eq!(
             stored(FILE, &[zeros(FingerNumber::ONE, [1, 2, 3, 4], 0.0), signs(FingerNumber::THREE, [1; 4], [1; 4])]),
@@ -172,14 +172,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_found_replaces_its_numbers_and_nothing_else() {
+    fn results_replace_their_numbers_and_nothing_else() {
         let text = stored(FILE, &[identified(FingerNumber::TWO, [330.0, 301.123_456_789, 310.0, 300.0], 0.05)]);
         let expected = FILE.replace("[ 300.0, 300,", "[ 330.0, 301.123,");
         assert_eq!(text, expected + "stiffness_tolerance = 0.03\n");
     }
 
     #[test]
-    fn what_all_fingers_share_is_overridden_for_one() {
+    fn shared_values_are_overridden_for_one_finger() {
         let text = stored(
             FILE,
             &[zeros(FingerNumber::ONE, [5, 6, 7, -8], 0.0), signs(FingerNumber::ONE, [1, -1, 1, 1], [1; 4])],
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_editors_of_other_systems_write_stays() {
+    fn byte_order_marks_and_line_ends_are_kept() {
         for file in [FILE.replace('\n', "\r\n"), format!("\u{feff}{FILE}")] {
             let text = stored(&file, &[zeros(FingerNumber::ONE, [5, 6, 7, 8], 0.0)]);
             assert!(text.starts_with(&file), "{text:?}");
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_written_is_named() {
+    fn a_failed_write_is_named() {
         let error = store_findings(Path::new("/proc/version"), &[]).expect_err("no text of a configuration");
         assert!(error.to_string().contains("/proc/version"), "{error}");
     }

@@ -52,7 +52,7 @@ impl PortRepair {
         Self { path, baud, reconnect, boards, handover, released: false, link: None, checked: false }
     }
 
-    /// Takes the link if the servo has released it. Returns whether the link is here.
+    /// Takes the link if the servo has released it. Returns whether the servo has released it.
     pub fn take_link(&mut self) -> bool {
         if let Some(released) = self.handover.released.pop() {
             (self.released, self.checked) = (true, false);

@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn an_ordinary_thread_is_ordinary_also_where_its_starter_is_real_time() {
+    fn an_ordinary_thread_is_ordinary_even_if_its_parent_is_real_time() {
         // SAFETY: 0 is the calling thread.
         let policy = |_| unsafe { libc::sched_getscheduler(0) };
         let nested = move |_| spawn("inner", Priority::default(), policy).expect("a thread").join().expect("no panic");

@@ -113,7 +113,7 @@ proptest! {
     })]
 
     #[test]
-    fn whatever_is_asked_what_is_admitted_is_a_spring_within_the_bound(
+    fn every_admitted_kx_is_a_spring_within_the_bound(
         mantissas in prop::array::uniform6(-1.0f64..1.0), exponents in prop::array::uniform6(-320i32..308),
     ) {
         let [a, b, c, d, e, f] = std::array::from_fn(|i| mantissas[i] * 10f64.powi(exponents[i]));
@@ -127,7 +127,7 @@ proptest! {
     }
 
     #[test]
-    fn whatever_contact_is_asked_what_is_admitted_is_within_the_bound(
+    fn every_admitted_contact_is_within_the_bound(
         mantissas in prop::array::uniform32(-1.0f64..1.0), exponents in prop::array::uniform6(-160i32..155),
         diagonal in prop::bool::ANY, lever in -1.0f64..2.0,
     ) {
@@ -182,7 +182,7 @@ mod damping {
     }
 
     #[test]
-    fn what_would_swing_or_break_a_tendon_is_refused_with_the_range() {
+    fn damping_that_would_oscillate_or_break_a_tendon_is_refused_with_the_range() {
         let refuse = admission(OutOfRange::Refuse);
         for (stiffness, damping) in
             [(3.0, 3.0), (6.0, 2.0), (6.0, 0.5), (3.0, 0.2), (6.0, 0.2), (3.0, 0.66), (6.0, 1.19)]

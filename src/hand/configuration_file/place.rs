@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_user_decides_does_not_count_with_raised_privileges() {
+    fn user_settings_are_ignored_with_raised_privileges() {
         assert_eq!(found(true, "", &FILES).expect("nothing named").as_deref(), Some(SYSTEM_FILE));
         assert_eq!(found(true, "", &FILES[..3]).expect("nothing named"), None);
         let refusal = found(true, "named", &FILES).expect_err("named");
