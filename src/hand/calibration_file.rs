@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_no_longer_fits_is_left_and_the_reason_told() {
+    fn a_file_that_no_longer_fits_is_unchanged_and_the_reason_is_reported() {
         let radius = "[finger.1.geometry]\nmotor_radius = [0.05, 0.05, 0.05, 0.05]\n";
         let error =
             try_to_store(radius, &[zeros(FingerNumber::ONE, [5; 4], 0.0)]).expect_err("other motors").to_string();

@@ -95,7 +95,7 @@ impl Hand {
         limp: bool,
     ) -> Result<Self, HandError> {
         check(&configuration)?;
-        // Where a sandbox forbids it, the servo threads would never wait, and others would panic.
+        // A sandbox may forbid clock_nanosleep. Then servo threads would not wait, and other threads would panic.
         let waiting = MonotonicClock::check_sleep();
         waiting.map_err(|source| HandError::System { doing: "wait for a time (clock_nanosleep)", source })?;
         let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
