@@ -61,7 +61,6 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 ///
 /// Positions and forces are in the finger's frame, lengths in cm. The program ends at `quit` or a signal, and not at
 /// the end of standard input, so that it can run detached.
-/// so that it can run detached; `quit` or a signal does.
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
