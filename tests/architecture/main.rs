@@ -6,6 +6,7 @@ mod circles;
 mod crate_tree;
 mod imports;
 mod limits;
+mod set_point;
 
 use crate_tree::CrateTree;
 use std::collections::BTreeSet;
@@ -99,4 +100,20 @@ fn a_file_a_function_or_a_line_beyond_its_limit_is_found() {
         assert!(found(name, &function(60)).is_empty(), "{begin}");
         assert_eq!(found(name, &function(61)), [format!("{name}:2: a function of 61 lines")], "{begin}");
     }
+}
+
+#[test]
+fn a_set_point_passes_through_few_files_and_changes_its_shape_twice() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (text, stations) = set_point::read(root);
+    for set_point::Station { file, function, .. } in &stations {
+        let source = fs::read_to_string(root.join("src").join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+        let defined = [format!("fn {function}("), format!("fn {function}<")];
+        assert!(defined.iter().any(|definition| source.contains(definition)), "{file} has no function {function}");
+    }
+    let files: BTreeSet<&str> = stations.iter().map(|station| station.file.as_str()).collect();
+    let changes = stations.windows(2).filter(|pair| pair[0].shape != pair[1].shape).count();
+    assert!((10..=20).contains(&files.len()) && changes <= 2, "{} files, {changes} changes of shape", files.len());
+    let counted = format!("passes through {} files and changes its shape {changes} times", files.len());
+    assert!(text.contains(&counted), "the page does not say that a set point {counted}");
 }
