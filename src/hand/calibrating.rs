@@ -23,6 +23,7 @@ const ANSWER: Duration = Duration::from_secs(5);
 
 /// A calibration in progress. It runs without further calls; [`Calibrating::poll`] reports its progress.
 #[derive(Debug)]
+#[must_use = "a calibration is followed by polling it"]
 pub struct Calibrating {
     finger: FingerNumber,
     /// While this exists, nobody else can calibrate the finger.

@@ -24,6 +24,7 @@ use thiserror::Error;
 
 /// A refused call. Nothing was changed. The text names the cause and the remedy.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum HandError {
     /// The number of a finger is not 1, 2 or 3.
     #[error("there is no finger {0}: fingers are 1, 2 and 3")]

@@ -6,6 +6,7 @@ use crate::model::FingerNumber;
 
 /// The result of [`Hand::fault`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FingerFault {
     /// The fault that stopped the finger. It stays until the finger recovers or the hand is opened again.
     pub stopped: Option<Fault>,

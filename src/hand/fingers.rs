@@ -7,6 +7,7 @@ use crate::model::configuration::FINGERS;
 /// A selection of at least one finger. The ports of other fingers are not opened, and calls for other fingers are
 /// refused with [`HandError::NotOpened`]. The configuration still describes the whole hand, and all of it is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
 pub struct Fingers([bool; FINGERS]);
 
 impl Fingers {

@@ -13,6 +13,7 @@ const FELT: f64 = 0.3;
 
 /// The state of a fingertip.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FingerTip {
     /// Position in the finger's frame, cm, from the measured joint angles.
     pub tip: [f64; 3],

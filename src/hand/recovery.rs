@@ -26,6 +26,7 @@ const STALL_LIMIT: Duration = Duration::from_secs(5);
 
 /// A recovery in progress. It has three steps: begin, reconnect and poll. Only `reconnect` takes long, and it does not
 /// need the hand.
+#[must_use = "a recovery does nothing before `reconnect` is called"]
 pub struct Recovering {
     /// None if the finger is not faulted, so that there is nothing to do.
     task: Option<Task>,

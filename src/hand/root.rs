@@ -32,6 +32,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(1);
 /// An open hand: its fingers, servo threads and ports. A process can have several.
 ///
 /// All functions may be called from several threads. Dropping the hand closes it.
+#[must_use = "a hand that is dropped is closed"]
 pub struct Hand {
     pub(super) dispatcher: Dispatcher,
     servos: Vec<JoinHandle<PortServo>>,

@@ -8,6 +8,7 @@ use crate::realtime::{self, Distribution, now};
 
 /// The status of a finger and of its servo thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FingerStatus {
     /// Stage of the finger between open and close.
     pub stage: Stage,

@@ -24,6 +24,7 @@ pub struct Contact(Matrix6<f64>);
 
 /// The reason why a stiffness is not a spring, or why a contact has no direction.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ContactError {
     /// NaN or infinity.
     #[error("an entry of K or Normal is {0}: every entry must be a finite number")]

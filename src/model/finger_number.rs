@@ -24,16 +24,19 @@ impl FingerNumber {
     pub const ALL: [Self; FINGERS] = [Self::ONE, Self::TWO, Self::THREE];
 
     /// Returns the finger with this number, or None if there is no such finger.
+    #[must_use]
     pub fn new(number: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|finger| finger.get() == number)
     }
 
     /// Returns the number, 1 to 3.
+    #[must_use]
     pub const fn get(self) -> i32 {
         self.index as i32 + 1
     }
 
     /// Returns the place of the finger in an array of all fingers, 0 to 2.
+    #[must_use]
     pub const fn index(self) -> usize {
         self.index as usize
     }

@@ -9,6 +9,7 @@ use thiserror::Error;
 
 /// A configuration that cannot be read, used, changed or stored.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ConfigurationError {
     /// The configuration file cannot be read.
     #[error(

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 /// A faulted finger that cannot recover.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum RecoveryError {
     /// Another finger uses the port.
     #[error(

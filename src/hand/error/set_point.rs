@@ -6,6 +6,7 @@ use thiserror::Error;
 
 /// A set point, stiffness, contact or damping that a finger cannot take.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum SetPointError {
     /// An argument contains NaN or infinity.
     #[error("{what} of finger {finger} contains {value}: every entry must be a finite number")]
