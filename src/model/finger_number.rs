@@ -1,7 +1,9 @@
 //! The number of a finger.
 
-use crate::model::configuration::FINGERS;
 use std::fmt;
+
+/// Number of fingers of a hand.
+pub const FINGERS: usize = 3;
 
 /// The number of a finger: 1, 2 or 3 in calls, configuration files and texts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

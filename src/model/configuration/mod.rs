@@ -18,15 +18,14 @@ pub use mechanics::{ConfiguredFriction, ConfiguredLinks};
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use zeroing::{ConfiguredZeroing, ZeroingMethod};
 
-use crate::model::FingerNumber;
+pub use crate::model::finger_number::FINGERS;
+
+use crate::model::finger_number::FingerNumber;
 use crate::model::kinematics::Links;
 use crate::model::tendons::{Tendons, TendonsError};
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
-
-/// Number of fingers of a hand.
-pub const FINGERS: usize = 3;
 
 /// Admissible rates of a hand, Hz. The gains for 500 Hz are stable down to 470 Hz, and the finger oscillates at 450 Hz.
 pub const RATES: RangeInclusive<f64> = 500.0..=5000.0;
