@@ -11,6 +11,7 @@ mod losses;
 mod mailbox;
 mod order;
 mod recording;
+#[cfg(feature = "internals")]
 mod replay;
 mod report;
 mod servo;
@@ -30,6 +31,7 @@ pub use losses::Losses;
 pub use mailbox::Mailbox;
 pub use order::{CalibrationRun, Order};
 pub use recording::{Origin, Recording, RecordingError};
+#[cfg(feature = "internals")]
 pub use replay::{Difference, NotReplayable, Replayed};
 pub use report::FingerReport;
 pub use servo::FingerServo;
