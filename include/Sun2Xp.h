@@ -1249,7 +1249,7 @@ int GetFault(int, struct Fault *);
 
  Returns one line with the fault's name, its meaning, the likely cause and the remedy, or an empty
  string for a number that is no fault. Never null. The text stays valid until the process ends. If a
- call was refused because of a fault, HandError gives the same text with the part and its figures.
+ call was refused because of a fault, HandError gives the same text with the part and the values.
 
  Threads: any. Works in a forked child too.
  */

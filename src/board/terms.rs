@@ -9,7 +9,7 @@ use thiserror::Error;
 /// time even if the configured one is shorter.
 const LONGEST_NEEDED_MS: u16 = 20;
 
-/// The largest torque unit of a board, as a part of a motor's torque limit. Rounding lowers the limit by up to one
+/// The largest torque unit of a board, as a fraction of a motor's torque limit. Rounding lowers the limit by up to one
 /// unit.
 const COARSEST_UNIT: f64 = 0.01;
 

@@ -18,7 +18,7 @@ pub(super) const SWING: f64 = 0.15;
 const SPEED: f64 = 0.3;
 /// Samples are ignored for this time after every change of direction, s.
 const RUN_UP: f64 = 0.4;
-/// The higher level, as a part of t_max in the tendon with the largest pretension, and the rate of its rise, N/s.
+/// The higher level, as a fraction of t_max in the tendon with the largest pretension, and the rate of its rise, N/s.
 const HIGH: f64 = 0.4;
 const RISING: f64 = 10.0;
 /// Plausible range of a gauge's relative gain.

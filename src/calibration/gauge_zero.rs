@@ -11,17 +11,20 @@ use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Length by which every tendon is let out, cm: several times its stretch under the pretension.
 const LET_OUT: f64 = 0.15;
-/// Force of a motor that lets its tendon out, as a part of t_min. A motor that can control t_min has less friction.
+/// Force of a motor that lets its tendon out, as a fraction of t_min. A motor that can control t_min has less friction
+/// than this force.
 const PUSH: f64 = 0.8;
-/// Time limit for letting the tendons out, then settling time and averaging time, s.
+/// Time limit for letting the tendons out, s.
 const LETTING_OUT_LIMIT: f64 = 5.0;
+/// Settling time after the tendons are out, s.
 const SETTLING: f64 = 0.2;
+/// Averaging time after the settling time, s.
 const AVERAGING: f64 = 0.5;
 /// Largest permitted noise of a gauge, N rms. Normal noise is a tenth of it.
 const LARGEST_SPREAD: f64 = 0.3;
 /// Largest permitted offset, N.
 const LARGEST_OFFSET: f64 = 10.0;
-/// Least change of a gauge between a tight and a slack tendon, as a part of t_min.
+/// Least change of a gauge between a tight and a slack tendon, as a fraction of t_min.
 const LEAST_FALL: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug)]
@@ -29,14 +32,15 @@ pub(super) struct GaugeZero {
     seconds: f64,
     /// Travel at the beginning, cm.
     start: Option<Vector4<f64>>,
-    /// Tensions at the beginning by the configured zeros, N. `None` if the tendons were slack.
+    /// Tensions at the beginning, N, measured with the configured zeros. `None` if the tendons were slack.
     tight: Option<Vector4<f64>>,
     slack: Average,
     out_at: Option<f64>,
 }
 
 impl GaugeZero {
-    /// `tight`: tensions measured by the configured zeros while the tendons were tight, N. `None` if they were not.
+    /// `tight` contains the tensions, N, that were measured with the configured zeros while the tendons were tight. It
+    /// is `None` if the tendons were slack.
     pub fn new(tight: Option<Vector4<f64>>) -> Self {
         Self { seconds: 0.0, start: None, tight, slack: Average::default(), out_at: None }
     }

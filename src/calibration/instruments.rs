@@ -1,4 +1,4 @@
-//! Converts the measurements of a finger for every routine, by the configured sensors and tendons.
+//! Converts the measurements of a finger for every routine. The configured sensors and tendons give the factors.
 
 use crate::control::sensing::sensors::SensorScales;
 use crate::control::signals::Feedback;
@@ -24,7 +24,7 @@ pub(super) struct Instruments {
     pub radians_per_count: Vector4<f64>,
     /// cm of tendon per radian of the motor.
     pub radius: Vector4<f64>,
-    /// The same with the sign of the motor's command, cm.
+    /// `radius` with the sign of the motor's command, cm.
     pub signed_radius: Vector4<f64>,
     /// Largest pull of the weakest motor, N.
     pub strongest: f64,

@@ -26,7 +26,7 @@ const IN_BETWEEN: f64 = 0.7;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointFriction {
     joint: usize,
-    /// The lower stop of the joint, rad by the configured zero.
+    /// The lower stop of the joint, rad with the configured zero.
     stop: f64,
     /// 0: away from the stop. 1 and 2: back and forth slowly. 3 and 4: back and forth faster. 5: back to the stop.
     leg: usize,

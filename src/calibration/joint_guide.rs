@@ -15,7 +15,7 @@ pub(super) struct JointGuide {
     pub anchor: Vector3<f64>,
     /// Motion of the anchor in this cycle, rad.
     moved: Vector3<f64>,
-    /// Filtered joint angles by the configured zero, rad.
+    /// Filtered joint angles with the configured zero, rad.
     pub joints: Vector3<f64>,
     /// Filtered tensions, N.
     tensions: Vector4<f64>,

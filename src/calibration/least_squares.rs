@@ -25,7 +25,7 @@ impl<const N: usize> LeastSquares<N> {
 
     /// Returns a and the rms residual, or `None` if the samples do not determine a.
     pub fn solve(&self) -> Option<(SVector<f64, N>, f64)> {
-        // Scaled to a unit diagonal, so that one bound is valid for all units.
+        // The matrix is scaled to a unit diagonal, so that one bound is valid for all units.
         let scale = self.matrix.diagonal().map(|entry| if entry > 0.0 { entry.sqrt().recip() } else { 0.0 });
         let scaled =
             SMatrix::<f64, N, N>::from_fn(|row, column| self.matrix[(row, column)] * scale[row] * scale[column]);

@@ -3,7 +3,7 @@
 use super::instruments::Instruments;
 use nalgebra::{Vector3, Vector4};
 
-/// Largest tension, as a part of t_max.
+/// Largest tension, as a fraction of t_max.
 const HARDEST: f64 = 0.6;
 /// Rate of tension, N/s. A tendon that tightens at this rate turns its motor well above the quantisation of its
 /// encoder.
@@ -34,7 +34,7 @@ impl Pressing {
         let base = distribute(&holding);
         let common = base + instruments.pretension * ((hardest - base.max()) / instruments.pretension.max()).max(0.0);
         let press = |joint: usize| {
-            // Selects the largest torque in steps of 1 N cm. The tensions rise with the torque.
+            // The largest torque is selected in steps of 1 N cm. The tensions rise with the torque.
             let tensions = (0..100).map(|more| {
                 let mut torques = holding;
                 torques[joint] -= f64::from(more);

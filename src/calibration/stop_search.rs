@@ -26,7 +26,7 @@ impl StopSearch {
         Self { joint, range, start: None, still_at: f64::NAN, still: 0.0 }
     }
 
-    /// Moves the joint by one cycle. Returns the angle of the stop, rad by the configured zero, when the joint has
+    /// Moves the joint by one cycle. Returns the angle of the stop, rad with the configured zero, when the joint has
     /// reached it.
     pub fn step(
         &mut self,

@@ -1,9 +1,9 @@
 //! Determines the stiffness of every tendon from motor travel against tension.
 //!
-//! x_i = R_i^T theta + t_i / k_i + const for every tendon. Multiplication by the null vector n of R eliminates any
-//! motion of the joints: n . x = sum n_i t_i / k_i + const. This is one equation per sample with four unknown
-//! compliances. They can be separated if the four tensions vary independently. This needs joint torques, and so
-//! something that holds the finger.
+//! The motor travel of every tendon is x_i = R_i^T theta + t_i / k_i + const. Multiplication by the null vector n of R
+//! eliminates any motion of the joints: n . x = sum n_i t_i / k_i + const. This is one equation per sample with four
+//! unknown compliances. They can be separated if the four tensions vary independently. The tensions vary independently
+//! only with joint torques, so something must hold the finger.
 
 use super::instruments::Instruments;
 use super::least_squares::LeastSquares;
@@ -20,7 +20,8 @@ const STIFFEST: f64 = 1e5;
 pub(super) struct TendonStiffness {
     fit: LeastSquares<5>,
     null: Vector4<f64>,
-    /// Travel of the first sample, cm. Only differences are used, because large counts would lose digits.
+    /// Travel of the first sample, cm. The fit uses only differences from this travel, because large values would
+    /// lose digits.
     first: Option<Vector4<f64>>,
 }
 

@@ -113,7 +113,7 @@ pub(super) fn uncancelled<R, F: FnOnce() -> R>(call: F) -> R {
 #[inline(never)]
 #[allow(improper_ctypes_definitions, reason = "called from this file only")]
 unsafe extern "C" fn contained<R, F: FnOnce() -> R>(call: &mut ManuallyDrop<F>) -> R {
-    // SAFETY: by the contract of this function.
+    // SAFETY: the caller does not use `call` afterwards.
     let call = unsafe { ManuallyDrop::take(call) };
     call()
 }
@@ -154,7 +154,7 @@ mod tests {
     use std::thread;
 
     fn last_text() -> String {
-        // SAFETY: the text of this thread, which makes no refused call meanwhile.
+        // SAFETY: the text is that of this thread, which makes no refused call meanwhile.
         unsafe { CStr::from_ptr(text()) }.to_string_lossy().into_owned()
     }
 

@@ -92,7 +92,7 @@ pub extern "C" fn CloseHand() -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
     guarded("SendPos", || {
-        // SAFETY: by the contract in the manual, null or the array of the synopsis.
+        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
         let joints = unsafe { load::<f32, 3>(Pos, "Pos") }?;
         default_hand::command(|hand| hand.send_position(i, joints.map(f64::from)))
     })
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
 pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
     // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
     guarded("SendPos", || {
-        // SAFETY: by the contract in the manual, null or the array of the synopsis.
+        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
         let joints = unsafe { load::<f64, 3>(Pos, "Pos") }?;
         default_hand::command(|hand| hand.send_position(i, joints))
     })
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
     guarded("SendKx", || {
-        // SAFETY: by the contract in the manual, null or the array of the synopsis.
+        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
         let rows = unsafe { load_rows(Kx, "Kx") }?;
         default_hand::command(|hand| hand.send_stiffness(i, rows.map(|row| row.map(f64::from))))
     })
@@ -157,7 +157,7 @@ pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
 pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
     // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
     guarded("SendKx", || {
-        // SAFETY: by the contract in the manual, null or the array of the synopsis.
+        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
         let rows = unsafe { load_rows(Kx, "Kx") }?;
         default_hand::command(|hand| hand.send_stiffness(i, rows))
     })

@@ -61,7 +61,7 @@ pub struct FingerTip {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
     guarded("SendTip", || {
-        // SAFETY: by the contract in the manual, null or the array of the synopsis.
+        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
         let tip = unsafe { load::<f64, 3>(Tip, "Tip") }?;
         default_hand::command(|hand| hand.send_tip(i, tip))
     })
@@ -139,9 +139,9 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: *const f64) -> c_int {
     guarded("SendContact", || {
-        // Checked before D, which determines the size of K.
+        // K is checked before D, which determines the size of K.
         non_null(K, "K", Wanted::Matrix)?;
-        // SAFETY: here and below, by the contract in the manual, null or the array of the synopsis for this D.
+        // SAFETY: here and below, the manual requires that the pointer is null or the array of the synopsis for D.
         let normal = || unsafe { load::<f64, 3>(Normal, "Normal") }.map(Vector3::from);
         let contact = match D {
             1 => Contact::frictionless_point(unsafe { load::<f64, 1>(K, "K") }?[0], normal()?),
@@ -262,7 +262,7 @@ pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn PushFinger(i: c_int, Force: *const f64) -> c_int {
     guarded("PushFinger", || {
-        // SAFETY: by the contract in the manual, null or the array of the synopsis.
+        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
         let force = unsafe { load::<f64, 3>(Force, "Force") }?;
         default_hand::command(|hand| hand.push_simulated(i, force))
     })

@@ -13,7 +13,7 @@ static IN_CHILD: AtomicU8 = AtomicU8::new(0);
 /// ns; a comparison of process numbers takes 200 ns.
 static MARK: AtomicPtr<AtomicU8> = AtomicPtr::new((&raw const BEFORE_OPENING).cast_mut());
 
-/// Whether this process was forked from one that has called OpenHand.
+/// Whether this process was forked from a process that has called OpenHand.
 pub(super) fn is_forked_child() -> bool {
     // SAFETY: the atomic exists as long as the process, and nothing writes to it after it was published.
     let mark = unsafe { &*MARK.load(Ordering::Acquire) };
@@ -24,13 +24,13 @@ pub(super) fn is_forked_child() -> bool {
 /// pthread_atfork marks a child.
 pub(super) fn mark_this_process() {
     let protection = libc::PROT_READ | libc::PROT_WRITE;
-    // SAFETY: a new mapping of one byte, which the system rounds up to a page. A mark is never unmapped.
+    // SAFETY: the mapping is new. Its size is one byte, which the system rounds up to a page. A mark is never unmapped.
     let page =
         unsafe { libc::mmap(std::ptr::null_mut(), 1, protection, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS, -1, 0) };
     if page == libc::MAP_FAILED {
         return;
     }
-    // SAFETY: the page of the mapping.
+    // SAFETY: the address is that of the mapping.
     if unsafe { libc::madvise(page, 1, libc::MADV_WIPEONFORK) } != 0 {
         // SAFETY: nothing refers to the mapping.
         unsafe { libc::munmap(page, 1) };

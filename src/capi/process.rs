@@ -31,7 +31,7 @@ pub(super) fn watch(close: fn()) {
 /// standard error, and every message would be sent to the board.
 fn replace_closed_standard_descriptors() {
     loop {
-        // SAFETY: a constant path. The returned descriptor is closed here or stays open on purpose.
+        // SAFETY: the path is a constant C string. The returned descriptor is closed here or stays open on purpose.
         unsafe {
             let descriptor = libc::open(c"/dev/null".as_ptr(), libc::O_RDWR);
             if descriptor > libc::STDERR_FILENO {

@@ -18,8 +18,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(super) enum Refusal {
     #[error(
-        "this process was forked from one that has called OpenHand, and only that one has the servo threads: make the \
-         call there, or call exec first"
+        "this process was forked from the process that has called OpenHand, and only that process has the servo \
+         threads: make the call in that process, or call exec first"
     )]
     Forked,
     #[error("{name} is a null pointer: pass {wanted}")]
@@ -28,7 +28,7 @@ pub(super) enum Refusal {
     SmallStruct { name: &'static str, size: usize, least: usize },
     #[error("no hand is open: call OpenHand first, and check its result")]
     NoHand,
-    #[error("the hand is already open, and continues: call CloseHand before OpenHand")]
+    #[error("the hand is already open, and stays open: call CloseHand before OpenHand")]
     AlreadyOpen,
     #[error(
         "the process is exiting, and the library has closed the hand: make this call before exit is called or main \
@@ -38,7 +38,7 @@ pub(super) enum Refusal {
     #[error("another thread is opening or closing the hand: wait until its call has returned")]
     Busy,
     #[error(
-        "there is too little free memory for this call, and nothing was changed: free memory, or raise the memory \
+        "there is not enough free memory for this call, and nothing was changed: free memory, or raise the memory \
          limit of this process (ulimit -v), and call again"
     )]
     NoMemory,
@@ -51,9 +51,9 @@ pub(super) enum Refusal {
 /// What a pointer argument must point to.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Wanted {
-    /// An array of this many numbers.
+    /// An array with this number of elements.
     Array(usize),
-    /// A struct of this name in the header.
+    /// The struct with this name in the header.
     Struct(&'static str),
     Matrix,
     Text,
@@ -102,7 +102,7 @@ thread_local! {
     static TEXT: RefCell<Text> = const { RefCell::new(Text::EMPTY) };
 }
 
-/// More than the number of kinds of refusals.
+/// Upper bound of the number of kinds of refusals.
 const KINDS: usize = 64;
 
 static PRINT: AtomicBool = AtomicBool::new(true);
@@ -123,10 +123,10 @@ pub(super) fn refuse(name: &str, refusal: &Refusal) {
 }
 
 fn is_first_of_its_kind(kind: Kind) -> bool {
-    // Does not wait: in a forked child nothing releases a lock that another thread of the parent held.
+    // This must not wait: in a forked child, nothing releases a lock that another thread of the parent held.
     let Some(mut printed) = PRINTED.try_lock() else { return false };
     let first = !printed.contains(&kind);
-    // Without memory to store the kind, it is printed again next time.
+    // If there is no memory to store the kind, the next refusal of this kind is printed too.
     if first && printed.try_reserve(1).is_ok() {
         printed.push(kind);
     }
@@ -136,7 +136,7 @@ fn is_first_of_its_kind(kind: Kind) -> bool {
 /// Sets whether refusals are printed, as configured for the hand that is being opened.
 pub(super) fn set_printing(on: bool) {
     PRINT.store(on, Ordering::Relaxed);
-    // Reserved here so that no refusal allocates.
+    // The memory is reserved here, so that no refusal allocates.
     PRINTED.lock().reserve(KINDS);
 }
 

@@ -79,7 +79,7 @@ pub struct State {
     stillness: Stillness,
     /// Commanded pulls at the tendons, N.
     pulls: Vector4<f64>,
-    /// The pulls that act until the next sample, N. They are those that the previous cycle commanded.
+    /// The pulls that act until the next sample, N. The previous cycle commanded them.
     acting: Vector4<f64>,
     /// The part of `pulls` that is friction feed-forward, N.
     against_friction: Vector4<f64>,

@@ -20,7 +20,7 @@ const LOOKING: Duration = Duration::from_millis(5);
 pub enum UpdateError<E> {
     /// The system reported an error, or another process did not release the file.
     File(io::Error),
-    /// The change was refused.
+    /// The change was refused. The function that changes the text returned this error.
     Change(E),
 }
 
@@ -34,16 +34,16 @@ impl<E> From<io::Error> for UpdateError<E> {
 /// unchanged.
 ///
 /// Updates of a file by several threads and processes exclude each other: each waits for the others, at most 30
-/// seconds. If a program without the lock, such as an editor, changes the file meanwhile, `change` is called again with
-/// the new text. Only a change in the last moment before the replacement is not detected. The file is replaced as by
-/// [`replace_file`](super::replace_file). A symbolic link is kept, and its target is replaced. The lock belongs to the
-/// open file, so it ends with its process.
+/// seconds. If a program that does not use the lock, such as an editor, changes the file meanwhile, `change` is called
+/// again with the new text. Only a change between the last check and the replacement is not detected. The file is
+/// replaced as by [`replace_file`](super::replace_file). A symbolic link is kept, and its target is replaced. The lock
+/// belongs to the open file, so the system releases it when the process ends.
 ///
 /// # Errors
 /// - the error that the system reports
 /// - [`io::ErrorKind::InvalidInput`] if the path does not lead to a regular file
 /// - [`io::ErrorKind::FileTooLarge`] if the file has more than `largest` bytes
-/// - [`io::ErrorKind::ResourceBusy`] if others do not release the file in time
+/// - [`io::ErrorKind::ResourceBusy`] if other threads or processes do not release the file in time
 /// - the error of `change`
 pub fn update_file<E>(
     path: &Path,
@@ -69,7 +69,7 @@ pub fn update_file<E>(
             }
         }
         if Instant::now() > deadline {
-            return Err(busy("another program keeps changing it: end that program and try again").into());
+            return Err(busy("another program keeps changing the file: end that program and try again").into());
         }
     }
 }
@@ -86,7 +86,7 @@ impl Locked {
                 Err(TryLockError::WouldBlock) => {
                     let seconds = PATIENCE.as_secs();
                     return Err(busy(&format!(
-                        "another process has kept it locked for {seconds} s: end that process (fuser names it)"
+                        "another process, which fuser shows, has kept the file locked for {seconds} s: end that process"
                     )));
                 }
                 Err(TryLockError::Error(error)) => return Err(unlockable(error)),

@@ -1,5 +1,5 @@
-//! The recording of a finger's last two seconds, which runs all the time. The servo writes one record per cycle into a
-//! ring. The thread that collects the reports keeps the newest records.
+//! The continuous recording of a finger. It holds the last two seconds. The servo writes one record per cycle into a
+//! ring. The thread that collects from the servos keeps the newest records.
 //!
 //! A replay needs the state of the controller before the first record. The servo therefore writes a copy of the state,
 //! a keyframe, every few cycles, and the kept records begin at a keyframe. Two alternatives were rejected: the state in
@@ -18,7 +18,7 @@ use std::collections::{BTreeSet, VecDeque};
 /// Length of the recording, s.
 const KEPT: f64 = 2.0;
 
-/// Capacity of the rings, s: how long nobody may collect before records are lost.
+/// Capacity of the rings, s. If nothing is collected for longer than this, records are lost.
 const UNCOLLECTED: f64 = 0.5;
 
 /// Keyframes per second.
@@ -49,15 +49,16 @@ pub struct BlackBox {
     finger: i32,
     hand: ConfiguredHand,
     controllers: Vec<ControllerSource>,
-    /// The number of a controller that a calibration will compute with. It is kept although no record names it yet.
+    /// Number of the controller that the servo will use when a calibration takes over. The source of this controller is
+    /// kept although no record names the controller yet.
     awaited: Option<u32>,
     /// Whether a fault arrived that [`BlackBox::faulted`] has not reported yet.
     faulted: bool,
 }
 
 impl BlackBox {
-    /// Both ends of an empty black box for the finger with this number. `configuration` describes its first
-    /// controller.
+    /// Returns both ends of an empty black box for the finger with this number. `configuration` describes the first
+    /// controller of the finger.
     pub fn new(configuration: &Configuration, number: FingerNumber) -> (Recorder, Self) {
         let (hand, finger) = (&configuration.hand, configuration.fingers[number.index()].clone());
         let cycles = |seconds: f64| (seconds * hand.rate).ceil() as usize;
@@ -68,7 +69,7 @@ impl BlackBox {
         let black_box = Self {
             arriving,
             keyframes_arriving,
-            // The capacity is never exceeded, so that the collector does not allocate.
+            // These capacities are never exceeded, so the collector does not allocate.
             records: VecDeque::with_capacity(cycles(KEPT + UNCOLLECTED + 2.0 / KEYFRAMES)),
             keyframes: VecDeque::with_capacity(cycles(KEPT + UNCOLLECTED).div_ceil(apart) + 4),
             length: cycles(KEPT) as u64,
@@ -86,10 +87,10 @@ impl BlackBox {
         self.controllers.last().map_or(0, |last| last.number + 1)
     }
 
-    /// Stores what the next controller is made from. It must be called before a record that names this controller is
-    /// collected. `taken` is the number of the controller that the servo had taken
-    /// ([`FingerReport::controller`](crate::finger::FingerReport::controller)) before the records were collected. Older
-    /// controllers that no record names are removed, because a newer one replaced them before they were used.
+    /// Stores the source of the next controller. The caller must do this before it collects a record that names the
+    /// controller. `taken` is [`FingerReport::controller`](crate::finger::FingerReport::controller), read before the
+    /// last [`BlackBox::collect`]. Older controllers that no record names are removed, because a newer controller
+    /// replaced them before the servo used them.
     pub fn announce(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
         let controls = self.records.iter().filter_map(|record| record.control.as_ref());
         let named: BTreeSet<u32> = controls.flat_map(|control| [control.controller, control.previous]).collect();
@@ -100,8 +101,8 @@ impl BlackBox {
         self.controllers.push(ControllerSource { number, gravity, finger });
     }
 
-    /// Like [`BlackBox::announce`], for a controller that a calibration will compute with when it takes over. Other
-    /// controllers may be announced before that.
+    /// Like [`BlackBox::announce`], for the controller that the servo will use when a calibration takes over. Other
+    /// controllers may be announced before the calibration takes over.
     pub fn announce_calibration(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
         self.awaited = None;
         self.announce(finger, gravity, taken);
@@ -112,8 +113,8 @@ impl BlackBox {
     pub fn collect(&mut self) {
         while let Some(record) = self.arriving.pop() {
             self.faulted |= matches!(record.stage, Stage::Faulted(_));
-            // There is a gap, because nobody collected for too long or the finger was faulted. A replay cannot cross
-            // it.
+            // There is a gap, because nothing was collected for too long or the finger was faulted. A replay cannot
+            // cross a gap.
             if self.records.back().is_some_and(|last| last.cycle + 1 != record.cycle) {
                 self.records.clear();
             }
@@ -154,7 +155,8 @@ impl BlackBox {
         std::mem::take(&mut self.faulted)
     }
 
-    /// The record of a cycle, or the newest one; none if it is not kept.
+    /// Returns the record of `cycle`, or the newest record if `cycle` is `None`. Returns `None` if there is no such
+    /// record.
     pub fn record(&self, cycle: Option<u64>) -> Option<KeptRecord> {
         let (oldest, newest) = (self.records.front()?.cycle, self.records.back()?.cycle);
         // The kept records have no gaps.
@@ -173,7 +175,7 @@ impl BlackBox {
 }
 
 impl Recorder {
-    /// Writes a keyframe if one is due, or if the records begin with this cycle.
+    /// Writes a keyframe if one is due, or if `begin` is true. `begin` means that the records begin with this cycle.
     pub fn keyframe(&mut self, cycle: u64, state: &State, begin: bool) {
         if begin || cycle.is_multiple_of(self.apart) {
             // If nobody collects, the keyframe is lost, like the records.

@@ -10,7 +10,7 @@ use crate::realtime::{Consumer, Producer, ring};
 pub struct ReleasedLink<T> {
     /// The link.
     pub link: Link<T>,
-    /// Whether its port has failed, so that the link can only be closed.
+    /// Whether its port has failed, so the link can only be closed.
     pub failed: bool,
 }
 

@@ -17,7 +17,7 @@ pub struct Losses {
     pub duplicate_replies: u64,
     /// Byte sequences on the finger's port that were no valid frame.
     pub damaged_frames: u64,
-    /// Valid frames on the finger's port that nobody waited for.
+    /// Valid frames on the finger's port that no finger waited for.
     pub foreign_frames: u64,
 }
 

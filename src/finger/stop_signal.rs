@@ -4,8 +4,8 @@ use crate::finger::FaultKind;
 use crate::realtime::{LockedMemory, Pages, SharedPages};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Number of emergency stop calls in this process. It is a counter, so that a finger that has recovered from one call
-/// stops at the next.
+/// Number of emergency stop calls in this process. It is a counter and not a flag, so that a finger that has recovered
+/// from one call stops at the next.
 static CALLS: AtomicU32 = AtomicU32::new(0);
 
 /// Emergency stop: every finger of every open hand in this process faults at the beginning of its next cycle. A finger
@@ -16,7 +16,7 @@ pub fn stop_all() {
     CALLS.fetch_add(1, Ordering::SeqCst);
 }
 
-/// Number of emergency stop calls so far. A finger that starts now stops at later calls.
+/// Number of emergency stop calls so far. A finger that starts with this number stops at the next call.
 pub fn stop_calls() -> u32 {
     CALLS.load(Ordering::SeqCst)
 }
@@ -51,8 +51,8 @@ impl StopSignal {
         (faults != self.faults_seen).then_some(FaultKind::Companion)
     }
 
-    /// Signals a fault of this finger to the others. Faults that came from these signals are not passed on, because the
-    /// other fingers receive the same signals.
+    /// Signals a fault of this finger to the others. A fault that a stop signal has caused is not passed on, because
+    /// the other fingers receive the same stop signal.
     pub(super) fn raise(&self, kind: FaultKind) {
         if let Some(faults) = &self.together
             && !matches!(kind, FaultKind::EmergencyStopCall | FaultKind::Companion)

@@ -153,7 +153,7 @@ impl Dispatcher {
         self.announce(finger, configuration, adjustable, give, BlackBox::announce)
     }
 
-    /// Like [`Dispatcher::hand_over`], for the data that a calibration computes with when it takes over.
+    /// Like [`Dispatcher::hand_over`], for the data that the servo will use when a calibration takes over.
     pub fn hand_over_calibration<T>(
         &self,
         finger: FingerNumber,

@@ -87,10 +87,10 @@ pub enum HandError {
         /// The bytes of the number in hexadecimal.
         number: String,
     },
-    /// The system refuses the thread or the pseudo-terminal of a simulated board.
+    /// The system cannot start the thread or open the pseudo-terminal of a simulated board.
     #[error("cannot start the simulated board on a pseudo-terminal: {}", with_terminal_remedy(.0))]
     SimulatedPort(std::io::Error),
-    /// The system refuses a thread, or to let this process wait.
+    /// The system does not start a thread, or does not let this process wait.
     #[error("cannot {doing}: {}", with_remedy(source))]
     System {
         /// The refused operation.

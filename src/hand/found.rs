@@ -1,5 +1,5 @@
-//! Results for one finger: keys of the configuration with their values, and the configuration that they were found
-//! with.
+//! Results of calibrations, or of the search for a bound of Kx, for one finger. They are keys of the configuration with
+//! the values that were found, and the part of the configuration on which these values depend.
 
 use crate::calibration::Findings;
 use crate::model::FingerNumber;
@@ -7,8 +7,8 @@ use crate::model::configuration::Configuration;
 use std::collections::BTreeMap;
 use toml_edit::Item;
 
-/// The keys that signs, zeros, friction and stiffness depend on, besides the finger itself: where it is connected, and
-/// what converts counts and torques to angles and forces.
+/// The keys that signs, zeros, friction and stiffness depend on. They say where the finger is connected, and how counts
+/// and torques are converted to angles and forces.
 const HELD_BY_CALIBRATION: &[&str] = &[
     "port",
     "address",
@@ -21,11 +21,11 @@ const HELD_BY_CALIBRATION: &[&str] = &[
 /// The keys that a bound of Kx depends on.
 const HELD_BY_BOUND: &[&str] = &[RATE, "geometry", "motor", "tendon", "joints", "links", "friction", "controller"];
 
-/// The only one of these keys that is not in the finger's table.
+/// The only key in these lists that is not in the finger's table.
 const RATE: &str = "hand.rate";
 
-/// The results of one run, or of several calibrations in a row, for one finger. Only these keys are written when it is
-/// stored.
+/// The results of one run, or of several calibrations in a row, for one finger. When they are stored, only the keys
+/// in `values` are written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// Number of the finger, 1 to 3.
@@ -33,7 +33,7 @@ pub struct Found {
     values: Vec<FoundValue>,
     /// Keys and tables of keys that the values depend on.
     held_by: &'static [&'static str],
-    /// The values of these keys when the results were found.
+    /// The values of the keys in `held_by` when the results were found.
     holds_for: BTreeMap<String, String>,
 }
 
@@ -59,7 +59,7 @@ pub(super) enum Numbers {
 }
 
 impl Found {
-    /// The results of a calibration. `configuration` is the one that is in force with them.
+    /// The results of a calibration. `configuration` is the configuration with these results in it.
     pub fn by_calibration(findings: &Findings, finger: FingerNumber, configuration: &Configuration) -> Self {
         let of = &configuration.fingers[finger.index()];
         let values = match findings {
@@ -72,8 +72,8 @@ impl Found {
                 value("encoder", "zero", whole(zeros.encoder)),
                 value("gauge", "zero", Numbers::Real(zeros.gauge.into())),
             ],
-            // The gains were found relative to the previous ones, and the tolerance is not measured. Both are taken
-            // from the configuration.
+            // The gauge gains were found relative to the previous ones, and the tolerance is not measured. Both are
+            // taken from the configuration.
             Findings::Identified(found) => vec![
                 value("gauge", "newton_per_count", Numbers::Real(of.gauge.newton_per_count.into())),
                 value("tendon", "stiffness", Numbers::Real(found.tendon_stiffness.as_slice().into())),
@@ -138,7 +138,7 @@ impl Found {
     }
 }
 
-/// A key that results depend on, with another value.
+/// A key that results depend on, and that no longer has the value with which they were found.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Misfit {
     /// The key with its table.
@@ -149,7 +149,7 @@ pub(super) struct Misfit {
     pub is: String,
 }
 
-/// The magnitudes of some numbers, with other signs.
+/// The magnitudes of `sizes` with the signs in `signs`.
 pub(super) fn with_signs(sizes: &[f64], signs: [i8; 4]) -> Vec<f64> {
     sizes.iter().zip(signs).map(|(size, sign)| size.abs() * f64::from(sign)).collect()
 }
@@ -165,7 +165,7 @@ fn whole<T: Into<i64>>(values: [T; 4]) -> Numbers {
 /// The values of some keys, as text. A table stands for all of its keys. A key that is not set is left out.
 fn excerpt(configuration: &Configuration, finger: FingerNumber, keys: &[&str]) -> BTreeMap<String, String> {
     let mut leaves = BTreeMap::new();
-    // Every configuration can be serialised, because it was or could have been read from such a text.
+    // Every configuration can be serialised, because it was read from a TOML text or could have been read from one.
     let finger = toml_edit::ser::to_document(&configuration.fingers[finger.index()]).unwrap_or_default();
     for &key in keys {
         if key == RATE {

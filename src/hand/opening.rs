@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 /// Simulated boards run below the priority of every servo, because they represent devices outside of the machine.
 const SIMULATED_BOARD_PRIORITY: u8 = 20;
 
-/// Capacity of the timing rings, s: how long nobody may collect before timings are lost.
+/// Capacity of the timing rings, s. If nothing is collected for longer than this, timings are lost.
 const UNCOLLECTED: f64 = 0.8;
 
 /// A finger after the handshake. Its servo side is in a [`ServedPort`].
@@ -73,7 +73,8 @@ pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration>
 pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<PathBuf>, UnusableConfiguration> {
     match &configuration.hand.black_box {
         Some(folder) if !Path::new(folder).is_dir() => {
-            let reason = format!("{} is no folder: make it (mkdir -p), or name another", Shown(folder));
+            let reason =
+                format!("{} is not a folder: create it (mkdir -p), or configure another folder", Shown(folder));
             Err(UnusableConfiguration { finger: None, unusable: Unusable { key: "black_box", reason } })
         }
         folder => Ok(folder.as_ref().map(|folder| from_here(folder.into()))),

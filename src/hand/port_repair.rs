@@ -61,7 +61,7 @@ impl PortRepair {
         self.released
     }
 
-    /// Whether the servo has ended, so that it does not take a link back.
+    /// Whether the servo has ended, so it does not take a link back.
     pub fn servo_ended(&self) -> bool {
         self.handover.released.is_abandoned()
     }

@@ -28,7 +28,7 @@ const STALL_LIMIT: Duration = Duration::from_secs(5);
 /// need the hand.
 #[must_use = "a recovery does nothing before `reconnect` is called"]
 pub struct Recovering {
-    /// None if the finger is not faulted, so that there is nothing to do.
+    /// None if the finger is not faulted, so there is nothing to do.
     task: Option<Task>,
     begun: Instant,
 }
@@ -40,7 +40,7 @@ struct Task {
     recoveries: u32,
     /// Every finger of the port, with its number of recoveries at the beginning.
     fingers: Vec<(FingerNumber, u32)>,
-    /// One of these fingers that was not faulted at the beginning.
+    /// A finger of `fingers` that was not faulted at the beginning.
     running: Option<FingerNumber>,
     stop_calls: u32,
 }
@@ -54,7 +54,7 @@ impl Recovering {
     pub fn begin(hand: &Hand, finger: i32) -> Result<Self, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let begun = Instant::now();
-        // Emergency stops from here on stop the recovered finger.
+        // An emergency stop call after this point stops the recovered finger.
         let stop_calls = stop_calls();
         let port = hand.recovery.ports.iter().find(|port| port.fingers.contains(&finger));
         let report = hand.dispatcher.last_report(finger)?;
@@ -93,8 +93,8 @@ impl Recovering {
                 }
                 if repair.take_link() {
                     let configured = repair.restore()?;
-                    // Counted before the servo gets the link, so that no finger has more recoveries than its port has
-                    // repairs.
+                    // The repair is counted before the servo gets the link, so that no finger has more recoveries than
+                    // its port has repairs.
                     port.repairs.fetch_add(1, Ordering::Release);
                     repair.give_back(configured, stop_calls);
                     return Ok(());

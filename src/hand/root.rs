@@ -185,7 +185,7 @@ impl Hand {
     }
 
     /// Requests the end state of every finger, and waits for the time that this takes. It takes no lock and frees
-    /// nothing, so that it can be called when the process is about to end, even in a signal handler. The hand cannot be
+    /// nothing, so it can be called when the process is about to end, even in a signal handler. The hand cannot be
     /// used afterwards.
     pub fn end(&self) {
         let members = self.dispatcher.members();

@@ -36,7 +36,7 @@ pub(super) struct RealtimeState {
 /// even if this fails. After a failure, no thread has begun its first cycle.
 ///
 /// # Errors
-/// The system refuses a thread, or real time is enforced but not permitted.
+/// The system cannot start a thread, or real time is enforced but not permitted.
 pub(super) fn start(
     configuration: &Configuration,
     lines: Vec<Line>,

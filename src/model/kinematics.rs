@@ -25,7 +25,7 @@ impl Links {
         self.jacobian_turned(theta[0].sin_cos(), theta)
     }
 
-    /// Returns [`Links::jacobian`] from the sine and cosine of joint 0, which the caller needs too.
+    /// Returns [`Links::jacobian`]. The sine and cosine of joint 0 come from the caller, which needs them too.
     fn jacobian_turned(&self, (s0, c0): (f64, f64), theta: &Vector3<f64>) -> Matrix3<f64> {
         let [l0, l1, l2] = self.0;
         let (s1, c1) = theta[1].sin_cos();
@@ -49,7 +49,7 @@ impl Links {
 
     /// Returns the rotation of the last link in the finger's frame. The link's own z axis points from joint 2 to the
     /// tip. Joint 0 turns about y. Joints 1 and 2 turn about the x axis as rotated by joint 0. The result is a
-    /// quaternion, because the angle of a small rotation is lost in the trace of a matrix.
+    /// quaternion and not a matrix, because rounding hides the angle of a small rotation in the trace of a matrix.
     pub fn tip_rotation(&self, theta: &Vector3<f64>) -> UnitQuaternion<f64> {
         UnitQuaternion::from_axis_angle(&Vector3::y_axis(), theta[0])
             * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), theta[1] + theta[2])

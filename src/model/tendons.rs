@@ -28,7 +28,7 @@ pub struct Tendons {
     /// Q = R^-1 of eq. 17, for R with its ghost row. Rows are tendons. The first three columns belong to joint torques
     /// (1/cm), and the last to the ghost joint.
     pub q: Matrix4<f64>,
-    /// Equivalent shaft radius of each motor, cm: t = m_tau / radius, so that M = diag(1 / radius) (eq. 21).
+    /// Equivalent shaft radius of each motor, cm: t = m_tau / radius, so M = diag(1 / radius) (eq. 21).
     pub radius: Vector4<f64>,
 }
 

@@ -28,7 +28,7 @@ impl DeferredCancellation {
     #[inline(always)]
     pub fn begin() -> Self {
         let mut before = DEFERRED;
-        // SAFETY: a valid type, and a place for the previous one.
+        // SAFETY: the type is valid, and there is room for the previous one.
         unsafe { pthread_setcanceltype(DEFERRED, &mut before) };
         Self(before)
     }
@@ -38,7 +38,7 @@ impl DeferredCancellation {
     pub fn end(self) {
         if self.0 != DEFERRED {
             let mut before = DEFERRED;
-            // SAFETY: the thread's previous type, and a place for the current one.
+            // SAFETY: the type is the thread's previous one, and there is room for the current one.
             unsafe { pthread_setcanceltype(self.0, &mut before) };
         }
     }
@@ -51,7 +51,7 @@ impl NoCancellation {
     /// Disables cancellation.
     pub fn begin() -> Self {
         let mut before = DISABLE;
-        // SAFETY: a valid state, and a place for the previous one.
+        // SAFETY: the state is valid, and there is room for the previous one.
         unsafe { pthread_setcancelstate(DISABLE, &mut before) };
         Self(before)
     }
@@ -60,8 +60,9 @@ impl NoCancellation {
 impl Drop for NoCancellation {
     fn drop(&mut self) {
         let mut before = DISABLE;
-        // SAFETY: the thread's previous state, and a place for the current one. A pending cancellation takes effect
-        // later: every user of this type either has cancellation deferred, or runs in a thread that nobody cancels.
+        // SAFETY: the state is the thread's previous one, and there is room for the current one. A pending cancellation
+        // takes effect later: every user of this type either has cancellation deferred, or runs in a thread that nobody
+        // cancels.
         unsafe { pthread_setcancelstate(self.0, &mut before) };
     }
 }

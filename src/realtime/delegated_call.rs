@@ -1,6 +1,6 @@
-//! Work that a thread of this library does on behalf of a planner's thread, which waits for it. Signal handlers of the
-//! planner run on the waiting thread. A handler may leave the wait by siglongjmp: the wait is on a futex word and holds
-//! no lock.
+//! Work that a thread of this library does on behalf of a planner's thread. The planner's thread waits for the result.
+//! Signal handlers of the planner run on the waiting thread. A handler may leave the wait by siglongjmp: the wait is on
+//! a futex word and holds no lock.
 #![allow(unsafe_code, reason = "the futex system call")]
 
 use super::cancellation::NoCancellation;
@@ -33,10 +33,10 @@ thread_local! {
 }
 
 impl<T: Send + 'static> DelegatedCall<T> {
-    /// Starts a thread that does `work`, which must not panic.
+    /// Starts a thread that runs `work`, which must not panic.
     ///
     /// # Errors
-    /// The system refuses a thread.
+    /// The system cannot start a thread.
     pub fn begin(_blocked: &SignalsBlocked, work: impl FnOnce() -> T + Send + 'static) -> io::Result<Self> {
         // A worker that is still here is not joined: it ends by itself.
         drop(take_worker());

@@ -59,7 +59,7 @@ mod processor {
     #[inline(always)]
     pub fn read() -> u32 {
         let mut register = 0u32;
-        // SAFETY: stores the register in a local variable.
+        // SAFETY: the instruction stores the register in a local variable.
         unsafe { asm!("stmxcsr [{}]", in(reg) &mut register, options(nostack, preserves_flags)) };
         register
     }
@@ -230,10 +230,10 @@ mod tests {
     fn a_thread_can_use_the_default_environment_for_good() {
         let nearest = third();
         let inherited = std::thread::spawn(move || {
-            // SAFETY: a C function without pointers.
+            // SAFETY: the C function takes no pointer.
             unsafe { fesetround(UPWARD) };
             use_default_environment();
-            // SAFETY: a C function without pointers.
+            // SAFETY: the C function takes no pointer.
             (third(), unsafe { fegetround() })
         });
         assert_eq!(inherited.join().expect("no panic"), (nearest, 0));

@@ -1,5 +1,5 @@
 //! The end of a process whose planner has no thread left. A process ends with its last thread. The library's threads
-//! serve the planner's and must not keep the process alive: they block every signal, so that only SIGKILL could end it.
+//! serve the planner's and must not keep the process alive: they block every signal, so only SIGKILL could end it.
 
 use super::clock::now;
 use super::threads::{own_threads, spawn_alike};

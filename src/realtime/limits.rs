@@ -11,7 +11,7 @@ const DEADLINE: c_int = 6;
 /// The remedy for an error of a call that creates a thread, a descriptor or a pseudo-terminal; none if neither a limit
 /// nor a sandbox is the cause.
 pub fn remedy(error: &io::Error) -> Option<&'static str> {
-    // SAFETY: no pointers. 0 is the calling thread, to which the call was refused.
+    // SAFETY: the call takes no pointer. 0 is the calling thread, to which the call was refused.
     remedy_under(unsafe { libc::sched_getscheduler(0) }, error)
 }
 
@@ -42,7 +42,7 @@ fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
              which one), or run the program outside",
         ),
         libc::ENOMEM => {
-            Some("there is too little free memory: end other programs, or raise the limit of this process (ulimit -v)")
+            Some("there is not enough free memory: end other programs, or raise the limit of this process (ulimit -v)")
         }
         libc::ENOSPC => Some(
             "no pseudo-terminal is free: end programs that hold one, such as terminal windows, or raise kernel.pty.max \

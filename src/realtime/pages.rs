@@ -153,7 +153,7 @@ impl Mapping {
         assert!(layout.align() <= page_size(), "a page is aligned to its size");
         let protection = libc::PROT_READ | libc::PROT_WRITE;
         let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_POPULATE;
-        // SAFETY: a new mapping at an address that the system chooses.
+        // SAFETY: the mapping is new, and the system chooses its address.
         let start = unsafe { libc::mmap(std::ptr::null_mut(), bytes, protection, kind, -1, 0) };
         match NonNull::new(start.cast()).filter(|_| start != libc::MAP_FAILED) {
             Some(start) => Self { start, bytes },
@@ -164,13 +164,13 @@ impl Mapping {
 
 impl Drop for Mapping {
     fn drop(&mut self) {
-        // SAFETY: this mapping, which nothing refers to any more.
+        // SAFETY: nothing refers to this mapping any more.
         unsafe { libc::munmap(self.start.as_ptr().cast(), self.bytes) };
     }
 }
 
 fn page_size() -> usize {
-    // SAFETY: no pointers. Every system has a page size.
+    // SAFETY: the call takes no pointer. Every system has a page size.
     usize::try_from(unsafe { libc::sysconf(libc::_SC_PAGESIZE) }).unwrap_or(4096)
 }
 

@@ -41,7 +41,7 @@ impl SignalsBlocked {
     pub fn faults_let_in<T>(&self, read: impl FnOnce() -> T) -> T {
         let mut let_in = set_of(&[]);
         for signal in FAULTS {
-            // SAFETY: two valid sets and a valid signal.
+            // SAFETY: both sets and the signal are valid.
             unsafe {
                 if libc::sigismember(&self.0, signal) == 0 {
                     libc::sigaddset(&mut let_in, signal);
@@ -53,8 +53,8 @@ impl SignalsBlocked {
 
     fn set(signals: &libc::sigset_t) -> Self {
         let mut before = MaybeUninit::uninit();
-        // SAFETY: a valid set, and a place for the previous mask. With valid arguments the call cannot fail, so the
-        // mask is written.
+        // SAFETY: the set is valid, and there is room for the previous mask. With valid arguments the call cannot fail,
+        // so the mask is written.
         Self(unsafe {
             libc::pthread_sigmask(libc::SIG_BLOCK, signals, before.as_mut_ptr());
             before.assume_init()
@@ -64,7 +64,7 @@ impl SignalsBlocked {
 
 impl Drop for SignalsBlocked {
     fn drop(&mut self) {
-        // SAFETY: the thread's previous mask.
+        // SAFETY: the set is the thread's previous mask.
         unsafe { libc::pthread_sigmask(libc::SIG_SETMASK, &self.0, std::ptr::null_mut()) };
     }
 }
@@ -72,10 +72,10 @@ impl Drop for SignalsBlocked {
 /// Runs `work` with a changed signal mask, and restores the mask after it.
 fn under<T>(change: c_int, signals: &libc::sigset_t, work: impl FnOnce() -> T) -> T {
     let mut before = MaybeUninit::uninit();
-    // SAFETY: a valid set, and a place for the current mask.
+    // SAFETY: the set is valid, and there is room for the current mask.
     unsafe { libc::pthread_sigmask(change, signals, before.as_mut_ptr()) };
     let result = work();
-    // SAFETY: initialised above.
+    // SAFETY: the first call has initialised the mask.
     unsafe { libc::pthread_sigmask(libc::SIG_SETMASK, before.as_ptr(), std::ptr::null_mut()) };
     result
 }
@@ -90,7 +90,7 @@ pub fn is_pending(signal: c_int) -> bool {
 /// Removes a pending signal, which the calling thread must have blocked.
 pub fn take_back(signal: c_int) {
     let at_once = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: a valid set and a valid time. Null means that no information about the signal is returned.
+    // SAFETY: the set and the time are valid. Null means that no information about the signal is returned.
     let taken = || unsafe { libc::sigtimedwait(&set_of(&[signal]), std::ptr::null_mut(), &at_once) };
     while taken() < 0 && std::io::Error::last_os_error().kind() == std::io::ErrorKind::Interrupted {}
 }

@@ -11,11 +11,11 @@ use std::mem::MaybeUninit;
 use std::thread::{Builder, JoinHandle};
 
 /// Stack of a servo thread. It is many times what a servo cycle uses, but small, so that a planner that locks all of
-/// its memory (mlockall) locks little for this library. The part that the C library takes from the stack is added to
-/// it.
+/// its memory (mlockall) locks little for this library. The bytes that the C library takes from the stack are added to
+/// this size.
 const STACK_BYTES: usize = 256 * 1024;
 
-/// Stack of a thread that does a planner's call. Opening a hand needs 290 KiB.
+/// Stack of a thread that runs a call on behalf of the planner's thread. Opening a hand needs 290 KiB.
 const CALL_STACK_BYTES: usize = 512 * 1024;
 
 /// Thread numbers of the running threads that this library has started.
@@ -30,23 +30,23 @@ pub struct Priority {
     pub core: Option<usize>,
 }
 
-/// The parts of a [`Priority`] and of locked memory that the system refused to a thread, with the reasons.
+/// What the system refused to a thread (parts of its [`Priority`], or locked memory), with the reasons.
 #[derive(Debug, Default)]
 pub struct RealtimeRefusals {
     /// Why the thread is not real-time although that was requested.
     pub scheduling: Option<io::Error>,
     /// Why the thread is not bound to its core although that was requested.
     pub core: Option<io::Error>,
-    /// Why its memory is not locked although that was requested.
+    /// Why the thread's memory is not locked although that was requested.
     pub memory: Option<io::Error>,
 }
 
-/// Starts a thread with all signals blocked and with the default floating-point environment. The thread receives no
-/// signal of the planner's, neither one that is sent to the process nor one that its own system calls raise. `body`
-/// runs after the priority is set, and gets what the system refused.
+/// Starts a thread with all signals blocked and with the default floating-point environment. Signals that are sent to
+/// the process, and signals that the thread's own system calls raise, do not run the planner's handlers in this thread.
+/// `body` runs after the priority is set. Its argument contains what the system refused.
 ///
 /// # Errors
-/// The system refuses a thread.
+/// The system cannot start a thread.
 pub fn spawn<T: Send + 'static>(
     name: &str,
     priority: Priority,
@@ -55,7 +55,8 @@ pub fn spawn<T: Send + 'static>(
     start(name, STACK_BYTES, move || body(apply(priority)))
 }
 
-/// Starts such a thread with the scheduling of the calling thread, because it works in that thread's place.
+/// Like [`spawn`], but the new thread has the scheduling of the calling thread, because it works on behalf of that
+/// thread.
 pub(super) fn spawn_alike<T: Send + 'static>(
     name: &str,
     body: impl FnOnce() -> T + Send + 'static,
@@ -68,7 +69,7 @@ fn start<T: Send + 'static>(
     stack: usize,
     body: impl FnOnce() -> T + Send + 'static,
 ) -> io::Result<JoinHandle<T>> {
-    // The new thread inherits the mask.
+    // The new thread inherits this signal mask.
     let _blocked = SignalsBlocked::all();
     let stack = stack + taken_by_the_c_library();
     Builder::new().name(name.into()).stack_size(stack).spawn(|| {
@@ -88,7 +89,7 @@ struct OwnThread(libc::pid_t);
 
 impl OwnThread {
     fn begin() -> Self {
-        // SAFETY: no arguments. `gettid` is not used, because old C libraries do not have it.
+        // SAFETY: the system call takes no arguments. `gettid` is not used, because old C libraries do not have it.
         let number = unsafe { libc::syscall(libc::SYS_gettid) } as libc::pid_t;
         OWN.lock().push(number);
         Self(number)
@@ -101,8 +102,8 @@ impl Drop for OwnThread {
     }
 }
 
-/// The locked stack of a thread. The thread drops it before it ends, because the C library reuses the stacks of ended
-/// threads for others.
+/// The locked stack of a thread. The thread must drop this value before it ends, because the C library gives the stacks
+/// of ended threads to new threads.
 #[derive(Debug)]
 pub struct LockedStack {
     lowest: *mut libc::c_void,
@@ -117,7 +118,8 @@ impl LockedStack {
     pub fn lock() -> io::Result<Self> {
         let mut attributes = MaybeUninit::uninit();
         let (mut lowest, mut bytes) = (std::ptr::null_mut(), 0);
-        // SAFETY: the calling thread. The attributes are initialised before they are read, and destroyed once.
+        // SAFETY: the handle is that of the calling thread. The attributes are initialised before they are read, and
+        // destroyed once.
         unsafe {
             match libc::pthread_getattr_np(libc::pthread_self(), attributes.as_mut_ptr()) {
                 0 => {}
@@ -126,7 +128,7 @@ impl LockedStack {
             libc::pthread_attr_getstack(attributes.as_ptr(), &mut lowest, &mut bytes);
             libc::pthread_attr_destroy(attributes.as_mut_ptr());
         }
-        // Created before mlock, so that it unlocks what a failed mlock may have locked.
+        // This value exists before mlock is called, so that it also unlocks what a failed mlock may have locked.
         let locked = Self { lowest, bytes };
         // SAFETY: locking does not change the contents.
         if unsafe { libc::mlock(lowest, bytes) } == 0 { Ok(locked) } else { Err(io::Error::last_os_error()) }
@@ -149,7 +151,8 @@ pub fn touch_stack() {
     const PAGE: usize = 4096;
     let mut stack = [MaybeUninit::<u8>::uninit(); STACK_BYTES / 2];
     for byte in stack.iter_mut().step_by(PAGE) {
-        // SAFETY: a byte of a local array. The write is volatile, because nothing reads the array.
+        // SAFETY: the pointer points to a byte of a local array. The write is volatile, because nothing reads the
+        // array.
         unsafe { std::ptr::from_mut(byte).write_volatile(MaybeUninit::new(0)) };
     }
 }
@@ -159,11 +162,11 @@ fn apply(priority: Priority) -> RealtimeRefusals {
     // The timers of an ordinary thread may be 50 us late by default. Real-time threads have no slack.
     // SAFETY: PR_SET_TIMERSLACK takes ns as a number and affects the calling thread only.
     unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1 as libc::c_ulong) };
-    // The policy of an ordinary thread is set too, because a thread inherits it: all threads of a real-time planner
-    // would be real-time.
+    // The policy is set for an ordinary thread too. Otherwise the thread would inherit the policy of the thread that
+    // starts it, and would be real-time in a real-time planner.
     let policy = if priority.fifo > 0 { libc::SCHED_FIFO } else { libc::SCHED_OTHER };
     let parameters = libc::sched_param { sched_priority: priority.fifo.into() };
-    // SAFETY: the calling thread, and a valid parameter block.
+    // SAFETY: the handle is that of the calling thread, and the parameter block is valid.
     let refused = unsafe { libc::pthread_setschedparam(libc::pthread_self(), policy, &parameters) };
     if refused != 0 && priority.fifo > 0 {
         refusals.scheduling = Some(io::Error::from_raw_os_error(refused));

@@ -22,7 +22,7 @@ pub struct WakeUp {
 /// Starts a thread that wakes up `cycles` times by `schedule`, and does nothing else.
 ///
 /// # Errors
-/// The system refuses a thread.
+/// The system cannot start a thread.
 pub fn measure_wake_up(priority: Priority, mut schedule: Schedule, cycles: u64) -> io::Result<JoinHandle<WakeUp>> {
     spawn("sun2xp doctor", priority, move |refusals| {
         let mut histograms = Histograms::new();

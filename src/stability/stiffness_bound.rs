@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::f64::consts::PI;
 
-/// The bound is a multiple of this, N/cm.
+/// Step of the bound, N/cm. Every bound is a multiple of this step.
 const GRID: f64 = 0.1;
 
 /// Least fraction of the bound that every pose must support.
@@ -35,9 +35,10 @@ pub struct StiffnessBound {
     pub stiffness: f64,
     /// What prevents a larger bound.
     pub limit: Limit,
-    /// Fraction of the poses that support less than the bound in some direction, so that the servo scales Kx down.
+    /// Fraction of the poses that support less than the bound in some direction. The servo scales Kx down in these
+    /// poses.
     pub scaled: f64,
-    /// The smallest such scale.
+    /// The smallest factor by which the servo scales Kx down.
     pub least_scale: f64,
     /// Number of samples tried at the bound. All are stable.
     pub samples: usize,
@@ -63,8 +64,10 @@ impl Search {
     /// admissible one. As in the servo, Kx is scaled down where the tendons of a pose support less.
     ///
     /// # Errors
-    /// A value with which no controller can be constructed, or `controller` if a pose is unstable with almost no
-    /// stiffness.
+    /// The error names one of these keys:
+    /// - the key of a value with which no controller can be constructed
+    /// - `controller` if a pose is unstable with almost no stiffness
+    /// - `joints.minimum_degrees` if no sample has its tip far enough from the axis of joint 0
     pub fn bound(&self, finger: &ConfiguredFinger, rate: f64) -> Result<StiffnessBound, Unusable> {
         let trial = Trial::new(finger, rate)?;
         let links = finger.links();
@@ -72,7 +75,10 @@ impl Search {
             self.rests(finger).into_iter().partition(|rest| links.reach(&rest.joints).abs() >= CLEAR_OF_AXIS);
         let carried = trial.carried(&clear);
         let Some(softest) = (0..clear.len()).min_by(|&one, &other| carried[one].total_cmp(&carried[other])) else {
-            let reason = "leave no pose with the tip off the axis of joint 0".into();
+            let reason = format!(
+                "leaves, with joints.maximum_degrees, no pose whose tip is {CLEAR_OF_AXIS} cm or more from the axis of \
+                 joint 0"
+            );
             return Err(Unusable { key: "joints.minimum_degrees", reason });
         };
         let most = (carried[softest] / LEAST_SCALE / GRID).floor();
@@ -94,10 +100,10 @@ impl Search {
         })
     }
 
-    /// Returns rests anywhere within the joint limits. Their `stiffness` is relative, with eigenvalues from 0 (softest)
-    /// to 1 (stiffest). Of four samples, one is isotropic with eigenvalue 1, two have a largest eigenvalue of 1, and
-    /// one has any. The relative damping is 1, 0 and infinite in turn. [`Trial::stable`] clamps it to the admissible
-    /// range.
+    /// Returns samples of the finger at rest, anywhere within the joint limits. Their `stiffness` is relative, with
+    /// eigenvalues from 0 (softest) to 1 (stiffest). Of four samples, one is isotropic with eigenvalue 1, two have
+    /// random eigenvalues of which the largest is 1, and one has three random eigenvalues. The relative damping is 1, 0
+    /// and infinite in turn. [`Trial::stable`] clamps it to the admissible range.
     fn rests(&self, finger: &ConfiguredFinger) -> Vec<Rest> {
         let mut random = Pcg64::seed_from_u64(self.seed);
         let (low, high) = finger.joint_limits();
@@ -124,11 +130,11 @@ impl Search {
     }
 }
 
-/// Returns the largest bound up to `most` at which every rest is stable, in steps of the grid, and the pose that
-/// prevents a larger one. Returns None if every rest is stable at `most`.
+/// Returns the largest bound up to `most` at which every sample is stable, and the pose that prevents a larger bound.
+/// Bounds are in units of [`GRID`]. Returns None if every sample is stable at `most`.
 ///
 /// # Errors
-/// `controller` if a rest is unstable with almost no stiffness.
+/// The error names the key `controller` if a sample is unstable with almost no stiffness.
 fn lower_until_stable(trial: &Trial, rests: &[Rest], most: f64) -> Result<Option<(f64, Vector3<f64>)>, Unusable> {
     let mut bound = most;
     let mut limit = None;
@@ -138,7 +144,7 @@ fn lower_until_stable(trial: &Trial, rests: &[Rest], most: f64) -> Result<Option
             return Ok(limit.map(|joints| (bound, joints)));
         }
         for rest in unstable {
-            // The bound may already be lower than the one at which this rest was unstable.
+            // The bound may already be lower than the bound at which this sample was unstable.
             if trial.stable(rest, bound * GRID) {
                 continue;
             }
@@ -151,7 +157,8 @@ fn lower_until_stable(trial: &Trial, rests: &[Rest], most: f64) -> Result<Option
     }
 }
 
-/// Returns the largest bound below `unstable` at which a rest is stable, in steps of the grid. It uses bisection.
+/// Returns the largest bound below `unstable` at which a sample is stable, by bisection. Bounds are in units of
+/// [`GRID`].
 fn largest_stable(trial: &Trial, rest: &Rest, unstable: f64) -> f64 {
     let (mut low, mut high) = (0.0, unstable);
     while high - low > 1.0 {
@@ -164,7 +171,8 @@ fn largest_stable(trial: &Trial, rest: &Rest, unstable: f64) -> f64 {
 fn unstable_at_any_stiffness(joints: &Vector3<f64>) -> Unusable {
     let degrees = joints.map(f64::to_degrees);
     let reason = format!(
-        "leaves the finger unstable at any stiffness at {:.0?} degrees: leave its gains out, or choose another scheme",
+        "leaves the finger unstable at any stiffness at {:.0?} degrees: remove the gains from this table, or choose \
+         another scheme",
         degrees.as_slice()
     );
     Unusable { key: "controller", reason }

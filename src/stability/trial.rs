@@ -35,8 +35,8 @@ impl Trial {
         in_parallel(rests, |rest| UNSUPPORTED * self.map.scale(&isotropic(rest)))
     }
 
-    /// Returns whether a rest is stable with a Kx between the softest and `stiffest`, N/cm. The relative stiffness of
-    /// the rest, 0 to 1, determines the eigenvalues within this range.
+    /// Returns whether a finger at rest is stable with a Kx between the softest and `stiffest`, N/cm. The relative
+    /// stiffness of `rest`, 0 to 1, determines the eigenvalues within this range.
     pub fn stable(&self, rest: &Rest, stiffest: f64) -> bool {
         let softest = SOFTEST.min(stiffest);
         let stiffness = Matrix3::identity() * softest + rest.stiffness * (stiffest - softest);
@@ -46,7 +46,7 @@ impl Trial {
         self.map.largest_eigenvalue(&rest).is_some_and(|modulus| modulus < 1.0 + ROUNDING)
     }
 
-    /// Returns the rests that are not stable, see [`Trial::stable`].
+    /// Returns the samples that are not stable, see [`Trial::stable`].
     pub fn unstable<'a>(&self, rests: &'a [Rest], stiffest: f64) -> Vec<&'a Rest> {
         let stable = in_parallel(rests, |rest| self.stable(rest, stiffest));
         rests.iter().zip(stable).filter(|(_, stable)| !stable).map(|(rest, _)| rest).collect()

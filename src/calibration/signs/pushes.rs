@@ -8,7 +8,8 @@ use nalgebra::Vector4;
 
 /// A push counts when its motor has turned by this distance, cm at the tendon.
 const TURNED: f64 = 0.005;
-/// First push, as a part of t_min at the tendon. Pushes grow by a factor, up to the hardest one, until the motor turns.
+/// First push, as a fraction of t_min at the tendon. Pushes grow by a factor, up to the hardest one, until the motor
+/// turns.
 const FIRST_PUSH: f64 = 0.4;
 const GROWTH: f64 = 1.3;
 const HARDEST_PUSH: f64 = 2.0;

@@ -1,7 +1,8 @@
 //! Slew limit of the set point: a step becomes a straight line in joint space at a limited speed.
 //!
-//! The tip of a spring that is released far from its anchor does not move straight to it. Joint 2 may straighten on the
-//! way. There J is singular, and the spring has no torque to bend the joint again.
+//! A fingertip that is released far from the anchor of its spring does not move straight to the anchor. Joint 2 may
+//! straighten on the way. J is singular while joint 2 is straight, and the spring has no torque to bend the joint
+//! again.
 
 use nalgebra::Vector3;
 

@@ -15,7 +15,7 @@ const PART: f64 = 0.3;
 const DEPTH: f64 = 0.0175;
 
 /// A joint at the depth d beyond a limit is pushed back with k d^2 / 2 D up to the depth D, and with k (d - D/2)
-/// beyond. The stiffness grows from zero to k without a step. Within the limits the push is zero, so that the spring of
+/// beyond. The stiffness grows from zero to k without a step. Within the limits the push is zero, so the spring of
 /// the fingertip stays exact.
 #[derive(Clone, Debug)]
 pub(crate) struct SoftLimits {

@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 /// Time constant of each of the two stages, s.
 const STAGE: f64 = 0.01;
 
-/// The spring of one cycle: that of a [`SetPoint`], or one between two set points.
+/// The spring of one cycle. It is the spring of a [`SetPoint`], or a spring between those of two set points.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Spring {
     /// Anchor: the desired joint angles, rad.
     pub joints: Vector3<f64>,
-    /// Share of the exact law in the deflection, 0 to 1. The rest is the report's law.
+    /// Share of [`Law::Exact`] in the deflection, 0 to 1. The rest is the share of [`Law::Report`].
     pub exact: f64,
     /// Stiffness, with the units and axes of [`SetPoint::stiffness`].
     pub stiffness: Matrix6<f64>,
@@ -26,7 +26,7 @@ impl From<SetPoint> for Spring {
     }
 }
 
-/// Returns the share of the exact law.
+/// Returns the share of [`Law::Exact`].
 fn share(law: Law) -> f64 {
     match law {
         Law::Report => 0.0,
@@ -43,9 +43,9 @@ impl Spring {
     }
 }
 
-/// Two equal first-order stages in series. With one stage the torque would have a kink. The finger also follows a
-/// planner that sends a new spring in every cycle. The spring changes gradually, and not its torque, because every
-/// spring between two springs within the bound is within the bound too.
+/// Two equal first-order stages in series. With one stage the torque would have a kink. With two stages, the finger
+/// still follows a planner that sends a new spring in every cycle. The stages act on the spring and not on its torque:
+/// if two springs are within the bound, every spring between them is within the bound too.
 #[derive(Clone, Debug)]
 pub(crate) struct SpringTransition {
     /// Fraction of the remaining difference by which a stage moves in a cycle.
@@ -65,8 +65,8 @@ impl SpringTransition {
         Self { part: -(-1.0 / (STAGE * rate)).exp_m1() }
     }
 
-    /// Returns the spring of this cycle, on the way to that of `set_point`. Its anchor is already that of `set_point`.
-    /// The first call starts with the spring of `set_point`.
+    /// Returns the spring of this cycle. It approaches the spring of `set_point` from cycle to cycle, except that it
+    /// has the anchor of `set_point` at once. The first call starts with the spring of `set_point`.
     pub fn advance<'a>(&self, stages: &'a mut Option<SpringStages>, set_point: &SetPoint) -> &'a Spring {
         let begin = || {
             let spring = Spring::from(*set_point);

@@ -45,7 +45,7 @@ impl Figure11 {
             if informative {
                 *ratio = (*ratio + self.gain * (measured / acted - *ratio)).clamp(RATIOS.0, RATIOS.1);
             }
-            // Equals the integral of the other schemes, so that one of them can continue from here.
+            // This value is the integral of the other schemes, so that one of them can continue from here.
             state.integral[tendon] = desired / *ratio - desired;
             ((desired - self.motor_damping * input.speed[tendon]) / *ratio).clamp(-limit, limit)
         })

@@ -1,4 +1,4 @@
-//! The tendon controller: selects the figure of the report that converts desired tensions to pulls of the motors.
+//! The tendon controller converts desired tensions to pulls of the motors, by the selected figure of the report.
 
 use crate::control::tendons::figure9::Figure9;
 use crate::control::tendons::figure10::Figure10;
@@ -8,8 +8,8 @@ use crate::control::tendons::tension_integral::{TendonInput, TendonState, Tensio
 use crate::model::configuration::Scheme;
 use nalgebra::Vector4;
 
-/// One of the schemes. All have the same input, state and result. The result is the pulls at the tendons, N, within the
-/// limits of the motors.
+/// The selected scheme. All schemes have the same input, state and result. The result is the pull at each tendon, N. It
+/// is within the limits of the motors.
 #[derive(Clone, Debug)]
 pub(crate) enum TendonController {
     Figure9(Figure9),

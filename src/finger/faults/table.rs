@@ -246,7 +246,7 @@ faults! {
         "Reduce the load of the machine, permit real-time scheduling (README) or raise hand.open_timeout_ms; then \
          recover the finger", [Recover];
     49 SameNumber "SAME_NUMBER" Refusal Finger Nothing "same number",
-        "the boards at two ports report the same unique number, so that they cannot be distinguished",
+        "the boards at two ports report the same unique number, so they cannot be distinguished",
         "their firmware gives every board the same number",
         "Give every board its own number in its firmware", [];
 }

@@ -7,7 +7,8 @@ use crate::board::{OutgoingCommand, Received};
 use crate::finger::{Fault, FaultKind};
 use crate::realtime::CycleStage;
 
-/// The board's clock wraps after 65.5 ms. After a longer silence, ms, it does not give the age of a measurement.
+/// Limit of the age of a measurement, ms. The board's clock wraps after 65.5 ms, so it does not give the age of a
+/// measurement that is older than this limit.
 const CLOCK_UNKNOWN_MS: f64 = 60.0;
 
 impl FingerServo {
@@ -29,7 +30,8 @@ impl FingerServo {
         Some(OutgoingCommand { address: self.address, sequence: self.sequence, command })
     }
 
-    /// Whether to send a Stop frame to the board, after a fault or at the end.
+    /// Whether to send a Stop frame to the board. A finger that is faulted or closed gets a limited number of Stop
+    /// frames, and every call that returns true counts one of them.
     pub fn stopping(&mut self) -> bool {
         let stopping = !self.under_control() && self.stops_left > 0;
         self.stops_left -= u8::from(stopping);
@@ -41,12 +43,14 @@ impl FingerServo {
         !self.answered && self.under_control()
     }
 
-    /// Whether a reply answers this cycle's command. A late reply would be an old measurement.
+    /// Whether a reply answers this cycle's command. A reply to an earlier command is not accepted, because its
+    /// measurement is old.
     pub fn awaits(&self, received: &Received) -> bool {
         received.sequence == self.sequence && self.waiting()
     }
 
-    /// Counts a reply that does not answer this cycle's command: it arrived twice, or after the end of its cycle.
+    /// Counts a reply that does not answer this cycle's command. Either it has arrived twice, or it has arrived after
+    /// the end of its cycle.
     pub fn count_unexpected(&mut self, received: &Received) {
         match received.sequence == self.last_answer {
             true => self.report.losses.duplicate_replies += 1,
@@ -54,7 +58,7 @@ impl FingerServo {
         }
     }
 
-    /// The board's clock when this cycle's command arrived, us modulo 65 536; none without a reply.
+    /// Reading of the board's clock when this cycle's command arrived, us modulo 65 536; none without a reply.
     pub fn sampled_at(&self) -> Option<u16> {
         self.sampled_at.filter(|_| self.answered)
     }
@@ -65,7 +69,8 @@ impl FingerServo {
         self.last_answer = received.sequence;
         let reply = &received.reply;
         let mut age = self.sample_age as f64;
-        // This cycle's command took effect at this measurement. It was computed from the previous measurement.
+        // This cycle's command took effect at this measurement, and was computed from the previous one. The age to note
+        // is therefore the time between the two measurements.
         if let Some(before) = self.sampled_at
             && age * self.limits.period_ms < CLOCK_UNKNOWN_MS
         {

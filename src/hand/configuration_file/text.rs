@@ -109,8 +109,8 @@ fn span_of(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
     parent.as_table_like()?.key(last)?.span()
 }
 
-/// The position of the innermost table of a dotted key. If a default value does not suit the file, the file does not
-/// contain the key. The value that it does not suit is usually in the same table.
+/// The position of the innermost table of a dotted key. It is used for a key that the file does not contain, and whose
+/// default value conflicts with another value in the file. That other value is usually in the same table.
 fn nearest_table(section: Option<&Item>, dotted: &str) -> Option<Range<usize>> {
     let (path, _) = dotted.rsplit_once('.').unwrap_or(("", dotted));
     let mut item = section?;
@@ -190,7 +190,7 @@ mod tests {
             ("[finger.1.geometry]\nghost_row = [-1, -1, -1, -1]\n", Some(2), "positive"),
             ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [0, 1, 0, 0]]\n", Some(2), "positive"),
             ("[finger.3.tendon]\nmaximum = 8\n", Some(2), "for its pretension"),
-            // The key has its default value, so the error names the table that makes the default impossible.
+            // The key has its default value, so the error gives the line of the table that makes the default unusable.
             ("[finger.tendon]\n\nminimum = 40\n", Some(1), "for its pretension"),
             ("[hand]\nrate = 500\n\n[finger.3.tendon]\nminimum = 40\n", Some(4), "for its pretension"),
             ("[hand]\nrate = nan\n", Some(2), "outside"),

@@ -25,7 +25,7 @@ pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopp
     let mut writing = Vec::new();
     let mut planner = PlannerWatch::default();
     while !ended {
-        // Collects once more at the end, because a finger may just have faulted.
+        // The loop runs once more after the end, because a finger may just have faulted.
         ended = stopped.recv_timeout(COLLECTING_INTERVAL) != Err(RecvTimeoutError::Timeout);
         planner.check();
         for collected in fingers {
@@ -33,7 +33,7 @@ pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopp
             collected.collect();
             let Some(folder) = folder.filter(|_| collected.black_box.faulted()) else { continue };
             if !is_memory_free(MEMORY_OF_BLACK_BOX) {
-                print_line("a finger faulted, but there is too little free memory to write its black box");
+                print_line("a finger faulted, but there is not enough free memory to write its black box");
                 continue;
             }
             let recording = collected.black_box.recording();

@@ -1,16 +1,16 @@
-//! The kind of an error, without its figures.
+//! The kind of an error, without the values in it.
 
 use super::{ConfigurationError, HandError, RecoveryError, SetPointError};
 use std::mem::{Discriminant, discriminant};
 
-/// The kind of a [`HandError`]: the same for two errors that differ only in their figures.
+/// The kind of a [`HandError`]. Two errors that differ only in their values have the same kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ErrorKind {
     error: Discriminant<HandError>,
     cause: Cause,
 }
 
-/// The variant of the error inside a [`HandError`], for those that are grouped by concept.
+/// The variant of the inner error of a [`HandError`] that groups related errors. It is `None` for any other variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cause {
     None,

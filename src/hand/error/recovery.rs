@@ -19,7 +19,7 @@ pub enum RecoveryError {
         /// The running finger.
         other: FingerNumber,
     },
-    /// The servo thread does not run, so that it does not release its port.
+    /// The servo thread does not run, so it does not release its port.
     #[error(
         "the servo thread of finger {0} gets no processor time: reduce the load of the machine or permit \
          real-time scheduling (README), then recover the finger again"

@@ -12,7 +12,7 @@ pub enum Trouble {
     Mend(u8),
     /// A fault of frames from the board, with this probability and duration, ns.
     Line(LineFault, f64, u64),
-    /// The same for frames to the board.
+    /// A fault of frames to the board, with this probability and duration, ns.
     LineToBoard(LineFault, f64, u64),
     /// The end of all line faults.
     GoodLine,

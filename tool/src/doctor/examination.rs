@@ -11,7 +11,7 @@ use sun2xp::model::configuration::Configuration;
 /// closed. The measurements take about `duration`. The motors stay off.
 ///
 /// # Errors
-/// The configuration cannot be used, or the system refuses a thread or a pseudo-terminal.
+/// The configuration cannot be used, or the system cannot start a thread or open a pseudo-terminal.
 pub fn examine(configuration: &Configuration, root: &Path, duration: Duration) -> Result<Vec<Finding>, HandError> {
     check(configuration)?;
     let mut findings = machine::findings(configuration, root);

@@ -86,7 +86,7 @@ fn a_folder_that_is_not_there_is_refused_when_the_hand_is_opened() {
     configuration.hand.black_box = Some("/no/such/folder".into());
     let error = Hand::open(configuration).err().expect("refused");
     assert_eq!(error.errno(), libc::EINVAL);
-    assert!(error.to_string().contains("hand.black_box: /no/such/folder is no folder"), "{error}");
+    assert!(error.to_string().contains("hand.black_box: /no/such/folder is not a folder"), "{error}");
 }
 
 /// A cycle without a finger. A file must preserve all of its numbers.
