@@ -83,7 +83,10 @@ fn enforced_real_time_is_available_or_refused_with_the_remedy() {
     let enforce = "[hand]\nreal_time = \"enforce\"\n";
     let (status, output, _) = opened_without((libc::RLIMIT_RTPRIO, CAP_SYS_NICE), enforce);
     assert_eq!(status, Some(2), "{output}");
-    assert!(output.contains("OpenHand: no real time: ") && output.contains("rtprio"), "{output}");
+    assert!(
+        output.contains("OpenHand: real-time operation is not permitted: ") && output.contains("rtprio"),
+        "{output}"
+    );
 
     let (status, output, _) = opened_without((libc::RLIMIT_MEMLOCK, CAP_IPC_LOCK), enforce);
     assert_eq!(status, Some(2), "{output}");

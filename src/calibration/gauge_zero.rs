@@ -24,7 +24,7 @@ const AVERAGING: f64 = 0.5;
 const LARGEST_SPREAD: f64 = 0.3;
 /// Largest permitted offset, N.
 const LARGEST_OFFSET: f64 = 10.0;
-/// Least change of a gauge between a tight and a slack tendon, as a fraction of t_min.
+/// Smallest change of a gauge between a tight and a slack tendon, as a fraction of t_min.
 const LEAST_FALL: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug)]

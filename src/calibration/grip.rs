@@ -1,5 +1,5 @@
-//! Checks whether something holds a limp finger in its pose. Each joint is pushed lightly both ways, as in a search for
-//! stops. A joint that is held does not yield.
+//! Checks whether something holds a limp finger in its pose. Each joint is pushed lightly in both directions, as in a
+//! search for stops. A held joint yields by at most a small angle.
 
 use super::instruments::Instruments;
 use super::joint_guide::JointGuide;
@@ -12,9 +12,9 @@ use std::f64::consts::PI;
 
 /// The largest angle by which a held joint may yield, rad. A hand that holds a finger is compliant.
 const GIVES_WAY: f64 = 0.02;
-/// Time for which each joint is pushed with the full torque, s.
+/// Duration of each push at the full torque, s.
 const PUSHING: f64 = 0.1;
-/// Time for the finger to come to rest afterwards, s.
+/// Time in which the finger comes to rest after the last push, s.
 const RESTING: f64 = 0.3;
 
 /// The sequence of pushes.
@@ -23,9 +23,9 @@ pub(super) struct Grip {
     guide: JointGuide,
     /// Joint angles at the beginning, rad.
     start: Vector3<f64>,
-    /// Joint and direction of the push: 0 to 5. 6 when all pushes are done.
+    /// Number of the push, which selects joint and direction: 0 to 5, or 6 after the last push.
     push: usize,
-    /// Time at the full torque, or at rest, s.
+    /// Time since the push reached the full torque, or since the end of the last push, s.
     seconds: f64,
 }
 
@@ -65,7 +65,8 @@ impl Grip {
         Ok((self.guide.activity(instruments, sample), done))
     }
 
-    /// Refuses a finger that was read at other joint angles, rad, than it had before the pushes.
+    /// Refuses a finger that has moved. `joints` are the joint angles that were read after the pushes, rad. They must
+    /// equal the angles before the pushes.
     pub fn returned(&self, joints: &Vector3<f64>) -> Result<(), Obstacle> {
         let (joint, distance) = (joints - self.start).abs().argmax();
         match distance > TOLERANCE {

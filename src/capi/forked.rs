@@ -20,8 +20,8 @@ pub(super) fn is_forked_child() -> bool {
     mark.load(Ordering::Relaxed) != OWN
 }
 
-/// Marks this process. Must be called once. Linux before 4.14 has no MADV_WIPEONFORK: there only the handler of
-/// pthread_atfork marks a child.
+/// Marks this process. The caller must call this function only once. Linux before 4.14 has no MADV_WIPEONFORK: there
+/// only the handler of pthread_atfork marks a child.
 pub(super) fn mark_this_process() {
     let protection = libc::PROT_READ | libc::PROT_WRITE;
     // SAFETY: the mapping is new. Its size is one byte, which the system rounds up to a page. A mark is never unmapped.

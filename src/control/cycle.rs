@@ -54,7 +54,7 @@ pub struct Controller {
     monitors: Monitors,
     /// Motor radii, m.
     radius: Vector4<f64>,
-    /// Least tension at which a tendon counts as tight, N.
+    /// Lowest tension at which a tendon is considered to be tight, N.
     tight: f64,
 }
 

@@ -59,7 +59,7 @@ pub(super) struct StateFeedback {
     mass: Vector4<f64>,
     viscous: Vector4<f64>,
     stiffness: Vector4<f64>,
-    /// alpha: commanded tension for a tension error.
+    /// alpha: the gain from the tension error to the pull of a motor.
     inertia_gain: f64,
     /// c, N s/m.
     relative_damping: f64,
@@ -73,7 +73,7 @@ pub(super) struct StateFeedback {
     drift_gain: f64,
     /// Slope of the joint friction feed-forward, as a fraction of the spring's damping.
     friction_slope: f64,
-    /// Time relative to the next sample for which the motion is computed, s. Negative is before the sample.
+    /// The motion is computed for this time relative to the next sample, s. A negative time is before the sample.
     sample_offset: f64,
     /// Radius of each motor, m, and half an encoder count, rad, because counts are rounded down.
     radius: Vector4<f64>,

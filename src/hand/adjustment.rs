@@ -43,9 +43,9 @@ impl Hand {
     /// if it is less than the default bound, or if `keys` contains it too.
     ///
     /// # Errors
-    /// No such finger, keys that cannot be read, that cannot change while the hand is open, or that make a
-    /// configuration that cannot be used; limits that the set point sent last is outside of, unless commands are
-    /// clamped; finger faulted. Nothing is changed then.
+    /// There is no such finger, or the finger is faulted. A key cannot be read, cannot change while the hand is open,
+    /// or results in a configuration that cannot be used. The set point that was sent last is outside the new limits,
+    /// unless commands are clamped. After an error nothing is changed.
     pub fn adjust(&self, finger: i32, keys: &str) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;

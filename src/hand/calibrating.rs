@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// How often the verdict is polled.
+/// Interval at which the verdict is polled.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 /// A servo takes an order within a cycle. After this time the order is considered lost.
@@ -68,7 +68,7 @@ impl Calibrating {
     /// ignored until it is done.
     ///
     /// # Errors
-    /// No such finger, finger faulted or busy, a configuration that the routine cannot work with.
+    /// There is no such finger, the finger is faulted or busy, or the routine cannot work with the configuration.
     pub fn begin(hand: &Hand, finger: i32, task: Task) -> Result<Self, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = hand.dispatcher.member(finger)?;
@@ -184,7 +184,7 @@ impl Hand {
     /// The configuration of finger 1, 2 or 3, with all results of calibrations since open.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn calibrated(&self, finger: i32) -> Result<ConfiguredFinger, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?;
@@ -195,8 +195,8 @@ impl Hand {
     /// hand was opened with, by [`store_findings`]. Returns whether there is such a file, and something to write.
     ///
     /// # Errors
-    /// No such finger; [`HandError::NotStored`] with the reason. The results then stay in force until the hand is
-    /// closed, and a later call does not store them.
+    /// There is no such finger, or the file cannot be written ([`HandError::NotStored`] with the reason). In the second
+    /// case the results stay in force until the hand is closed, and a later call does not store them.
     pub fn store_calibration(&self, finger: i32) -> Result<bool, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?;

@@ -32,7 +32,7 @@ pub enum HandError {
     /// The hand was opened without this finger.
     #[error("the hand was opened without finger {0}: open it with this finger")]
     NotOpened(FingerNumber),
-    /// The number of a stage of the cycle does not exist.
+    /// The servo cycle has no stage with this number.
     #[error("there is no stage {0}: the stages of a cycle are 0 to 7")]
     NoSuchStage(i32),
     /// A set point that the finger cannot take.
@@ -80,7 +80,7 @@ pub enum HandError {
         fingers[0], ShownPath(&ports[0]), fingers[1], ShownPath(&ports[1]), code = FaultKind::SameNumber.number()
     )]
     SameNumber {
-        /// 1 to 3.
+        /// The two fingers.
         fingers: [FingerNumber; 2],
         /// Their ports.
         ports: [PathBuf; 2],
@@ -90,7 +90,7 @@ pub enum HandError {
     /// The system cannot start the thread or open the pseudo-terminal of a simulated board.
     #[error("cannot start the simulated board on a pseudo-terminal: {}", with_terminal_remedy(.0))]
     SimulatedPort(std::io::Error),
-    /// The system does not start a thread, or does not let this process wait.
+    /// The system refuses to start a thread or to suspend the calling thread.
     #[error("cannot {doing}: {}", with_remedy(source))]
     System {
         /// The refused operation.
@@ -98,21 +98,21 @@ pub enum HandError {
         /// The error that the system reported.
         source: std::io::Error,
     },
-    /// Real time is enforced, but not permitted.
-    #[error("no real time: {missing}, or set `hand.real_time = \"try\"` to run without real time")]
+    /// `hand.real_time` is `enforce`, but the system does not permit real-time operation.
+    #[error("real-time operation is not permitted: {missing}, or set `hand.real_time = \"try\"` to run without it")]
     NotRealTime {
         /// What is not permitted, the reason and the remedy.
         missing: MissingPermission,
     },
     /// A calibration failed.
     #[error(
-        "the calibration of finger {finger} failed, {}, and its previous calibration is in force: {obstacle}",
-        if *limp { "its motors are off" } else { "it holds its pose" }
+        "the calibration of finger {finger} failed ({}, and its previous calibration is in force): {obstacle}",
+        if *limp { "its motors are off" } else { "the finger still holds its pose" }
     )]
     Calibration {
         /// The finger.
         finger: FingerNumber,
-        /// True if the finger is limp now. Otherwise it controls the stiffness that it had before.
+        /// Whether the finger is limp now. If it is not, it still is the spring that it was before the calibration.
         limp: bool,
         /// The cause and the remedy.
         obstacle: Obstacle,
@@ -122,8 +122,8 @@ pub enum HandError {
     Busy(FingerNumber),
     /// The servo does not respond.
     #[error(
-        "finger {0} does not respond: the hand was closed or opened again during the call, or its servo thread does \
-         not run. Check the finger's status; to start the thread again, close the hand and open it again"
+        "finger {0} does not respond: the hand was closed or opened again during the call, or the finger's servo \
+         thread does not run. Check the finger's status; to start the thread again, close the hand and open it again"
     )]
     NoAnswer(FingerNumber),
     /// A calibration is in force, but it could not be stored.
@@ -148,19 +148,19 @@ pub enum HandError {
     },
     /// The cycle is not in the black box.
     #[error(
-        "cycle {cycle} of finger {finger} is not in the black box: request a cycle from the oldest to the newest one, \
-         which span the last two seconds, or 0 for the newest"
+        "cycle {cycle} of finger {finger} is not in the black box, which contains the cycles of the last two seconds: \
+         request one of these cycles, or 0 for the newest"
     )]
     NoRecord {
         /// The finger.
         finger: FingerNumber,
-        /// The requested cycle; 0: the newest.
+        /// The requested cycle. 0 means the newest cycle.
         cycle: u64,
     },
     /// The force is too large for a simulated finger.
     #[error(
-        "a force of {force:.3e} N on finger {finger} is above {strongest} N, the largest force on a simulated finger: \
-         use a smaller one"
+        "a force of {force:.3e} N on finger {finger} is above {strongest} N, the largest permitted force on a \
+         simulated finger: use a smaller force"
     )]
     TooMuchForce {
         /// The finger.

@@ -20,7 +20,7 @@ impl Hand {
     /// The fault and the warnings of finger 1, 2 or 3.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn fault(&self, finger: i32) -> Result<FingerFault, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let report = self.dispatcher.last_report(finger)?;

@@ -1,4 +1,4 @@
-//! The selection of a hand's fingers that are opened.
+//! Selects which fingers of a hand are opened.
 
 use crate::hand::HandError;
 use crate::model::FingerNumber;
@@ -14,27 +14,27 @@ impl Fingers {
     /// Every finger.
     pub const ALL: Self = Self([true; FINGERS]);
 
-    /// Only finger 1, 2 or 3.
+    /// Selects only this finger: 1, 2 or 3.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn only(finger: i32) -> Result<Self, HandError> {
         Self([false; FINGERS]).and(finger)
     }
 
-    /// This selection and finger 1, 2 or 3.
+    /// Adds this finger to the selection: 1, 2 or 3.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn and(mut self, finger: i32) -> Result<Self, HandError> {
         self.0[FingerNumber::try_from(finger)?.index()] = true;
         Ok(self)
     }
 
-    /// The fingers with these numbers, 1 to 3. An empty list selects every finger.
+    /// Selects the fingers with these numbers, 1 to 3. An empty list selects every finger.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn of(numbers: &[i32]) -> Result<Self, HandError> {
         match numbers {
             [] => Ok(Self::ALL),

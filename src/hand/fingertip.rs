@@ -31,7 +31,7 @@ impl Hand {
     /// Position and force of the tip and tendon tensions of finger 1, 2 or 3, not older than a cycle.
     ///
     /// # Errors
-    /// No such finger, finger faulted.
+    /// There is no such finger, or the finger is faulted.
     pub fn fingertip(&self, finger: i32) -> Result<FingerTip, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let report = self.dispatcher.report(finger)?;

@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicU32;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often a port that is gone is tried.
+/// Interval between two attempts to open a port that is gone.
 const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A port with its repair data. It may outlive its hand while a repair is in progress.

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 /// the port may be about to fault too.
 const RELEASE_LIMIT: Duration = Duration::from_millis(500);
 
-/// How often a recovery is polled.
+/// Interval at which a recovery is polled.
 const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 /// A servo releases or takes back a link within some cycles. After this time the servo is considered stalled.
@@ -50,7 +50,7 @@ impl Recovering {
     /// other steps do nothing.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn begin(hand: &Hand, finger: i32) -> Result<Self, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let begun = Instant::now();

@@ -26,7 +26,7 @@ const STOP_CONFIRMATION: u64 = 300_000_000;
 /// Time for the last frames of a servo to leave the port.
 const FLUSH_TIME: Duration = Duration::from_millis(20);
 
-/// How often the stages of the fingers are polled while the hand opens or ends.
+/// Interval at which the stages of the fingers are polled while the hand opens or ends.
 const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
 /// An open hand: its fingers, servo threads and ports. A process can have several.
@@ -124,7 +124,7 @@ impl Hand {
     /// Measured joint angles of finger 1, 2 or 3, rad, not older than a cycle.
     ///
     /// # Errors
-    /// No such finger, finger faulted.
+    /// There is no such finger, or the finger is faulted.
     pub fn position(&self, finger: i32) -> Result<[f64; 3], HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.position(finger)
@@ -133,7 +133,7 @@ impl Hand {
     /// The newest report of finger 1, 2 or 3, faulted or not.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn report(&self, finger: i32) -> Result<FingerReport, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.last_report(finger)
@@ -142,7 +142,7 @@ impl Hand {
     /// The duration of a stage of the cycles of finger 1, 2 or 3, since open or the last reset.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn timing(&self, finger: i32, stage: realtime::CycleStage) -> Result<Distribution, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.timing(finger, stage)
@@ -151,7 +151,7 @@ impl Hand {
     /// Counts of the cycles and errors of finger 1, 2 or 3, since open or the last reset.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.losses(finger)
@@ -160,7 +160,7 @@ impl Hand {
     /// Resets timings and losses of finger 1, 2 or 3.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.reset_timing(finger)
@@ -169,7 +169,7 @@ impl Hand {
     /// Pushes the fingertip of a simulated finger with a force in the finger's frame, N, until the next call.
     ///
     /// # Errors
-    /// No such finger, NaN or infinity, a finger on a real port.
+    /// There is no such finger, a number is NaN or infinite, or the finger has a real port.
     pub fn push_simulated(&self, finger: i32, force: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?.admission.read().finite("Force", &force)?;

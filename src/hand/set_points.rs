@@ -10,7 +10,7 @@ impl Hand {
     /// Sends theta_d of finger 1, 2 or 3: joints 0, 1 and 2, rad. It takes effect within a cycle.
     ///
     /// # Errors
-    /// No such finger, NaN or infinity, beyond a joint limit, finger faulted.
+    /// There is no such finger, an angle is NaN, infinite or beyond a joint limit, or the finger is faulted.
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;
@@ -24,8 +24,8 @@ impl Hand {
     /// without a jump in torque; 95 % of the change is reached after 50 ms.
     ///
     /// # Errors
-    /// No such finger, NaN or infinity, not symmetric, a negative eigenvalue, stiffer than the bound, too stiff for the
-    /// damping sent last, finger faulted.
+    /// There is no such finger, or the finger is faulted. The stiffness has an entry that is NaN or infinite, is not
+    /// symmetric, has a negative eigenvalue, is above the bound, or is too high for the damping that was sent last.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, |admission| {
@@ -43,8 +43,8 @@ impl Hand {
     /// in joint space, at the bounded joint speed.
     ///
     /// # Errors
-    /// No such finger, NaN or infinity, position out of reach or of the joint limits (even if commands are clamped),
-    /// finger faulted.
+    /// There is no such finger, or the finger is faulted. A number is NaN or infinite, or the position is out of reach
+    /// or outside the joint limits, even if commands are clamped.
     pub fn send_tip(&self, finger: i32, tip: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let present = self.dispatcher.last_report(finger)?.cycle.joints;
@@ -61,8 +61,9 @@ impl Hand {
     /// replaces the last Kx, and a later Kx replaces it.
     ///
     /// # Errors
-    /// No such finger, stiffer than the bound, too stiff for the damping sent last, finger faulted. A rotational
-    /// stiffness k, N cm/rad, counts as k / l2^2 N/cm, by the motion of the last joint.
+    /// There is no such finger, or the finger is faulted. The stiffness is above the bound, or is too high for the
+    /// damping that was sent last. A rotational stiffness k, N cm/rad, counts as k / l2^2 N/cm, by the motion of the
+    /// last joint.
     pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, |admission| {
@@ -79,7 +80,8 @@ impl Hand {
     /// ([`AdmissibleDamping`](crate::control::AdmissibleDamping)).
     ///
     /// # Errors
-    /// No such finger, NaN or infinity, outside the range of the stiffness sent last, finger faulted.
+    /// There is no such finger, or the finger is faulted. The ratio is NaN, infinite or outside the range of the
+    /// stiffness that was sent last.
     pub fn send_damping(&self, finger: i32, ratio: f64) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, |admission| {

@@ -39,7 +39,7 @@ impl Hand {
     /// The status of finger 1, 2 or 3 and of its servo thread.
     ///
     /// # Errors
-    /// No such finger.
+    /// There is no such finger.
     pub fn status(&self, finger: i32) -> Result<FingerStatus, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let report = self.dispatcher.last_report(finger)?;

@@ -55,7 +55,7 @@ pub enum OutOfReach {
          other solution is farther outside. Send another point, or change `finger.joints`"
     )]
     BeyondLimits {
-        /// The joint that is farthest outside its limits, 0 to 2, in the solution that is least outside.
+        /// The joint that is farthest outside its limits, 0 to 2, in the solution that is closest to the limits.
         joint: usize,
         /// Its angle, rad.
         value: f64,

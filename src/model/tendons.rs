@@ -55,7 +55,7 @@ impl Tendons {
         self.q.fixed_columns::<3>(0).transpose()
     }
 
-    /// Returns the tensions without joint torque whose least one is `minimum`, N: eq. 20 at tau = 0.
+    /// Returns the tensions that cause no joint torque and of which the smallest is `minimum`, N: eq. 20 at tau = 0.
     pub fn pretension(&self, minimum: f64) -> Vector4<f64> {
         let column: Vector4<f64> = self.q.column(3).into_owned();
         column * (minimum / column.min())

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::JoinHandle;
 
-/// How often a waiting thread checks whether to give up, ns.
+/// Interval at which a waiting thread checks whether to give up, ns.
 const CHECK_INTERVAL: libc::c_long = 100_000_000;
 
 /// Work that has started.

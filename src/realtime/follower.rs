@@ -1,48 +1,48 @@
-//! A phase-locked loop that makes the servo's period follow another clock.
+//! A phase-locked loop that makes the servo's period follow the clock of a board, called the other clock.
 
 /// Resolution of the other clock, ns per count. Its counter wraps at 65 536.
 const NS_A_COUNT: i64 = 1000;
 
-/// Natural frequency of the loop, rad/s. The loop settles in a few seconds. A command that arrives 1 ms late on a busy
-/// machine changes the next period by one microsecond.
+/// Natural frequency of the loop, rad/s. With this value the loop settles in a few seconds. If a busy machine sends a
+/// command 1 ms late, the next period changes by only 2 us at 1000 Hz.
 const NATURAL: f64 = 1.0;
 
 /// Damping ratio of the loop.
 const DAMPING: f64 = 1.0;
 
 /// Largest relative change of a period. Crystals differ by 100 ppm, ceramic resonators by 3000 ppm and more. A larger
-/// difference is not that of a clock.
+/// difference is not caused by the clocks.
 const MOST: f64 = 5e-3;
 
-/// Adjusts the period so that it has its nominal length by another clock. That clock counts microseconds modulo 65 536
-/// and is read at most once per period.
+/// Adjusts the period so that its length, measured with the other clock, is the nominal length. The other clock counts
+/// microseconds modulo 65 536 and is read at most once per period.
 #[derive(Clone, Copy, Debug)]
 pub struct Follower {
     /// Nominal length of a period, ns.
     period: f64,
-    /// By how much the other clock leads the nominal phase, ns; none before the first reading.
+    /// Lead of the other clock relative to the nominal phase, ns; none before the first reading.
     phase: Option<i64>,
     /// The previous reading, counts.
     last: u16,
     /// Periods from the previous reading to the next cycle.
     periods: u64,
-    /// By how much each period is shortened because of the other clock's rate, ns.
+    /// Correction of each period for the other clock's rate, ns. A positive correction shortens the period.
     rate: f64,
-    /// The fraction of a nanosecond that was not applied yet, because corrections are whole numbers.
+    /// The fraction of a nanosecond that has not been applied yet. Corrections are whole nanoseconds.
     remainder: f64,
 }
 
 impl Follower {
-    /// `period` is the length that a period shall have by the other clock, ns.
+    /// `period` is the nominal length of a period, measured with the other clock, ns.
     pub fn new(period: u64) -> Self {
         Self { period: period as f64, phase: None, last: 0, periods: 0, rate: 0.0, remainder: 0.0 }
     }
 
-    /// Returns by how much the beginning of the next cycle has to be delayed, ns. Must be called once per cycle.
-    /// `reading` is the other clock's count in this cycle, if a reply brought one. `periods` is the number of periods
-    /// until the next cycle: 1, or more if some are skipped.
+    /// Returns the delay that the beginning of the next cycle needs, ns. The delay may be negative. This function must
+    /// be called once per cycle. `reading` is the count of the other clock in this cycle, or none if no reply contained
+    /// a count. `periods` is the number of periods until the next cycle: 1, or more if some are skipped.
     ///
-    /// A reading is assumed to be within 32 ms of the expected count, because the counter wraps.
+    /// The counter wraps. A reading is therefore assumed to be within 32 ms of the expected count.
     pub fn correction(&mut self, reading: Option<u16>, periods: u64) -> i64 {
         let bound = MOST * self.period;
         let mut wanted = 0.0;
@@ -74,9 +74,10 @@ mod tests {
 
     const PERIOD: u64 = 1_000_000;
 
-    /// Runs a loop for `seconds` against a clock that is faster by `drift`. Returns the mean period and the largest
-    /// deviation of the beginnings from the mean grid, in ns of that clock, both over the last second. `late` returns
-    /// how late the command of each cycle arrives, ns, or none if there is no reply.
+    /// Runs a loop for `seconds` with another clock that is faster than the host's clock by the fraction `drift`.
+    /// Returns the mean period of the last second, and the largest deviation of a cycle's beginning from equal periods
+    /// of this mean length. Both are in ns of the other clock. `late` returns the lateness of the command in each
+    /// cycle, ns, or none if there is no reply.
     fn run(drift: f64, seconds: u64, start: f64, mut late: impl FnMut(u64) -> Option<u64>) -> (f64, f64) {
         let mut follower = Follower::new(PERIOD);
         let other = |host: f64| start + host * (1.0 + drift);
@@ -102,8 +103,8 @@ mod tests {
     #[test]
     fn a_late_command_hardly_moves_a_period() {
         let (mean, off) = run(0.0, 20, 0.0, |cycle| Some(if cycle % 1000 == 500 { 1_000_000 } else { 20_000 }));
-        // The loop has settled, and one command per second is 1 ms late. Following the mean would give 1 us per second
-        // too.
+        // The loop has settled, and one command per second is 1 ms late. This raises the mean lateness by 1 us, so
+        // a loop that followed the mean would also move the beginnings by 1 us.
         assert!((mean - 1e6).abs() < 10.0 && off < 2000.0, "{mean} {off}");
     }
 
@@ -119,7 +120,7 @@ mod tests {
         fn the_mean_period_is_the_nominal_one_by_the_other_clock(
             drift in -200e-6..200e-6f64, start in 0.0..1e9f64, seed in 1u64..1000,
         ) {
-            // Wake-ups 0 to 50 us late, and one reply in eight lost.
+            // Wake-ups are 0 to 50 us late, and one reply in eight is lost.
             let (mean, off) = run(drift, 30, start, |cycle| {
                 let random = (cycle + seed).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
                 (random % 8 != 0).then_some(random % 50_000)

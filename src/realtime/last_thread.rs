@@ -1,5 +1,6 @@
-//! The end of a process whose planner has no thread left. A process ends with its last thread. The library's threads
-//! serve the planner's and must not keep the process alive: they block every signal, so only SIGKILL could end it.
+//! Ends a process when all threads of the planner have ended. If no thread calls exit, a process ends with its last
+//! thread. The library's threads must not keep the process alive. They block every signal, so if no other thread were
+//! left, only SIGKILL could end the process.
 
 use super::clock::now;
 use super::threads::{own_threads, spawn_alike};
@@ -8,7 +9,7 @@ use std::fs::{self, File};
 use std::io::{Cursor, Read, Write};
 use std::process::{exit, id};
 
-/// How often the threads are checked, ns.
+/// Interval between two checks of the threads, ns.
 const CHECK_INTERVAL: u64 = 1_000_000_000;
 
 /// Ends the process when the planner's last thread has ended.
@@ -16,30 +17,31 @@ const CHECK_INTERVAL: u64 = 1_000_000_000;
 pub struct PlannerWatch {
     /// Time of the next check, ns.
     next_check: u64,
-    /// A thread that ends the process is already running.
+    /// Whether the thread that ends the process has already been started.
     ending: bool,
 }
 
 impl PlannerWatch {
-    /// Checks once a second. It must be called more often than that.
+    /// Checks once a second. This function must be called more often than once a second.
     pub fn check(&mut self) {
         if self.ending || now() < self.next_check {
             return;
         }
         self.next_check = now() + CHECK_INTERVAL;
         if planner_has_ended() {
-            // The process ends as it would with its last thread: with status 0, after the exit handlers. They run in a
-            // thread of their own, because one of them may close the hand, which waits for the other threads of the
-            // library. If the system refuses that thread now, a later check tries again.
+            // The exit handlers run, and the process ends with status 0, as it would after the end of its last thread.
+            // The handlers run in a new thread, because a handler may close the hand, and closing waits for the other
+            // threads of the library. If the system refuses the new thread now, a later check tries again.
             self.ending = spawn_alike("sun2xp exit", || exit(0)).is_ok();
         }
     }
 }
 
-/// Whether all threads of the process except this library's have ended. If the system does not say, they have not.
+/// Whether all threads of the process have ended, except the threads of this library. Returns false if /proc cannot be
+/// read.
 fn planner_has_ended() -> bool {
-    // The first thread stays as a zombie if it ends before others. It is usually alive, and then no other thread is
-    // checked.
+    // The main thread stays as a zombie if it ends before other threads. Usually the main thread is alive, and then the
+    // other threads need not be checked.
     has_ended(id()) && others_have_ended().unwrap_or(false)
 }
 

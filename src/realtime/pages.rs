@@ -1,7 +1,8 @@
-//! Values in memory pages of their own, for locking. A lock acts on whole pages. In a page of the heap it would also
-//! lock the planner's data, and unlocking would unlock what the planner has locked. Dropping a value here unmaps its
-//! pages, which unlocks them.
-#![allow(unsafe_code, reason = "mappings")]
+//! Stores values in memory pages of their own, so that the pages can be locked. A lock acts on whole pages. If a value
+//! were in a page of the heap, locking the value would also lock the planner's data in that page. Unlocking the value
+//! would also unlock data that the planner has locked. Dropping a value of this module unmaps its pages, which unlocks
+//! them.
+#![allow(unsafe_code, reason = "pages are mapped and unmapped")]
 
 use std::alloc::{Layout, handle_alloc_error};
 use std::ops::{Deref, DerefMut, Range};
@@ -9,25 +10,26 @@ use std::ptr::NonNull;
 use std::sync::Arc;
 
 /// A value, or a slice of values, in pages of its own. All pages are present from the beginning, so that no access
-/// faults.
+/// causes a page fault.
 pub struct Pages<T: ?Sized> {
     place: NonNull<T>,
     mapping: Mapping,
 }
 
-/// [`Pages`] with several owners. Access to the value does not touch the page with the reference count.
+/// [`Pages`] with several owners. The reference count is on the heap, in a page that is not locked. An access to the
+/// value does not touch that page.
 pub struct SharedPages<T: ?Sized> {
     place: NonNull<T>,
     owner: Arc<Pages<T>>,
 }
 
-// SAFETY: it owns its value as a Box does.
+// SAFETY: `Pages` owns its value as a `Box` does.
 unsafe impl<T: ?Sized + Send> Send for Pages<T> {}
-// SAFETY: it owns its value as a Box does.
+// SAFETY: `Pages` owns its value as a `Box` does.
 unsafe impl<T: ?Sized + Sync> Sync for Pages<T> {}
-// SAFETY: it shares its value as an Arc does.
+// SAFETY: `SharedPages` shares its value as an `Arc` does.
 unsafe impl<T: ?Sized + Send + Sync> Send for SharedPages<T> {}
-// SAFETY: it shares its value as an Arc does.
+// SAFETY: `SharedPages` shares its value as an `Arc` does.
 unsafe impl<T: ?Sized + Send + Sync> Sync for SharedPages<T> {}
 
 impl<T> Pages<T> {
@@ -42,7 +44,7 @@ impl<T> Pages<T> {
 }
 
 impl<T> Pages<[T]> {
-    /// Calls `make` with the numbers from 0 to `count` - 1.
+    /// Creates a slice of `count` values in pages of its own. `make(index)` returns the value at `index`.
     pub fn from_fn(count: usize, mut make: impl FnMut(usize) -> T) -> Self {
         let mapping = Mapping::for_many::<T>(count);
         let first: NonNull<T> = mapping.start.cast();
@@ -81,14 +83,14 @@ impl<T: ?Sized> Deref for Pages<T> {
     type Target = T;
 
     fn deref(&self) -> &T {
-        // SAFETY: the value lives as long as this owner and is borrowed with it.
+        // SAFETY: the value lives as long as this owner, which the returned reference borrows.
         unsafe { self.place.as_ref() }
     }
 }
 
 impl<T: ?Sized> DerefMut for Pages<T> {
     fn deref_mut(&mut self) -> &mut T {
-        // SAFETY: the value lives as long as this owner and is borrowed mutably with it.
+        // SAFETY: the value lives as long as this owner, which the returned reference borrows mutably.
         unsafe { self.place.as_mut() }
     }
 }
@@ -147,10 +149,10 @@ impl Mapping {
         }
     }
 
-    /// Maps room for a value. MAP_POPULATE faults every page in.
+    /// Maps enough pages for a value of this layout. MAP_POPULATE makes every page present.
     fn new(layout: Layout) -> Self {
         let bytes = layout.size().max(1).next_multiple_of(page_size());
-        assert!(layout.align() <= page_size(), "a page is aligned to its size");
+        assert!(layout.align() <= page_size(), "the alignment of a value is at most the page size");
         let protection = libc::PROT_READ | libc::PROT_WRITE;
         let kind = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_POPULATE;
         // SAFETY: the mapping is new, and the system chooses its address.

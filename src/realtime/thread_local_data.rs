@@ -4,12 +4,13 @@
 use std::ffi::c_void;
 use std::mem::MaybeUninit;
 
-/// Bytes that the C library takes from the stack of every thread before the thread runs. glibc puts the thread-local
-/// data of the program and of its libraries there. If a planner has large `__thread` arrays, this number is therefore
-/// large. A C library without `__pthread_get_minstack`, such as musl, adds the thread-local data to the requested stack
-/// size and takes nothing from it.
+/// Number of bytes that the C library takes from the stack of every thread before the thread runs. glibc puts the
+/// thread-local data of the program and of its libraries there, so large `__thread` arrays in a planner increase
+/// this number. glibc has the function `__pthread_get_minstack`, from which the number is computed. A C library without
+/// that function, such as musl, adds the thread-local data to the requested stack size. It takes nothing from the
+/// requested stack, so the number is 0.
 pub(super) fn taken_by_the_c_library() -> usize {
-    // SAFETY: the name is a constant C string. The address is null if no library has such a function.
+    // SAFETY: the name is a C string. The returned address is null if no library has a function with this name.
     let function = unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"__pthread_get_minstack".as_ptr()) };
     if function.is_null() {
         return 0;

@@ -1,12 +1,12 @@
-//! Connects a simulated board in memory and in simulated time, for experiments and tests without a port and without
-//! waiting.
+//! Connects the host to a simulated board in memory and in simulated time. Experiments and tests with this cable need
+//! no port and no waiting.
 
 use crate::board::{PortError, Transport};
 use crate::simulated::board::SimulatedBoard;
 use crate::simulated::line::{LineFault, SimulatedLine};
 use std::collections::VecDeque;
 
-/// A cable without delay, with the clock that both its ends use.
+/// A cable that delays nothing, unless a fault is injected. Both ends use the clock of the cable.
 #[derive(Debug)]
 pub struct SimulatedCable {
     board: SimulatedBoard,
@@ -31,13 +31,13 @@ impl SimulatedCable {
         &mut self.board
     }
 
-    /// Applies `fault` to each frame from the board with this probability, until `until`, ns. A stall ignores the
-    /// probability. `seed` restarts the random numbers.
+    /// Applies `fault` to each frame from the board with this probability. The fault ends at the time `until`, ns. A
+    /// stall ignores the probability. `seed` restarts the random numbers.
     pub fn inject(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
         self.line.inject(fault, probability, until, seed);
     }
 
-    /// Does the same to frames to the board.
+    /// Applies `fault` to frames to the board. The parameters are those of [`SimulatedCable::inject`].
     pub fn inject_to_board(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
         self.line_to_board.inject(fault, probability, until, seed);
     }

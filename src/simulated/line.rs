@@ -65,8 +65,8 @@ impl SimulatedLine {
         }
     }
 
-    /// Applies a fault to each frame with this probability, until `until`, ns. A stall ignores the probability. `seed`
-    /// restarts the random numbers.
+    /// Applies a fault to each frame with this probability. The fault ends at the time `until`, ns. A stall ignores the
+    /// probability. `seed` restarts the random numbers.
     pub fn inject(&mut self, fault: LineFault, probability: f64, until: u64, seed: u64) {
         self.random = Pcg64::seed_from_u64(seed);
         self.injected.push(Injected { fault, probability, until });

@@ -9,7 +9,7 @@ const WINDOW: usize = 80;
 /// Relative error below which a recurrence explains the samples.
 const EXPLAINED: f64 = 1e-3;
 const LARGEST_ORDER: usize = 8;
-/// Least fraction of the last sample that a root must contribute to count.
+/// Smallest fraction of the last sample that a root must contribute to count.
 const LEAST_SHARE: f64 = 0.01;
 
 /// Returns the factor by which the slowest mode of a freely decaying or growing linear system changes from one sample
@@ -39,7 +39,7 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
     mean_change(window)
 }
 
-/// Returns whether the samples in `follows` contradict a root. With the least contribution that counts, a mode with
+/// Returns whether the samples in `follows` contradict a root. With the smallest contribution that counts, a mode with
 /// this root would have grown above `rounding`, but all samples are below it.
 fn has_decayed(follows: &[DVector<f64>], root: f64, rounding: f64) -> bool {
     root.powi(follows.len() as i32) * LEAST_SHARE > 1.0 && follows.iter().all(|sample| sample.norm() <= rounding)

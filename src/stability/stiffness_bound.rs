@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// Step of the bound, N/cm. Every bound is a multiple of this step.
 const GRID: f64 = 0.1;
 
-/// Least fraction of the bound that every pose must support.
+/// Smallest fraction of the bound that every pose must support.
 const LEAST_SCALE: f64 = 0.5;
 
 /// Distance of the tip from the axis of joint 0 below which a pose is counted separately, cm. Such a pose is near the
@@ -60,8 +60,8 @@ pub enum Limit {
 impl Search {
     /// Returns the bound of `finger` with its scheme and gains at `rate`, Hz. Every sample is stable at the bound. The
     /// samples are poses within the joint limits, Kx with random axes and eigenvalues from 1 N/cm to the bound, and
-    /// loads that deflect the tip by up to 1 mm. Their relative damping is the least admissible one, 1, or the largest
-    /// admissible one. As in the servo, Kx is scaled down where the tendons of a pose support less.
+    /// loads that deflect the tip by up to 1 mm. Their relative damping is the smallest admissible one, 1, or the
+    /// largest admissible one. As in the servo, Kx is scaled down where the tendons of a pose support less.
     ///
     /// # Errors
     /// The error names one of these keys:

@@ -7,7 +7,8 @@ use nalgebra::Matrix3;
 use std::num::NonZero;
 use std::thread;
 
-/// Least eigenvalue of the springs, N/cm, unless the bound is smaller. A softer finger is nearly limp with any bound.
+/// Smallest eigenvalue of the springs, N/cm, unless the bound is smaller. A softer finger is nearly limp with any
+/// bound.
 const SOFTEST: f64 = 1.0;
 
 /// Tolerance for a modulus above 1. A joint without stiffness has an eigenvalue of 1.

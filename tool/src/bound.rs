@@ -20,10 +20,10 @@ use sun2xp::stability::{Limit, Search, StiffnessBound};
 /// scale below one half. The search takes up to a minute for each kind of finger.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file. Without it: the file that OpenHand would use.
+    /// The configuration file. The default is the file that OpenHand would use.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// The finger; may be repeated. Without it: all fingers.
+    /// The finger. May be repeated. The default is all fingers.
     #[arg(long = "finger", value_name = "N", value_parser = clap::value_parser!(i32).range(1..=FINGERS as i64))]
     fingers: Vec<i32>,
     /// Write the bounds into the configuration file as finger.N.stiffness.bound, and change nothing else.

@@ -32,7 +32,7 @@ pub struct Arguments {
     /// The configuration file. The tool reads it, and writes the results of each task into it.
     #[arg(long, value_name = "FILE")]
     config: PathBuf,
-    /// The finger; may be repeated. Without it: all fingers. The ports of other fingers are not opened.
+    /// The finger. May be repeated. The default is all fingers. The ports of other fingers are not opened.
     #[arg(long = "finger", value_name = "N", value_parser = clap::value_parser!(i32).range(1..=FINGERS as i64))]
     fingers: Vec<i32>,
     /// Find the directions in which motors, encoders and gauges count.

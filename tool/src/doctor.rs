@@ -16,13 +16,13 @@ use std::process::ExitCode;
 use std::time::Duration;
 use sun2xp::hand::{self, Configured, Fingers};
 
-/// Checks kernel, limits, cores and ports, measures wake-ups and round trips, and reports what to change. The motors
-/// stay off.
+/// Checks the kernel, the resource limits of this process, the cores and the ports. Measures wake-ups and round trips.
+/// Reports what to change. The motors stay off.
 ///
-/// Exit status: 0 if the hand can run as configured, 1 if it cannot, or not at its rate.
+/// The exit status is 0 if the hand can run as configured and at its configured rate, and 1 otherwise.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file. Without it: the file that OpenHand would use.
+    /// The configuration file. The default is the file that OpenHand would use.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     /// Duration of the measurements, s.

@@ -29,7 +29,7 @@ const LARGEST_COSTS: u64 = 1 << 16;
 /// 1: a deadline may be missed.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The configuration file. Without it: the file that OpenHand would use.
+    /// The configuration file. The default is the file that OpenHand would use.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     /// Read the worst cases from a file instead of measuring them.

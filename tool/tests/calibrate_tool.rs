@@ -112,7 +112,7 @@ fn a_finger_that_nobody_holds_is_refused_with_what_to_do() {
             &[
                 "finger 2 is zeroed at a pose, because zeroing.method is \"pose\"",
                 "finger 2, zeroing:",
-                "the calibration of finger 2 failed, its motors are off, and its previous calibration is in force: \
+                "the calibration of finger 2 failed (its motors are off, and its previous calibration is in force): \
                  nothing holds the finger in its pose",
                 "--finger 2 --zero --identify; then for the remaining fingers:",
                 "--finger 3 --zero --identify\n",

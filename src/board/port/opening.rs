@@ -19,7 +19,7 @@ impl Port {
         port.lock()?;
         let set_up = |source| PortError::SetUp { path: path.to_owned(), source };
         let offered = port.configure(baud).map_err(set_up)?;
-        // A UART tolerates a difference of 3 %. A driver that does not support the rate offers a very different one.
+        // A UART tolerates a rate error of 3 %. A driver that does not support `baud` selects a very different rate.
         if offered.abs_diff(baud) > baud / 33 {
             return Err(PortError::Baud { path: path.to_owned(), wanted: baud, offered });
         }
@@ -29,8 +29,8 @@ impl Port {
         Ok(port)
     }
 
-    /// Keeps other programs out by the mark of exclusive use and by a lock. The mark does not stop root, but the lock
-    /// does.
+    /// Keeps other programs out with TIOCEXCL and flock. TIOCEXCL does not stop a program that runs as root. flock also
+    /// stops such a program, if that program locks the port itself.
     fn lock(&self) -> Result<(), PortError> {
         let failed = |source| PortError::at_opening(&self.path, source);
         // SAFETY: the descriptor is open; neither call takes a pointer.
@@ -68,13 +68,14 @@ impl Port {
         };
         if modes(&found) != modes(&settings) || found.c_ispeed != found.c_ospeed {
             return Err(io::Error::other(
-                "its driver does not take 8 data bits, no parity, 1 stop bit, no flow control",
+                "the driver does not support 8 data bits, no parity, 1 stop bit and no flow control",
             ));
         }
         Ok(found.c_ospeed)
     }
 
-    /// Uses TCGETS2 and TCSETS2, because tcgetattr and tcsetattr do not support arbitrary baud rates.
+    /// Returns the settings of the port. This type uses TCGETS2 and TCSETS2, because tcgetattr and tcsetattr do not
+    /// support arbitrary baud rates.
     fn settings(&self) -> io::Result<libc::termios2> {
         // SAFETY: all zeros is a valid termios2.
         let mut settings: libc::termios2 = unsafe { std::mem::zeroed() };
@@ -83,8 +84,9 @@ impl Port {
         Ok(settings)
     }
 
-    /// Requests low latency. FTDI bridges otherwise hold bytes back for 16 ms. A driver that does not know the request
-    /// refuses it and does not need it, so a failure is not an error. [`Port::latency_timer_ms`] returns the result.
+    /// Requests low latency from the driver. Without this request, FTDI bridges hold bytes back for 16 ms. A driver
+    /// that does not know the request refuses it. Such a driver does not need the request, so a refusal is not an
+    /// error. [`Port::latency_timer_ms`] returns the resulting latency.
     fn request_low_latency(&self) {
         let mut serial = SerialStruct([0; SERIAL_STRUCT_WORDS]);
         // SAFETY: the descriptor is open, and `serial` is at least as large and as aligned as the kernel's
@@ -99,7 +101,7 @@ impl Port {
 }
 
 /// The kernel's `struct serial_struct`, of which only `flags` is used: the fifth int (after type, line, port and irq).
-/// The structure has 72 bytes on 64-bit machines; the rest is a margin.
+/// The kernel's structure is 72 bytes long on 64-bit machines. The rest of this type is a margin.
 #[repr(C, align(8))]
 struct SerialStruct([libc::c_int; SERIAL_STRUCT_WORDS]);
 
@@ -117,7 +119,7 @@ fn open(path: &Path) -> Result<Descriptor, PortError> {
     match unsafe { libc::isatty(descriptor.number()) } {
         1 => Ok(descriptor),
         _ => match io::Error::last_os_error() {
-            // A sandbox forbids the question.
+            // A sandbox does not permit the system call of isatty.
             error if matches!(error.raw_os_error(), Some(libc::EPERM | libc::ENOSYS)) => Err(failed(error)),
             _ => Err(PortError::NotASerialPort(path.to_owned())),
         },

@@ -5,8 +5,8 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 /// The length of the longest frame before byte stuffing: header, sequence number, body, check.
 pub const MAX_FRAME: usize = 128;
 
-/// The bytes that byte stuffing and the delimiter add. Byte stuffing adds one, because no frame is longer than 254
-/// bytes.
+/// The number of bytes that byte stuffing and the delimiter add to a frame. Byte stuffing adds only one byte, because
+/// no frame is longer than 254 bytes.
 pub const WIRE_OVERHEAD: usize = 2;
 
 /// The length of the longest frame on the wire, with its delimiter.
@@ -21,12 +21,13 @@ pub(super) const CHECK: usize = 4;
 /// The CRC-32 of zlib and Ethernet, which every language and many microcontrollers provide.
 static CHECKSUM: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// Returns the check of a frame's header, sequence number and body.
+/// Computes the check, which is the CRC-32 of a frame's header, sequence number and body.
 pub fn check(bytes: &[u8]) -> u32 {
     CHECKSUM.checksum(bytes)
 }
 
-/// A frame with a correct check, whose content has not yet been read: a view of its bytes without stuffing.
+/// A view of the bytes of a frame without their stuffing. The check of the frame is correct. The content of the frame
+/// has not been read yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Packet<'a> {
     prefix: [u8; PREFIX],

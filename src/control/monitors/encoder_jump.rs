@@ -14,13 +14,13 @@ const MARGIN: f64 = 1.25;
 /// Additional tolerance, counts. The last bit flickers at both ends of two differences.
 const FLICKER: f64 = 4.0;
 
-/// Least interval over which a speed is measured, as a fraction of a period. A late cycle is followed immediately by
+/// Shortest interval over which a speed is measured, as a fraction of a period. A late cycle is followed immediately by
 /// another one, in which nothing turns. Over such a short interval the last bit alone would be a high speed.
 const SHORTEST: f64 = 0.75;
 
 #[derive(Clone, Debug)]
 pub(super) struct EncoderJump {
-    /// Least interval of a speed, s.
+    /// Shortest interval over which a speed is measured, s.
     shortest: f64,
     /// Largest change of speed, rad/s^2.
     strongest: Vector4<f64>,

@@ -27,7 +27,7 @@ const OFFSET: f64 = 0.015;
 /// of four gauges at 1000 Hz.
 const UNLIKELY: f64 = -25.3;
 
-/// Least assumed probability that a sample of a gauge repeats the previous one. A gauge in motion hardly repeats a
+/// Lowest assumed probability that a sample of a gauge repeats the previous one. A gauge in motion hardly repeats a
 /// count, but its flicker at rest must still be recognised.
 const LEAST_REPEATS: f64 = 0.2;
 
@@ -35,7 +35,7 @@ const LEAST_REPEATS: f64 = 0.2;
 /// slow.
 const MOST_REPEATS: f64 = 0.7;
 
-/// Least fraction of samples in which a gauge with noise reverses its direction. About half of its samples do. Motion
+/// Lowest fraction of samples in which a gauge with noise reverses its direction. About half of its samples do. Motion
 /// does not reverse. So a gauge without noise that comes to rest is not taken for a dead one.
 const LEAST_REVERSALS: f64 = 0.15;
 

@@ -6,14 +6,15 @@ use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
-/// Fraction of the way from its limit to its stop at which a joint counts as at its stop. Tendons and stops are
-/// elastic.
+/// A joint is considered to be at its stop after this fraction of the way from the joint limit to the stop. The
+/// fraction is less than 1, because tendons and stops are elastic.
 const STOP_FRACTION: f64 = 0.8;
 
 #[derive(Clone, Debug)]
 pub(super) struct JointStop {
-    /// Angles from which a joint counts as at its stop, rad.
+    /// Angles below which the joints are considered to be at their lower stops, rad.
     low: Vector3<f64>,
+    /// Angles above which the joints are considered to be at their upper stops, rad.
     high: Vector3<f64>,
 }
 

@@ -14,11 +14,11 @@ const TORQUE_CONSTANT: f64 = 0.3;
 /// Additional tolerance, N.
 const TOLERANCE: f64 = 1.0;
 
-/// Time for which the imbalance must last, s. In this time a free motor would turn by dozens of counts under the least
-/// imbalance that counts.
+/// Time for which the imbalance must last, s. In this time a free motor would turn by dozens of counts under the
+/// smallest imbalance that this monitor reports.
 const DURATION: f64 = 0.012;
 
-/// Motion of a motor that counts as at rest, rad. The last bit of an encoder flickers.
+/// Largest motion of a motor that is considered to be at rest, rad. The last bit of an encoder flickers.
 const AT_REST: f64 = 0.007;
 
 #[derive(Clone, Debug)]

@@ -47,7 +47,7 @@ impl AdmissibleDamping {
         Self { least, most, correspondence }
     }
 
-    /// Returns the least and the greatest ratio for a spring whose largest eigenvalue is `stiffness`, N/cm. Both are
+    /// Returns the smallest and the largest ratio for a spring whose largest eigenvalue is `stiffness`, N/cm. Both are
     /// multiples of 0.01, so that a planner reads exactly the range that is checked.
     pub fn range(&self, stiffness: f64) -> (f64, f64) {
         let at = |(limit, slope): (f64, f64)| limit + slope * (stiffness * self.correspondence);

@@ -11,9 +11,10 @@ const REFERENCE_STIFFNESS: f64 = 3.0;
 /// of the damping that a spring needs.
 const LIMP_DAMPING: f64 = 0.2;
 
-/// Least lever of joint 0 that counts, cm. With the tip on the axis of joint 0, no tip stiffness holds the joint. Near
+/// Minimum lever of joint 0, cm. With the tip on the axis of joint 0, no tip stiffness holds the joint. Near
 /// the axis a force on the tip turns the joint away: a force that compresses the spring by d toward the axis reduces
-/// the joint's stiffness k r^2 by k d r. With a least lever of 5 mm, the joint stays held at deflections of up to 5 mm.
+/// the joint's stiffness k r^2 by k d r. With a minimum lever of 5 mm, the joint stays held at deflections of up to 5
+/// mm.
 const LEAST_LEVER: f64 = 0.5;
 
 /// tau = spring - z (B K_theta B + d) theta_dot, with K_theta = J^T K J, a diagonal B, a small d, and the relative
@@ -27,7 +28,7 @@ const LEAST_LEVER: f64 = 0.5;
 /// the damping ratio stays constant if Kx or the lever of a joint changes. A tip near the axis of joint 0 needs this,
 /// because that joint is then soft.
 ///
-/// If the lever r of joint 0 is less than the least lever rho, joint 0 has an additional spring to theta_d with the
+/// If the lever r of joint 0 is less than the minimum lever rho, joint 0 has an additional spring to theta_d with the
 /// stiffness n^T K n (rho^2 - r^2). n is the direction in which the joint moves the tip. The stiffness starts from zero
 /// at r = rho, and is zero if K has no stiffness along n.
 #[derive(Clone, Debug)]

@@ -15,20 +15,21 @@ use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::model::{LinkDynamics, Tendons};
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
 
-/// Noise of a gauge for which the observers are designed, N rms.
+/// Gauge noise for which the observers are designed, N rms.
 const GAUGE_NOISE: f64 = 0.03;
 
-/// Distance of the tensions from their bounds in addition to the dither, in multiples of that noise.
+/// Distance of the tensions from their bounds, in multiples of [`GAUGE_NOISE`]. The amplitude of the dither is added to
+/// this distance.
 const NOISE_RESERVE: f64 = 14.0;
 
 /// Additional distance from t_max, as a fraction of the motor's friction at t_max. Friction holds a motor at rest, so
-/// its tendon keeps its tension until the observer has found the deficit or excess. Over 24 seeds of 24 poses at 1000
-/// Hz, tendons of a finger at a stop exceeded t_max by up to 0.39 N without this distance, and stayed 0.46 N below
-/// t_max with it.
+/// the tension of its tendon stays too low or too high until the observer has found the error. Over 24 seeds of 24
+/// poses at 1000 Hz, tendons of a finger at a stop exceeded t_max by up to 0.39 N without this distance, and stayed
+/// 0.46 N below t_max with it.
 const FRICTION_RESERVE: f64 = 0.2;
 
-/// Bandwidth of the low-pass filter on the motion of the joints in addition to the reference, rad/s. Dither and noise
-/// are above it, and pushes below it.
+/// Bandwidth of the low-pass filter on the drift, rad/s. The drift is the joint rates minus the rates of the reference.
+/// Dither and noise are above this bandwidth, and the motion under a push is below it.
 const DRIFT_BANDWIDTH: f64 = 60.0;
 
 /// The motors and their tendons as masses on springs, in SI units at the tendon.
@@ -43,7 +44,7 @@ struct Drives {
     stiffness: Vector4<f64>,
     /// Tensions at which the encoders are zeroed, N.
     home: Vector4<f64>,
-    /// Angle of an encoder count, rad.
+    /// Angle per encoder count, rad.
     count: [f64; 4],
 }
 
@@ -95,8 +96,8 @@ impl Drives {
         TendonObserver::new(tendon, &design, 1.0 / rate).ok_or_else(too_far)
     }
 
-    /// Returns c, N s/m: the damping of the motors relative to the links of a finger that is bent as in its homing
-    /// pose. R is in m.
+    /// Returns the damping c of the motion of the motors relative to the links, N s/m, for a finger that is bent as in
+    /// its homing pose. `r` is in m.
     fn relative_damping(&self, numbers: &Numbers, dynamics: &LinkDynamics, r: &Matrix3x4<f64>) -> f64 {
         let bent = Vector3::new(0.0, 0.5, 1.0);
         let link_mass = (dynamics.inertia(&bent).determinant() / (r * r.transpose()).determinant()).cbrt();

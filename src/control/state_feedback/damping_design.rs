@@ -6,14 +6,14 @@ use nalgebra::Matrix3;
 /// D = 2 zeta (W # (K + f^2 W)) + lag sym(H W^-1 K).
 ///
 /// W # K = W (W^-1 K)^(1/2) is the geometric mean. In one dimension it gives 2 zeta sqrt(W K). In general it gives
-/// every mode of the pair (W, K) the same damping ratio zeta. The least frequency f keeps a finger damped that has no
+/// every mode of the pair (W, K) the same damping ratio zeta. The lowest frequency f keeps a finger damped that has no
 /// stiffness, or a K without full rank. The tensions lag behind the desired ones by `lag`. The share H W^-1 of the
 /// spring's torque acts on the links. The second term compensates the lag of that share.
 #[derive(Clone, Debug)]
 pub(crate) struct DampingDesign {
     /// zeta: damping ratio.
     pub ratio: f64,
-    /// f: least damped frequency, rad/s.
+    /// f: lowest frequency for which the damping is designed, rad/s.
     pub least_frequency: f64,
     /// Lag of the tensions, s.
     pub lag: f64,

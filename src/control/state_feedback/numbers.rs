@@ -1,52 +1,60 @@
-//! The numbers of state feedback. One procedure computes them from the configuration, and nothing is tuned by hand for
-//! a finger.
+//! The parameters of state feedback ([`Numbers`]). One procedure computes them from the configuration, and nothing is
+//! tuned by hand for a finger.
 //!
-//! Numbers with a unit follow from the configuration: masses from rotor inertias, and the observers' gains from the
-//! size of a count and a bandwidth. The other numbers are dimensionless or in radians per cycle. They were found by a
-//! search on the eigenvalues of the exact one-cycle map of the default finger, never for a single pose.
+//! The masses follow from the configured rotor inertias, and the gains of the observers follow from the size of a count
+//! and a bandwidth. The other numbers are tuned. Most of them are dimensionless, or their unit is cycles or radians per
+//! cycle. They were found by a search on the eigenvalues of the exact one-cycle map of the default finger. No number
+//! was tuned for a single pose.
 
 use crate::control::number_checks::{not_negative, positive};
 use crate::control::rate_table::{Row, Tuned, at};
 use crate::model::configuration::{ConfiguredController, Unusable};
 
-/// The numbers at the rate of the finger.
+/// The parameters of a finger at its servo rate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Numbers {
-    /// alpha: commanded tension for a tension error. The motors appear to have 1/alpha of their inertia.
+    /// alpha: the gain from the tension error to the pull of a motor. The motors appear to have 1/alpha of their
+    /// inertia.
     pub inertia_gain: f64,
-    /// zeta of the spring, relative to the inertia for which the damping is designed.
+    /// zeta of the spring. It applies to the inertia of the links plus the inertia of the motors for which the damping
+    /// is designed ([`Numbers::damped_inertia`]).
     pub damping_ratio: f64,
     /// zeta of the motion of the motors relative to the links.
     pub relative_damping: f64,
-    /// Bandwidth of the observed disturbance, rad/s.
+    /// Bandwidth with which the observers follow the disturbance of the motors, rad/s.
     pub disturbance_bandwidth: f64,
-    /// Bandwidth of the observed links, rad/s.
+    /// Bandwidth with which the observers follow the motion of the links, rad/s.
     pub link_bandwidth: f64,
-    /// Time relative to the next sample for which the motion is computed, cycles. Negative is before the sample.
+    /// The motion is computed for this time relative to the next sample, cycles. A negative time is before the sample.
     pub sample_offset: f64,
-    /// Least frequency for which the damping is designed, rad/s.
+    /// Lowest frequency for which the damping is designed, rad/s.
     pub least_frequency: f64,
-    /// Lag of the tensions, and inertia of the motors, for which the spring's damping is designed. Both are relative to
-    /// the values that follow from alpha.
+    /// Lag of the tensions for which the spring's damping is designed, relative to the lag c / (alpha k) that follows
+    /// from alpha.
     pub lag: f64,
+    /// Inertia of the motors for which the spring's damping is designed, relative to the inertia R m R^T / alpha that
+    /// follows from alpha.
     pub damped_inertia: f64,
-    /// alpha and relative damping for the common component of the tendons, divided by those for the components that
-    /// turn the joints. Differences between motors convert the common component to joint torque.
+    /// alpha for the common component of the tendons, divided by alpha for the components that turn the joints.
+    /// Differences between motors convert the common component to joint torque.
     pub common_gain: f64,
+    /// Relative damping for the common component of the tendons, divided by the relative damping for the components
+    /// that turn the joints.
     pub common_damping: f64,
     /// Largest slope of the joint friction feed-forward, as a fraction of the spring's damping. An overestimated
     /// friction must not cancel the damping.
     pub friction_slope: f64,
-    /// Time constant of each pole of the reference, s.
+    /// Time constant of each stage of the reference filter, s.
     pub reference_time: f64,
-    /// Amplitude of the dither divided by the joints' Coulomb friction, and its frequency, Hz. With a lower frequency
-    /// the motors need less torque for the dither, and the tip moves more.
+    /// Amplitude of the dither, divided by the joints' Coulomb friction.
     pub dither: f64,
+    /// Frequency of the dither, Hz. With a lower frequency the motors need less torque for the dither, and the tip
+    /// moves more.
     pub dither_frequency: f64,
 }
 
-/// Least damped frequency, rad/s. It also applies to a finger without stiffness. With 12 such a finger oscillates at
-/// its joint limits.
+/// Lowest frequency for which the damping is designed, rad/s. It determines the damping of a finger without stiffness.
+/// With 12 rad/s, a finger without stiffness oscillates at its joint limits.
 const LEAST_FREQUENCY: f64 = 4.0;
 
 /// Frequency of the dither, Hz.
@@ -61,17 +69,17 @@ struct TunedNumbers {
     inertia_gain: f64,
     damping_ratio: f64,
     relative_damping: f64,
-    /// Bandwidth of the observed disturbance, radians per cycle.
+    /// Bandwidth with which the observers follow the disturbance of the motors, radians per cycle.
     disturbance: f64,
-    /// Bandwidth of the observed links, radians per cycle.
+    /// Bandwidth with which the observers follow the motion of the links, radians per cycle.
     link: f64,
-    /// Time before the next sample for which the motion is computed, cycles.
+    /// The motion is computed for this time before the next sample, cycles.
     look_back: f64,
     lag: f64,
     common_gain: f64,
     common_damping: f64,
     damped_inertia: f64,
-    /// Time constant of each pole of the reference, s.
+    /// Time constant of each stage of the reference filter, s.
     reference_time: f64,
 }
 

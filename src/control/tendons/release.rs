@@ -1,4 +1,4 @@
-//! Release of the finger: the pulls ramp to zero.
+//! Release of the finger: the pulls of the motors at their tendons ramp to zero.
 
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};

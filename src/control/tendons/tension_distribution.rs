@@ -13,7 +13,7 @@ pub struct DistributedTensions {
     pub scale: f64,
 }
 
-/// t = Q (tau, tau_g) with the least tau_g that keeps t >= t_min. If t would exceed t_max, tau is scaled down.
+/// t = Q (tau, tau_g) with the smallest tau_g that keeps t >= t_min. If t would exceed t_max, tau is scaled down.
 #[derive(Clone, Debug)]
 pub struct TensionDistribution {
     /// Q_i of eq. 17: joint torque, N cm, to tension, N.
@@ -84,7 +84,7 @@ impl TensionDistribution {
 }
 
 impl BoundedDistribution<'_> {
-    /// Returns the least tensions, in the sense of eq. 20, for the joint torque tau, N cm.
+    /// Returns the smallest tensions, in the sense of eq. 20, for the joint torque tau, N cm.
     ///
     /// With the tau_g of eq. 20 some tendon j is at t_min. Tendon i then has s (A_i - A_j q_i/q_j) + t_min q_i/q_j,
     /// where A = Q tau and s is the scale. That tau_g is the largest over all j, so t_i <= t_max must hold for every

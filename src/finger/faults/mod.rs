@@ -1,4 +1,5 @@
-//! Named faults: what can go wrong with a finger, as numbers that never change and as text for the user.
+//! Named faults: what can go wrong with a finger. Each kind of fault has a number, which never changes, and a text for
+//! the user.
 
 mod action;
 mod at_link;

@@ -1,12 +1,12 @@
-//! Changes of single values in a TOML document that keep everything around them.
+//! Changes single values in a TOML document, and keeps everything around these values.
 
 use crate::hand::found::{Numbers, with_signs};
 use toml_edit::{Array, Formatted, Item, Table, TableLike, Value};
 
-/// Significant digits that are written. No routine measures as many.
+/// Number of significant digits that are written. No calibration routine is accurate to so many digits.
 const DIGITS: usize = 6;
 
-/// The values to write, and whether they form an array. `present` are the numbers in the file.
+/// The values to write, and whether they form an array. `present` contains the numbers that the key has in the file.
 pub(super) fn written(numbers: &Numbers, present: &[f64]) -> (Vec<Value>, bool) {
     match numbers {
         Numbers::Whole(values) => (values.iter().map(|&value| value.into()).collect(), true),
@@ -16,8 +16,8 @@ pub(super) fn written(numbers: &Numbers, present: &[f64]) -> (Vec<Value>, bool) 
     }
 }
 
-/// Writes values to a key whose numbers are `present`, in this table or in the one for all fingers. Comments and layout
-/// are kept if the key is in this table.
+/// Writes values to a key in the table `section`. `present` contains the numbers that the key has now, in this table or
+/// in the table for all fingers. If the key is in this table, its comments and layout are kept.
 pub(super) fn set(section: &mut dyn TableLike, key: &str, values: Vec<Value>, array: bool, present: &[f64]) {
     if array {
         match section.get_mut(key).and_then(Item::as_array_mut) {
@@ -47,7 +47,7 @@ pub(super) fn set(section: &mut dyn TableLike, key: &str, values: Vec<Value>, ar
     }
 }
 
-/// Rounds to the written number of digits.
+/// Rounds to [`DIGITS`] significant digits.
 fn rounded(value: f64) -> Value {
     let digits = DIGITS - 1;
     // The text of a finite number can be parsed.
@@ -59,7 +59,7 @@ pub(super) fn same(values: &[Value], present: &[f64]) -> bool {
     values.len() == present.len() && values.iter().zip(present).all(|(value, &number)| is(value, number))
 }
 
-/// Whether a value equals this number, which may have been written with more digits.
+/// Whether a value equals this number, or equals it after rounding to [`DIGITS`] significant digits.
 fn is(value: &Value, number: f64) -> bool {
     match value {
         Value::Integer(whole) => *whole.value() as f64 == number,
@@ -67,7 +67,8 @@ fn is(value: &Value, number: f64) -> bool {
     }
 }
 
-/// The table with this key. If there is none, a new one without a header until it has keys.
+/// Returns the table with this key. If there is none, inserts an empty table, whose header is written only when the
+/// table has keys.
 pub(super) fn child<'a>(parent: &'a mut dyn TableLike, key: &str) -> Result<&'a mut dyn TableLike, String> {
     if !parent.contains_key(key) {
         let mut table = Table::new();

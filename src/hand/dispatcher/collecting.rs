@@ -13,7 +13,8 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How often timings and black boxes are collected. The rings of a servo hold many times what arrives in between.
+/// Interval at which timings and black boxes are collected. The rings of a servo hold many times what arrives in one
+/// interval.
 const COLLECTING_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Memory for a copy of a black box and the thread that writes it, bytes.

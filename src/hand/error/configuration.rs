@@ -45,7 +45,7 @@ pub enum ConfigurationError {
         /// What is wrong.
         reason: String,
     },
-    /// A configuration from a program has an error.
+    /// A configuration that was made by a program, and not read from a file, has an error.
     #[error("{section}.{}: {}", unusable.key, unusable.reason)]
     Unusable {
         /// `hand`, or `finger.1` to `finger.3`.
@@ -53,12 +53,12 @@ pub enum ConfigurationError {
         /// The key and the reason.
         unusable: Unusable,
     },
-    /// The keys to adjust cannot be read.
+    /// The text with the keys to adjust has an error.
     #[error("finger {finger}, line {line} of the keys to adjust: {reason}")]
     Adjustment {
         /// The finger.
         finger: FingerNumber,
-        /// Counted from 1.
+        /// Number of the line, counted from 1.
         line: usize,
         /// What is wrong.
         reason: String,
@@ -84,7 +84,7 @@ pub enum ConfigurationError {
         /// The error that the system reported.
         source: std::io::Error,
     },
-    /// A calibration does not match the configuration file, which has changed since.
+    /// A calibration does not match the configuration file, because the file has changed since the calibration.
     #[error(
         "the calibration does not match {}: {key} is {} there, and was {} during the calibration. Nothing was written: \
          correct the file and calibrate again",
@@ -105,10 +105,10 @@ pub enum ConfigurationError {
 }
 
 impl ConfigurationError {
-    /// The nearest errno.
+    /// The errno that the system reported, or the one that describes the error best.
     pub fn errno(&self) -> i32 {
         match self {
-            // The file was read but is not text if the error has no errno of the system.
+            // An error without an errno of the system means that the file was read but is not text.
             Self::Unreadable { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
             Self::UntrustedEnvironment { .. } => libc::EACCES,
             Self::Invalid { .. } | Self::Unusable { .. } => libc::EINVAL,

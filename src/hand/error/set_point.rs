@@ -26,7 +26,7 @@ pub enum SetPointError {
     BeyondJointLimit {
         /// The finger.
         finger: FingerNumber,
-        /// 0 to 2.
+        /// Number of the joint, 0 to 2.
         joint: usize,
         /// The requested angle, rad.
         value: f64,

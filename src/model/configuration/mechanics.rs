@@ -1,9 +1,10 @@
-//! The controller's model of the bodies and the friction of a finger. The defaults equal those of the simulated finger,
-//! whose true values are in `[finger.simulation]`. Experiments with a wrong model set the two to different values.
+//! The controller's model of the masses and the friction of a finger. The true values of the simulated finger are in
+//! `[finger.simulation]`. The defaults of the model equal the defaults there. An experiment with a wrong model sets
+//! different values in the two places.
 
 use serde::{Deserialize, Serialize};
 
-/// `[finger.links]`: the links as uniform cylinders, the tip as a point.
+/// `[finger.links]`: masses and radii. A link is modelled as a uniform cylinder, and the tip as a point mass.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredLinks {
