@@ -728,7 +728,7 @@ struct FingerStatus {
                                        or the servo thread did not run, up to now. One late cycle may skip many. */
     unsigned long LostReplies;      /* Cycles without a valid reply in time. */
     unsigned long DamagedFrames;    /* Bad data on the finger's port, in pieces: damaged or truncated frames, noise.
-                                       Whole frames that nobody expected are in FingerTiming.ForeignFrames. */
+                                       Whole frames that no finger expected are in FingerTiming.ForeignFrames. */
     double Calibration;             /* Progress of a calibration, 0 to 1. 0 without a calibration. */
     int MemoryLocked;               /* 1: OpenHand has locked the memory of every servo thread, so that it never
                                        waits for a page. 0: at least one is not locked. If the planner calls
@@ -760,7 +760,7 @@ struct FingerTiming {
     unsigned long LateReplies;      /* Replies that arrived after the end of their cycle. */
     unsigned long CorruptReplies;   /* Bad data on the finger's port, in pieces: damaged or truncated frames, noise. */
     unsigned long DuplicateReplies; /* Replies that arrived a second time. */
-    unsigned long ForeignFrames;    /* Whole frames on the finger's port that nobody expected. */
+    unsigned long ForeignFrames;    /* Whole frames on the finger's port that no finger expected. */
 };
 
 /* Result of GetTip. Vectors are in the finger's frame. */

@@ -61,7 +61,7 @@ pub struct FingerStatus {
     pub SkippedPeriods: c_ulong,
     /// Cycles without a valid reply in time.
     pub LostReplies: c_ulong,
-    /// Bad data on the finger's port, in pieces: damaged or truncated frames, noise. Whole frames that nobody
+    /// Bad data on the finger's port, in pieces: damaged or truncated frames, noise. Whole frames that no finger
     /// expected are in FingerTiming.ForeignFrames.
     pub DamagedFrames: c_ulong,
     /// Progress of a calibration, 0 to 1. 0 without a calibration.

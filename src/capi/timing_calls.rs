@@ -74,7 +74,7 @@ pub struct FingerTiming {
     pub CorruptReplies: c_ulong,
     /// Replies that arrived a second time.
     pub DuplicateReplies: c_ulong,
-    /// Whole frames on the finger's port that nobody expected.
+    /// Whole frames on the finger's port that no finger expected.
     pub ForeignFrames: c_ulong,
 }
 

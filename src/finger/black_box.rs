@@ -178,7 +178,7 @@ impl Recorder {
     /// Writes a keyframe if one is due, or if `begin` is true. `begin` means that the records begin with this cycle.
     pub fn keyframe(&mut self, cycle: u64, state: &State, begin: bool) {
         if begin || cycle.is_multiple_of(self.apart) {
-            // If nobody collects, the keyframe is lost, like the records.
+            // If nothing is collected for too long, the keyframe is lost, like the records.
             let _ = self.keyframes.push(Keyframe { cycle, state: *state });
         }
     }

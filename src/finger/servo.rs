@@ -191,7 +191,7 @@ impl FingerServo {
         }
         self.mailbox.publish(self.report);
         // The timings come after the report, so that no more timings than cycles are ever counted. The ring is full
-        // only if nobody collects. The timing is dropped then, because the cycle is more important.
+        // only if nothing is collected. The timing is dropped then, because the cycle is more important.
         let _ = self.timings.push(timing);
     }
 

@@ -26,7 +26,7 @@ const ANSWER: Duration = Duration::from_secs(5);
 #[must_use = "a calibration is followed by polling it"]
 pub struct Calibrating {
     finger: FingerNumber,
-    /// While this exists, nobody else can calibrate the finger.
+    /// While this exists, no other call can calibrate the finger.
     _claim: Claim,
     order: u32,
     /// The results, from the moment when the finger is ordered to restart with them.

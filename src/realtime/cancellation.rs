@@ -61,8 +61,8 @@ impl Drop for NoCancellation {
     fn drop(&mut self) {
         let mut before = DISABLE;
         // SAFETY: the state is the thread's previous one, and there is room for the current one. A pending cancellation
-        // takes effect later: every user of this type either has cancellation deferred, or runs in a thread that nobody
-        // cancels.
+        // takes effect later: every user of this type either has cancellation deferred, or runs in a thread that is
+        // not cancelled.
         unsafe { pthread_setcancelstate(self.0, &mut before) };
     }
 }

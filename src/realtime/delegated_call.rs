@@ -47,8 +47,8 @@ impl<T: Send + 'static> DelegatedCall<T> {
             workers.done.store(1, Ordering::Release);
             wake(&workers.done);
         })?;
-        // `try_with` fails if the calling thread is ending and has no thread-local data any more. Then nobody joins the
-        // worker.
+        // `try_with` fails if the calling thread is ending and has no thread-local data any more. Then no thread joins
+        // the worker.
         let _ = WORKER.try_with(|place| place.replace(Some(worker)));
         Ok(Self(outcome))
     }

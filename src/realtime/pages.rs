@@ -130,7 +130,7 @@ impl<T: ?Sized> Deref for SharedPages<T> {
     type Target = T;
 
     fn deref(&self) -> &T {
-        // SAFETY: the owner keeps the value alive, and nobody has a mutable reference to it.
+        // SAFETY: the owner keeps the value alive, and there is no mutable reference to it.
         unsafe { self.place.as_ref() }
     }
 }

@@ -51,7 +51,7 @@ impl Limits {
 
 impl FingerServo {
     /// A limp finger in the pose that its board has reported, and the planners' end of its mailbox. Timings are written
-    /// to `timings`, and records of its cycles to `black_box`. Those that nobody collects are dropped.
+    /// to `timings`, and records of its cycles to `black_box`. Entries for which a ring has no room are dropped.
     ///
     /// `stiffness` is the Kx with which the finger holds its initial pose. It must be admitted already.
     ///
