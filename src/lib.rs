@@ -69,7 +69,7 @@ mod stability;
 pub mod stability;
 
 pub use calibration::{Findings, Identified, Obstacle, Progress, Signs, Step, Task, Zeros};
-pub use finger::{Fault, FaultKind, Losses, Quantity, Recording, RecordingError, Severity, Stage, stop_all};
+pub use finger::{Fault, FaultKind, Losses, Recording, RecordingError, Stage, stop_all};
 pub use hand::{
     Calibrating, CalibrationState, ConfigurationError, Configured, FingerFault, FingerStatus, FingerTip, Fingers, Hand,
     HandError, Recovering, RecoveryError, SetPointError,

@@ -97,8 +97,8 @@ impl Stress {
 
 impl Drop for Stress {
     fn drop(&mut self) {
-        // stress-ng passes the signal on to its workers. SAFETY: this process has started the process with this number,
-        // and has not yet waited for it.
+        // stress-ng passes the signal on to its workers.
+        // SAFETY: this process has started the process with this number, and has not yet waited for it.
         unsafe { libc::kill(self.0.id() as libc::pid_t, libc::SIGINT) };
         let _ = self.0.wait();
     }
