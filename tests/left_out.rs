@@ -1,4 +1,4 @@
-//! Machines without the tools that tests need: what `cargo test` leaves out and lists, and what `tests/run` installs.
+//! Machines without the tools that tests need: what `cargo test` skips and lists, and what `tests/run` installs.
 
 #[allow(dead_code)]
 #[path = "common/tools.rs"]
@@ -48,15 +48,15 @@ fn without_a_tool_a_test_passes_and_is_listed_and_with_ci_it_fails() {
     run_without_tools("false");
 
     // This process is the parent of both and lists them once.
-    let listed = tools::take_left_out(std::process::id());
+    let listed = tools::take_skipped(std::process::id());
     assert!(listed.len() == 1 && listed[0].starts_with(expected), "{listed:?}");
     assert!(listed[0].contains("apt-get install --no-install-recommends clang"), "{listed:?}");
-    assert_eq!(tools::take_left_out(std::process::id()), Vec::<String>::new(), "lines of an earlier run");
+    assert_eq!(tools::take_skipped(std::process::id()), Vec::<String>::new(), "lines of an earlier run");
 
     let run = run_without_tools("true");
     let output = said(&run);
     assert!(!run.status.success() && output.contains("apt-get install --no-install-recommends clang"), "{output}");
-    assert_eq!(tools::take_left_out(std::process::id()), Vec::<String>::new());
+    assert_eq!(tools::take_skipped(std::process::id()), Vec::<String>::new());
 }
 
 /// Runs `tests/run` in a copy of its own. Only these programs and a few of the system's are available.

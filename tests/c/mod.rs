@@ -14,7 +14,7 @@ mod tools;
 #[allow(unused_imports)]
 pub use tool::tool;
 #[allow(unused_imports)]
-pub use tools::leave_out;
+pub use tools::skip;
 
 use std::env;
 use std::fs;
@@ -39,18 +39,18 @@ pub fn c_compiler() -> &'static str {
     if tools::available("gcc", "under gcc") { "gcc" } else { "cc" }
 }
 
-/// All C compilers that the tests know. If clang is missing, the report lists what was left out.
+/// All C compilers that the tests know. If clang is missing, the report lists what was skipped.
 pub fn c_compilers() -> Vec<&'static str> {
     let clang = tools::available("clang", "under clang").then_some("clang");
     [c_compiler()].into_iter().chain(clang).collect()
 }
 
-/// The C++ compiler for tests that need only one. Without it the test is left out.
+/// The C++ compiler for tests that need only one. Without it the test is skipped.
 pub fn cpp_compiler() -> Option<&'static str> {
     tools::available("g++", "C++").then_some("g++")
 }
 
-/// All C++ compilers that the tests know. If one is missing, the report lists what was left out.
+/// All C++ compilers that the tests know. If one is missing, the report lists what was skipped.
 pub fn cpp_compilers() -> Vec<&'static str> {
     let clang = tools::available("clang++", "C++ under clang++").then_some("clang++");
     cpp_compiler().into_iter().chain(clang).collect()
@@ -111,7 +111,7 @@ impl Bench {
         command
     }
 
-    /// Compiles, links and runs one program that must exit with 0. A C++ program is left out if there is no C++
+    /// Compiles, links and runs one program that must exit with 0. A C++ program is skipped if there is no C++
     /// compiler.
     pub fn succeed(&self, flags: &[&str], sources: &[&str]) {
         let compiler = if sources[0].ends_with("cpp") { cpp_compiler() } else { Some(c_compiler()) };

@@ -1,4 +1,4 @@
-//! The tools that tests need besides Rust, and the list of tests that were left out because one is missing.
+//! The tools that tests need besides Rust, and the list of tests that were skipped because one is missing.
 //! `tests/tools.txt` names the tools and their Debian packages. Without a tool, the tests that need it pass, and
 //! tests/zz_left_out.rs lists them at the end of `cargo test`. With CI=true they fail.
 
@@ -26,8 +26,8 @@ fn tools() -> impl Iterator<Item = Tool> {
     })
 }
 
-/// Returns whether the tests can use a tool of `tests/tools.txt`. If not, `part` of the current test is listed as left
-/// out. With CI=true the test fails instead.
+/// Returns whether the tests can use a tool of `tests/tools.txt`. If not, `part` of the current test is listed as
+/// skipped. With CI=true the test fails instead.
 pub fn available(name: &str, part: &str) -> bool {
     let tool = tools().find(|tool| tool.name == name).expect("tests/tools.txt has a line for the tool");
     let mut probe = Command::new("sh");
@@ -38,15 +38,15 @@ pub fn available(name: &str, part: &str) -> bool {
     let remedy = format!("apt-get install --no-install-recommends {}", tool.packages);
     assert!(
         env::var("CI").as_deref() != Ok("true"),
-        "{name} is missing. Nothing may be left out with CI=true. Run tests/run, or as root: {remedy}"
+        "{name} is missing. Nothing may be skipped with CI=true. Run tests/run, or as root: {remedy}"
     );
-    leave_out(part, &format!("{name} is missing ({remedy})"));
+    skip(part, &format!("{name} is missing ({remedy})"));
     false
 }
 
-/// Lists `part` of the current test as left out, with the reason. With CI=true the test fails instead.
-pub fn leave_out(part: &str, reason: &str) {
-    assert!(env::var("CI").as_deref() != Ok("true"), "{part}: {reason}. Nothing may be left out with CI=true");
+/// Lists `part` of the current test as skipped, with the reason. With CI=true the test fails instead.
+pub fn skip(part: &str, reason: &str) {
+    assert!(env::var("CI").as_deref() != Ok("true"), "{part}: {reason}. Nothing may be skipped with CI=true");
     let thread = std::thread::current();
     let test = thread.name().filter(|&name| name != "main").unwrap_or("tests");
     note(&format!("{}, {test}, {part}: {reason}", env!("CARGO_CRATE_NAME")));
@@ -59,7 +59,7 @@ fn note(line: &str) {
         return;
     }
     // Only the printing macros are captured, not the functions of the streams.
-    let _ = writeln!(std::io::stderr(), "left out: {line}");
+    let _ = writeln!(std::io::stderr(), "skipped: {line}");
     let folder = folder_of_runs();
     let kept = fs::create_dir_all(&folder).and_then(|()| {
         let file = folder.join(run(std::os::unix::process::parent_id()).expect("the parent waits for this process"));
@@ -71,8 +71,8 @@ fn note(line: &str) {
     }
 }
 
-/// Returns what the children of a process have left out, in alphabetical order, and deletes the lists of earlier runs.
-pub fn take_left_out(parent: u32) -> Vec<String> {
+/// Returns what the children of a process have skipped, in alphabetical order, and deletes the lists of earlier runs.
+pub fn take_skipped(parent: u32) -> Vec<String> {
     let folder = folder_of_runs();
     let this = run(parent);
     let mut lines: Vec<String> = Vec::new();
@@ -91,7 +91,7 @@ pub fn take_left_out(parent: u32) -> Vec<String> {
 }
 
 fn folder_of_runs() -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join("left_out")
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("skipped")
 }
 
 /// Identifies one run of the tests by the number and the start time of its parent process, because numbers are reused.

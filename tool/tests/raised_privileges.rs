@@ -23,7 +23,7 @@ fn setgid_tool() -> Option<(TempDir, PathBuf)> {
     let tool = folder.path().join("sun2xp");
     copy(env!("CARGO_BIN_EXE_sun2xp"), &tool).expect("a copy");
     let Some(group) = another_group().filter(|&group| chown(&tool, None, Some(group)).is_ok()) else {
-        tools::leave_out("setgid", "this user is in one group only, and so cannot make a program that is setgid");
+        tools::skip("setgid", "this user is in one group only, and so cannot make a program that is setgid");
         return None;
     };
     set_permissions(&tool, Permissions::from_mode(0o2755)).expect("still allowed");
@@ -63,7 +63,7 @@ fn a_setgid_program_ignores_configurations_of_its_caller() {
     let Some((folder, tool)) = setgid_tool() else { return };
     let folder = folder.path();
     if Path::new(SYSTEM_FILE).exists() {
-        tools::leave_out("the simulated hand", "this machine has a configuration of its own");
+        tools::skip("the simulated hand", "this machine has a configuration of its own");
         return;
     }
     write(folder.join("costs.toml"), "wake_up = 1\nwrite = 1\nread = 1\ncompute = 1\n").expect("written");
