@@ -31,6 +31,7 @@ fn table() -> String {
             Severity::Fault => "stops",
             Severity::Warning => "continues",
             Severity::Refusal => "OpenHand fails",
+            other => panic!("the table has no word for {other:?}"),
         };
         let place: Vec<&str> = row.part.word().into_iter().chain(row.quantity.words()).collect();
         table += &format!(

@@ -43,7 +43,7 @@ pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obsta
         let feedback = read(&plant);
         let (activity, verdict) = calibration.cycle(&Sample { feedback: &feedback, report: &report, zero_valid: true });
         match verdict {
-            Verdict::Going(_) => {
+            Verdict::InProgress(_) => {
                 let activity = activity.expect("identification takes over in its first cycle");
                 report = advance(&mut plant, &feedback, &activity);
             }

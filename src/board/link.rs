@@ -50,22 +50,22 @@ pub struct LinkCounters {
 
 impl LinkCounters {
     /// Returns the sum of these counts and those of another link.
-    pub fn plus(&self, other: &Self) -> Self {
-        self.with(other, u64::saturating_add)
+    pub fn saturating_add(&self, other: &Self) -> Self {
+        self.combined(other, u64::saturating_add)
     }
 
     /// Returns the difference between these counts and those of another link.
-    pub fn less(&self, other: &Self) -> Self {
-        self.with(other, u64::saturating_sub)
+    pub fn saturating_sub(&self, other: &Self) -> Self {
+        self.combined(other, u64::saturating_sub)
     }
 
-    fn with(&self, other: &Self, of: impl Fn(u64, u64) -> u64) -> Self {
+    fn combined(&self, other: &Self, operation: impl Fn(u64, u64) -> u64) -> Self {
         Self {
-            bytes: of(self.bytes, other.bytes),
-            frames: of(self.frames, other.frames),
-            damaged: of(self.damaged, other.damaged),
-            foreign: of(self.foreign, other.foreign),
-            unsent: of(self.unsent, other.unsent),
+            bytes: operation(self.bytes, other.bytes),
+            frames: operation(self.frames, other.frames),
+            damaged: operation(self.damaged, other.damaged),
+            foreign: operation(self.foreign, other.foreign),
+            unsent: operation(self.unsent, other.unsent),
         }
     }
 }

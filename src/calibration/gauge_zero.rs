@@ -76,7 +76,7 @@ impl GaugeZero {
         for index in 0..4 {
             let tendon = index as u8 + 1;
             if spread[index] > LARGEST_SPREAD {
-                return Err(Obstacle::Restless { tendon, newton: spread[index] });
+                return Err(Obstacle::UnsteadyGauge { tendon, newton: spread[index] });
             }
             let fall = self.tight.map(|tight| tight[index] - offsets[index]);
             if let Some(fall) = fall.filter(|&fall| fall < LEAST_FALL * instruments.minimum) {

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// The reason for a refusal, and its remedy. A routine that is refused changes nothing.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum Obstacle {
     /// A tendon does not become tight.
     #[error(
@@ -31,7 +32,7 @@ pub enum Obstacle {
         "gauge {tendon} is not at rest with the motors off ({newton:.3} N rms): something moves the finger, or the \
          gauge is noisy. Let nothing touch the finger, and check the wiring of the gauge"
     )]
-    Restless {
+    UnsteadyGauge {
         /// The gauge's number, 1 to 4.
         tendon: u8,
         /// Standard deviation, N rms.
@@ -173,7 +174,7 @@ pub enum Obstacle {
         "gauge {tendon} does not rise and fall with the tension: it is dead, or its cable is swapped with another one. \
          Check both"
     )]
-    SenselessGauge {
+    InconsistentGauge {
         /// The gauge's number, 1 to 4.
         tendon: u8,
     },

@@ -29,7 +29,7 @@ pub enum Task {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// The routine continues.
-    Going(Progress),
+    InProgress(Progress),
     /// The routine is done. The tendons may be slack.
     Found(Findings),
     /// The routine gave up.
@@ -121,7 +121,7 @@ impl Calibration {
             }
         };
         match stepped {
-            Ok(Continue((activity, progress))) => (activity, Verdict::Going(progress)),
+            Ok(Continue((activity, progress))) => (activity, Verdict::InProgress(progress)),
             Ok(Break(findings)) => (Some(motors_off), Verdict::Found(findings)),
             Err(obstacle) => refused(obstacle, self.in_charge),
         }

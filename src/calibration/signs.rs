@@ -155,7 +155,7 @@ impl SignSearch {
 
     fn findings(&self) -> Result<Findings, Obstacle> {
         if let Some(gauge) = self.gauges.iter().position(|&sign| sign == 0.0) {
-            return Err(Obstacle::SenselessGauge { tendon: gauge as u8 + 1 });
+            return Err(Obstacle::InconsistentGauge { tendon: gauge as u8 + 1 });
         }
         let whole = |sign: f64| if sign < 0.0 { -1 } else { 1 };
         Ok(Findings::Signs(Signs {

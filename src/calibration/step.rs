@@ -3,6 +3,7 @@
 use super::findings::Findings;
 use super::obstacle::Obstacle;
 use crate::control::signals::{Activity, Feedback, Report};
+use std::fmt;
 use std::ops::ControlFlow;
 
 /// What a routine receives in one cycle.
@@ -18,6 +19,7 @@ pub struct Sample<'a> {
 
 /// The current activity of a routine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Step {
     /// The tendons are being tightened.
     TakingUpSlack,
@@ -41,8 +43,26 @@ pub enum Step {
     Returning,
 }
 
+impl fmt::Display for Step {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str(match self {
+            Step::TakingUpSlack => "taking up slack",
+            Step::ZeroingGauges => "reading the gauges with slack tendons",
+            Step::TryingPose => "pushing lightly to check that the pose is held",
+            Step::ReadingEncoders => "reading the encoders",
+            Step::SeekingStops => "moving the joints against their stops",
+            Step::TryingMotors => "turning the motors one by one",
+            Step::ComparingGauges => "comparing the gauges",
+            Step::MovingJoints => "moving the joints",
+            Step::Pressing => "pressing against the stops",
+            Step::Returning => "returning to the initial pose",
+        })
+    }
+}
+
 /// The progress of a routine.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Progress {
     /// The current activity.
     pub step: Step,

@@ -52,7 +52,7 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
                 return Err(Refusal::NoMemory);
             }
             // The planner may handle SIGSEGV and SIGBUS to make pages accessible that `prepare` reads.
-            let call = blocked.faults_let_in(prepare)?;
+            let call = blocked.with_faults_unblocked(prepare)?;
             let start = |source| HandError::System { doing: "start a thread for this call", source };
             let delegated = DelegatedCall::begin(&blocked, || caught(call)).map_err(start)?;
             delegated.wait(&blocked, is_forked_child).unwrap_or(Err(Refusal::Forked))

@@ -98,7 +98,7 @@ pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
 /// that CloseHand and other calls work meanwhile.
 pub(super) fn calibrate(finger: i32, task: Task) -> Result<(), Refusal> {
     let mut calibrating = command(|hand| Calibrating::begin(hand, finger, task))?;
-    while let CalibrationState::Going(_) = command(|hand| calibrating.poll(hand))? {
+    while let CalibrationState::InProgress(_) = command(|hand| calibrating.poll(hand))? {
         sleep(POLLING_PERIOD);
     }
     // The hand is not locked here, so that CloseHand waits neither for a slow disk nor for other processes that store.

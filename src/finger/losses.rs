@@ -2,6 +2,7 @@
 
 /// Number of cycles of a finger, and of their errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Losses {
     /// Number of cycles.
     pub cycles: u64,
@@ -23,6 +24,7 @@ pub struct Losses {
 
 impl Losses {
     /// The counts since `earlier`.
+    #[must_use]
     pub fn since(&self, earlier: &Self) -> Self {
         Self {
             cycles: self.cycles - earlier.cycles,

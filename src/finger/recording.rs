@@ -18,6 +18,7 @@ const VERSION: u32 = 1;
 
 /// Consecutive cycles of a finger, and everything that is needed to compute them again.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Recording {
     /// The data that all cycles start from.
     pub origin: Origin,
@@ -55,6 +56,7 @@ struct Header {
 
 /// Why a file is not a recording that can be replayed.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum RecordingError {
     /// The file cannot be read, or it is not a regular file of an acceptable size.
     #[error("cannot read {0}: {1}")]

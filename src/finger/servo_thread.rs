@@ -193,7 +193,7 @@ impl<T: Transport> ServedPort<T> {
         let Some(handover) = &mut self.handover else { return };
         let all_at_rest = self.fingers.iter().all(FingerServo::at_rest);
         if let Some(link) = self.link.take_if(|_| all_at_rest) {
-            self.earlier_counters = self.earlier_counters.plus(&link.counters());
+            self.earlier_counters = self.earlier_counters.saturating_add(&link.counters());
             // The push succeeds, because this is the only link.
             if let Err(rejected) = handover.released.push(ReleasedLink { link, failed: self.failed }) {
                 self.link = Some(rejected.link);
@@ -201,7 +201,7 @@ impl<T: Transport> ServedPort<T> {
         } else if let Some(RepairedLink { link, configured, stop_calls }) = handover.repaired.pop() {
             self.failed = false;
             // This may be the same link or a new one. Counting continues from the current totals.
-            self.earlier_counters = self.earlier_counters.less(&link.counters());
+            self.earlier_counters = self.earlier_counters.saturating_sub(&link.counters());
             self.link = Some(link);
             for (finger, configured) in self.fingers.iter_mut().zip(configured) {
                 configured.into_iter().for_each(|configured| finger.recover(&configured, stop_calls));
@@ -211,7 +211,7 @@ impl<T: Transport> ServedPort<T> {
 
     /// Counters of the port since open.
     fn counters(&self) -> LinkCounters {
-        self.link.as_ref().map_or(self.earlier_counters, |link| self.earlier_counters.plus(&link.counters()))
+        self.link.as_ref().map_or(self.earlier_counters, |link| self.earlier_counters.saturating_add(&link.counters()))
     }
 
     /// Sends all commands of the port back to back, so that replies overlap with the commands after them.

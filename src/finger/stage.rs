@@ -5,6 +5,7 @@ use std::fmt;
 
 /// A stage of a finger between open and close.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Stage {
     /// Slack is being taken up.
     #[default]

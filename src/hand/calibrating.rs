@@ -37,9 +37,10 @@ pub struct Calibrating {
 /// The state of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "short-lived")]
+#[non_exhaustive]
 pub enum CalibrationState {
     /// The calibration is in progress.
-    Going(Progress),
+    InProgress(Progress),
     /// The calibration is done, and its results are in force.
     Done(Findings),
 }
@@ -107,18 +108,18 @@ impl Calibrating {
             if self.asked.elapsed() > ANSWER {
                 return Err(HandError::NoAnswer(finger));
             }
-            return Ok(CalibrationState::Going(Progress { step: Step::TakingUpSlack, part: 0.0 }));
+            return Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 0.0 }));
         }
         if let Some((findings, found)) = &self.found {
             if report.stage == Stage::Opening {
-                return Ok(CalibrationState::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }));
+                return Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 1.0 }));
             }
             hand.note(found.clone());
             return Ok(CalibrationState::Done(*findings));
         }
         match report.calibration {
-            None => Ok(CalibrationState::Going(Progress { step: Step::TakingUpSlack, part: 0.0 })),
-            Some(Verdict::Going(progress)) => Ok(CalibrationState::Going(progress)),
+            None => Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 0.0 })),
+            Some(Verdict::InProgress(progress)) => Ok(CalibrationState::InProgress(progress)),
             Some(Verdict::Refused(obstacle)) => {
                 Err(HandError::Calibration { finger, limp: report.stage == Stage::Limp, obstacle })
             }
@@ -137,7 +138,7 @@ impl Calibrating {
                 })?;
                 (self.found, self.asked) = (Some((found, to_store)), Instant::now());
                 *configuration = changed;
-                Ok(CalibrationState::Going(Progress { step: Step::TakingUpSlack, part: 1.0 }))
+                Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 1.0 }))
             }
         }
     }
@@ -174,7 +175,7 @@ impl Hand {
         let mut calibrating = Calibrating::begin(self, finger, task)?;
         loop {
             match calibrating.poll(self)? {
-                CalibrationState::Going(going) => progress(going),
+                CalibrationState::InProgress(going) => progress(going),
                 CalibrationState::Done(findings) => return Ok(findings),
             }
             sleep(POLL_INTERVAL);

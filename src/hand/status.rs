@@ -63,7 +63,7 @@ impl Hand {
             torque_scale: report.cycle.torque_scale,
             stiffness_scale: report.cycle.stiffness_scale,
             calibration: match report.calibration {
-                Some(Verdict::Going(progress)) => progress.part,
+                Some(Verdict::InProgress(progress)) => progress.part,
                 _ => 0.0,
             },
         })

@@ -1,5 +1,4 @@
-//! The contact between a fingertip and an object, section 4.2. The D x D stiffness of every contact type becomes one
-//! spatial stiffness, 6 x 6.
+//! The contact between a fingertip and an object, section 4.2, as one spatial stiffness, 6 x 6.
 
 use crate::model::direction;
 use nalgebra::allocator::Allocator;
@@ -118,6 +117,7 @@ impl Contact {
     }
 
     /// Returns the 6 x 6 stiffness.
+    #[must_use]
     pub fn stiffness(&self) -> &Matrix6<f64> {
         &self.0
     }
@@ -125,6 +125,7 @@ impl Contact {
     /// Returns the largest eigenvalue of the stiffness, N/cm, at most the largest finite number. A rotation is measured
     /// by the motion of a point at the distance `lever` (cm, 1e-3 or more) from the tip. With the length of the last
     /// link as `lever` the result is comparable with an eigenvalue of Kx, because joint 2 moves the tip and rotates it.
+    #[must_use]
     pub fn largest_eigenvalue(&self, lever: f64) -> f64 {
         let (size, measured) = self.measured(lever);
         (measured.symmetric_eigenvalues().max() * size).min(f64::MAX)
@@ -132,17 +133,16 @@ impl Contact {
 
     /// Returns the nearest contact whose eigenvalues, as in [`Contact::largest_eigenvalue`], are between zero and
     /// `bound`. It has the same principal directions.
+    #[must_use]
     pub fn clamped(&self, bound: f64, lever: f64) -> Self {
         let (size, measured) = self.measured(lever);
         let mut eigen = measured.symmetric_eigen();
         eigen.eigenvalues.apply(|eigenvalue| *eigenvalue = (*eigenvalue * size).clamp(0.0, bound));
-        let recomposed = scaled(&eigen.recompose(), lever);
-        Self(symmetrised(&recomposed))
+        Self(symmetrised(&scaled(&eigen.recompose(), lever)))
     }
 
     /// Returns the largest entry, N/cm, and the stiffness divided by it, with rotations measured by `lever`. The
-    /// division comes first: with a short lever the product could be infinite, and the eigenvalues of such a matrix
-    /// NaN.
+    /// division comes first: with a short lever the product could be infinite, and its eigenvalues NaN.
     fn measured(&self, lever: f64) -> (f64, Matrix6<f64>) {
         let size = self.0.amax().max(f64::MIN_POSITIVE);
         (size, symmetrised(&scaled(&(self.0 / size), 1.0 / lever)))

@@ -4,6 +4,7 @@ use std::fmt;
 
 /// A part of a finger. The numbers are those that planners see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Part {
     /// The whole finger, or an unknown part.
     Finger,
@@ -21,31 +22,37 @@ pub enum Part {
 
 impl Part {
     /// Returns the joint with this index, 0 to 2.
+    #[must_use]
     pub fn joint(index: usize) -> Self {
         Self::Joint(index as u8)
     }
 
     /// Returns the tendon with this index, 0 to 3.
+    #[must_use]
     pub fn tendon(index: usize) -> Self {
         Self::Tendon(index as u8 + 1)
     }
 
     /// Returns the motor with this index, 0 to 3.
+    #[must_use]
     pub fn motor(index: usize) -> Self {
         Self::Motor(index as u8 + 1)
     }
 
     /// Returns the strain gauge with this index, 0 to 3.
+    #[must_use]
     pub fn gauge(index: usize) -> Self {
         Self::Gauge(index as u8 + 1)
     }
 
     /// Returns the motor encoder with this index, 0 to 3.
+    #[must_use]
     pub fn encoder(index: usize) -> Self {
         Self::Encoder(index as u8 + 1)
     }
 
     /// Returns the number in the C interface: 0 to 2 for joints, 1 to 4 for the other parts, 0 for the whole finger.
+    #[must_use]
     pub fn number(self) -> u8 {
         match self {
             Part::Finger => 0,

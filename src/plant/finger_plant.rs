@@ -159,7 +159,7 @@ impl Plant {
     }
 
     /// Repairs all tendons and motors.
-    pub fn mend(&mut self) {
+    pub fn repair(&mut self) {
         self.tendons.restore();
         self.jammed = [false; 4];
     }
@@ -185,7 +185,7 @@ impl Plant {
     }
 
     /// Removes the holding hand.
-    pub fn let_go(&mut self) {
+    pub fn release(&mut self) {
         self.held = None;
     }
 

@@ -68,7 +68,7 @@ impl Sensors {
     }
 
     /// Repairs all sensors.
-    pub fn mend(&mut self) {
+    pub fn repair(&mut self) {
         (self.dead, self.drift, self.drift_speed, self.jumped) = ([None; 4], [0.0; 4], [0.0; 4], [0; 4]);
     }
 

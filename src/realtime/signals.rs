@@ -38,17 +38,17 @@ impl SignalsBlocked {
 
     /// Runs `read`, which reads the planner's memory, with the fault signals unblocked that the thread had unblocked. A
     /// planner may have a handler that makes a page accessible at the first access.
-    pub fn faults_let_in<T>(&self, read: impl FnOnce() -> T) -> T {
-        let mut let_in = set_of(&[]);
+    pub fn with_faults_unblocked<T>(&self, read: impl FnOnce() -> T) -> T {
+        let mut unblocked = set_of(&[]);
         for signal in FAULTS {
             // SAFETY: both sets and the signal are valid.
             unsafe {
                 if libc::sigismember(&self.0, signal) == 0 {
-                    libc::sigaddset(&mut let_in, signal);
+                    libc::sigaddset(&mut unblocked, signal);
                 }
             }
         }
-        under(libc::SIG_UNBLOCK, &let_in, read)
+        under(libc::SIG_UNBLOCK, &unblocked, read)
     }
 
     fn set(signals: &libc::sigset_t) -> Self {

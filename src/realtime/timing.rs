@@ -56,6 +56,7 @@ impl CycleTiming {
 
 /// The distribution of a stage's duration, microseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Distribution {
     /// Number of cycles.
     pub count: u64,

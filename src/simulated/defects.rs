@@ -55,7 +55,7 @@ pub enum Defect {
 
 impl SimulatedFinger {
     /// Adds this defect to the finger. Returns false, and does nothing, if the finger has no such part.
-    pub fn suffer(&mut self, defect: &Defect) -> bool {
+    pub fn inject(&mut self, defect: &Defect) -> bool {
         let part = match *defect {
             Defect::CutTendon(part) | Defect::JammedMotor(part) | Defect::HotMotor(part) => part,
             Defect::SlackTendon { tendon: part, .. } | Defect::DeadGauge { gauge: part, .. } => part,
@@ -81,9 +81,9 @@ impl SimulatedFinger {
     }
 
     /// Removes all defects. Faults that the board has stored stay stored until the next Configure.
-    pub fn mend(&mut self) {
-        self.plant().mend();
-        self.sensors().mend();
+    pub fn repair(&mut self) {
+        self.plant().repair();
+        self.sensors().repair();
         self.set_zero_valid(true);
         self.set_faults(Status::default());
     }

@@ -73,15 +73,15 @@ impl Search {
         let links = finger.links();
         let (clear, near): (Vec<Rest>, Vec<Rest>) =
             self.rests(finger).into_iter().partition(|rest| links.reach(&rest.joints).abs() >= CLEAR_OF_AXIS);
-        let carried = trial.carried(&clear);
-        let Some(softest) = (0..clear.len()).min_by(|&one, &other| carried[one].total_cmp(&carried[other])) else {
+        let supported = trial.supported_stiffness(&clear);
+        let Some(softest) = (0..clear.len()).min_by(|&one, &other| supported[one].total_cmp(&supported[other])) else {
             let reason = format!(
                 "leaves, with joints.maximum_degrees, no pose whose tip is {CLEAR_OF_AXIS} cm or more from the axis of \
                  joint 0"
             );
             return Err(Unusable { key: "joints.minimum_degrees", reason });
         };
-        let most = (carried[softest] / LEAST_SCALE / GRID).floor();
+        let most = (supported[softest] / LEAST_SCALE / GRID).floor();
         let lowered = lower_until_stable(&trial, &clear, most)?;
         let (grid_steps, limit) = match lowered {
             None => (most, Limit::Scaled(clear[softest].joints)),
@@ -93,8 +93,9 @@ impl Search {
         Ok(StiffnessBound {
             stiffness,
             limit,
-            scaled: carried.iter().filter(|&&carried| carried < stiffness).count() as f64 / carried.len() as f64,
-            least_scale: (carried[softest] / stiffness).min(1.0),
+            scaled: supported.iter().filter(|&&supported| supported < stiffness).count() as f64
+                / supported.len() as f64,
+            least_scale: (supported[softest] / stiffness).min(1.0),
             samples: clear.len(),
             near_axis: (near.len(), unstable.len(), distances.fold(0.0, f64::max)),
         })

@@ -31,7 +31,7 @@ impl Trial {
     }
 
     /// Returns the isotropic stiffness that each pose supports, N/cm.
-    pub fn carried(&self, rests: &[Rest]) -> Vec<f64> {
+    pub fn supported_stiffness(&self, rests: &[Rest]) -> Vec<f64> {
         let isotropic = |rest: &Rest| Rest { stiffness: Matrix3::identity() * UNSUPPORTED, damping: 1.0, ..*rest };
         in_parallel(rests, |rest| UNSUPPORTED * self.map.scale(&isotropic(rest)))
     }

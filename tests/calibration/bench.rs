@@ -138,7 +138,7 @@ impl Bench {
                 );
             }
             match verdict {
-                Verdict::Going(progress) => {
+                Verdict::InProgress(progress) => {
                     assert!((0.0..=1.0).contains(&progress.part) && progress.part >= last - 0.3, "{progress:?}");
                     last = progress.part;
                 }

@@ -139,7 +139,7 @@ fn moved(obstacle: &Obstacle) -> bool {
 
 /// The finger falls when its tendons are slackened.
 fn restless(obstacle: &Obstacle) -> bool {
-    matches!(obstacle, Obstacle::Restless { .. })
+    matches!(obstacle, Obstacle::UnsteadyGauge { .. })
 }
 
 #[test]
@@ -185,7 +185,7 @@ fn a_spring_that_is_released_while_it_is_read() {
             bench.go_on(0.5);
             trial.zero(&mut bench, |seconds, plant| {
                 if seconds > at {
-                    plant.let_go();
+                    plant.release();
                 }
             })
         });
@@ -223,7 +223,7 @@ fn a_limp_finger_that_nothing_holds() {
         let tally = Tally::of(&format!("limp, not held, joint friction {friction} N m"), 50, |seed| {
             let mut trial = Trial::new(Scheme::StateFeedback, seed);
             trial.truth.simulation.joint_coulomb_friction = [friction; 3];
-            trial.zero(&mut trial.limp(), |_, plant| plant.let_go())
+            trial.zero(&mut trial.limp(), |_, plant| plant.release())
         });
         // Other fingers fall, or reach their stops, before they can be pushed.
         let pushed = tally.refused.iter().filter(|(_, obstacle)| matches!(obstacle, Obstacle::NotHeld { .. }));
@@ -238,7 +238,7 @@ fn a_limp_finger_that_is_released_during_the_reading() {
         let at = trial.chance.between(0.0, 5.0);
         trial.zero(&mut trial.limp(), |seconds, plant| {
             if seconds > at {
-                plant.let_go();
+                plant.release();
             }
         })
     });

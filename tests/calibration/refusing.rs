@@ -55,7 +55,7 @@ fn a_dead_gauge() {
     let mut bench = Bench::new(&finger, &finger, 1000.0);
     bench.dead_gauge = Some((1, 0));
     let refused = bench.calibrate(Task::Signs);
-    assert_eq!(refused, Err(Obstacle::SenselessGauge { tendon: 2 }));
+    assert_eq!(refused, Err(Obstacle::InconsistentGauge { tendon: 2 }));
 }
 
 #[test]

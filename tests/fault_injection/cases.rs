@@ -35,8 +35,8 @@ pub struct Detectable {
     pub lasts_ms: f64,
 }
 
-fn suffer(bench: &mut Bench, defect: Defect) -> Injected {
-    assert!(bench.with_finger(|finger| finger.suffer(&defect)));
+fn inject(bench: &mut Bench, defect: Defect) -> Injected {
+    assert!(bench.with_finger(|finger| finger.inject(&defect)));
     Injected::default()
 }
 
@@ -82,29 +82,29 @@ fn of_the_tendons() -> Vec<Case> {
     vec![
         case("cut tendon", BrokenTendon, |bench| {
             let tendon = bench.part();
-            suffer(bench, Defect::CutTendon(tendon));
+            inject(bench, Defect::CutTendon(tendon));
             at(tendon)
         }),
         case("slack tendon (grip 1 N)", SlackTendon, |bench| {
             let tendon = bench.part();
-            suffer(bench, Defect::SlackTendon { tendon, grip: 1.0 });
+            inject(bench, Defect::SlackTendon { tendon, grip: 1.0 });
             at(tendon)
         }),
         case("gauge keeps its last count", GaugeStuck, |bench| {
             let gauge = bench.part();
-            suffer(bench, Defect::DeadGauge { gauge, count: None });
+            inject(bench, Defect::DeadGauge { gauge, count: None });
             at(gauge)
         })
         // With this noise one count in five equals the previous one. A run of this length occurs once in 10^11 samples.
         .from(0.0, |truth, _, _| truth.time > 0.0165),
         case("gauge reads zero", GaugeStuck, |bench| {
             let gauge = bench.part();
-            suffer(bench, Defect::DeadGauge { gauge, count: Some(0) });
+            inject(bench, Defect::DeadGauge { gauge, count: Some(0) });
             at(gauge)
         }),
         case("gauge reads full scale", GaugeOutOfRange, |bench| {
             let gauge = bench.part();
-            suffer(bench, Defect::DeadGauge { gauge, count: Some(4095) });
+            inject(bench, Defect::DeadGauge { gauge, count: Some(4095) });
             at(gauge)
         }),
         case("drifting gauge (20 N/s), k known to 20 %", GaugeDisagrees, drift).from(10.0, disagrees),
@@ -119,16 +119,16 @@ fn of_the_motors() -> Vec<Case> {
     vec![
         case("encoder jump (150 counts)", EncoderJump, |bench| {
             let (encoder, way) = (bench.part(), bench.random(-1.0, 1.0).signum());
-            suffer(bench, Defect::EncoderJump { encoder, counts: 150 * way as i32 });
+            inject(bench, Defect::EncoderJump { encoder, counts: 150 * way as i32 });
             at(encoder)
         }),
         case("jammed motor", StalledMotor, |bench| {
             let motor = bench.part();
-            suffer(bench, Defect::JammedMotor(motor));
+            inject(bench, Defect::JammedMotor(motor));
             at(motor)
         })
         .from(12.0, stands),
-        case("hot motor, reported by its driver", DriverFault, |bench| suffer(bench, Defect::HotMotor(1))),
+        case("hot motor, reported by its driver", DriverFault, |bench| inject(bench, Defect::HotMotor(1))),
         case("hot motor, by I^2 t", OverheatedMotor, |bench| push(bench, [0.0, 0.0, -1.6]))
             .with(with_small_motors)
             .from(0.0, |truth, _, finger| truth.hot_for.max() > finger.motor.thermal_time),
@@ -141,11 +141,11 @@ fn of_the_motors() -> Vec<Case> {
 fn of_the_board() -> Vec<Case> {
     use FaultKind::*;
     vec![
-        case("zero lost", ZeroLost, |bench| suffer(bench, Defect::ZeroLost)),
-        case("emergency stop, input", EmergencyStopInput, |bench| suffer(bench, Defect::EmergencyStop)),
-        case("motor supply", SupplyFault, |bench| suffer(bench, Defect::Supply)),
-        case("sensor, by the board", SensorFault, |bench| suffer(bench, Defect::Sensor)),
-        case("board reset", BoardReset, |bench| suffer(bench, Defect::Reset)),
+        case("zero lost", ZeroLost, |bench| inject(bench, Defect::ZeroLost)),
+        case("emergency stop, input", EmergencyStopInput, |bench| inject(bench, Defect::EmergencyStop)),
+        case("motor supply", SupplyFault, |bench| inject(bench, Defect::Supply)),
+        case("sensor, by the board", SensorFault, |bench| inject(bench, Defect::Sensor)),
+        case("board reset", BoardReset, |bench| inject(bench, Defect::Reset)),
     ]
 }
 
@@ -206,14 +206,14 @@ fn turn_encoders_unseen(bench: &mut Bench) -> Injected {
     let per_turn = finger.encoder.counts_per_revolution.map(f64::from);
     for (index, per_turn) in per_turn.into_iter().enumerate() {
         let counts = (turned[index] * per_turn / TAU) as i32;
-        suffer(bench, Defect::EncoderJump { encoder: index as u8 + 1, counts });
+        inject(bench, Defect::EncoderJump { encoder: index as u8 + 1, counts });
     }
     Injected::default()
 }
 
 fn drift(bench: &mut Bench) -> Injected {
     let (gauge, way) = (bench.part(), bench.random(-1.0, 1.0).signum());
-    suffer(bench, Defect::DriftingGauge { gauge, speed: 20.0 * way });
+    inject(bench, Defect::DriftingGauge { gauge, speed: 20.0 * way });
     let mut drift = Vector4::zeros();
     drift[usize::from(gauge) - 1] = 20.0 * way;
     // One equation cannot tell which of four gauges is wrong.

@@ -264,7 +264,7 @@ impl Bench {
             cable.clear();
         });
         self.with_finger(|finger| {
-            finger.mend();
+            finger.repair();
             finger.plant().set_external_force(Vector3::zeros());
         });
     }

@@ -45,9 +45,9 @@ fn a_finger_that_reads_an_angle_it_cannot_have_does_not_become_a_spring() {
 #[test]
 fn a_tendon_that_is_without_tension_for_a_moment_is_no_fault() {
     let mut bench = Bench::new();
-    bench.with_finger(|finger| finger.suffer(&Defect::SlackTendon { tendon: 3, grip: 0.0 }));
+    bench.with_finger(|finger| finger.inject(&Defect::SlackTendon { tendon: 3, grip: 0.0 }));
     bench.cycles(6);
-    bench.with_finger(|finger| finger.mend());
+    bench.with_finger(|finger| finger.repair());
     let warning = bench.warns(FaultKind::SlackInMotion);
     assert!(warning.part == Part::Tendon(3) && warning.value < 0.5, "{warning}");
     bench.cycles(3000);
@@ -144,7 +144,7 @@ fn a_calibration_that_gives_up_leaves_its_warning() {
     assert_eq!(bench.mailbox.order(order), Ok(Some(1)));
     // Before that, the finger is a spring whose monitors would detect the fault.
     bench.until("taken over", |bench| bench.report().cycle.desired_tensions.min() < 0.0);
-    bench.with_finger(|finger| finger.suffer(&Defect::DeadGauge { gauge: 2, count: Some(2000) }));
+    bench.with_finger(|finger| finger.inject(&Defect::DeadGauge { gauge: 2, count: Some(2000) }));
     bench.warns(FaultKind::CalibrationFailed);
     assert_eq!(bench.stage(), Stage::Limp);
     bench.cycles(3000);

@@ -15,9 +15,9 @@ fn soften(bench: &Bench) {
 }
 
 fn stop(bench: &mut Bench) {
-    bench.with_finger(|finger| finger.suffer(&Defect::EmergencyStop));
+    bench.with_finger(|finger| finger.inject(&Defect::EmergencyStop));
     bench.faults(FaultKind::EmergencyStopInput);
-    bench.with_finger(|finger| finger.mend());
+    bench.with_finger(|finger| finger.repair());
 }
 
 /// Checks that the finger holds these joint angles, with half of its initial stiffness.
@@ -77,7 +77,7 @@ fn of_two_that_send_within_a_period_after_recovery_none_is_overwritten() {
 fn orders_in_transit_at_a_fault_are_not_executed_after_recovery() {
     let mut bench = Bench::new();
     bench.goes(TARGET);
-    bench.with_finger(|finger| finger.suffer(&Defect::EmergencyStop));
+    bench.with_finger(|finger| finger.inject(&Defect::EmergencyStop));
     // The servo has not reported the fault yet.
     let configuration = Configuration::default();
     let calibration = Calibration::new(Task::Zero, &configuration.fingers[0], 1000.0).expect("a calibration");
@@ -86,7 +86,7 @@ fn orders_in_transit_at_a_fault_are_not_executed_after_recovery() {
     let order = bench.mailbox.order(Order::Calibrate(CalibrationRun { calibration, adjustable }));
     assert_eq!(order, Ok(Some(1)));
     bench.faults(FaultKind::EmergencyStopInput);
-    bench.with_finger(|finger| finger.mend());
+    bench.with_finger(|finger| finger.repair());
     bench.repair();
     bench.opens();
     bench.cycles(10);

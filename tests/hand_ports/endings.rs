@@ -158,6 +158,7 @@ fn an_emergency_stop_releases_at_once_or_holds_for_a_while_as_configured() {
             match end_state {
                 EndState::Release => assert!(!holds(&state) && state.limp(), "{state:?}"),
                 EndState::Hold => assert!(holds(&state), "{state:?}"),
+                other => panic!("no expectation for {other:?}"),
             }
             if holds(&state) {
                 assert_held_within_the_limit(&state);

@@ -97,10 +97,10 @@ impl Bench {
         symlink(self.port.path(), &self.link).expect("a link");
     }
 
-    fn happen(&self, trouble: &Trouble) {
+    fn inject(&self, trouble: &Trouble) {
         match trouble {
             Trouble::Finger(defect) => {
-                assert_eq!(self.port.with_finger(self.finger as u8, |finger| finger.suffer(defect)), Some(true));
+                assert_eq!(self.port.with_finger(self.finger as u8, |finger| finger.inject(defect)), Some(true));
             }
             Trouble::Line(fault) => self.port.inject(*fault, 1.0, 60_000_000_000, 1),
             Trouble::Unplug => self.port.unplug(),
@@ -108,7 +108,7 @@ impl Bench {
     }
 
     fn repair(&self) {
-        self.port.with_finger(self.finger as u8, |finger| finger.mend()).expect("the finger");
+        self.port.with_finger(self.finger as u8, |finger| finger.repair()).expect("the finger");
         self.port.clear();
         if self.port.path().as_os_str().is_empty() {
             self.port.plug_in().expect("a new port");
@@ -118,9 +118,9 @@ impl Bench {
 }
 
 /// Provokes one trouble on each of three moving fingers at the same time. All must recover.
-fn suffer(hand: &Hand, benches: &[Bench], troubles: &[Trouble]) {
+fn recover_from(hand: &Hand, benches: &[Bench], troubles: &[Trouble]) {
     for (bench, trouble) in benches.iter().zip(troubles) {
-        bench.happen(trouble);
+        bench.inject(trouble);
     }
     let (mut sent, mut there) = (Instant::now(), false);
     wait_until(&format!("faulted by {troubles:?}"), || {
@@ -152,7 +152,7 @@ fn everything_that_happens_to_a_finger_is_recovered_from_and_nothing_leaks() {
     let mut configuration = on_ports(links.each_ref().map(|link| &**link));
     configuration.fingers.iter_mut().for_each(|finger| finger.reconnect = true);
     let hand = open(configuration);
-    let all = || TROUBLES.chunks(3).for_each(|troubles| suffer(&hand, &benches, troubles));
+    let all = || TROUBLES.chunks(3).for_each(|troubles| recover_from(&hand, &benches, troubles));
     // Makes every allocation that happens only once.
     all();
     // Black boxes are full after two seconds.

@@ -138,7 +138,7 @@ fn fingers_that_recover_beside_one_that_faults_again_stay_where_they_are_found()
     let again = std::thread::scope(|scope| {
         let recovering = scope.spawn(|| hand.recover(1));
         wait_until("opening", || hand.report(1).expect("a report").stage == Stage::Opening);
-        board.with_finger(1, |finger| finger.suffer(&Defect::EmergencyStop)).expect("finger 1");
+        board.with_finger(1, |finger| finger.inject(&Defect::EmergencyStop)).expect("finger 1");
         recovering.join().expect("no panic")
     });
     assert!(again.expect_err("it faults again").to_string().contains("emergency stop, input"));
@@ -213,9 +213,9 @@ fn a_hand_is_closed_and_its_ports_free_while_somebody_recovers_a_finger() {
     let hand = open(on_boards(&boards));
     boards[1].signal(libc::SIGSTOP);
     assert_eq!(faults(&hand, 2), FaultKind::LostReplies);
-    let [mending, late] = [(); 2].map(|()| Recovering::begin(&hand, 2).expect("begun"));
+    let [recovering, late] = [(); 2].map(|()| Recovering::begin(&hand, 2).expect("begun"));
     // The recovery has the finger's link, but no board answers there.
-    assert_eq!(mending.reconnect().expect_err("no board answers").errno(), libc::ETIMEDOUT);
+    assert_eq!(recovering.reconnect().expect_err("no board answers").errno(), libc::ETIMEDOUT);
     hand.close();
     let error = late.reconnect().expect_err("closed");
     assert!(error.to_string().contains("was closed"), "{error}");
@@ -225,6 +225,6 @@ fn a_hand_is_closed_and_its_ports_free_while_somebody_recovers_a_finger() {
     // Both recoveries still exist, but hold no port.
     let hand = open(on_boards(&boards));
     goes(&hand, 2, TARGET);
-    drop((mending, late));
+    drop((recovering, late));
     close(hand);
 }

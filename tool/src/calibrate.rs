@@ -4,11 +4,11 @@
 mod pose;
 
 use crate::failure::Failure;
-use pose::{ask_to_hold, ask_to_let_go};
+use pose::{ask_to_hold, ask_to_release};
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
-use sun2xp::calibration::{Findings, Progress, Step, Task};
+use sun2xp::calibration::{Findings, Progress, Task};
 use sun2xp::hand::{Configured, Fingers, Hand};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
@@ -73,7 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 }
                 Task::Identify => {
                     if at_pose && tasks.contains(&Task::Zero) {
-                        ask_to_let_go(finger, arguments.yes)?;
+                        ask_to_release(finger, arguments.yes)?;
                     }
                     hand.identify(finger, progress)
                 }
@@ -148,23 +148,11 @@ fn show(finger: i32, task: Task) -> impl FnMut(Progress) {
     let terminal = io::stderr().is_terminal();
     let mut last = None;
     move |progress| {
-        let what = match progress.step {
-            Step::TakingUpSlack => "taking up slack",
-            Step::ZeroingGauges => "reading the gauges with slack tendons",
-            Step::TryingPose => "pushing lightly to check that the pose is held",
-            Step::ReadingEncoders => "reading the encoders",
-            Step::SeekingStops => "moving the joints against their stops",
-            Step::TryingMotors => "turning the motors one by one",
-            Step::ComparingGauges => "comparing the gauges",
-            Step::MovingJoints => "moving the joints",
-            Step::Pressing => "pressing against the stops",
-            Step::Returning => "returning to the initial pose",
-        };
         let percent = (progress.part * 100.0) as u32;
         if last != Some((progress.step, if terminal { percent } else { 0 })) {
             let (begin, end) = if terminal { ("\r\x1b[K", "") } else { ("", "\n") };
             // A failed write, for example because nobody reads, is no reason to stop the finger.
-            let _ = write!(io::stderr(), "{begin}finger {finger}, {doing}: {percent:3} %, {what}{end}");
+            let _ = write!(io::stderr(), "{begin}finger {finger}, {doing}: {percent:3} %, {}{end}", progress.step);
             last = Some((progress.step, if terminal { percent } else { 0 }));
         }
     }

@@ -73,7 +73,7 @@ impl SignSearch {
             }
             let sign = change[gauge].signum();
             if self.gauges[gauge] == -sign {
-                return Err(Obstacle::SenselessGauge { tendon: gauge as u8 + 1 });
+                return Err(Obstacle::InconsistentGauge { tendon: gauge as u8 + 1 });
             }
             self.gauges[gauge] = sign;
         }

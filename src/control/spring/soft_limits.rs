@@ -36,11 +36,11 @@ pub(crate) struct Push {
 }
 
 impl SoftLimits {
-    /// Constructs the limits of `finger`. `carried` is the stiffness that each joint can have while the others have
+    /// Constructs the limits of `finger`. `admissible` is the stiffness that each joint can have while the others have
     /// none, N cm/rad.
-    pub fn new(finger: &ConfiguredFinger, carried: &Vector3<f64>) -> Self {
+    pub fn new(finger: &ConfiguredFinger, admissible: &Vector3<f64>) -> Self {
         let (low, high) = finger.joint_limits();
-        Self { low, high, stiffness: carried.map(|carried| STIFFNESS.min(PART * carried)) }
+        Self { low, high, stiffness: admissible.map(|admissible| STIFFNESS.min(PART * admissible)) }
     }
 
     /// Returns the push at joint angles, rad.

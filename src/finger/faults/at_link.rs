@@ -49,6 +49,7 @@ impl From<&Refused> for Fault {
 
 impl Fault {
     /// The fault for the status of a board that has stopped its motors.
+    #[must_use]
     pub fn stopped(status: Status) -> Self {
         let kind = [
             (Status::EMERGENCY_STOP, FaultKind::EmergencyStopInput),

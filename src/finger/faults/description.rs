@@ -5,6 +5,7 @@ use std::fmt::{self, Display, Formatter};
 
 /// The effect of a fault on the finger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Severity {
     /// The finger continues, and the planner can read the warning.
     Warning,
@@ -16,6 +17,7 @@ pub enum Severity {
 
 /// The meaning of a fault's part number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PartKind {
     /// The whole finger. The number of the part is 0.
     Finger,
@@ -33,6 +35,7 @@ pub enum PartKind {
 
 /// The meaning of a fault's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Quantity {
     /// No value; it is 0.
     Nothing,
@@ -56,6 +59,7 @@ pub enum Quantity {
 
 /// The row of the fault table for one kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Description {
     /// The name in the C header, without `FAULT_`.
     pub constant: &'static str,
@@ -110,6 +114,7 @@ impl PartKind {
 
 impl Quantity {
     /// The unit or the kind of the value for use in a table; none if there is no value.
+    #[must_use]
     pub fn words(self) -> Option<&'static str> {
         match self {
             Quantity::Nothing => None,

@@ -7,6 +7,7 @@ use std::fmt;
 
 /// The reason why a finger stopped, or a warning.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Fault {
     /// Kind of the fault.
     pub kind: FaultKind,
@@ -18,11 +19,13 @@ pub struct Fault {
 
 impl Fault {
     /// A fault of the whole finger, without a value.
+    #[must_use]
     pub fn new(kind: FaultKind) -> Self {
         Self { kind, part: Part::Finger, value: 0.0 }
     }
 
     /// A fault of the whole finger.
+    #[must_use]
     pub fn of(kind: FaultKind, value: f64) -> Self {
         Self { kind, part: Part::Finger, value }
     }

@@ -12,6 +12,7 @@ macro_rules! faults {
         /// The kind of a fault, a warning or a refusal.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
+        #[non_exhaustive]
         pub enum FaultKind {
             $(#[doc = concat!($name, ": ", $text, ".")] $kind = $number,)*
         }

@@ -31,7 +31,7 @@ impl FingerServo {
             self.activity = activity;
             previous = before.take().map(|before| before.adjustable);
         }
-        if !matches!(verdict, Verdict::Going(_)) {
+        if !matches!(verdict, Verdict::InProgress(_)) {
             let untouched = before.take();
             self.calibration = None;
             match untouched {

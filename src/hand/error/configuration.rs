@@ -106,6 +106,7 @@ pub enum ConfigurationError {
 
 impl ConfigurationError {
     /// The errno that the system reported, or the one that describes the error best.
+    #[must_use]
     pub fn errno(&self) -> i32 {
         match self {
             // An error without an errno of the system means that the file was read but is not text.

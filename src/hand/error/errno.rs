@@ -6,6 +6,7 @@ use crate::files::errno;
 
 impl HandError {
     /// The nearest errno.
+    #[must_use]
     pub fn errno(&self) -> i32 {
         match self {
             Self::NoSuchFinger(_) | Self::NoSuchStage(_) => libc::EINVAL,

@@ -42,6 +42,7 @@ pub enum RecoveryError {
 
 impl RecoveryError {
     /// The nearest errno.
+    #[must_use]
     pub fn errno(&self) -> i32 {
         match self {
             Self::PortInUse { .. } => libc::EBUSY,

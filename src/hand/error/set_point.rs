@@ -120,6 +120,7 @@ pub enum SetPointError {
 
 impl SetPointError {
     /// The nearest errno.
+    #[must_use]
     pub fn errno(&self) -> i32 {
         match self {
             Self::NotFinite { .. } | Self::NoSuchContact(_) => libc::EINVAL,

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// The tendon controllers.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub enum Scheme {
     /// Figure 9: an integral of the tension error.
     #[serde(rename = "figure 9")]
@@ -22,6 +23,7 @@ pub enum Scheme {
 /// The law that converts the deflection of the fingertip's spring to joint torques.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Law {
     /// tau = J^T Kx J (theta_d - theta), eqs. 3 and 6. It is a spring for small deflections.
     #[default]
@@ -96,6 +98,7 @@ impl ConfiguredController {
     /// Returns the tendon controller at `rate`, Hz. Unless one is configured, it is state feedback from 750 Hz up and
     /// Figure 10 below. At 500 Hz state feedback is better in most respects, but loses control of a finger if the link
     /// loses a tenth of the replies (`docs/stiffness.md`).
+    #[must_use]
     pub fn scheme(&self, rate: f64) -> Scheme {
         self.scheme.unwrap_or(if rate >= 750.0 { Scheme::StateFeedback } else { Scheme::Figure10 })
     }

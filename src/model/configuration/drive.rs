@@ -95,6 +95,7 @@ pub struct ConfiguredGauge {
 /// The reference for the common scale of all tensions, which no experiment on a free finger can determine.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum GaugeReference {
     /// The gauges: identification keeps the mean of their configured gains.
     #[default]

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The behaviour of the motors when commands stop because the hand is closed, or because the planner exits or dies.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum EndState {
     /// The torque goes to zero: in a ramp if the servo still runs, at once if only the board is left.
     #[default]
@@ -16,6 +17,7 @@ pub enum EndState {
 /// The fingers that stop when a finger faults.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum OnFault {
     /// Only that finger. The others continue.
     #[default]
@@ -27,6 +29,7 @@ pub enum OnFault {
 /// The handling of a command outside the limits.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum OutOfRange {
     /// The call fails with ERANGE, and nothing changes.
     #[default]
@@ -51,6 +54,7 @@ pub enum RealTime {
 /// The clock that determines the periods of the servos.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum PeriodClock {
     /// The host's CLOCK_MONOTONIC.
     #[default]
@@ -96,6 +100,7 @@ pub struct ConfiguredHand {
 
 impl ConfiguredHand {
     /// Returns the period of the servos, ns.
+    #[must_use]
     pub fn period(&self) -> u64 {
         (1e9 / self.rate).round() as u64
     }

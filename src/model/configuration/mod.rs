@@ -114,17 +114,20 @@ pub struct Configuration {
 
 impl Configuration {
     /// Returns the servo thread of a finger, 1 to 3.
+    #[must_use]
     pub fn thread(&self, finger: FingerNumber) -> u8 {
         own_or(self.fingers[finger.index()].thread, finger)
     }
 
     /// Returns the address of a finger on its board, 1 to 15.
+    #[must_use]
     pub fn address(&self, finger: FingerNumber) -> u8 {
         own_or(self.fingers[finger.index()].address, finger)
     }
 
     /// Returns the transformation from the finger's frame (Figure 8), cm, to the palm's. By default two fingers are
     /// side by side, and the thumb faces them.
+    #[must_use]
     pub fn finger_to_palm(&self, finger: FingerNumber) -> Isometry3<f64> {
         let (base, turn) = match finger {
             FingerNumber::ONE => ([3.0, 3.5, 0.0], 0.0),
@@ -138,6 +141,7 @@ impl Configuration {
     }
 
     /// Returns gravity in the finger's frame, m/s^2.
+    #[must_use]
     pub fn gravity(&self, finger: FingerNumber) -> Vector3<f64> {
         self.finger_to_palm(finger).rotation.inverse() * Vector3::from(self.hand.gravity)
     }
@@ -185,6 +189,7 @@ impl Default for ConfiguredStiffness {
 impl ConfiguredStiffness {
     /// Returns the bound that is valid for the default finger with every controller at `rate` Hz, N/cm. It is less than
     /// the result of `sun2xp bound` for any of them (`docs/stiffness.md`).
+    #[must_use]
     pub fn default_bound(rate: f64) -> f64 {
         if rate >= 1000.0 { 6.0 } else { 5.0 }
     }
@@ -192,16 +197,19 @@ impl ConfiguredStiffness {
 
 impl ConfiguredFinger {
     /// Returns whether the finger has a simulated board instead of a port.
+    #[must_use]
     pub fn simulated(&self) -> bool {
         self.port == "simulated"
     }
 
     /// Returns the link lengths.
+    #[must_use]
     pub fn links(&self) -> Links {
         Links(self.geometry.links)
     }
 
     /// Returns R of eq. 14, cm.
+    #[must_use]
     pub fn r(&self) -> Matrix3x4<f64> {
         Matrix3x4::from_fn(|joint, tendon| self.geometry.r[joint][tendon])
     }
@@ -217,16 +225,19 @@ impl ConfiguredFinger {
     }
 
     /// Returns the initial Kx, N/cm.
+    #[must_use]
     pub fn initial_stiffness(&self) -> Matrix3<f64> {
         Matrix3::from_fn(|row, column| self.stiffness.initial[row][column])
     }
 
     /// Returns the bound of the largest eigenvalue of Kx, N/cm, at `rate` Hz.
+    #[must_use]
     pub fn stiffness_bound(&self, rate: f64) -> f64 {
         self.stiffness.bound.unwrap_or_else(|| ConfiguredStiffness::default_bound(rate))
     }
 
     /// Returns the soft joint limits, rad: lower, upper.
+    #[must_use]
     pub fn joint_limits(&self) -> (Vector3<f64>, Vector3<f64>) {
         let radians = |degrees: [f64; 3]| Vector3::from(degrees.map(f64::to_radians));
         (radians(self.joints.minimum_degrees), radians(self.joints.maximum_degrees))
@@ -235,6 +246,7 @@ impl ConfiguredFinger {
     /// Returns the configured zeroing method. If none is configured, it is `Stops` if the angles of the mechanical
     /// stops are known: both `zeroing.lower_stop_degrees` and `zeroing.upper_stop_degrees` are configured, or the
     /// finger is simulated. Otherwise it is `Pose`.
+    #[must_use]
     pub fn zeroing_method(&self) -> ZeroingMethod {
         let stops = self.zeroing.lower_stop_degrees.is_some() && self.zeroing.upper_stop_degrees.is_some();
         self.zeroing.method.unwrap_or(match stops || self.simulated() {

@@ -45,6 +45,7 @@ pub struct ConfiguredSimulation {
 /// An elastic surface without friction that a simulated fingertip can touch, in the finger's frame.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum Surface {
     /// A flat wall through `point`. `normal` points to the side of the finger.
     Wall {

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The method that finds the zero of the encoders.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum ZeroingMethod {
     /// The finger is held in `zeroing.pose_degrees`, by its own spring or from outside.
     Pose,

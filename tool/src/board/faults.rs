@@ -129,9 +129,9 @@ impl Trouble {
         match *self {
             Trouble::Finger(number, defect) => finger(number, &|finger| {
                 // The number of the part was checked when the order was read.
-                finger.suffer(&defect);
+                finger.inject(&defect);
             }),
-            Trouble::Mend(number) => finger(number, &sun2xp::simulated::SimulatedFinger::mend),
+            Trouble::Mend(number) => finger(number, &sun2xp::simulated::SimulatedFinger::repair),
             Trouble::Line(fault, probability, time) => {
                 port.inject(fault, probability, time, seed);
                 "ok".into()

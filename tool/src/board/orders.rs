@@ -89,7 +89,7 @@ impl Action {
             Action::Touch(surface) => plant.set_surface(Some(surface)),
             Action::Hold => plant.hold(plant.joints()),
             Action::Free => {
-                plant.let_go();
+                plant.release();
                 plant.set_external_force(Vector3::zeros());
                 plant.set_surface(None);
             }

@@ -19,7 +19,7 @@ pub fn ask_to_hold(finger: i32, configured: &ConfiguredFinger, yes: bool) -> Res
 }
 
 /// Asks the person to let go of a finger that will move by itself.
-pub fn ask_to_let_go(finger: i32, yes: bool) -> Result<(), Failure> {
+pub fn ask_to_release(finger: i32, yes: bool) -> Result<(), Failure> {
     wait(
         &format!("finger {finger} will move by itself. Let go of it and clear the space around it.\n"),
         "when it is free",

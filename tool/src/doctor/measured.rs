@@ -97,7 +97,8 @@ mod tests {
         let judged = |rate, p99, refusals| {
             let mut configuration = Configuration::default();
             configuration.hand.rate = rate;
-            let late = Distribution { p99, ..Distribution::default() };
+            let mut late = Distribution::default();
+            late.p99 = p99;
             judge(&configuration, 1, WakeUp { late, refusals, timer_slack: 1 })
         };
         assert_eq!(judged(1000.0, 90.0, RealtimeRefusals::default()).verdict, Rating::Good);

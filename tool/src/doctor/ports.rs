@@ -177,7 +177,8 @@ mod tests {
     #[test]
     fn round_trips_are_judged_by_the_reply_window() {
         let judged = |p99, lost| {
-            let times = Distribution { count: 1000, p99, ..Distribution::default() };
+            let mut times = Distribution::default();
+            (times.count, times.p99) = (1000, p99);
             judge(&Configuration::default(), "x".into(), Ok(Measured { times, lost })).verdict
         };
         // The reply window is 850 us at 1000 Hz.
