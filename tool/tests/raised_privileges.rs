@@ -85,6 +85,6 @@ fn a_setgid_program_ignores_configurations_of_its_caller() {
         assert!(taken, "{environment:?}: {said}");
     }
     let (taken, said) = rate(&tool, folder, &[("SUN2XP_CONFIG", &named)]);
-    assert!(!taken && said.contains("its environment is not trusted") && said.contains(SYSTEM_FILE), "{said}");
+    assert!(!taken && said.contains("does not trust its environment") && said.contains(SYSTEM_FILE), "{said}");
     assert!(rate(ordinary, folder, &[("SUN2XP_CONFIG", &named)]).0);
 }
