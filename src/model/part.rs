@@ -1,4 +1,4 @@
-//! The parts of a finger that faults and refusals name.
+//! Parts of a finger, as the texts of faults and refusals name them.
 
 use std::fmt;
 

@@ -12,10 +12,11 @@ pub enum TendonsError {
          inverse Q (eq. 17). Check its signs: the report misprints row 2, column 4, where -1.09 is right"
     )]
     Singular(f64),
-    /// An entry of the fourth column of Q is not positive: tendons that can only pull cannot hold the finger.
+    /// An entry of the fourth column of Q is not positive, so tendons, which can only pull, cannot hold the finger.
     #[error(
-        "the ghost column of Q must be all positive (eq. 20) but is {0:.3?}: the tendons cannot all pull while the \
-         joints are at rest. Check the signs of R: the report misprints row 2, column 4, where -1.09 is right"
+        "every entry of the ghost column of Q must be positive (eq. 20), but the column is {0:.3?}: the tendons \
+         cannot all pull while the joints are at rest. Check the signs of R: the report misprints row 2, column 4, \
+         where -1.09 is right"
     )]
     GhostColumn([f64; 4]),
 }
@@ -55,7 +56,7 @@ impl Tendons {
         self.q.fixed_columns::<3>(0).transpose()
     }
 
-    /// Returns the tensions that cause no joint torque and of which the smallest is `minimum`, N: eq. 20 at tau = 0.
+    /// Returns the tensions that cause no joint torque (eq. 20 at tau = 0), N. The smallest of them is `minimum`.
     pub fn pretension(&self, minimum: f64) -> Vector4<f64> {
         let column: Vector4<f64> = self.q.column(3).into_owned();
         column * (minimum / column.min())
@@ -67,7 +68,7 @@ impl Tendons {
 fn null_vector(r: &Matrix3x4<f64>) -> Option<RowVector4<f64>> {
     let minor = |skip: usize| r.remove_column(skip).determinant();
     let cofactors = RowVector4::new(minor(0), -minor(1), minor(2), -minor(3));
-    // No minor exceeds the product of the rows' lengths, so this bounds the rounding errors of the cofactors.
+    // No minor exceeds the product of the rows' lengths, so `rounding` is above the rounding errors of the cofactors.
     let rounding = 16.0 * f64::EPSILON * r.row_iter().map(|row| row.norm()).product::<f64>();
     let vector = cofactors.try_normalize(rounding)?;
     Some(if vector.sum() < 0.0 { -vector } else { vector })

@@ -18,10 +18,10 @@ pub struct UnusableConfiguration {
 }
 
 impl Configuration {
-    /// Checks every value and every relation between values that does not need a port.
+    /// Checks every value, and every relation between values that can be checked without a port.
     ///
     /// # Errors
-    /// The first unusable value found.
+    /// Returns the first unusable value.
     pub fn check(&self) -> Result<(), UnusableConfiguration> {
         self.hand.check().map_err(|unusable| UnusableConfiguration { finger: None, unusable })?;
         for (number, finger) in FingerNumber::ALL.into_iter().zip(&self.fingers) {
@@ -48,7 +48,7 @@ impl ConfiguredHand {
     /// Checks every value of `[hand]`.
     ///
     /// # Errors
-    /// The first unusable value found.
+    /// Returns the first unusable value.
     pub fn check(&self) -> Result<(), Unusable> {
         let (least, most) = (*RATES.start(), *RATES.end());
         if self.rate < least {
@@ -81,7 +81,7 @@ impl ConfiguredFinger {
     /// Checks every value of the finger and every relation between them.
     ///
     /// # Errors
-    /// The first unusable value found.
+    /// Returns the first unusable value.
     pub fn check(&self) -> Result<(), Unusable> {
         if self.port.is_empty() {
             return unusable("port", "is empty: set it to the path of a serial port or to \"simulated\"".into());
@@ -136,7 +136,7 @@ impl ConfiguredFinger {
     fn check_sensors_and_motors(&self) -> Result<(), Unusable> {
         let signs = |key, signs: &[i8; 4]| match signs.iter().all(|sign| sign.abs() == 1) {
             true => Ok(()),
-            false => unusable(key, format!("{signs:?}: each must be 1 or -1")),
+            false => unusable(key, format!("{signs:?}: each sign must be 1 or -1")),
         };
         signs("motor.sign", &self.motor.sign)?;
         signs("encoder.sign", &self.encoder.sign)?;
@@ -150,8 +150,8 @@ impl ConfiguredFinger {
         for (tendon, torque) in pretension.iter().flat_map(|torques| torques.iter().enumerate()) {
             if *torque >= self.motor.torque_limit[tendon] {
                 let reason = format!(
-                    "motor {} cannot hold the pretension of its tendon, which takes {torque:.3} N cm: raise the limit, \
-                     or lower tendon.minimum",
+                    "motor {} cannot hold the pretension of its tendon, because it needs {torque:.3} N cm: raise the \
+                     limit, or lower tendon.minimum",
                     tendon + 1
                 );
                 return unusable("motor.torque_limit", reason);
@@ -172,7 +172,7 @@ impl ConfiguredFinger {
         }
         if self.joints.minimum_degrees[2] <= 0.0 {
             let reason = format!(
-                "{} degrees for joint 2 lets the finger straighten, where it is singular: set it above 0",
+                "{} degrees lets joint 2 straighten the finger, and a straight finger is singular: set it above 0",
                 self.joints.minimum_degrees[2]
             );
             return unusable("joints.minimum_degrees", reason);

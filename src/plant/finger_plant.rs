@@ -75,14 +75,14 @@ impl Plant {
         })
     }
 
-    /// Uses steps of `seconds`, more than 0, instead of [`PLANT_STEP_SECONDS`], for periods that are no multiple of
-    /// that. With longer steps the integration may be unstable.
+    /// Sets the length of a step to `seconds`, which must be above 0. This is for periods of a controller that are not
+    /// a multiple of [`PLANT_STEP_SECONDS`]. With steps longer than that constant the integration may be unstable.
     pub fn with_step(self, seconds: f64) -> Self {
         Self { step: seconds, ..self }
     }
 
     /// Advances by one step. `motor_torques` are the torques that the board commands, N m. A positive torque pulls if
-    /// `motor.sign` is +1. They are clamped to the torque limit of the motors.
+    /// `motor.sign` is +1. The torques are clamped to the limits of the motors.
     pub fn step(&mut self, motor_torques: [f64; 4]) {
         let h = self.step;
         self.tendons.slip(&self.theta, &self.motor);

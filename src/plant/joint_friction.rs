@@ -1,6 +1,6 @@
-//! Coulomb friction of the joints as impulses. Each impulse is as large as needed to stop its joint, but at most what
-//! the friction torque delivers in one step. The three impulses are solved together, because stopping one joint moves
-//! its neighbour.
+//! Coulomb friction of the joints as impulses. Each impulse is as large as needed to stop its joint, but at most as
+//! large as the friction torque allows in one step. The three impulses are computed together, because stopping one
+//! joint moves its neighbour.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,8 +8,8 @@ use nalgebra::{Matrix3, Vector3};
 /// the error to three quarters or less in each sweep. The iteration ends early when nothing changes.
 const SWEEPS: usize = 60;
 
-/// Returns the joint rates after friction. `rates` are those without friction, and `bound` has the largest impulses in
-/// N m s.
+/// Returns the joint rates after friction. `rates` are those without friction, and `bound` contains the largest impulse
+/// of each joint, N m s.
 pub(super) fn stop_by_friction(
     rates: Vector3<f64>,
     inverse_inertia: &Matrix3<f64>,

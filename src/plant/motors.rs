@@ -46,8 +46,8 @@ impl Motors {
             let driving = torque - tension_torque[motor] - self.viscous[motor] * speeds[motor];
             let speed = speeds[motor] + h / self.inertia[motor] * driving;
             let friction = self.coulomb[motor] + self.conduit * tension_torque[motor];
-            // Friction reduces the speed to zero at most. A rotor at rest stays at rest until the torque exceeds the
-            // friction.
+            // Friction can reduce the speed to zero, but cannot reverse it. A rotor at rest stays at rest until the
+            // torque exceeds the friction.
             let loss = h / self.inertia[motor] * friction;
             speed - speed.clamp(-loss, loss)
         })

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 /// Largest count of the 12-bit converter behind each gauge.
 const GAUGE_FULL_SCALE: f64 = 4095.0;
 
-/// Encoders and gauges of one finger. The noise of the gauges is the same sequence for the same `simulation.seed`.
+/// Encoders and gauges of one finger. The same `simulation.seed` gives the same sequence of gauge noise.
 #[derive(Clone, Debug)]
 pub struct Sensors {
     /// Counts per radian, with the sign of the encoder.
@@ -22,10 +22,11 @@ pub struct Sensors {
     random: Pcg64,
     /// Constant count of each dead gauge.
     dead: [Option<u16>; 4],
-    /// Present drift of each gauge, N, and its speed, N/s.
+    /// Current error of each gauge due to drift, N.
     drift: [f64; 4],
+    /// Rate of each gauge's drift, N/s.
     drift_speed: [f64; 4],
-    /// Counts by which each encoder is wrong.
+    /// Error of each encoder, counts.
     jumped: [i32; 4],
     /// The gauge counts of the last reading.
     shown: [u16; 4],
@@ -52,17 +53,17 @@ impl Sensors {
         }
     }
 
-    /// Kills a gauge: from now on it shows `count`, or without `count` the count of its last reading.
+    /// Kills a gauge. From now on it shows `count`, or the count of its last reading if `count` is `None`.
     pub fn kill_gauge(&mut self, gauge: usize, count: Option<u16>) {
         self.dead[gauge] = Some(count.unwrap_or(self.shown[gauge]));
     }
 
-    /// Starts the drift of a gauge, N/s.
+    /// Makes a gauge drift at `speed`, N/s.
     pub fn let_gauge_drift(&mut self, gauge: usize, speed: f64) {
         self.drift_speed[gauge] = speed;
     }
 
-    /// Adds counts to an encoder, or removes them.
+    /// Adds `counts` to an encoder's count. A negative number removes counts.
     pub fn jump(&mut self, encoder: usize, counts: i32) {
         self.jumped[encoder] = self.jumped[encoder].wrapping_add(counts);
     }
@@ -72,7 +73,7 @@ impl Sensors {
         (self.dead, self.drift, self.drift_speed, self.jumped) = ([None; 4], [0.0; 4], [0.0; 4], [0; 4]);
     }
 
-    /// Advances the drift of the gauges by a time, s.
+    /// Advances the drift of the gauges by `seconds`.
     pub fn pass(&mut self, seconds: f64) {
         for gauge in 0..4 {
             self.drift[gauge] += self.drift_speed[gauge] * seconds;

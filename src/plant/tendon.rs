@@ -18,7 +18,7 @@ pub(super) struct ElasticTendons {
     home_stretch: Vector4<f64>,
     /// Torn tendons, which have no tension.
     cut: [bool; 4],
-    /// Largest tension of a slipping tendon, N. It is infinite for a tendon that does not slip.
+    /// Tension above which each tendon slips in its clamp, N. It is infinite for a tendon that cannot slip.
     grip: Vector4<f64>,
     /// Length that slipping has added to each tendon, m.
     slipped: Vector4<f64>,
@@ -61,7 +61,7 @@ impl ElasticTendons {
         self.slipped = Vector4::zeros();
     }
 
-    /// Lets tendons slip whose tension exceeds their grip.
+    /// Makes each tendon slip if its tension exceeds its grip.
     pub fn slip(&mut self, theta: &Vector3<f64>, motor: &Vector4<f64>) {
         if self.grip.min() == f64::INFINITY {
             return;

@@ -1,6 +1,6 @@
 //! Protection of the library's code from pthread_cancel. A cancelled thread unwinds its stack. Unwinding a Rust frame
 //! that has a destructor is undefined behaviour, and the thread would leave its locks taken.
-#![allow(unsafe_code, reason = "functions of C that the libc crate does not have")]
+#![allow(unsafe_code, reason = "C functions that the libc crate does not have")]
 
 use std::ffi::c_int;
 
@@ -15,11 +15,12 @@ const DEFERRED: c_int = 0;
 /// PTHREAD_CANCEL_DISABLE, which has this value in every C library of Linux.
 const DISABLE: c_int = 1;
 
-/// While this exists, the calling thread is cancelled only at cancellation points, not at any instruction. In almost
-/// every planner that is the case already; then this only reads the type, which costs less than disabling cancellation.
+/// While this exists, the calling thread is cancelled only at cancellation points, not at any instruction. Almost every
+/// planner has deferred cancellation already. Then [`DeferredCancellation::begin`] changes nothing and
+/// [`DeferredCancellation::end`] does nothing, which costs less than disabling cancellation.
 ///
-/// The type has no destructor, so that the frame that holds it has nothing to drop. An asynchronous cancellation takes
-/// effect in [`DeferredCancellation::end`] and unwinds that frame.
+/// This struct has no destructor, so the frame that holds it has nothing to drop. This matters because an asynchronous
+/// cancellation takes effect in [`DeferredCancellation::end`] and unwinds that frame.
 #[must_use]
 pub struct DeferredCancellation(c_int);
 
@@ -61,8 +62,8 @@ impl Drop for NoCancellation {
     fn drop(&mut self) {
         let mut before = DISABLE;
         // SAFETY: the state is the thread's previous one, and there is room for the current one. A pending cancellation
-        // takes effect later: every user of this type either has cancellation deferred, or runs in a thread that is
-        // not cancelled.
+        // does not take effect in this call, because every thread that uses this struct either has deferred
+        // cancellation, or is never cancelled.
         unsafe { pthread_setcancelstate(self.0, &mut before) };
     }
 }

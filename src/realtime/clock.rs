@@ -3,7 +3,7 @@
 
 use std::io;
 
-/// A clock that can be waited on. Times are ns since an arbitrary start.
+/// A clock that a thread can read and wait for. Times are ns since an arbitrary start.
 pub trait Clock {
     /// The time, ns.
     fn now(&self) -> u64;
@@ -19,9 +19,9 @@ impl MonotonicClock {
     /// Checks that the system lets this process wait, which a sandbox may forbid.
     ///
     /// # Errors
-    /// What the system reports.
+    /// Returns the error with which the system refuses to wait.
     pub fn check_sleep() -> io::Result<()> {
-        // The deadline has passed, so this returns at once.
+        // The deadline 0 has passed, so the call returns at once.
         match sleep(0) {
             0 | libc::EINTR => Ok(()),
             error => Err(io::Error::from_raw_os_error(error)),
@@ -35,7 +35,8 @@ impl Clock for MonotonicClock {
     }
 
     fn sleep_until(&self, deadline: u64) {
-        // Any error other than EINTR means a wrong argument or a sandbox, and then a servo must not sleep forever.
+        // Any error other than EINTR ends the loop. It is caused by a wrong argument or a sandbox, and a servo must not
+        // repeat the call forever.
         while sleep(deadline) == libc::EINTR {}
     }
 }

@@ -1,6 +1,6 @@
 //! Work that a thread of this library does on behalf of a planner's thread. The planner's thread waits for the result.
-//! Signal handlers of the planner run on the waiting thread. A handler may leave the wait by siglongjmp: the wait is on
-//! a futex word and holds no lock.
+//! Signal handlers of the planner run on the waiting thread. A handler may leave the wait by siglongjmp, because the
+//! waiting thread waits on a futex word and holds no lock.
 #![allow(unsafe_code, reason = "the futex system call")]
 
 use super::cancellation::NoCancellation;
@@ -27,8 +27,8 @@ struct Outcome<T> {
 }
 
 thread_local! {
-    /// The thread that works for the calling thread. If one is still here when the next work starts, a siglongjmp left
-    /// the wait for it.
+    /// The thread that works for the calling thread. If a thread is still stored here when the next work starts, a
+    /// signal handler left the wait for it by siglongjmp.
     static WORKER: RefCell<Option<JoinHandle<()>>> = const { RefCell::new(None) };
 }
 
@@ -36,9 +36,9 @@ impl<T: Send + 'static> DelegatedCall<T> {
     /// Starts a thread that runs `work`, which must not panic.
     ///
     /// # Errors
-    /// The system cannot start a thread.
+    /// Returns the system's error if it cannot start a thread.
     pub fn begin(_blocked: &SignalsBlocked, work: impl FnOnce() -> T + Send + 'static) -> io::Result<Self> {
-        // A worker that is still here is not joined: it ends by itself.
+        // A worker that is still in `WORKER` is not joined. It ends by itself.
         drop(take_worker());
         let outcome = Arc::new(Outcome { result: Mutex::new(None), done: AtomicU32::new(0) });
         let workers = outcome.clone();
@@ -53,11 +53,12 @@ impl<T: Send + 'static> DelegatedCall<T> {
         Ok(Self(outcome))
     }
 
-    /// Waits for the work, with the thread's own signal mask. Returns nothing if `give_up` returns true first.
+    /// Waits for the end of the work, under the thread's original signal mask. Returns `None` if `give_up` returns true
+    /// before the work ends.
     pub fn wait(self, blocked: &SignalsBlocked, give_up: impl Fn() -> bool) -> Option<T> {
         let done = &self.0.done;
-        // Signals are let in only inside this block. Elsewhere the thread may be in the allocator or own a lock, which
-        // a siglongjmp out of a handler would leave behind.
+        // Signals are unblocked only inside this block. Elsewhere the thread may own a lock, for example in the
+        // allocator, and a siglongjmp out of a handler would leave the lock taken.
         let given_up = blocked.lifted(|| {
             while done.load(Ordering::Acquire) == 0 {
                 wait_for_change(done, 0);
@@ -69,11 +70,11 @@ impl<T: Send + 'static> DelegatedCall<T> {
         });
         let worker = take_worker();
         if given_up {
-            // `give_up` is true in a forked child, which does not have the worker thread.
+            // `give_up` returns true in a forked child, which does not have the worker thread.
             std::mem::forget(worker);
             return None;
         }
-        // The worker has nothing left to do. Joining it waits until its stack and its number are free again.
+        // The worker has nothing left to do. Joining waits until its stack and its thread number are free again.
         let _uncancelled = NoCancellation::begin();
         worker.map(JoinHandle::join);
         self.0.result.lock().take()
@@ -84,7 +85,7 @@ fn take_worker() -> Option<JoinHandle<()>> {
     WORKER.try_with(RefCell::take).ok().flatten()
 }
 
-/// Waits while `word` has this value, for at most `CHECK_INTERVAL`. This is not a cancellation point.
+/// Waits while `word` is `value`, for at most `CHECK_INTERVAL`. This is not a cancellation point.
 fn wait_for_change(word: &AtomicU32, value: u32) {
     let limit = libc::timespec { tv_sec: 0, tv_nsec: CHECK_INTERVAL };
     let operation = libc::FUTEX_WAIT | libc::FUTEX_PRIVATE_FLAG;

@@ -10,7 +10,7 @@ use other as registers;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 use processor as registers;
 
-/// The environment of a thread before it entered the default one. [`Environment::restore`] restores it.
+/// The environment that a thread had before it entered the default one. [`Environment::restore`] restores it.
 #[must_use]
 pub struct Environment(registers::Saved);
 
@@ -36,7 +36,7 @@ impl Environment {
 pub fn use_default_environment() {
     registers::write_default();
     #[cfg(target_arch = "x86_64")]
-    // SAFETY: resets the x87 unit, in which no Rust code keeps a value.
+    // SAFETY: the instruction resets the x87 unit, in which no Rust code keeps a value.
     unsafe {
         std::arch::asm!("fninit", out("st(0)") _, out("st(1)") _, out("st(2)") _, out("st(3)") _, out("st(4)") _,
             out("st(5)") _, out("st(6)") _, out("st(7)") _, options(nostack));
@@ -80,7 +80,7 @@ mod processor {
         write(DEFAULT);
     }
 
-    /// Writes without reading first: reading the register takes longer than writing it.
+    /// Writes the register without comparing it first, because reading it takes longer than writing it.
     #[inline(always)]
     pub fn restore(saved: &u32) {
         write(*saved);
@@ -97,7 +97,7 @@ mod processor {
     #[inline(always)]
     pub fn read() -> (u64, u64) {
         let (control, status): (u64, u64);
-        // SAFETY: reads two registers. `nomem` is not set, because computations must not move across this.
+        // SAFETY: the code reads two registers. `nomem` is not set, because computations must not move across it.
         unsafe {
             asm!("mrs {}, fpcr", "mrs {}, fpsr", out(reg) control, out(reg) status, options(nostack, preserves_flags))
         };
@@ -136,11 +136,11 @@ mod other {
 
     use std::ffi::c_int;
 
-    /// A fenv_t. No known one is larger.
+    /// Room for a fenv_t. No known fenv_t is larger.
     #[repr(C, align(16))]
     pub struct Saved([u8; 64]);
 
-    // These are in the mathematical library, which Rust's standard library links.
+    // These functions are in the mathematical library, which Rust's standard library links.
     unsafe extern "C" {
         fn fegetenv(environment: *mut Saved) -> c_int;
         fn fesetenv(environment: *const Saved) -> c_int;

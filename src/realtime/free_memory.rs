@@ -1,13 +1,13 @@
-//! A check for free memory before work that cannot be done without. A failed allocation in the middle of that work
-//! would end the process, and with it a hand in motion.
+//! A check for free memory before work that needs memory. A failed allocation in the middle of that work would end the
+//! process, and with it a hand in motion.
 
 use std::hint::black_box;
 
-/// Small enough that the C library takes it from its heap. Freeing a larger block would change how the C library serves
-/// the planner's later allocations.
+/// Size of one block. A block is so small that the C library takes it from its heap. Freeing a larger block would
+/// change how the C library serves the planner's later allocations.
 const BLOCK_BYTES: usize = 64 * 1024;
 
-/// Whether the allocator has this many bytes now, in blocks of 64 KiB. Other threads may take them afterwards.
+/// Whether the allocator can provide `bytes` now, in blocks of 64 KiB. Other threads may take this memory afterwards.
 pub fn is_memory_free(bytes: usize) -> bool {
     let count = bytes.div_ceil(BLOCK_BYTES);
     let mut blocks: Vec<Vec<u8>> = Vec::new();

@@ -1,5 +1,5 @@
-//! Remedies for a thread, a descriptor or a pseudo-terminal that the system refuses: because a limit has been reached,
-//! because a sandbox forbids it, or because it is missing.
+//! Remedies for cases in which the system refuses a thread, a descriptor or a pseudo-terminal: a limit has been
+//! reached, a sandbox forbids the call, or pseudo-terminals are not available.
 #![allow(unsafe_code, reason = "the scheduling policy of the calling thread")]
 
 use std::ffi::c_int;
@@ -8,8 +8,8 @@ use std::io;
 /// SCHED_DEADLINE, which has this value in every Linux.
 const DEADLINE: c_int = 6;
 
-/// The remedy for an error of a call that creates a thread, a descriptor or a pseudo-terminal; none if neither a limit
-/// nor a sandbox is the cause.
+/// The remedy for an error of a call that creates a thread, a descriptor or a pseudo-terminal. `None` if neither a
+/// limit nor a sandbox is the cause.
 pub fn remedy(error: &io::Error) -> Option<&'static str> {
     // SAFETY: the call takes no pointer. 0 is the calling thread, to which the call was refused.
     remedy_under(unsafe { libc::sched_getscheduler(0) }, error)
@@ -25,7 +25,7 @@ fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
              SCHED_FLAG_RESET_ON_FORK: set that flag (sched_setattr), or make this call in an ordinary thread",
         ),
         libc::EMFILE => {
-            Some("this process has reached its limit of open files: close some, or raise the limit (ulimit -n)")
+            Some("this process has reached its limit of open files: close files, or raise the limit (ulimit -n)")
         }
         libc::ENFILE => {
             Some("the system has reached its limit of open files: end other programs, or raise fs.file-max (sysctl)")
@@ -35,11 +35,11 @@ fn remedy_under(policy: c_int, error: &io::Error) -> Option<&'static str> {
              (ulimit -u), of the service or container (TasksMax, pids.max) or of the system (kernel.threads-max), and \
              the memory limits (ulimit -v, and ulimit -l after mlockall)",
         ),
-        // The two errors with which sandboxes refuse a system call. EPERM is also what the device rules of a container
-        // answer.
+        // Sandboxes refuse a system call with one of these two errors. The device rules of a container refuse it with
+        // EPERM.
         libc::EPERM | libc::ENOSYS => Some(
             "a sandbox (seccomp) or a container forbids a necessary system call: permit it there (strace -f shows \
-             which one), or run the program outside",
+             which one), or run the program outside it",
         ),
         libc::ENOMEM => {
             Some("there is not enough free memory: end other programs, or raise the limit of this process (ulimit -v)")
@@ -64,7 +64,7 @@ pub fn with_remedy(error: &io::Error) -> String {
 pub fn with_terminal_remedy(error: &io::Error) -> String {
     match error.raw_os_error() {
         // ENOENT: /dev/ptmx or the terminal under /dev/pts is missing. ENODEV: nothing is mounted on /dev/pts. EACCES:
-        // /dev/pts/ptmx is accessible to nobody, which is the default of a mount. EINVAL and ENOTTY: /dev/ptmx is
+        // no ordinary user may open /dev/pts/ptmx, which is the default of a mount. EINVAL and ENOTTY: /dev/ptmx is
         // another device or a file.
         Some(libc::ENOENT | libc::ENODEV | libc::EACCES | libc::EINVAL | libc::ENOTTY) => format!(
             "{error}: pseudo-terminals are not available here. Mount them (mount -t devpts -o ptmxmode=666 devpts \

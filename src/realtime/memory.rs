@@ -11,7 +11,7 @@ use std::ops::Range;
 /// Memory ranges that are locked together.
 ///
 /// Each range consists of whole pages that hold nothing else, and stays locked until the value in it is dropped. Locks
-/// do not nest. In a page shared with the planner's data, unlocking would also unlock the planner's data.
+/// do not nest: in a page shared with the planner's data, unlocking would also unlock the planner's data.
 #[derive(Clone, Debug, Default)]
 pub struct LockedMemory(Vec<Range<usize>>);
 
@@ -34,8 +34,8 @@ impl LockedMemory {
     /// Faults in the pages of every range, and locks them.
     ///
     /// # Errors
-    /// The system's error: EPERM without the right to lock, ENOMEM beyond the memlock limit. Some ranges may be locked
-    /// then.
+    /// Returns the system's error: EPERM if the process may not lock memory, ENOMEM if the memory exceeds the memlock
+    /// limit. Some ranges may be locked already.
     pub fn lock(&self) -> io::Result<()> {
         self.0.iter().try_for_each(lock)
     }
@@ -45,7 +45,8 @@ impl LockedMemory {
 pub(super) fn every_page_is_locked() -> bool {
     let new = Pages::new(0u8);
     let place = new.range();
-    // SAFETY: the page of a value that is not used any more. The system refuses MADV_DONTNEED for a locked page.
+    // SAFETY: the page holds only `new`, which is not used any more. The system refuses MADV_DONTNEED for a locked
+    // page.
     let dropped =
         unsafe { libc::madvise(std::ptr::without_provenance_mut(place.start), place.len(), libc::MADV_DONTNEED) };
     dropped != 0

@@ -1,5 +1,6 @@
-//! Real-time support for the servo threads: clock, periods, priorities, locked memory and timing statistics. Also the
-//! separation between this library's threads and the planner's: signals, cancellation, floating-point environments.
+//! Real-time support for the servo threads: clock, periods, priorities, locked memory and timing statistics. This
+//! module also separates this library's threads from the planner's: signals, cancellation and floating-point
+//! environments.
 
 mod cancellation;
 mod clock;

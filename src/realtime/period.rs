@@ -9,13 +9,13 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Cycles at `first`, `first + period` and so on, ns.
+    /// Creates the schedule of cycles that begin at `first`, `first + period` and so on, ns.
     pub fn new(first: u64, period: u64) -> Self {
         Self { next: first, period }
     }
 
-    /// The schedule of thread `place` (0 to `of` - 1) of `of` threads. Their beginnings are spread evenly over the
-    /// period, because the threads share cores and other resources.
+    /// Creates the schedule of thread `place` (0 to `of` - 1) of `of` threads. The beginnings of their cycles are
+    /// spread evenly over the period, because the threads share cores and other resources.
     pub fn staggered(first: u64, period: u64, place: usize, of: usize) -> Self {
         Self::new(first + period * place as u64 / of as u64, period)
     }

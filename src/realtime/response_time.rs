@@ -6,11 +6,11 @@
 pub struct PeriodicThread {
     /// The core that the thread is bound to. Without one, the thread may compete with every other thread.
     pub core: Option<usize>,
-    /// SCHED_FIFO priority. The higher number runs first.
+    /// SCHED_FIFO priority. The thread with the higher number runs first.
     pub priority: u8,
-    /// From one beginning to the next.
+    /// Time from one beginning to the next.
     pub period: u64,
-    /// From the scheduled beginning to the first instruction.
+    /// Time from the scheduled beginning to the first instruction.
     pub wake_up: u64,
     /// Computing time before the wait.
     pub before: u64,
@@ -25,7 +25,7 @@ pub struct PeriodicThread {
 pub struct Response {
     /// The end of the wait.
     pub waited: u64,
-    /// The end of the cycle. It is never later than the period.
+    /// The end of the cycle. It is never later than the end of the period.
     pub done: u64,
 }
 
@@ -49,12 +49,12 @@ impl PeriodicThread {
     }
 }
 
-/// Computes a bound for each thread that holds for all phases. A thread has no bound if it may still be busy when its
-/// next period begins, or if it waits for a thread without a bound.
+/// Computes a bound for each thread. The bounds hold for all phases of the threads. A thread has no bound if it may
+/// still be busy when its next period begins, or if it waits for a thread without a bound.
 ///
 /// Within any window of length w, thread j computes for at most ceil((w + R_j - C_j) / T_j) C_j, wherever its wait
-/// lies: a cycle that reaches into the window began at most R_j before it. So the least solution of R_i = wake-up +
-/// computing + waiting + sum over j of ceil((R_i + R_j - C_j) / T_j) C_j, for all i at once, is a bound.
+/// lies: a cycle that reaches into the window began at most R_j before the window. So the smallest solution of R_i =
+/// wake-up + computing + waiting + sum over j of ceil((R_i + R_j - C_j) / T_j) C_j, for all i at once, is a bound.
 pub fn response_times(threads: &[PeriodicThread]) -> Vec<Option<Response>> {
     let mut done: Vec<Option<u64>> = threads.iter().map(|thread| within(thread, thread.alone())).collect();
     loop {
@@ -84,7 +84,7 @@ fn within(thread: &PeriodicThread, time: u64) -> Option<u64> {
     (time <= thread.period).then_some(time)
 }
 
-/// `alone` plus the computing time of the other threads within `window`; none beyond the period.
+/// `alone` plus the computing time of the other threads within `window`. `None` if the sum exceeds the period.
 fn finish(threads: &[PeriodicThread], done: &[Option<u64>], own: usize, alone: u64, window: u64) -> Option<u64> {
     let thread = &threads[own];
     let mut time = alone;
@@ -110,14 +110,15 @@ mod tests {
         response_times(threads).iter().map(|response| response.map(|response| response.done)).collect()
     }
 
-    /// 10 + 20 + 300 + 40, and 40 less at the end of the wait.
+    /// The cycle ends after 10 + 20 + 300 + 40 ns, and the wait ends 40 ns earlier.
     #[test]
     fn a_single_thread_responds_after_the_sum_of_its_parts() {
         let [Some(response)] = response_times(&[thread(0, 80, 1000, [10, 20, 300, 40])])[..] else { panic!("met") };
         assert_eq!(response, Response { waited: 330, done: 370 });
     }
 
-    /// The textbook example of three tasks without waiting: C 3, 3, 5, T 7, 12, 20, R 3, 6, 20.
+    /// The textbook example of three tasks without waiting: computing times C = 3, 3, 5, periods T = 7, 12, 20, bounds
+    /// R = 3, 6, 20.
     #[test]
     fn without_waiting_it_is_the_classical_analysis() {
         let tasks =
@@ -149,7 +150,7 @@ mod tests {
             done(&[late, thread(0, 80, 1000, [0, 10, 0, 0]), thread(1, 80, 1000, [0, 10, 0, 0])]),
             [None, None, Some(10)]
         );
-        // Two threads of equal priority that together need more than the core.
+        // Together, these two threads of equal priority need more time than the core has.
         let half = thread(0, 80, 1000, [0, 501, 0, 0]);
         assert_eq!(done(&[half, half]), [None, None]);
     }

@@ -59,7 +59,7 @@ impl<T> Producer<T> {
     /// Appends a value.
     ///
     /// # Errors
-    /// The value itself, if the ring is full.
+    /// Returns the value itself if the ring is full.
     pub fn push(&mut self, value: T) -> Result<(), T> {
         let ring = &*self.0;
         // Only this end writes `left`.
@@ -82,7 +82,7 @@ impl<T> Producer<T> {
 }
 
 impl<T> Consumer<T> {
-    /// Takes the oldest value; none if the ring is empty.
+    /// Takes the oldest value. Returns `None` if the ring is empty.
     pub fn pop(&mut self) -> Option<T> {
         let ring = &*self.0;
         // Only this end writes `taken`.

@@ -1,5 +1,5 @@
-//! Separation of signals. They are the planner's: no thread of this library receives one, and nothing that the library
-//! does in a planner's thread raises one.
+//! Separation of signals. All signals belong to the planner: no thread of this library receives one, and nothing that
+//! the library does in a planner's thread raises one.
 #![allow(unsafe_code, reason = "signal masks")]
 
 use std::ffi::c_int;
@@ -10,8 +10,8 @@ use std::mem::MaybeUninit;
 /// process without calling a handler.
 const FAULTS: [c_int; 6] = [libc::SIGSEGV, libc::SIGBUS, libc::SIGFPE, libc::SIGILL, libc::SIGTRAP, libc::SIGSYS];
 
-/// While this exists, the calling thread does not receive the blocked signals. They stay pending until it is dropped. A
-/// thread that is started meanwhile inherits the mask and keeps it.
+/// While this exists, the calling thread does not receive the blocked signals. They stay pending until this value is
+/// dropped. A thread that is started meanwhile inherits the mask and keeps it.
 pub struct SignalsBlocked(libc::sigset_t);
 
 impl SignalsBlocked {
@@ -36,8 +36,8 @@ impl SignalsBlocked {
         under(libc::SIG_SETMASK, &self.0, wait)
     }
 
-    /// Runs `read`, which reads the planner's memory, with the fault signals unblocked that the thread had unblocked. A
-    /// planner may have a handler that makes a page accessible at the first access.
+    /// Runs `read`, which reads the planner's memory. Meanwhile, the fault signals that the thread itself had not
+    /// blocked are unblocked. A planner may have a handler that makes a page accessible at the first access.
     pub fn with_faults_unblocked<T>(&self, read: impl FnOnce() -> T) -> T {
         let mut unblocked = set_of(&[]);
         for signal in FAULTS {

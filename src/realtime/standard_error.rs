@@ -1,4 +1,4 @@
-//! Messages on standard error, for people who do not check results.
+//! Messages on standard error, for users whose planners do not check results.
 #![allow(unsafe_code, reason = "the raw descriptor of standard error")]
 
 use super::cancellation::NoCancellation;
@@ -6,11 +6,11 @@ use super::signals::{SignalsBlocked, is_pending, take_back};
 use std::ffi::c_int;
 use std::io;
 
-/// Errors of a write that come with a signal: nobody reads the pipe, or the file has reached the size limit of the
+/// Errors of a write that come with a signal: no process reads the pipe, or the file has reached the size limit of the
 /// process.
 const RAISING: [(c_int, c_int); 2] = [(libc::EPIPE, libc::SIGPIPE), (libc::EFBIG, libc::SIGXFSZ)];
 
-/// Writes one line on standard error with a single system call, so that the lines of several threads do not mix.
+/// Writes one line to standard error with a single system call, so that the lines of several threads do not mix.
 /// Allocates nothing. The thread is not cancelled during the write.
 ///
 /// If standard error accepts no more, the line is lost, and the process receives neither SIGPIPE nor SIGXFSZ.

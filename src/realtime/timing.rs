@@ -1,5 +1,5 @@
-//! Timing of the cycles as data. The servo writes one small record per finger and cycle. The thread that collects the
-//! reports counts them.
+//! Timing of the cycles. The servo writes one small record per finger and cycle. The thread that collects the reports
+//! adds the records to histograms.
 
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ pub enum CycleStage {
     Wire,
     /// Reading the reply bytes.
     Read,
-    /// From bytes to the finger's reply, including the checks.
+    /// Decoding the bytes into the finger's reply, including the checks.
     Decode,
     /// The control computation and the report.
     Compute,
@@ -39,8 +39,8 @@ impl CycleStage {
     ];
 }
 
-/// The times of one finger's cycle, ns, in the order of [`CycleStage::ALL`]. A stage that did not take place has none,
-/// for example because there was no reply.
+/// The times of one finger's cycle, ns, in the order of [`CycleStage::ALL`]. A stage that did not take place, for
+/// example because there was no reply, has no time.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct CycleTiming {
@@ -79,11 +79,11 @@ pub struct Histograms {
 }
 
 impl Histograms {
-    /// Empty histograms of a fixed size: 1 ns to 4.3 s in steps of 1 %.
+    /// Creates empty histograms of a fixed size: 1 ns to 4.3 s in steps of 1 %.
     pub fn new() -> Self {
         let empty = |_| {
             Histogram::new_with_bounds(1, u64::from(u32::MAX), 2)
-                .unwrap_or_else(|_| unreachable!("the bounds and digits are constants that the histogram takes"))
+                .unwrap_or_else(|_| unreachable!("the bounds and digits are constants that the histogram accepts"))
         };
         Self { stages: CycleStage::ALL.map(empty) }
     }

@@ -35,7 +35,8 @@ struct Places<T> {
 #[repr(align(128))]
 struct Line<T>(T);
 
-// SAFETY: only the end that has the number of a place accesses it. `T` is `Send`, because values move between threads.
+// SAFETY: only the end that has the number of a place accesses that place. `T` is `Send`, because values move between
+// threads.
 unsafe impl<T: Send> Sync for Places<T> {}
 
 /// Returns both ends, with the same value in every place.
@@ -46,15 +47,16 @@ pub fn triple_buffer<T: Clone>(initial: &T) -> (Input<T>, Output<T>) {
 }
 
 impl<T> Input<T> {
-    /// The buffer of the next value to publish. It holds an older value.
+    /// Returns the buffer for the next value to publish. It still holds an older value.
     pub fn input_buffer_mut(&mut self) -> &mut T {
-        // SAFETY: only this end has the number of this place, and it is borrowed mutably.
+        // SAFETY: only this end has the number of this place, and this end is borrowed mutably.
         unsafe { &mut *self.places.places[usize::from(self.own)].0.get() }
     }
 
     /// Publishes the buffer.
     pub fn publish(&mut self) {
-        // Release: the value is written before. Acquire: the reader has finished reading the place that comes back.
+        // Release: the value was written before this swap. Acquire: the reader has finished reading the place that
+        // comes back.
         self.own = self.places.between.0.swap(self.own | NEW, Ordering::AcqRel) & PLACE;
     }
 
@@ -64,14 +66,14 @@ impl<T> Input<T> {
         self.publish();
     }
 
-    /// Adds its pages to `memory`.
+    /// Adds the buffer's pages to `memory`.
     pub fn add_to(&self, memory: &mut LockedMemory) {
         memory.add_shared(&self.places);
     }
 }
 
 impl<T> Output<T> {
-    /// Takes the newest value if one was published since the last call. Returns whether it did.
+    /// Takes the newest value if one was published since the last call. Returns whether there was one.
     pub fn update(&mut self) -> bool {
         let between = &self.places.between.0;
         if between.load(Ordering::Relaxed) & NEW == 0 {
@@ -84,7 +86,7 @@ impl<T> Output<T> {
 
     /// The value that was taken last.
     pub fn output_buffer(&mut self) -> &T {
-        // SAFETY: only this end has the number of this place, and it is borrowed mutably.
+        // SAFETY: only this end has the number of this place, and this end is borrowed mutably.
         unsafe { &*self.places.places[usize::from(self.own)].0.get() }
     }
 

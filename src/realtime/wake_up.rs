@@ -1,4 +1,4 @@
-//! Measures how late a thread is woken on this machine, as a servo thread would be.
+//! Measures how late this machine wakes up a thread that has the settings of a servo thread.
 #![allow(unsafe_code)]
 
 use crate::realtime::{
@@ -19,10 +19,10 @@ pub struct WakeUp {
     pub timer_slack: u64,
 }
 
-/// Starts a thread that wakes up `cycles` times by `schedule`, and does nothing else.
+/// Starts a thread that wakes up `cycles` times, at the times of `schedule`, and does nothing else.
 ///
 /// # Errors
-/// The system cannot start a thread.
+/// Returns the system's error if it cannot start a thread.
 pub fn measure_wake_up(priority: Priority, mut schedule: Schedule, cycles: u64) -> io::Result<JoinHandle<WakeUp>> {
     spawn("sun2xp doctor", priority, move |refusals| {
         let mut histograms = Histograms::new();

@@ -1,9 +1,9 @@
-//! Checks of a single value: key, range and unit.
+//! Checks of single values: numbers against their ranges, and paths.
 
 use crate::model::Shown;
 use crate::model::configuration::Unusable;
 
-/// The longest path of a port or a folder, bytes. Paths below /dev have less than a hundred.
+/// The longest path of a port or a folder, bytes. Paths below /dev are shorter than 100 bytes.
 const LONGEST_PATH: usize = 1000;
 
 pub(super) fn unusable<T>(key: &'static str, reason: String) -> Result<T, Unusable> {

@@ -26,8 +26,8 @@ impl Configuration {
         if !same_thread {
             let thread = self.thread(first);
             let reason = format!(
-                "fingers {first} and {second} share the port {port}, and one thread serves all fingers \
-                 of a port: set thread = {thread} for every finger of the port"
+                "fingers {first} and {second} share the port {port} but not a thread, and one thread \
+                 must serve all fingers of a port: set thread = {thread} for every finger of the port"
             );
             return unusable("thread", reason);
         }
