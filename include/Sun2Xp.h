@@ -551,11 +551,12 @@ int SendPosD(int, const double *);
    Kx    Kx[3][3] or Kx[9], row by row: entry [row][column] is the force along axis row (x, y, z of
          the finger's frame, chapter 3) for a displacement of 1 cm along axis column, N/cm
 
- The whole matrix takes effect from the next cycle on, without a jump in torque: 95 % of the change
- has taken effect after 50 ms. Kx must be symmetric; a difference of up to 1e-3 of the largest entry
- is averaged. No eigenvalue may be below -1e-3 of the largest one. Kx may be singular or zero: along
- directions without stiffness the finger is limp but still damped. The largest eigenvalue may be at
- most the configured bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
+ All entries begin to change in the next cycle, without a jump in torque: 95 % of the change has
+ taken effect after 50 ms. Kx must be symmetric; two mirrored entries that differ by up to 1e-3 of
+ the largest entry are averaged. No eigenvalue may be below -1e-3 times the largest one. Kx may be
+ singular or zero: along directions without stiffness the finger is limp but still damped. The
+ largest eigenvalue may be at most the configured bound, by default 6 N/cm at 1000 Hz and above, and
+ 5 N/cm below.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -688,8 +689,9 @@ const char *HandError(void);
 
 /* State of a finger (FingerStatus.State, FingerRecord.State) */
 #define FINGER_RUNNING 1            /* The fingertip is the spring that the planner has commanded. */
-#define FINGER_FAULTED 2            /* The finger has stopped by itself; its motors are in the configured end state.
-                                       Its calls are refused with EIO until RecoverHand, or CloseHand and OpenHand. */
+#define FINGER_FAULTED 2            /* The finger has stopped because of a fault. Its motors are in the configured
+                                       end state. Calls for the finger are refused with EIO until RecoverHand, or
+                                       CloseHand and OpenHand. */
 #define FINGER_LIMP 3               /* The motors are off after a refused calibration. Set points have no effect.
                                        Another calibration, or CloseHand and OpenHand, make the finger a spring
                                        again. */
@@ -702,10 +704,11 @@ const char *HandError(void);
 /* Stage of a cycle (GetTiming, FingerTiming.Stage) */
 #define TIMING_WAKE_UP 0            /* From the scheduled start of a cycle to the thread's first instruction. */
 #define TIMING_WRITE 1              /* Passing the commands of the port to the system. */
-#define TIMING_WIRE 2               /* From there until the reply can be read: the line both ways, and the board. */
+#define TIMING_WIRE 2               /* From the end of TIMING_WRITE until the reply can be read: the line in both
+                                       directions, and the board. */
 #define TIMING_READ 3               /* Reading the reply. */
-#define TIMING_DECODE 4             /* From bytes to the finger's reply, including all checks. */
-#define TIMING_COMPUTE 5            /* The controller. */
+#define TIMING_DECODE 4             /* Decoding the bytes to the finger's reply, including all checks. */
+#define TIMING_COMPUTE 5            /* Computing the command and the report. */
 #define TIMING_CYCLE 6              /* From the scheduled start of a cycle to the end of its computation. */
 #define TIMING_AGE 7                /* Age of the newest measurement when the command computed from it takes effect,
                                        by the board's clock. One period if nothing is late. */
@@ -714,34 +717,39 @@ const char *HandError(void);
 struct FingerStatus {
     unsigned int Size;              /* In: sizeof (struct FingerStatus). Out: bytes written, at most that. */
     int State;                      /* FINGER_RUNNING to FINGER_CLOSED. */
-    int Realtime;                   /* 1: all servo threads of the hand run under SCHED_FIFO. 0: one does not. */
+    int Realtime;                   /* 1: all servo threads of the hand run under SCHED_FIFO. 0: at least one does
+                                       not. */
     double Rate;                    /* Configured servo rate, Hz. */
-    double MeasuredRate;            /* Measured servo rate since OpenHand, Hz. It falls while the servo does not run:
-                                       the periods missing up to now count. */
-    double WakeUpMedian;            /* Jitter: how late cycles began since OpenHand or ResetTiming, us; median. */
-    double WakeUp99;                /* The same, us; 99 of 100 cycles began no later. */
-    double WakeUpMaximum;           /* The same, us; maximum. */
+    double MeasuredRate;            /* Measured servo rate since OpenHand, Hz. It falls while the servo does not run,
+                                       because the periods that are missing up to now count. */
+    double WakeUpMedian;            /* Jitter: delay of the beginning of the cycles since OpenHand or ResetTiming,
+                                       us. Median. */
+    double WakeUp99;                /* The same delay, us. 99 of 100 cycles began no later. */
+    double WakeUpMaximum;           /* The same delay, us. Maximum. */
     double TorqueScale;             /* Fraction of the joint torque that the tension limits admitted in the last
                                        cycle, 0 to 1. The direction of the torque is kept. */
     unsigned long Cycles;           /* Cycles since OpenHand. */
     unsigned long SkippedPeriods;   /* Whole periods in which no cycle began because the previous cycle was not over
                                        or the servo thread did not run, up to now. One late cycle may skip many. */
     unsigned long LostReplies;      /* Cycles without a valid reply in time. */
-    unsigned long DamagedFrames;    /* Bad data on the finger's port, in pieces: damaged or truncated frames, noise.
-                                       Whole frames that no finger expected are in FingerTiming.ForeignFrames. */
-    double Calibration;             /* Progress of a calibration, 0 to 1. 0 without a calibration. */
-    int MemoryLocked;               /* 1: OpenHand has locked the memory of every servo thread, so that it never
-                                       waits for a page. 0: at least one is not locked. If the planner calls
-                                       munlockall later, this memory is unlocked too, and this member stays 1.
-                                       CloseHand and OpenHand lock it again. */
-    int OnCore;                     /* 1: each servo thread with a configured core runs on it. 0: one does not. */
-    double StiffnessScale;          /* Fraction of Kx in force in the last cycle, 0 to 1. It is below 1 where the
-                                       tendons cannot carry more in this pose, for example near the straight pose. */
+    unsigned long DamagedFrames;    /* Pieces of bad data on the finger's port: damaged frames, truncated frames and
+                                       noise. Whole frames that no finger expected count in
+                                       FingerTiming.ForeignFrames. */
+    double Calibration;             /* Progress of a calibration, 0 to 1. It is 0 if no calibration runs. */
+    int MemoryLocked;               /* 1: OpenHand has locked the memory of every servo thread, so that no servo
+                                       thread waits for a page. 0: the memory of at least one is not locked. If the
+                                       planner calls munlockall later, this memory is unlocked too, and this member
+                                       stays 1. CloseHand and OpenHand lock the memory again. */
+    int OnCore;                     /* 1: each servo thread with a configured core runs on that core. 0: at least one
+                                       does not. */
+    double StiffnessScale;          /* Fraction of Kx in force in the last cycle, 0 to 1. It is below 1 in poses in
+                                       which the tendons cannot provide the whole Kx, for example near the straight
+                                       pose. */
 };
 
 /*
- Result of GetTiming. All times are in ns, within 1 %, at most 4.29e9, and 0 if nothing was counted.
- All values are since OpenHand or the last ResetTiming of the finger.
+ Result of GetTiming. All times are in ns, accurate to 1 %, at most 4.29e9, and 0 if no cycle had
+ the stage. All values count from OpenHand or the last ResetTiming of the finger.
  */
 struct FingerTiming {
     unsigned int Size;              /* In: sizeof (struct FingerTiming). Out: bytes written, at most that. */
@@ -758,7 +766,8 @@ struct FingerTiming {
                                        or the servo thread did not run, up to the last cycle. */
     unsigned long LostReplies;      /* Cycles without a valid reply in time. */
     unsigned long LateReplies;      /* Replies that arrived after the end of their cycle. */
-    unsigned long CorruptReplies;   /* Bad data on the finger's port, in pieces: damaged or truncated frames, noise. */
+    unsigned long CorruptReplies;   /* Pieces of bad data on the finger's port: damaged frames, truncated frames and
+                                       noise. */
     unsigned long DuplicateReplies; /* Replies that arrived a second time. */
     unsigned long ForeignFrames;    /* Whole frames on the finger's port that no finger expected. */
 };
@@ -766,11 +775,13 @@ struct FingerTiming {
 /* Result of GetTip. Vectors are in the finger's frame. */
 struct FingerTip {
     unsigned int Size;              /* In: sizeof (struct FingerTip). Out: bytes written, at most that. */
-    int Felt;                       /* Directions of Force that the joints can measure: 3, fewer near singular poses. */
+    int Felt;                       /* Number of directions of Force that the joints can measure: 3, or fewer near
+                                       singular poses. */
     double Tip[3];                  /* Position of the tip: x, y, z, cm. */
     double Force[3];                /* Force of the tip on the object that it touches: x, y, z, N. It is computed
                                        from the measured tensions, so it includes friction, weight and inertia of the
-                                       finger. Never NaN: zero along directions that the joints cannot measure. */
+                                       finger. It is never NaN, and is zero along directions that the joints cannot
+                                       measure. */
     double Tensions[4];             /* Measured tendon tensions, N. */
 };
 
@@ -798,13 +809,14 @@ struct FingerRecord {
 struct Fault {
     unsigned int Size;              /* In: sizeof (struct Fault). Out: bytes written, at most that. */
     int Number;                     /* Fault that has stopped the finger: FAULT_..., or 0 if none has. */
-    int Part;                       /* Its joint (0 to 2) or its tendon, motor, gauge or encoder (1 to 4): FaultText
-                                       says which. 0 if it concerns the whole finger. */
+    int Part;                       /* Part that has the fault: joint (0 to 2), or tendon, motor, gauge or encoder (1
+                                       to 4). FaultText says which kind of part it is. 0 if the fault concerns the
+                                       whole finger. */
     int Warning;                    /* Warning of the last second: FAULT_..., or 0 if there was none. */
-    int WarningPart;                /* Joint, tendon, motor, gauge or encoder of the warning. */
-    double Value;                   /* Figure of the fault: N, ms, degrees, counts, per cent, errno or status bits
+    int WarningPart;                /* Part that the warning concerns, numbered as in Part. */
+    double Value;                   /* Value of the fault: N, ms, degrees, counts, per cent, errno or status bits
                                        (docs/faults.md). */
-    double WarningValue;            /* Figure of the warning. */
+    double WarningValue;            /* Value of the warning. */
     unsigned long Warnings;         /* Warnings since OpenHand. A warning that persists counts once. */
 };
 
@@ -873,7 +885,7 @@ int GetTiming(int, int, struct FingerTiming *);
 
    i        finger, 1 to 3; 0: all
 
- The counts of GetStatus continue, except its wake-up times, which are those of GetTiming.
+ The counts of GetStatus continue. Its wake-up times restart, because they are those of GetTiming.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -892,11 +904,11 @@ int ResetTiming(int);
    i     finger, 1 to 3
    Tip   Tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm. Always double
 
- From the next cycle on the fingertip is a spring anchored there, with the stiffness sent last. Its
- force is Kx (Tip - tip) at any distance, while SendPos by default uses the law of the report, which
- holds for small distances. If several joint solutions are within the joint limits, the call takes
- the one nearest to the present pose. The anchor moves there along a straight line in joint angles,
- at a bounded speed.
+ From the next cycle on the fingertip is a spring anchored at Tip, with the stiffness sent last. If p
+ is the present position of the tip, the force is Kx (Tip - p) at any distance. SendPos by default
+ uses the law of the report, which holds for small distances. If several joint solutions are within
+ the joint limits, the call takes the one nearest to the present pose. The anchor moves to Tip along
+ a straight line in joint angles, at a bounded speed.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -959,13 +971,14 @@ int GetTip(int, struct FingerTip *);
             double. Not used for D = 3, and may be null there
 
  The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last,
- and a later SendKx replaces it. In directions that the contact does not have, the finger is limp
- but still damped. K must be symmetric and without a negative eigenvalue, as for SendKx. The bound
- counts a rotation by how far it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
+ and a later SendKx replaces it. In directions outside the contact, the finger is limp but still
+ damped. K must be symmetric and without a negative eigenvalue, as for SendKx. To compare it with the
+ bound, a rotational stiffness of k N cm/rad is converted to k / (l2 l2) N/cm, where l2 is the length
+ of the last link.
 
  Returns 0, or -1 with
    EPERM    forked child
-   EFAULT   K is null, or Normal for D = 1 or 4
+   EFAULT   K is null; Normal is null for D = 1 or 4
    ENODEV   no hand is open
    EINVAL   no such finger; no such D; an entry is NaN or infinite
    EDOM     K is not symmetric, or has a negative eigenvalue; Normal is zero
@@ -991,9 +1004,9 @@ int SendContact(int, int, const double *, const double *);
    i       finger, 1 to 3
    Ratio   damping relative to what the controller chooses from the stiffness; 1 after OpenHand
 
- The ratio changes without a jump in torque and stays until it is sent again. A finger with much
- less or much more damping does not come to rest. The range therefore depends on controller, rate
- and the largest eigenvalue k of the stiffness, N/cm:
+ The ratio changes without a jump in torque and stays until another ratio is sent. A finger with
+ much less or much more damping does not come to rest. The range therefore depends on controller,
+ rate and the largest eigenvalue k of the stiffness, N/cm:
 
                           1000 Hz and above           below 1000 Hz
    state feedback         0.40 + 0.09 k to            0.70 + 0.07 k to
@@ -1001,9 +1014,10 @@ int SendContact(int, int, const double *, const double *);
    figures 9, 10, 11      1 to 2.50 - 0.22 k          1 to 2.00 - 0.20 k
 
  By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1.
- For a finger with other links or tendons, k is first divided by the stiffness of its tip with
- locked tendons and multiplied by that of the default finger. SendKx and SendContact refuse a
- stiffness whose range does not include the ratio sent last.
+ For a finger whose links or tendons differ from the default, k is first divided by the stiffness
+ that locked tendons give its tip, and multiplied by the stiffness that they give the tip of the
+ default finger. SendKx and SendContact refuse a stiffness whose range does not include the ratio
+ sent last.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1030,8 +1044,8 @@ int SendDamping(int, double);
  thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
  motor.torque_constant, stiffness.initial and simulation.
 
- A configured stiffness.bound is valid for one controller. If controller.scheme changes, it applies
- only if it is less than the default bound, or if Keys includes it too.
+ A configured stiffness.bound is valid for one controller. If Keys changes controller.scheme, the
+ configured bound applies only if it is less than the default bound, or if Keys sets it too.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1310,9 +1324,9 @@ int StopHand(void);
    ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and finger.reconnect
             is false
    EINVAL   no such finger
-   EIO      the finger faults again; or its board is not the one of OpenHand, or has lost its zero;
-            or its servo thread has failed (FAULT_SERVO_PANIC), which only CloseHand and OpenHand
-            remedy. HandError says which
+   EIO      the finger faults again; or its board is not the one found by OpenHand, or has lost its
+            zero; or its servo thread has failed (FAULT_SERVO_PANIC), which only CloseHand and
+            OpenHand remedy. HandError says which
    EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
    ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
             does not answer, or the servo does not run. Call again

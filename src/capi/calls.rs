@@ -1,8 +1,8 @@
 //! The five calls of 1990 and HandError. Their doc comments are the C manual: cbindgen copies them into
-//! `include/Sun2Xp.h`, below the chapters of `src/capi/header/manual.txt`. They are written for C programmers, keep
-//! their indentation in the header, and must not close a C comment.
+//! `include/Sun2Xp.h`, below the chapters of `src/capi/header/manual.txt`. The comments are written for C
+//! programmers. They keep their indentation in the header, and must not contain the end of a C comment.
 
-// The names of the header.
+// The exported names are those of the header.
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::{MEMORY_OF_HAND, delegated, delegated_or_done_here, guarded, uncancelled};
@@ -92,7 +92,7 @@ pub extern "C" fn CloseHand() -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
     guarded("SendPos", || {
-        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let joints = unsafe { load::<f32, 3>(Pos, "Pos") }?;
         default_hand::command(|hand| hand.send_position(i, joints.map(f64::from)))
     })
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn SendPos(i: c_int, Pos: *const f32) -> c_int {
 pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
     // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
     guarded("SendPos", || {
-        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let joints = unsafe { load::<f64, 3>(Pos, "Pos") }?;
         default_hand::command(|hand| hand.send_position(i, joints))
     })
@@ -119,11 +119,12 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 ///   Kx    Kx[3][3] or Kx[9], row by row: entry [row][column] is the force along axis row (x, y, z of
 ///         the finger's frame, chapter 3) for a displacement of 1 cm along axis column, N/cm
 ///
-/// The whole matrix takes effect from the next cycle on, without a jump in torque: 95 % of the change
-/// has taken effect after 50 ms. Kx must be symmetric; a difference of up to 1e-3 of the largest entry
-/// is averaged. No eigenvalue may be below -1e-3 of the largest one. Kx may be singular or zero: along
-/// directions without stiffness the finger is limp but still damped. The largest eigenvalue may be at
-/// most the configured bound, by default 6 N/cm at 1000 Hz and above, and 5 N/cm below.
+/// All entries begin to change in the next cycle, without a jump in torque: 95 % of the change has
+/// taken effect after 50 ms. Kx must be symmetric; two mirrored entries that differ by up to 1e-3 of
+/// the largest entry are averaged. No eigenvalue may be below -1e-3 times the largest one. Kx may be
+/// singular or zero: along directions without stiffness the finger is limp but still damped. The
+/// largest eigenvalue may be at most the configured bound, by default 6 N/cm at 1000 Hz and above, and
+/// 5 N/cm below.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -144,7 +145,7 @@ pub unsafe extern "C" fn SendPosD(i: c_int, Pos: *const f64) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
     guarded("SendKx", || {
-        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let rows = unsafe { load_rows(Kx, "Kx") }?;
         default_hand::command(|hand| hand.send_stiffness(i, rows.map(|row| row.map(f64::from))))
     })
@@ -157,7 +158,7 @@ pub unsafe extern "C" fn SendKx(i: c_int, Kx: *const f32) -> c_int {
 pub unsafe extern "C" fn SendKxD(i: c_int, Kx: *const f64) -> c_int {
     // Refusals use the name in the planner's source. The header or a compiler flag has added the D.
     guarded("SendKx", || {
-        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let rows = unsafe { load_rows(Kx, "Kx") }?;
         default_hand::command(|hand| hand.send_stiffness(i, rows))
     })
@@ -192,7 +193,7 @@ pub unsafe extern "C" fn GetPos(i: c_int, Pos: *mut f32) -> c_int {
     guarded("GetPos", || {
         let joints =
             non_null(Pos, "Pos", Wanted::Array(3)).and_then(|_| default_hand::with(|hand| hand.position(i)))?;
-        // SAFETY: checked for null above, and room for three by the contract in the manual.
+        // SAFETY: `Pos` is not null, as checked above, and by the contract in the manual it has room for three angles.
         unsafe { Pos.cast::<[f32; 3]>().write_unaligned(joints.map(|joint| joint as f32)) };
         Ok(())
     })
@@ -207,7 +208,7 @@ pub unsafe extern "C" fn GetPosD(i: c_int, Pos: *mut f64) -> c_int {
     guarded("GetPos", || {
         let joints =
             non_null(Pos, "Pos", Wanted::Array(3)).and_then(|_| default_hand::with(|hand| hand.position(i)))?;
-        // SAFETY: checked for null above, and room for three by the contract in the manual.
+        // SAFETY: `Pos` is not null, as checked above, and by the contract in the manual it has room for three angles.
         unsafe { Pos.cast::<[f64; 3]>().write_unaligned(joints) };
         Ok(())
     })

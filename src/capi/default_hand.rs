@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// Locked while a hand is being opened or closed, which takes long. Calls for a finger never wait for it.
+/// Locked while a hand is being opened or closed, which takes a long time. Calls for a finger never wait for this
+/// lock.
 static LIFECYCLE: Mutex<()> = Mutex::new(());
 
 /// Locked for writing only to insert or remove a hand.
@@ -19,8 +20,8 @@ static HAND: RwLock<Option<Hand>> = RwLock::new(None);
 /// move a hand, because nothing would close it.
 static EXITING: AtomicBool = AtomicBool::new(false);
 
-/// How long exit waits for a call in progress. The wait is limited because that call may be in the exiting thread
-/// itself, interrupted by a signal handler that calls exit.
+/// Longest time that exit waits for a call in progress. The wait is limited because that call may be in the exiting
+/// thread itself, interrupted by a signal handler that calls exit.
 const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
 
 /// Polling period of a calibration or recovery.
@@ -36,8 +37,8 @@ pub(super) fn open() -> Result<(), Refusal> {
     let configured = hand::find_configuration().map_err(HandError::from)?;
     refusal::set_printing(configured.configuration.hand.print_refusals);
     let hand = Hand::open_as(configured)?;
-    // The exit handler waits only briefly for this call, which may have been slower. Returning drops the hand and so
-    // closes it.
+    // The exit handler waits only briefly for this call, and may have given up. In that case the return drops the hand,
+    // which closes it.
     refuse_while_exiting()?;
     *HAND.write() = Some(hand);
     Ok(())
@@ -46,7 +47,7 @@ pub(super) fn open() -> Result<(), Refusal> {
 pub(super) fn close() -> Result<(), Refusal> {
     let _closing = LIFECYCLE.lock();
     let hand = HAND.write().take();
-    // Dropping the hand takes long. The lock is free by now, so other calls are refused instead of waiting.
+    // Dropping the hand takes a long time. `HAND` is already unlocked, so other calls are refused instead of waiting.
     drop(hand);
     Ok(())
 }
@@ -70,8 +71,8 @@ pub(super) fn with<T, E: Into<Refusal>>(call: impl FnOnce(&Hand) -> Result<T, E>
     call(hand).map_err(E::into)
 }
 
-/// Runs `call`, which moves the open hand or changes how it moves. Refused while the process exits: the hand is closed
-/// then, and the call would have no effect.
+/// Runs `call`, which moves the open hand or changes how it moves. It is refused while the process exits, because
+/// the hand is then closed, and the call would have no effect.
 pub(super) fn command<T, E: Into<Refusal>>(call: impl FnOnce(&Hand) -> Result<T, E>) -> Result<T, Refusal> {
     refuse_while_exiting()?;
     with(call)
@@ -81,11 +82,12 @@ fn refuse_while_exiting() -> Result<(), Refusal> {
     if EXITING.load(Ordering::Acquire) { Err(Refusal::Exiting) } else { Ok(()) }
 }
 
-/// Makes a faulted finger of the open hand a spring again. Polls the hand without holding its lock in between, so that
-/// CloseHand and other calls work meanwhile.
+/// Makes a faulted finger of the open hand a spring again. Unlocks the hand between two polls, so that CloseHand and
+/// other calls work meanwhile.
 pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
     let recovering = command(|hand| Recovering::begin(hand, finger))?;
-    // The hand is not locked here, because ports are slow. If it was closed meanwhile, that is reported first.
+    // The hand is not locked here, because ports are slow. If it was closed meanwhile, the call reports that instead of
+    // `result`.
     let result = recovering.reconnect();
     command(|_| result)?;
     while !command(|hand| recovering.poll(hand))? {
@@ -94,14 +96,15 @@ pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Calibrates a finger of the open hand and stores the results. Polls the hand without holding its lock in between, so
-/// that CloseHand and other calls work meanwhile.
+/// Calibrates a finger of the open hand and stores the results. Unlocks the hand between two polls, so that CloseHand
+/// and other calls work meanwhile.
 pub(super) fn calibrate(finger: i32, task: Task) -> Result<(), Refusal> {
     let mut calibrating = command(|hand| Calibrating::begin(hand, finger, task))?;
     while let CalibrationState::InProgress(_) = command(|hand| calibrating.poll(hand))? {
         sleep(POLLING_PERIOD);
     }
-    // The hand is not locked here, so that CloseHand waits neither for a slow disk nor for other processes that store.
+    // The hand is not locked here, so that CloseHand waits neither for a slow disk nor for other processes that store a
+    // calibration.
     match with(|hand| Ok::<_, hand::HandError>(hand.to_store(finger.try_into()?)))? {
         Some(calibration) => Ok(calibration.store()?),
         None => Ok(()),

@@ -1,6 +1,6 @@
 //! The exported functions for faults. Their doc comments are the C manual, as in `calls.rs`.
 
-// The names of the header.
+// The exported names are those of the header.
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::{guarded, uncancelled};
@@ -18,16 +18,16 @@ pub struct Fault {
     pub Size: c_uint,
     /// Fault that has stopped the finger: FAULT_..., or 0 if none has.
     pub Number: c_int,
-    /// Its joint (0 to 2) or its tendon, motor, gauge or encoder (1 to 4): FaultText says which. 0 if it concerns the
-    /// whole finger.
+    /// Part that has the fault: joint (0 to 2), or tendon, motor, gauge or encoder (1 to 4). FaultText says which kind
+    /// of part it is. 0 if the fault concerns the whole finger.
     pub Part: c_int,
     /// Warning of the last second: FAULT_..., or 0 if there was none.
     pub Warning: c_int,
-    /// Joint, tendon, motor, gauge or encoder of the warning.
+    /// Part that the warning concerns, numbered as in Part.
     pub WarningPart: c_int,
-    /// Figure of the fault: N, ms, degrees, counts, per cent, errno or status bits (docs/faults.md).
+    /// Value of the fault: N, ms, degrees, counts, per cent, errno or status bits (docs/faults.md).
     pub Value: f64,
-    /// Figure of the warning.
+    /// Value of the warning.
     pub WarningValue: f64,
     /// Warnings since OpenHand. A warning that persists counts once.
     pub Warnings: c_ulong,
@@ -58,7 +58,7 @@ pub struct Fault {
 pub unsafe extern "C" fn GetFault(i: c_int, Fault: *mut Fault) -> c_int {
     guarded("GetFault", || {
         let least = size_up_to!(self::Fault, Warnings: c_ulong);
-        // SAFETY: by the contract in the manual, null or as many bytes as its first member gives.
+        // SAFETY: by the contract in the manual, `Fault` is null or points to as many bytes as its first member gives.
         unsafe { fill(Fault, "Fault", least, |hand| hand.fault(i).map(|fault| to_c(&fault))) }
     })
 }
@@ -82,7 +82,7 @@ pub extern "C" fn FaultText(Number: c_int) -> *const c_char {
     })
 }
 
-/// `Size` is set when the room of the caller is known.
+/// Converts everything except `Size`. [`fill`] sets `Size`, because it depends on the room of the caller.
 fn to_c(found: &FingerFault) -> Fault {
     let parts = |fault: Option<finger::Fault>| {
         fault.map_or((0, 0, 0.0), |fault| {

@@ -1,7 +1,7 @@
 //! The exported functions for the fingertip, and for other changes while a finger runs. Their doc comments are the C
 //! manual, as in `calls.rs`.
 
-// The names of the header.
+// The exported names are those of the header.
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
@@ -19,13 +19,13 @@ use std::ffi::{CStr, c_char, c_int, c_uint};
 pub struct FingerTip {
     /// In: sizeof (struct FingerTip). Out: bytes written, at most that.
     pub Size: c_uint,
-    /// Directions of Force that the joints can measure: 3, fewer near singular poses.
+    /// Number of directions of Force that the joints can measure: 3, or fewer near singular poses.
     pub Felt: c_int,
     /// Position of the tip: x, y, z, cm.
     pub Tip: [f64; 3],
     /// Force of the tip on the object that it touches: x, y, z, N. It is computed from the measured tensions, so it
-    /// includes friction, weight and inertia of the finger. Never NaN: zero along directions that the joints cannot
-    /// measure.
+    /// includes friction, weight and inertia of the finger. It is never NaN, and is zero along directions that the
+    /// joints cannot measure.
     pub Force: [f64; 3],
     /// Measured tendon tensions, N.
     pub Tensions: [f64; 4],
@@ -38,11 +38,11 @@ pub struct FingerTip {
 ///   i     finger, 1 to 3
 ///   Tip   Tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm. Always double
 ///
-/// From the next cycle on the fingertip is a spring anchored there, with the stiffness sent last. Its
-/// force is Kx (Tip - tip) at any distance, while SendPos by default uses the law of the report, which
-/// holds for small distances. If several joint solutions are within the joint limits, the call takes
-/// the one nearest to the present pose. The anchor moves there along a straight line in joint angles,
-/// at a bounded speed.
+/// From the next cycle on the fingertip is a spring anchored at Tip, with the stiffness sent last. If p
+/// is the present position of the tip, the force is Kx (Tip - p) at any distance. SendPos by default
+/// uses the law of the report, which holds for small distances. If several joint solutions are within
+/// the joint limits, the call takes the one nearest to the present pose. The anchor moves to Tip along
+/// a straight line in joint angles, at a bounded speed.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -61,7 +61,7 @@ pub struct FingerTip {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
     guarded("SendTip", || {
-        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let tip = unsafe { load::<f64, 3>(Tip, "Tip") }?;
         default_hand::command(|hand| hand.send_tip(i, tip))
     })
@@ -93,7 +93,7 @@ pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
 pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
     guarded("GetTip", || {
         let least = size_up_to!(FingerTip, Tensions: [f64; 4]);
-        // SAFETY: by the contract in the manual, null or as many bytes as its first member gives.
+        // SAFETY: by the contract in the manual, `Tip` is null or points to as many bytes as its first member gives.
         unsafe { fill(Tip, "Tip", least, |hand| hand.fingertip(i).map(|tip| to_c(&tip))) }
     })
 }
@@ -115,13 +115,14 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 ///            double. Not used for D = 3, and may be null there
 ///
 /// The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last,
-/// and a later SendKx replaces it. In directions that the contact does not have, the finger is limp
-/// but still damped. K must be symmetric and without a negative eigenvalue, as for SendKx. The bound
-/// counts a rotation by how far it moves the last joint: k N cm/rad as k / (l2 l2) N/cm.
+/// and a later SendKx replaces it. In directions outside the contact, the finger is limp but still
+/// damped. K must be symmetric and without a negative eigenvalue, as for SendKx. To compare it with the
+/// bound, a rotational stiffness of k N cm/rad is converted to k / (l2 l2) N/cm, where l2 is the length
+/// of the last link.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
-///   EFAULT   K is null, or Normal for D = 1 or 4
+///   EFAULT   K is null; Normal is null for D = 1 or 4
 ///   ENODEV   no hand is open
 ///   EINVAL   no such finger; no such D; an entry is NaN or infinite
 ///   EDOM     K is not symmetric, or has a negative eigenvalue; Normal is zero
@@ -141,7 +142,7 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
     guarded("SendContact", || {
         // K is checked before D, which determines the size of K.
         non_null(K, "K", Wanted::Matrix)?;
-        // SAFETY: here and below, the manual requires that the pointer is null or the array of the synopsis for D.
+        // SAFETY: here and below, by the contract in the manual, the pointer is null or points to the array for this D.
         let normal = || unsafe { load::<f64, 3>(Normal, "Normal") }.map(Vector3::from);
         let contact = match D {
             1 => Contact::frictionless_point(unsafe { load::<f64, 1>(K, "K") }?[0], normal()?),
@@ -165,9 +166,9 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 ///   i       finger, 1 to 3
 ///   Ratio   damping relative to what the controller chooses from the stiffness; 1 after OpenHand
 ///
-/// The ratio changes without a jump in torque and stays until it is sent again. A finger with much
-/// less or much more damping does not come to rest. The range therefore depends on controller, rate
-/// and the largest eigenvalue k of the stiffness, N/cm:
+/// The ratio changes without a jump in torque and stays until another ratio is sent. A finger with
+/// much less or much more damping does not come to rest. The range therefore depends on controller,
+/// rate and the largest eigenvalue k of the stiffness, N/cm:
 ///
 ///                          1000 Hz and above           below 1000 Hz
 ///   state feedback         0.40 + 0.09 k to            0.70 + 0.07 k to
@@ -175,9 +176,10 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 ///   figures 9, 10, 11      1 to 2.50 - 0.22 k          1 to 2.00 - 0.20 k
 ///
 /// By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1.
-/// For a finger with other links or tendons, k is first divided by the stiffness of its tip with
-/// locked tendons and multiplied by that of the default finger. SendKx and SendContact refuse a
-/// stiffness whose range does not include the ratio sent last.
+/// For a finger whose links or tendons differ from the default, k is first divided by the stiffness
+/// that locked tendons give its tip, and multiplied by the stiffness that they give the tip of the
+/// default finger. SendKx and SendContact refuse a stiffness whose range does not include the ratio
+/// sent last.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -205,8 +207,8 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 /// thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
 /// motor.torque_constant, stiffness.initial and simulation.
 ///
-/// A configured stiffness.bound is valid for one controller. If controller.scheme changes, it applies
-/// only if it is less than the default bound, or if Keys includes it too.
+/// A configured stiffness.bound is valid for one controller. If Keys changes controller.scheme, the
+/// configured bound applies only if it is less than the default bound, or if Keys sets it too.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -228,7 +230,7 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
     delegated("AdjustFinger", MEMORY_OF_CALL, || {
         non_null(Keys, "Keys", Wanted::Text)?;
-        // SAFETY: checked for null above, and a C string by the contract in the manual.
+        // SAFETY: `Keys` is not null, as checked above, and by the contract in the manual it is a C string.
         let keys = unsafe { CStr::from_ptr(Keys) }.to_owned();
         Ok(move || {
             default_hand::command(|hand| -> Result<(), HandError> {
@@ -262,13 +264,13 @@ pub unsafe extern "C" fn AdjustFinger(i: c_int, Keys: *const c_char) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn PushFinger(i: c_int, Force: *const f64) -> c_int {
     guarded("PushFinger", || {
-        // SAFETY: the manual requires that the pointer is null or the array of the synopsis.
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
         let force = unsafe { load::<f64, 3>(Force, "Force") }?;
         default_hand::command(|hand| hand.push_simulated(i, force))
     })
 }
 
-/// `Size` is set when the room of the caller is known.
+/// Converts everything except `Size`. [`fill`] sets `Size`, because it depends on the room of the caller.
 fn to_c(tip: &hand::FingerTip) -> FingerTip {
     FingerTip {
         Size: 0,

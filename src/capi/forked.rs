@@ -2,15 +2,15 @@
 
 use std::sync::atomic::{AtomicPtr, AtomicU8, Ordering};
 
-/// Value of the mark in the process itself. In a child it is 0.
+/// Value of the mark in a process that is not a forked child. In a forked child the mark is 0.
 const OWN: u8 = 1;
 
 static BEFORE_OPENING: AtomicU8 = AtomicU8::new(OWN);
 static IN_CHILD: AtomicU8 = AtomicU8::new(0);
 
-/// Points to the mark of this process. From the first OpenHand on the mark is a byte that the system sets to 0 in every
-/// child: of fork, of _Fork and of a raw system call, and before any handler of pthread_atfork runs. Reading it takes 1
-/// ns; a comparison of process numbers takes 200 ns.
+/// Points to the mark of this process. From the first OpenHand on, the mark is a byte that the system sets to 0 in
+/// every child, whether fork, _Fork or a raw system call has created it, and before any handler of pthread_atfork runs.
+/// Reading the mark takes 1 ns; a comparison of process numbers takes 200 ns.
 static MARK: AtomicPtr<AtomicU8> = AtomicPtr::new((&raw const BEFORE_OPENING).cast_mut());
 
 /// Whether this process was forked from a process that has called OpenHand.
@@ -24,7 +24,7 @@ pub(super) fn is_forked_child() -> bool {
 /// only the handler of pthread_atfork marks a child.
 pub(super) fn mark_this_process() {
     let protection = libc::PROT_READ | libc::PROT_WRITE;
-    // SAFETY: the mapping is new. Its size is one byte, which the system rounds up to a page. A mark is never unmapped.
+    // SAFETY: the mapping is new. The system rounds its size up to a page. A published mark is never unmapped.
     let page =
         unsafe { libc::mmap(std::ptr::null_mut(), 1, protection, libc::MAP_PRIVATE | libc::MAP_ANONYMOUS, -1, 0) };
     if page == libc::MAP_FAILED {

@@ -16,7 +16,7 @@ pub(super) fn non_null<T>(pointer: *const T, name: &'static str, wanted: Wanted)
 /// `array` is null or points to `N` entries.
 pub(super) unsafe fn load<T, const N: usize>(array: *const T, name: &'static str) -> Result<[T; N], Refusal> {
     non_null(array, name, Wanted::Array(N))?;
-    // SAFETY: checked for null above, and `N` entries by the contract of this function.
+    // SAFETY: `array` is not null, as checked above, and by the contract of this function it has `N` entries.
     Ok(unsafe { array.cast::<[T; N]>().read_unaligned() })
 }
 
@@ -26,12 +26,12 @@ pub(super) unsafe fn load<T, const N: usize>(array: *const T, name: &'static str
 /// `matrix` is null or points to three rows of three entries.
 pub(super) unsafe fn load_rows<T>(matrix: *const T, name: &'static str) -> Result<[[T; 3]; 3], Refusal> {
     non_null(matrix, name, Wanted::Array(9))?;
-    // SAFETY: checked for null above, and nine entries by the contract of this function.
+    // SAFETY: `matrix` is not null, as checked above, and by the contract of this function it has nine entries.
     Ok(unsafe { matrix.cast::<[[T; 3]; 3]>().read_unaligned() })
 }
 
-/// Size of a struct up to and including a member. If that member is the last of the first version, this is the smallest
-/// size with which a program can have been compiled.
+/// Size of a struct up to and including a member. If the member was the last one in the first version of the struct,
+/// this is the smallest size with which a program can have been compiled.
 macro_rules! size_up_to {
     ($Struct:ty, $Member:ident: $Type:ty) => {
         std::mem::offset_of!($Struct, $Member) + size_of::<$Type>()
@@ -39,11 +39,13 @@ macro_rules! size_up_to {
 }
 pub(super) use size_up_to;
 
-/// Fills a struct of the caller with values of the open hand. Its first member, Size, is the room that the caller has;
-/// the function writes at most that, and sets Size to the number of bytes written. For `least` see [`size_up_to`].
+/// Fills a struct of the caller with values of the open hand. The first member, Size, gives the number of bytes that
+/// the caller has. The function writes at most this number, and sets Size to the number of bytes written. `least` is
+/// the smallest accepted Size; see [`size_up_to`].
 ///
 /// # Safety
-/// `T` is `repr(C)` and begins with a Size of type `c_uint`. `out` is null, or points to a Size and to that many bytes.
+/// `T` is `repr(C)` and begins with a Size of type `c_uint`. `out` is null, or points to as many bytes as its Size
+/// gives, and at least to a Size.
 pub(super) unsafe fn fill<T>(
     out: *mut T,
     name: &'static str,
@@ -53,7 +55,7 @@ pub(super) unsafe fn fill<T>(
     // The type name contains the path of its module.
     let of_type = type_name::<T>().rsplit("::").next().unwrap_or_default();
     non_null(out, name, Wanted::Struct(of_type))?;
-    // SAFETY: checked for null above, and the first member exists by the contract. The others may not.
+    // SAFETY: `out` is not null, as checked above. By the contract its first member exists; the others may not.
     let size = unsafe { out.cast::<c_uint>().read_unaligned() } as usize;
     let mut whole = default_hand::with(|hand| match size < least {
         true => Err(Refusal::SmallStruct { name, size, least }),

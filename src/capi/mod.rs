@@ -2,10 +2,10 @@
 //! converts refusals to errno; the hand makes all other checks. `include/Sun2Xp.h` is generated from the files named
 //! `calls`.
 //!
-//! If several reasons apply to a call, it reports the first of this order: forked child (EPERM), null pointer (EFAULT),
-//! no hand (ENODEV), a struct whose Size is too small (EINVAL), then those of the hand: finger number, numbers that are
-//! not finite, symmetry and eigenvalues, limits, faulted finger. The lists in the manual have the same order. A slow
-//! call checks for free memory (ENOMEM) after the forked child.
+//! If several reasons apply to a call, it reports the first one in this order: forked child (EPERM), null pointer
+//! (EFAULT), no hand (ENODEV), a struct whose Size is too small (EINVAL), then the reasons that the hand finds: finger
+//! number, numbers that are not finite, symmetry and eigenvalues, limits, faulted finger. The lists in the manual have
+//! the same order. A slow call checks for free memory (ENOMEM) after the check for a forked child.
 
 // A C interface needs raw pointers.
 #![allow(unsafe_code)]

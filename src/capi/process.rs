@@ -18,7 +18,7 @@ pub(super) fn watch(close: fn()) {
         compose_texts();
         mark_this_process();
         // SAFETY: both handlers are functions of this library, which stays loaded (`-z nodelete`), and no panic leaves
-        // them. Registration fails only without memory. The boards' watchdogs then end the motion at exit.
+        // a handler. Registration fails only if memory is exhausted. The boards' watchdogs then end the motion at exit.
         unsafe {
             libc::pthread_atfork(None, None, Some(in_forked_child));
             libc::atexit(at_exit);
@@ -57,7 +57,7 @@ extern "C" fn at_exit() {
     }
 }
 
-/// The calling thread's errno.
+/// Returns the calling thread's errno.
 pub(super) fn errno() -> c_int {
     // SAFETY: the address of the calling thread's own errno is always valid.
     unsafe { *libc::__errno_location() }

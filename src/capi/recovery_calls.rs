@@ -1,6 +1,6 @@
 //! The exported functions for stop and recovery. Their doc comments are the C manual, as in `calls.rs`.
 
-// The names of the header.
+// The exported names are those of the header.
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::{MEMORY_OF_CALL, delegated};
@@ -64,9 +64,9 @@ pub extern "C" fn StopHand() -> c_int {
 ///   ENODEV   no hand is open, or it was closed meanwhile; or the port has failed and finger.reconnect
 ///            is false
 ///   EINVAL   no such finger
-///   EIO      the finger faults again; or its board is not the one of OpenHand, or has lost its zero;
-///            or its servo thread has failed (FAULT_SERVO_PANIC), which only CloseHand and OpenHand
-///            remedy. HandError says which
+///   EIO      the finger faults again; or its board is not the one found by OpenHand, or has lost its
+///            zero; or its servo thread has failed (FAULT_SERVO_PANIC), which only CloseHand and
+///            OpenHand remedy. HandError says which
 ///   EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
 ///   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
 ///            does not answer, or the servo does not run. Call again

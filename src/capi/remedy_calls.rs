@@ -3,8 +3,8 @@
 use crate::finger::Action;
 use std::fmt::{self, Display, Formatter};
 
-/// The calls for these actions in parentheses, to follow a text that describes the actions in words. Empty if there are
-/// no actions.
+/// Displays the calls for these actions in parentheses, as an appendix to a text that describes the actions in words.
+/// Displays nothing if there are no actions.
 pub(super) struct RemedyCalls<'a>(pub &'a [Action]);
 
 impl Display for RemedyCalls<'_> {

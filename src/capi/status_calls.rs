@@ -1,6 +1,6 @@
 //! The exported function for the status of a finger's servo. Its doc comment is the C manual, as in `calls.rs`.
 
-// The names of the header.
+// The exported names are those of the header.
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::guarded;
@@ -12,8 +12,8 @@ use std::ffi::{c_int, c_uint, c_ulong};
 /// The fingertip is the spring that the planner has commanded.
 pub const FINGER_RUNNING: c_int = 1;
 
-/// The finger has stopped by itself; its motors are in the configured end state. Its calls are refused with EIO
-/// until RecoverHand, or CloseHand and OpenHand.
+/// The finger has stopped because of a fault. Its motors are in the configured end state. Calls for the finger are
+/// refused with EIO until RecoverHand, or CloseHand and OpenHand.
 pub const FINGER_FAULTED: c_int = 2;
 
 /// The motors are off after a refused calibration. Set points have no effect. Another calibration, or CloseHand
@@ -38,18 +38,18 @@ pub struct FingerStatus {
     pub Size: c_uint,
     /// FINGER_RUNNING to FINGER_CLOSED.
     pub State: c_int,
-    /// 1: all servo threads of the hand run under SCHED_FIFO. 0: one does not.
+    /// 1: all servo threads of the hand run under SCHED_FIFO. 0: at least one does not.
     pub Realtime: c_int,
     /// Configured servo rate, Hz.
     pub Rate: f64,
-    /// Measured servo rate since OpenHand, Hz. It falls while the servo does not run: the periods missing up to now
-    /// count.
+    /// Measured servo rate since OpenHand, Hz. It falls while the servo does not run, because the periods that are
+    /// missing up to now count.
     pub MeasuredRate: f64,
-    /// Jitter: how late cycles began since OpenHand or ResetTiming, us; median.
+    /// Jitter: delay of the beginning of the cycles since OpenHand or ResetTiming, us. Median.
     pub WakeUpMedian: f64,
-    /// The same, us; 99 of 100 cycles began no later.
+    /// The same delay, us. 99 of 100 cycles began no later.
     pub WakeUp99: f64,
-    /// The same, us; maximum.
+    /// The same delay, us. Maximum.
     pub WakeUpMaximum: f64,
     /// Fraction of the joint torque that the tension limits admitted in the last cycle, 0 to 1. The direction of the
     /// torque is kept.
@@ -61,19 +61,19 @@ pub struct FingerStatus {
     pub SkippedPeriods: c_ulong,
     /// Cycles without a valid reply in time.
     pub LostReplies: c_ulong,
-    /// Bad data on the finger's port, in pieces: damaged or truncated frames, noise. Whole frames that no finger
-    /// expected are in FingerTiming.ForeignFrames.
+    /// Pieces of bad data on the finger's port: damaged frames, truncated frames and noise. Whole frames that no finger
+    /// expected count in FingerTiming.ForeignFrames.
     pub DamagedFrames: c_ulong,
-    /// Progress of a calibration, 0 to 1. 0 without a calibration.
+    /// Progress of a calibration, 0 to 1. It is 0 if no calibration runs.
     pub Calibration: f64,
-    /// 1: OpenHand has locked the memory of every servo thread, so that it never waits for a page. 0: at least one is
-    /// not locked. If the planner calls munlockall later, this memory is unlocked too, and this member stays 1.
-    /// CloseHand and OpenHand lock it again.
+    /// 1: OpenHand has locked the memory of every servo thread, so that no servo thread waits for a page. 0: the memory
+    /// of at least one is not locked. If the planner calls munlockall later, this memory is unlocked too, and this
+    /// member stays 1. CloseHand and OpenHand lock the memory again.
     pub MemoryLocked: c_int,
-    /// 1: each servo thread with a configured core runs on it. 0: one does not.
+    /// 1: each servo thread with a configured core runs on that core. 0: at least one does not.
     pub OnCore: c_int,
-    /// Fraction of Kx in force in the last cycle, 0 to 1. It is below 1 where the tendons cannot carry more in this
-    /// pose, for example near the straight pose.
+    /// Fraction of Kx in force in the last cycle, 0 to 1. It is below 1 in poses in which the tendons cannot provide
+    /// the whole Kx, for example near the straight pose.
     pub StiffnessScale: f64,
 }
 
@@ -107,12 +107,12 @@ pub struct FingerStatus {
 pub unsafe extern "C" fn GetStatus(i: c_int, Status: *mut FingerStatus) -> c_int {
     guarded("GetStatus", || {
         let least = size_up_to!(FingerStatus, DamagedFrames: c_ulong);
-        // SAFETY: by the contract in the manual, null or as many bytes as its first member gives.
+        // SAFETY: by the contract in the manual, `Status` is null or points to as many bytes as its first member gives.
         unsafe { fill(Status, "Status", least, |hand| hand.status(i).map(|status| to_c(&status))) }
     })
 }
 
-/// `Size` is set when the room of the caller is known.
+/// Converts everything except `Size`. [`fill`] sets `Size`, because it depends on the room of the caller.
 fn to_c(status: &hand::FingerStatus) -> FingerStatus {
     FingerStatus {
         Size: 0,

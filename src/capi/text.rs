@@ -10,7 +10,7 @@ const CAPACITY: usize = 2048;
 /// One line of text, terminated by a zero byte.
 pub(super) struct Text {
     bytes: [u8; CAPACITY],
-    /// Without the zero byte.
+    /// Length of the text, bytes, without the zero byte.
     length: usize,
 }
 
@@ -30,7 +30,7 @@ impl Text {
         std::str::from_utf8(&self.bytes[..self.length]).unwrap_or_default()
     }
 
-    /// Valid until the text is replaced.
+    /// Returns a pointer that is valid until the text is replaced.
     pub fn as_c_string(&self) -> *const c_char {
         self.bytes.as_ptr().cast()
     }
@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn a_long_text_is_truncated_between_characters() {
         let mut text = Text::EMPTY;
-        // Two bytes each, from an odd offset on.
+        // Each repeated character takes two bytes, and begins at an odd offset.
         text.compose(format_args!("a{}", "\u{e9}".repeat(CAPACITY)));
         assert_eq!(read_back(&text).len(), CAPACITY - 1);
         text.compose(format_args!("{}", "\u{e9}".repeat(CAPACITY)));

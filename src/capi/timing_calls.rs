@@ -1,6 +1,6 @@
 //! The exported functions for the timing of a finger's cycles. Their doc comments are the C manual, as in `calls.rs`.
 
-// The names of the header.
+// The exported names are those of the header.
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::guarded;
@@ -19,16 +19,16 @@ pub const TIMING_WAKE_UP: c_int = 0;
 /// Passing the commands of the port to the system.
 pub const TIMING_WRITE: c_int = 1;
 
-/// From there until the reply can be read: the line both ways, and the board.
+/// From the end of TIMING_WRITE until the reply can be read: the line in both directions, and the board.
 pub const TIMING_WIRE: c_int = 2;
 
 /// Reading the reply.
 pub const TIMING_READ: c_int = 3;
 
-/// From bytes to the finger's reply, including all checks.
+/// Decoding the bytes to the finger's reply, including all checks.
 pub const TIMING_DECODE: c_int = 4;
 
-/// The controller.
+/// Computing the command and the report.
 pub const TIMING_COMPUTE: c_int = 5;
 
 /// From the scheduled start of a cycle to the end of its computation.
@@ -38,8 +38,8 @@ pub const TIMING_CYCLE: c_int = 6;
 /// if nothing is late.
 pub const TIMING_AGE: c_int = 7;
 
-/// Result of GetTiming. All times are in ns, within 1 %, at most 4.29e9, and 0 if nothing was counted.
-/// All values are since OpenHand or the last ResetTiming of the finger.
+/// Result of GetTiming. All times are in ns, accurate to 1 %, at most 4.29e9, and 0 if no cycle had
+/// the stage. All values count from OpenHand or the last ResetTiming of the finger.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct FingerTiming {
@@ -70,7 +70,7 @@ pub struct FingerTiming {
     pub LostReplies: c_ulong,
     /// Replies that arrived after the end of their cycle.
     pub LateReplies: c_ulong,
-    /// Bad data on the finger's port, in pieces: damaged or truncated frames, noise.
+    /// Pieces of bad data on the finger's port: damaged frames, truncated frames and noise.
     pub CorruptReplies: c_ulong,
     /// Replies that arrived a second time.
     pub DuplicateReplies: c_ulong,
@@ -109,12 +109,12 @@ pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTi
         let read = |hand: &Hand| {
             // Reports a wrong finger number before a wrong stage.
             hand.report(i)?;
-            // Times are read first, so that there are never more of them than cycles.
+            // Times are read before the losses, so that Count never exceeds Cycles.
             let times = hand.timing(i, stage(Stage).ok_or(HandError::NoSuchStage(Stage))?)?;
             let losses = hand.losses(i)?;
             Ok(to_c(Stage, &times, &losses))
         };
-        // SAFETY: by the contract in the manual, null or as many bytes as its first member gives.
+        // SAFETY: by the contract in the manual, `Timing` is null or points to as many bytes as its first member gives.
         unsafe { fill(Timing, "Timing", least, read) }
     })
 }
@@ -125,7 +125,7 @@ pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTi
 ///
 ///   i        finger, 1 to 3; 0: all
 ///
-/// The counts of GetStatus continue, except its wake-up times, which are those of GetTiming.
+/// The counts of GetStatus continue. Its wake-up times restart, because they are those of GetTiming.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -157,7 +157,7 @@ fn stage(number: c_int) -> Option<CycleStage> {
     }
 }
 
-/// `Size` is set when the room of the caller is known.
+/// Converts everything except `Size`. [`fill`] sets `Size`, because it depends on the room of the caller.
 fn to_c(stage: c_int, times: &Distribution, losses: &Losses) -> FingerTiming {
     let ns = |microseconds: f64| (microseconds * 1e3).round() as c_ulong;
     FingerTiming {
