@@ -5,7 +5,7 @@ pub use crate::model::configuration::Law;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
-/// What the board measured at one instant, in counts.
+/// The measurements of the board at one instant, in counts.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Feedback {
     /// m_c of eq. 28: motor encoder counts, without wrap-around.
@@ -23,7 +23,7 @@ pub struct Measured {
     pub tensions: Vector4<f64>,
 }
 
-/// The anchor of a fingertip's spring and its stiffness. The servo always takes over a complete set point.
+/// The spring of a fingertip: its anchor, law, stiffness and damping. The servo always replaces the whole set point.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct SetPoint {
     /// theta_d: desired joint angles, rad. The exact law uses the pose of the tip at these angles.
@@ -34,7 +34,7 @@ pub struct SetPoint {
     /// 0 to 2 are translation, N/cm, and 3 to 5 are rotation, N cm/rad.
     pub stiffness: Matrix6<f64>,
     /// Damping relative to the damping that the controller computes from the stiffness.
-    /// [`AdmissibleDamping`](crate::control::AdmissibleDamping) has the range.
+    /// [`AdmissibleDamping`](crate::control::AdmissibleDamping) defines the permitted range.
     pub damping: f64,
 }
 
@@ -54,7 +54,7 @@ pub fn spatial(kx: &Matrix3<f64>) -> Matrix6<f64> {
     stiffness
 }
 
-/// What a finger does in one cycle. Its servo thread decides this.
+/// The activity of a finger in one cycle. The servo thread of the finger selects it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[expect(clippy::large_enum_variant, reason = "a set point in a box would be allocated and freed in the servo")]
 pub enum Activity {
@@ -73,8 +73,8 @@ pub enum Activity {
     },
     /// Brings every tendon to its own tension, N, from any amount of slack. For calibration.
     Tense(Vector4<f64>),
-    /// Pulls with every motor at its tendon, N, with no feedback except the motor's damper. A negative pull lets the
-    /// tendon out. For calibration.
+    /// Applies the given pull of each motor to its tendon, N. The only feedback is the damper of the motor. A negative
+    /// pull lets the tendon out. For calibration.
     Pull(Vector4<f64>),
     /// Applies these motor torques, N cm, in the board's sign and without any feedback. For calibration.
     Turn(Vector4<f64>),
@@ -94,7 +94,7 @@ impl MotorCommand {
     }
 }
 
-/// What one cycle measured and computed.
+/// The measurements and the results of one cycle.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Report {
     /// Measured joint angles, corrected for tendon stretch, rad.
@@ -112,10 +112,10 @@ pub struct Report {
     pub torque_scale: f64,
     /// The fraction of the set point's stiffness that the pose supports, 0 to 1.
     pub stiffness_scale: f64,
-    /// Every tendon has at least 0.8 t_min and the motors are at rest. While slack is taken up, this is true only after
-    /// the desired tensions have reached the pretension.
+    /// Whether every tendon has a tension of at least 0.8 t_min and the motors are at rest. While slack is taken up,
+    /// this is true only after the desired tensions have reached the pretension.
     pub under_tension: bool,
-    /// The tendon that is farthest from being under tension while slack is taken up, 0 to 3.
+    /// The tendon that is farthest from being under tension, 0 to 3. It is valid while slack is taken up.
     pub slackest: usize,
     /// Commanded motor torques, N cm.
     pub motor_torques: Vector4<f64>,

@@ -1,8 +1,8 @@
 //! Feedback of the whole state of a finger on elastic tendons: joint angles and rates, tensions and their rates.
 //!
-//! The report's loops measure the joints through the motors. The tendons between the two are springs. Their oscillation
-//! must be damped with quantities that those loops do not measure. This controller observes these quantities, and makes
-//! every motor a force source with little inertia.
+//! The report's loops measure the joints through the motors. The tendons between motors and joints are springs. Their
+//! oscillation must be damped with quantities that the report's loops do not measure. This controller observes these
+//! quantities, and makes every motor a force source with little inertia.
 
 mod construction;
 mod damping_design;
@@ -26,9 +26,9 @@ use crate::model::LinkDynamics;
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
-/// Largest number of consecutive lost replies or skipped periods for which the predictions are used. After more, the
-/// command stays constant, and the next reply restarts the observers. With 20, one of five fingers whose servo
-/// occasionally did not run for 12 ms lost all its tensions.
+/// Largest number of consecutive lost replies or skipped periods for which the predictions are used. After more losses,
+/// the command stays constant, and the next reply restarts the observers. With a limit of 20, one of five fingers lost
+/// all its tensions when the servo occasionally did not run for 12 ms.
 const BLIND: u32 = 4;
 
 /// The control law, in SI units. The tension distribution and the spring use N cm.
@@ -46,8 +46,8 @@ pub(super) struct StateFeedback {
     friction: FrictionFeedForward,
     /// R, m.
     r: Matrix3x4<f64>,
-    /// R^T (R R^T)^-1, 1/m. Its transpose converts the travel of the tendons to joint angles, and a common stretch to
-    /// zero.
+    /// R^T (R R^T)^-1, 1/m. Its transpose converts the travel of the tendons to joint angles. It converts a stretch
+    /// that is common to all tendons to zero.
     pseudo_inverse: Matrix4x3<f64>,
     /// Unit vector of the tensions that cause no joint torque.
     common: Vector4<f64>,
@@ -55,19 +55,23 @@ pub(super) struct StateFeedback {
     apparent_motors: Matrix3<f64>,
     /// The inertia of the motors for which the damping is designed, kg m^2.
     damped_motors: Matrix3<f64>,
-    /// Mass, kg, viscous friction, N s/m, and stiffness, N/m, all at the tendon.
+    /// Mass of each motor at its tendon, kg.
     mass: Vector4<f64>,
+    /// Viscous friction of each motor at its tendon, N s/m.
     viscous: Vector4<f64>,
+    /// Stiffness of each tendon, N/m.
     stiffness: Vector4<f64>,
     /// alpha: the gain from the tension error to the pull of a motor.
     inertia_gain: f64,
-    /// c, N s/m.
+    /// c: damping of the speed of a motor relative to the joint side of its tendon, N s/m.
     relative_damping: f64,
-    /// alpha and c for the common component of the tendons, divided by those for the components that turn the joints.
+    /// alpha for the common component of the tendons, divided by alpha for the components that turn the joints.
     common_gain: f64,
+    /// c for the common component of the tendons, divided by c for the components that turn the joints.
     common_damping: f64,
-    /// Viscous friction, N m s/rad, and Coulomb friction, N m, of the joints.
+    /// Viscous friction of the joints, N m s/rad.
     joint_viscous: Vector3<f64>,
+    /// Coulomb friction of the joints, N m.
     joint_coulomb: Vector3<f64>,
     /// Gain per cycle of the low-pass filter on the drift.
     drift_gain: f64,
@@ -75,12 +79,13 @@ pub(super) struct StateFeedback {
     friction_slope: f64,
     /// The motion is computed for this time relative to the next sample, s. A negative time is before the sample.
     sample_offset: f64,
-    /// Radius of each motor, m, and half an encoder count, rad, because counts are rounded down.
+    /// Radius of each motor, m.
     radius: Vector4<f64>,
+    /// Half an encoder count, rad, with the sign of the encoder. It is added because counts are rounded down.
     half_count: Vector4<f64>,
-    /// Margins to the tension bounds for the variation of the tensions of a finger at rest, N. It comes from dither and
-    /// gauge noise, and near t_max also from friction.
+    /// Margin to the lower tension bound, N. Dither and gauge noise vary the tensions of a finger at rest.
     pub lower_reserve: f64,
+    /// Margins to the upper tension bounds, N. Near t_max friction varies the tensions too.
     pub upper_reserve: Vector4<f64>,
 }
 
@@ -94,15 +99,17 @@ pub(super) struct StateFeedbackState {
     jerk: Vector3<f64>,
     lost: u32,
     anchor: Vector3<f64>,
-    /// Difference in tensions at the start of the spring, which decays to zero. It is in tensions and not in pulls,
-    /// because pulls are noisy and the noise of one cycle must not persist.
+    /// Difference between the estimated and the desired tensions at the start of the spring, N. It decays to zero. It
+    /// is a difference of tensions and not of pulls, because pulls are noisy and the noise of one cycle must not
+    /// persist.
     transition: BumplessTransfer,
     reference: ReferenceState,
-    /// Motion of the joints in addition to the reference, low-pass filtered, rad/s.
+    /// Joint rates minus the rates of the reference, low-pass filtered, rad/s.
     drift: Vector3<f64>,
     dither: DitherState,
-    /// Measured joint angles, rad, and joint rates, rad/s.
+    /// Estimated joint angles at the newest sample, rad.
     pub joints: Vector3<f64>,
+    /// Estimated joint rates, predicted for the next sample, rad/s.
     pub joint_rates: Vector3<f64>,
 }
 
@@ -171,7 +178,7 @@ impl StateFeedback {
         state.acting = pulls - against_friction;
     }
 
-    /// Ends the motion of the reference.
+    /// Notes that the reference does not move: its jerk is zero.
     pub fn idle(&self, state: &mut StateFeedbackState) {
         state.jerk = Vector3::zeros();
     }

@@ -1,5 +1,5 @@
-//! Reads and writes files. A path from a person or a program cannot make the library wait without end or exhaust its
-//! memory. No failure and no other process can destroy the content of a file.
+//! Reads and writes files. Whatever path a user gives, the library neither waits without end nor exhausts its memory.
+//! No failure and no other process can destroy the content of a file.
 
 mod privileges;
 mod regular;
@@ -13,7 +13,8 @@ pub use update::{UpdateError, update_file};
 
 use std::io::{Error, ErrorKind};
 
-/// Returns the closest errno for an error of this module, whether or not the system reported one.
+/// Returns the errno of an error of this module. If the system has not reported one, returns the errno whose meaning is
+/// closest.
 pub(crate) fn errno(error: &Error) -> i32 {
     error.raw_os_error().unwrap_or(match error.kind() {
         ErrorKind::InvalidInput | ErrorKind::InvalidData => libc::EINVAL,

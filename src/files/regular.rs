@@ -11,20 +11,20 @@ use std::path::Path;
 /// A path to a FIFO, a device, a socket or a directory is refused without waiting.
 ///
 /// # Errors
-/// - the error that the system reports
+/// Returns the error that the system reports, or an error of one of these kinds:
 /// - [`io::ErrorKind::InvalidInput`] if the path does not lead to a regular file
 /// - [`io::ErrorKind::FileTooLarge`] if the file has more than `largest` bytes
 pub fn open_regular_file(path: &Path, largest: u64) -> io::Result<Take<File>> {
     Ok(open(path, OpenOptions::new().read(true), largest)?.take(largest.saturating_add(1)))
 }
 
-/// Opens a regular file of at most `largest` bytes with these options.
+/// Opens a regular file of at most `largest` bytes with `options`.
 pub(super) fn open(path: &Path, options: &mut OpenOptions, largest: u64) -> io::Result<File> {
     // Opening some devices has an effect: a modem line rises, a tape rewinds. So the kind is checked before the path is
     // opened.
     check(&metadata(path)?, largest)?;
-    // O_NONBLOCK: the path may lead to a FIFO by now, and opening that would wait for a writer. The flag has no effect
-    // on regular files.
+    // O_NONBLOCK is set because the path may lead to a FIFO by now, and opening a FIFO would wait for a writer. The
+    // flag has no effect on regular files.
     let file = options.custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY).open(path)?;
     // The path may have changed in between, so the opened file is checked too.
     check(&file.metadata()?, largest)?;
@@ -34,8 +34,8 @@ pub(super) fn open(path: &Path, options: &mut OpenOptions, largest: u64) -> io::
 /// Reads a regular file of at most `largest` bytes as text.
 ///
 /// # Errors
-/// The errors of [`open_regular_file`], and [`io::ErrorKind::InvalidData`] with the line at which the file is not
-/// UTF-8.
+/// Returns the errors of [`open_regular_file`]. Returns [`io::ErrorKind::InvalidData`] if the file is not UTF-8 text.
+/// The text of that error names the line.
 pub fn read_regular_file(path: &Path, largest: u64) -> io::Result<String> {
     read_text(&mut open_regular_file(path, largest)?, largest)
 }

@@ -1,4 +1,5 @@
-//! Writes complete files: first under a temporary name in the same folder, then in one step to their place.
+//! Writes complete files. Each file is written under a temporary name in the same folder, and then moved to its place
+//! in one step.
 
 use super::regular::check_kind;
 use std::collections::hash_map::RandomState;
@@ -14,17 +15,16 @@ const ATTEMPTS: u32 = 16;
 /// The bits of a mode that a new file inherits. Set-user-ID, set-group-ID and sticky are not inherited.
 const PERMISSIONS: u32 = 0o777;
 
-/// Writes a file with the content that `write` gives. It replaces the one at `path`, if there is one.
+/// Writes a file with the content that `write` gives. The new file replaces the file at `path`, if there is one.
 ///
 /// A reader sees either the complete old file or the complete new one, even after a power cut. If anything fails, the
 /// old file stays unchanged. The new file gets the permissions of the old one, and its owner and group if this process
 /// may set them.
 ///
-/// Symbolic links are not followed. A caller that wants the target of a link must resolve the link first.
+/// Symbolic links are not followed. A caller that wants to replace the target of a link must resolve the link first.
 ///
 /// # Errors
-/// - the error that the system reports
-/// - [`io::ErrorKind::InvalidInput`] if `path` is not a regular file
+/// Returns the error that the system reports. Returns [`io::ErrorKind::InvalidInput`] if `path` is not a regular file.
 pub fn replace_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let old = match fs::symlink_metadata(path) {
         Ok(old) => Some(old),
@@ -42,8 +42,7 @@ pub fn replace_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Resul
 /// and no file is overwritten.
 ///
 /// # Errors
-/// - the error that the system reports
-/// - [`io::ErrorKind::AlreadyExists`] if no name is free
+/// Returns the error that the system reports. Returns [`io::ErrorKind::AlreadyExists`] if no name is free.
 pub fn create_file(
     folder: &Path,
     names: impl IntoIterator<Item = String>,
@@ -63,8 +62,8 @@ pub fn create_file(
     Err(ErrorKind::AlreadyExists.into())
 }
 
-/// A file under a temporary name. Dropping it removes the file, unless it was placed. A file left behind by a killed
-/// process is never read.
+/// A file under a temporary name. Dropping this value removes the temporary name, unless the file was moved to its
+/// place. A file that a killed process leaves behind is never read.
 pub(super) struct NewFile {
     folder: PathBuf,
     path: PathBuf,
@@ -83,8 +82,8 @@ impl NewFile {
     }
 
     fn inside(folder: &Path, old: Option<&Metadata>) -> io::Result<Self> {
-        // The old file may be secret, so nobody else may read the new one until it has the owner of the old one.
-        // Without an old file the umask decides, as usual.
+        // The old file may be secret, so no other user may read the new file until it has the owner of the old one.
+        // Without an old file, the umask determines the permissions, as usual.
         let mode = if old.is_some() { 0o600 } else { 0o666 };
         let (path, file) = create_unpredictable(folder, mode)?;
         let new = Self { folder: folder.into(), path, output: BufWriter::new(file), placed: false };
@@ -157,12 +156,12 @@ fn inherit(file: &File, old: &Metadata) -> io::Result<()> {
     let new = file.metadata()?;
     let mut mode = old.mode() & PERMISSIONS;
     if new.uid() != old.uid() {
-        // Only root may change the owner of a file. When this user replaces another user's file, the new file is this
-        // user's.
+        // Only root may change the owner of a file. When this user replaces another user's file, the new file belongs
+        // to this user.
         let _ = fchown(file, Some(old.uid()), None);
     }
     if new.gid() != old.gid() && fchown(file, None, Some(old.gid())).is_err() {
-        // The group differs from the old one, so it gets at most the permissions of others.
+        // The group of the new file is not the old one, so it gets at most the permissions that others have.
         mode &= 0o707 | (mode & 0o007) << 3;
     }
     // A file system without permissions refuses to set any.
@@ -174,7 +173,8 @@ fn inherit(file: &File, old: &Metadata) -> io::Result<()> {
 
 /// Writes the folder to the disk. Without this, a power cut can undo the change of name.
 fn flush_folder(folder: &Path) -> io::Result<()> {
-    // The file is already at its place. If the folder cannot be opened for reading, a power cut may undo the change.
+    // A folder that cannot be opened for reading is not an error, because the file is already at its place. A power cut
+    // may then undo the change of name.
     let Ok(folder) = File::open(folder) else { return Ok(()) };
     match folder.sync_all() {
         // This file system cannot flush folders.

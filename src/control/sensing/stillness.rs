@@ -1,5 +1,5 @@
-//! Detects that the motors are at rest. A measured speed cannot show this: at 1000 Hz a single count is already 3
-//! rad/s.
+//! Detects that the motors are at rest. A measured speed cannot show this, because a change of a single count in one
+//! cycle at 1000 Hz is already a speed of 3 rad/s.
 
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ impl Stillness {
         Self { at: motor_angles, seconds: 0.0 }
     }
 
-    /// Records the motor angles, rad, `period` seconds after the previous ones.
+    /// Records motor angles, rad, that were measured `period` seconds after the previous ones.
     pub fn note(&mut self, motor_angles: &Vector4<f64>, period: f64) {
         if (motor_angles - self.at).amax() <= LARGEST_MOTION {
             self.seconds += period;

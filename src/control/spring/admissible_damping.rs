@@ -11,13 +11,13 @@ const SLOW: f64 = 1000.0;
 
 /// The range of relative damping with which a fingertip settles. It narrows as the stiffness grows.
 ///
-/// The limits are straight lines inside the range that was stable on the default finger, with a margin of about a
+/// The limits are straight lines inside the range in which the default finger was stable, with a margin of about a
 /// tenth. Two tests determined that range: the one-cycle map at poses anywhere within the joint limits, and the closed
 /// loop after steps of 5 mm and after pushes. They covered 500 to 4000 Hz and 0.3 to 6 N/cm, with and without friction.
 /// With too little damping the servo loses control of the finger. With too much damping the finger oscillates because
-/// of the delay of one cycle. The report's figures have little damping of their own, so they admit no ratio below 1. A
-/// ratio of 1 is always admitted: it is the damping that the controller computes, and the bound of Kx covers its
-/// stability.
+/// of the delay of one cycle. The schemes of the report's figures have little damping besides this damper, so they
+/// admit no ratio below 1. A ratio of 1 is always admitted: it is the damping that the controller computes, and the
+/// bound of Kx covers its stability.
 ///
 /// For a finger with other links or tendons, the stiffness is first converted to the stiffness of the default finger
 /// that is the same fraction of what the tendons support.
@@ -26,8 +26,9 @@ const SLOW: f64 = 1000.0;
 /// too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdmissibleDamping {
-    /// Limit at zero stiffness, and its change for each N/cm of Kx.
+    /// Lower limit at zero stiffness, and its change for each N/cm of the default finger.
     least: (f64, f64),
+    /// Upper limit at zero stiffness, and its change for each N/cm of the default finger.
     most: (f64, f64),
     /// Stiffness of the default finger that corresponds to 1 N/cm of this finger.
     correspondence: f64,

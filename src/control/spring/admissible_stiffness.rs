@@ -12,7 +12,7 @@ fn share(scheme: Scheme, rate: f64) -> f64 {
     match scheme {
         Scheme::Figure11 => 0.7,
         _ if rate >= 750.0 => 0.95,
-        // With 0.95 at 500 Hz, the motion grew in stretched poses at 5 N/cm.
+        // With a share of 0.95 at 500 Hz, the motion of a stretched finger at 5 N/cm grew instead of decaying.
         Scheme::StateFeedback => 0.75,
         Scheme::Figure9 | Scheme::Figure10 => 0.7,
     }
@@ -42,8 +42,8 @@ impl AdmissibleStiffness {
     /// Returns the factor, 0 to 1, by which K_theta must be scaled to leave room for `limits`, the stiffness of the
     /// soft joint limits. Both are in N cm/rad.
     ///
-    /// The largest eigenvalue of a sum is at most the sum of the largest eigenvalues. That of the soft limits is at
-    /// most their trace.
+    /// The largest eigenvalue of a sum is at most the sum of the largest eigenvalues. The largest eigenvalue of the
+    /// soft limits is at most their trace.
     pub fn scale(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> f64 {
         let [largest, ..] = eigenvalues(&(self.inverse * k_theta * self.inverse.transpose()));
         let left = self.share - limits.dot(&self.compliance);

@@ -3,12 +3,12 @@
 use crate::model::Links;
 use nalgebra::Vector3;
 
-/// Stiffness of each joint, N cm/rad. It is below the stiffness of a bent finger with the softest spring for which the
-/// tendon controllers are tuned.
+/// Stiffness of each joint, N cm/rad. It is lower than the joint stiffness of a bent finger with the softest spring for
+/// which the tendon controllers are tuned.
 pub(crate) const HOLDING_STIFFNESS: f64 = 30.0;
 
-/// Damping, N cm s/rad for every cm of finger beyond the joint. It keeps the inertia of the finger from oscillating on
-/// the spring.
+/// Damping of a joint, N cm s/rad for each cm of finger between the joint and the tip. It keeps the inertia of the
+/// finger from oscillating on the spring.
 const DAMPING: f64 = 0.2;
 
 /// tau = k (theta_d - theta) - d (theta_dot - theta_dot_d).

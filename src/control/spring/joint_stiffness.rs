@@ -1,4 +1,4 @@
-//! The box K_theta: joint torques of the virtual spring, eqs. 1 to 6, and a damper in parallel.
+//! The box K_theta: joint torques of the virtual spring, eqs. 1 to 6, and of a damper in parallel.
 
 use crate::control::spring::spring_transition::Spring;
 use crate::model::Links;
@@ -11,10 +11,10 @@ const REFERENCE_STIFFNESS: f64 = 3.0;
 /// of the damping that a spring needs.
 const LIMP_DAMPING: f64 = 0.2;
 
-/// Minimum lever of joint 0, cm. With the tip on the axis of joint 0, no tip stiffness holds the joint. Near
-/// the axis a force on the tip turns the joint away: a force that compresses the spring by d toward the axis reduces
-/// the joint's stiffness k r^2 by k d r. With a minimum lever of 5 mm, the joint stays held at deflections of up to 5
-/// mm.
+/// Minimum lever of joint 0, cm. With the tip on the axis of joint 0, no stiffness of the tip holds the joint. With the
+/// tip near the axis, a force on the tip can turn the joint away: a force that compresses the spring by d toward the
+/// axis reduces the joint's stiffness k r^2 by k d r. With a minimum lever of 5 mm, the joint is held at deflections of
+/// up to 5 mm.
 const LEAST_LEVER: f64 = 0.5;
 
 /// tau = spring - z (B K_theta B + d) theta_dot, with K_theta = J^T K J, a diagonal B, a small d, and the relative
@@ -38,8 +38,8 @@ pub struct JointStiffness {
     damping: Vector3<f64>,
 }
 
-/// A spring at a pose. It is computed once in a cycle, because its sines and products are the most expensive part of a
-/// cycle.
+/// A spring at a pose. It is computed only once in a cycle, because its sines and products are the most expensive part
+/// of a cycle.
 #[derive(Clone, Debug)]
 pub(crate) struct PosedSpring<'a> {
     of: &'a JointStiffness,
@@ -48,7 +48,7 @@ pub(crate) struct PosedSpring<'a> {
     damping: f64,
     /// K J, before any scaling.
     stiffened: Matrix6x3<f64>,
-    /// The fraction of its stiffness that the spring has.
+    /// Factor on the stiffness of the spring. [`PosedSpring::soften`] reduces it.
     scale: f64,
     /// Additional stiffness of joint 0 with the tip near its axis, before any scaling, N cm/rad.
     hold: f64,
@@ -95,8 +95,9 @@ impl JointStiffness {
     /// Returns the translation (cm) and the rotation vector (rad) from the tip's pose at `joints` to the pose at
     /// `desired`.
     ///
-    /// The rotation is the complete one between the two poses, and not J (theta_d - theta). Like x_d - x it depends on
-    /// the two poses only. So the exact law has no deflection when the tip is in place, for any joint solution.
+    /// The rotation vector describes the complete rotation between the two poses. It is not J (theta_d - theta). Like
+    /// x_d - x, it depends only on the two poses. So the deflection of the exact law is zero when the tip is at the
+    /// desired pose, for any joint solution.
     fn deflection(&self, desired: &Vector3<f64>, joints: &Vector3<f64>) -> Vector6<f64> {
         let translation = self.links.tip(desired) - self.links.tip(joints);
         let rotation = self.links.tip_rotation(desired) * self.links.tip_rotation(joints).inverse();
@@ -116,8 +117,8 @@ fn hold(stiffness: &Matrix6<f64>, jacobian: &Matrix6x3<f64>) -> f64 {
     if lacking <= 0.0 {
         return 0.0;
     }
-    // n: joint 0 moves the tip along the axis of joints 1 and 2. This also holds on its own axis, where column 0 of J
-    // vanishes.
+    // n is the axis of joints 1 and 2, because joint 0 moves the tip along that axis. This is also valid for a tip on
+    // the axis of joint 0, where the translation in column 0 of J is zero.
     let way = jacobian.fixed_view::<3, 1>(3, 1);
     way.dot(&(stiffness.fixed_view::<3, 3>(0, 0) * way)) * lacking
 }

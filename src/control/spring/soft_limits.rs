@@ -6,21 +6,22 @@ use nalgebra::Vector3;
 /// Stiffness of a limit where the tendons support it, N cm/rad. A bent finger at 3 N/cm has about this stiffness.
 const STIFFNESS: f64 = 150.0;
 
-/// Largest fraction of the supported stiffness of a joint that its limit uses. With all three joints at their limits,
-/// some stiffness is left for the tip.
+/// Largest fraction of the supported stiffness of a joint that the limit of the joint may use. With this fraction, some
+/// stiffness is left for the tip even if all three joints are at their limits.
 const PART: f64 = 0.3;
 
 /// Depth beyond the limit, rad, at which a limit reaches its full stiffness. With a step in stiffness, a finger that
 /// rests at its limit would switch the spring on and off.
 const DEPTH: f64 = 0.0175;
 
-/// A joint at the depth d beyond a limit is pushed back with k d^2 / 2 D up to the depth D, and with k (d - D/2)
-/// beyond. The stiffness grows from zero to k without a step. Within the limits the push is zero, so the spring of
-/// the fingertip stays exact.
+/// A joint at the depth d beyond a limit is pushed back with the torque k d^2 / (2 D) up to the depth D, and with the
+/// torque k (d - D/2) at greater depths. The stiffness grows from zero to k without a step. Within the limits the push
+/// is zero, so the spring of the fingertip stays exact.
 #[derive(Clone, Debug)]
 pub(crate) struct SoftLimits {
-    /// Limits of the joints, rad.
+    /// Lower limits of the joints, rad.
     low: Vector3<f64>,
+    /// Upper limits of the joints, rad.
     high: Vector3<f64>,
     /// Full stiffness of the limits of each joint, N cm/rad.
     stiffness: Vector3<f64>,
@@ -48,7 +49,7 @@ impl SoftLimits {
         let within = joints.zip_zip_map(&self.low, &self.high, |joint, low, high| joint.max(low).min(high));
         let beyond = within - joints;
         let stiffness = beyond.zip_map(&self.stiffness, |way, stiffness| stiffness * (way.abs() / DEPTH).min(1.0));
-        // The deflection that counts is d/2 up to the depth D, and d - D/2 beyond.
+        // The effective deflection is d/2 up to the depth D, and d - D/2 at greater depths.
         let counted = beyond.map(|way| way - (0.5 * way).clamp(-0.5 * DEPTH, 0.5 * DEPTH));
         Push { torque: stiffness.component_mul(&counted), stiffness }
     }

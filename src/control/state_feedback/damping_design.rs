@@ -1,4 +1,4 @@
-//! Damping of a spring with several dimensions on a given inertia.
+//! Damping of a spring with several dimensions that acts on a given inertia.
 
 use crate::control::eigenvalues::eigenvalues;
 use nalgebra::Matrix3;
@@ -6,9 +6,9 @@ use nalgebra::Matrix3;
 /// D = 2 zeta (W # (K + f^2 W)) + lag sym(H W^-1 K).
 ///
 /// W # K = W (W^-1 K)^(1/2) is the geometric mean. In one dimension it gives 2 zeta sqrt(W K). In general it gives
-/// every mode of the pair (W, K) the same damping ratio zeta. The lowest frequency f keeps a finger damped that has no
-/// stiffness, or a K without full rank. The tensions lag behind the desired ones by `lag`. The share H W^-1 of the
-/// spring's torque acts on the links. The second term compensates the lag of that share.
+/// every mode of the pair (W, K) the same damping ratio zeta. Because of the lowest frequency f, a finger is also
+/// damped if it has no stiffness, or if K does not have full rank. The tensions lag behind the desired ones by `lag`.
+/// The share H W^-1 of the spring's torque acts on the links. The second term compensates the lag of that share.
 #[derive(Clone, Debug)]
 pub(crate) struct DampingDesign {
     /// zeta: damping ratio.

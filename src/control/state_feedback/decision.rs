@@ -1,4 +1,4 @@
-//! Command of state feedback in a cycle: from the estimated state and the spring to the pull of every motor.
+//! Computes the pull of every motor in a cycle of state feedback, from the estimated state and the spring.
 
 use super::{StateFeedback, StateFeedbackState};
 use crate::control::spring::gravity_compensation::GravityCompensation;
@@ -41,8 +41,8 @@ struct Shake {
 }
 
 impl StateFeedback {
-    /// Returns the pulls that make the fingertip the spring `spring` from the next sample on. With `begins` the spring
-    /// starts without deflection.
+    /// Returns the pulls that make the fingertip the spring `spring` from the next sample on. If `begins` is true, the
+    /// spring starts without deflection.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
@@ -102,7 +102,8 @@ impl StateFeedback {
         reference
     }
 
-    /// Returns the torque of the spring, its damper and the motion of the reference, N m.
+    /// Returns the joint torques, N m. They are the sum of the torques of the spring, the soft limits, gravity
+    /// compensation and the damper, and of the feed-forward for joint friction and for the motion of the reference.
     fn joint_torques(
         &self,
         state: &mut StateFeedbackState,
@@ -165,8 +166,8 @@ impl StateFeedback {
         let motor_rates = self.r.tr_mul(&reference.rates);
         let omega_squared = self.dither.frequency * self.dither.frequency;
         let error = self.scale_common(error, self.common_gain);
-        // The coefficient of the joints' speed must be exactly 1. A coefficient of 0.94 acted as a drag of three times
-        // D.
+        // The coefficient of the joints' speed must be exactly 1. A coefficient of 0.94 acted as an additional damping
+        // of three times D.
         let stretching = now.motor_speeds - now.speeds - (tension_rates + shake.rates).component_div(&self.stiffness);
         let stretching = self.scale_common(&stretching, self.common_damping);
         let yielding = (tension_accelerations - shake.tensions * omega_squared).component_div(&self.stiffness);

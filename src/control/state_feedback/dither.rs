@@ -5,7 +5,8 @@ use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Joint torques A sin(omega t + i 120 degrees). With three phases the whole finger is never at rest.
+/// The torque A sin(omega t + i 120 degrees) at joint i. Because the three phases differ, the joints are never all at
+/// rest at the same time.
 #[derive(Clone, Debug)]
 pub(crate) struct Dither {
     /// A: amplitude, N m.
@@ -16,7 +17,7 @@ pub(crate) struct Dither {
     step: Vector2<f64>,
 }
 
-/// Cosine and sine of omega t. They are rotated in each cycle, because computing them takes longer.
+/// Cosine and sine of omega t. Each cycle rotates them, because computing a new cosine and sine takes longer.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct DitherState(Vector2<f64>);
 

@@ -9,9 +9,9 @@ const CREEP: f64 = 0.001;
 
 /// sat(v / creep) (coulomb + conduit t), N at the tendon.
 ///
-/// v is the observed speed. With the speed of the reference instead, friction leaves a limit cycle at high stiffness.
-/// The observer must receive the pull without this feed-forward. Otherwise its disturbance would compensate the same
-/// friction a second time.
+/// v is the observed speed. If v were the speed of the reference, a limit cycle would remain at high stiffness because
+/// of friction. The observer must receive the pull without this feed-forward. Otherwise its disturbance would
+/// compensate the same friction a second time.
 #[derive(Clone, Debug)]
 pub(crate) struct FrictionFeedForward(pub MotorFriction);
 

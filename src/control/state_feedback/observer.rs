@@ -4,15 +4,16 @@
 use nalgebra::{Matrix2, Matrix2x6, Matrix6, Matrix6x2, Vector2, Vector6};
 use serde::{Deserialize, Serialize};
 
-/// Largest number of steps of the Riccati recursion, and the relative change of the gain at which the recursion ends.
+/// Largest number of steps of the Riccati recursion.
 const MOST_STEPS: usize = 20_000;
+/// Relative change of the gain at which the Riccati recursion ends.
 const STEADY: f64 = 1e-10;
 
-/// Number of samples after a lost reply that have gains of their own.
+/// Number of samples after a lost reply for which separate gains are used.
 const RECOVERY: usize = 8;
 
-/// One tendon between its motor and the joints, in SI units at the tendon. The inertia J of the rotor is the mass
-/// J/r^2.
+/// One tendon between its motor and the joints, in SI units at the tendon. The inertia J of the rotor is expressed as
+/// the mass J/r^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ElasticTendon {
     /// m: mass of the rotor, kg.
@@ -44,12 +45,12 @@ pub(crate) struct ObserverDesign {
 ///
 /// mu' = v, v' = (u - t_home + d - k (mu - lambda) - b v) / m, lambda' = w, w' = a, a' = jerk + noise, d' = noise.
 ///
-/// Measured are mu and t - t_home = k (mu - lambda). mu is the travel of the motor, r m, and lambda that of the joints,
-/// R^T theta. u is the pull, and d the force that acts on the motor in addition to it.
+/// The measurements are mu and t - t_home = k (mu - lambda). mu = r m_theta is the travel of the motor, and lambda =
+/// R^T theta is that of the joints. u is the pull, and d the force that acts on the motor in addition to it.
 ///
-/// The links are a triple integrator without a model. A model of any part of their dynamics would interpret an external
-/// force as motion, and the damper would permanently oppose that motion. Without the state a, lambda would lag, and k
-/// times the lag would act as mass.
+/// The links are described only by a triple integrator, and not by a model of their dynamics. A model of any part of
+/// the dynamics would interpret an external force as motion, and the damper would permanently oppose that motion.
+/// Without the state a, lambda would lag, and k times the lag would act as an additional mass.
 #[derive(Clone, Debug)]
 pub(crate) struct TendonObserver {
     tendon: ElasticTendon,
@@ -65,7 +66,7 @@ pub(crate) struct TendonObserver {
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct TendonEstimate {
     x: Vector6<f64>,
-    /// Samples since the last lost reply. The count ends at [`RECOVERY`].
+    /// Samples since the last lost reply. The count stops at [`RECOVERY`].
     since_loss: usize,
 }
 
@@ -86,7 +87,7 @@ pub(crate) struct TendonMotion {
 
 impl TendonObserver {
     /// Discretises the model over `period` (s) and iterates the Riccati equation to its fixed point. Returns None if
-    /// the numbers differ so much that there is no finite fixed point.
+    /// the parameters differ so much in size that there is no finite fixed point.
     pub fn new(tendon: ElasticTendon, design: &ObserverDesign, period: f64) -> Option<Self> {
         let ElasticTendon { mass, viscous, stiffness, .. } = tendon;
         let mut rates = Matrix6::zeros();
@@ -131,7 +132,7 @@ impl TendonObserver {
                 break;
             }
         }
-        // A lost reply: a prediction without an update.
+        // After a lost reply there is a prediction without a correction.
         covariance = predicted(&covariance);
         let recovery = std::array::from_fn(|_| {
             let gain = gain_of(&covariance);
@@ -170,7 +171,7 @@ impl TendonObserver {
         estimate.since_loss = estimate.since_loss.saturating_add(1).min(RECOVERY);
     }
 
-    /// Continues without a measurement. The acceleration is too uncertain to be kept.
+    /// Continues without a measurement. The acceleration is set to zero, because its estimate is too uncertain.
     pub fn miss(&self, estimate: &mut TendonEstimate) {
         estimate.x[5] = 0.0;
         estimate.since_loss = 0;
@@ -197,7 +198,7 @@ impl TendonObserver {
         }
     }
 
-    /// Returns lambda at the estimate, m.
+    /// Returns lambda of the estimate, m.
     pub fn travel(&self, estimate: &TendonEstimate) -> f64 {
         estimate.x[2]
     }
@@ -208,7 +209,7 @@ impl TendonObserver {
 }
 
 /// Returns e^(A T) and the integral of e^(A s) over s from 0 to T. The Taylor series is computed for a part of T that
-/// is short for the fastest motion in A. That part is then doubled until it is T.
+/// is short compared with the fastest motion in A. That part is then doubled until it is T.
 fn exponential(rates: &Matrix6<f64>, time: f64) -> (Matrix6<f64>, Matrix6<f64>) {
     // The fastest motion is the motor on its tendon: A(1, 0) = - omega^2.
     let turns = time * rates[(1, 0)].abs().sqrt();

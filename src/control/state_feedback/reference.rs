@@ -9,7 +9,7 @@ const ORDER: usize = 5;
 /// Five equal first-order stages in series. The motor torque of an elastic finger depends on the fourth derivative of
 /// the reference (snap). A filter of order n makes the derivative n - 1 continuous.
 ///
-/// The filter acts on joint angles and not on the tip. This gives joint rates without J^-1, which has no bound.
+/// The filter acts on joint angles and not on the tip. So the joint rates follow without J^-1, which is unbounded.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
     /// Fraction of the remaining difference by which a stage moves in a cycle.
@@ -22,7 +22,7 @@ pub(crate) struct Reference {
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct ReferenceState([Vector3<f64>; ORDER]);
 
-/// Joint angles and their four derivatives, rad/s^n.
+/// Joint angles, rad, and their first four derivatives, rad/s^n.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReferenceMotion {
     pub joints: Vector3<f64>,

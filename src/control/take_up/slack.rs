@@ -10,19 +10,22 @@ use crate::model::{Links, Tendons};
 use nalgebra::{Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
-/// Winding speed at the start, m/s of tendon, and its acceleration, m/s^2. A little slack is taken up gently, and a lot
-/// of slack still in reasonable time.
+/// Winding speed at the start, m/s of tendon. It is low, so that a little slack is taken up gently.
 const SPEED: f64 = 0.003;
+/// Acceleration of the winding, m/s^2. Because of it, a lot of slack is taken up in reasonable time.
 const ACCELERATION: f64 = 0.002;
 
-/// A tendon counts as taut when its tension is this fraction of t_min (`DETECTED`) above the lowest tension so far,
-/// which works with any zero of the gauge. It also counts as taut at the absolute fraction `TAUT` of t_min.
+/// A tendon is considered to be taut when its tension exceeds its lowest tension so far by this fraction of t_min. This
+/// criterion works with any zero of the gauge.
 const DETECTED: f64 = 0.04;
+/// A tendon is also considered to be taut when its tension exceeds this fraction of t_min.
 const TAUT: f64 = 0.2;
 
-/// Position control of a motor: stiffness, N/m; damping, N s/m; and largest pull in multiples of t_min.
+/// Stiffness of the position control of a motor, N/m.
 const STIFFNESS: f64 = 15_000.0;
+/// Damping of the position control of a motor, N s/m.
 const DAMPING: f64 = 200.0;
+/// Largest pull of the position control of a motor, in multiples of t_min.
 const LARGEST_PULL: f64 = 1.2;
 
 /// Time constant of the low-pass filter on the tensions, s.
@@ -48,7 +51,7 @@ pub(crate) struct SlackTakeUp {
 /// The progress of the take-up.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) enum Slack {
-    /// Motors wind in, or wait for the others.
+    /// Each motor winds in, or waits for the others.
     Winding(Winding),
     /// All tendons are taut, and the tensions rise.
     Rising {
@@ -74,13 +77,15 @@ pub(crate) struct Winding {
 
 /// The measurements of a cycle.
 pub(crate) struct Slackness {
-    /// Travel, m, and speeds, m/s, of the tendons at the motors, positive inward.
+    /// Travel of the tendons at the motors, m, positive inward.
     pub travel: Vector4<f64>,
+    /// Speeds of the tendons at the motors, m/s, positive inward.
     pub speeds: Vector4<f64>,
     /// Tensions, N.
     pub tensions: Vector4<f64>,
-    /// Joint angles, rad, and rates, rad/s.
+    /// Joint angles, rad.
     pub joints: Vector3<f64>,
+    /// Joint rates, rad/s.
     pub joint_rates: Vector3<f64>,
 }
 

@@ -3,7 +3,7 @@
 use crate::control::tendons::tension_integral::{TendonInput, TendonState, TensionIntegral};
 use nalgebra::Vector4;
 
-/// t_d + (K_T + K_TI/s) (t_d - t) - K_delta v, which is the figure with feed-forward of t_d.
+/// t_d + (K_T + K_TI/s) (t_d - t) - K_delta v, which is the law of the figure with an additional feed-forward of t_d.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure10 {
     pub integral: TensionIntegral,

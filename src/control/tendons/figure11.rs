@@ -3,25 +3,27 @@
 use crate::control::tendons::tension_integral::{TendonInput, TendonState};
 use nalgebra::Vector4;
 
-/// Range to which the estimate is clamped: a motor constant can be wrong by half, and friction at t_min can add as much
-/// again.
+/// Range to which the estimate is clamped: a motor constant can be wrong by half, and friction at t_min can add an
+/// error of the same size.
 pub(crate) const RATIOS: (f64, f64) = (0.4, 2.0);
 
-/// Below this pull, N, a command contains no information about the motor, because friction holds as much.
+/// Below this pull, N, a command contains no information about the motor, because friction alone can hold such a
+/// tension.
 const LEAST_PULL: f64 = 2.0;
 
-/// Fraction of its limit from which a motor counts as saturated.
+/// Fraction of its limit from which a motor is considered to be saturated.
 const SATURATED: f64 = 0.98;
 
-/// Fraction of its desired tension below which a tendon counts as slack.
+/// Fraction of its desired tension below which a tendon is considered to be slack.
 const SLACK: f64 = 0.2;
 
 /// (t_d - K_delta v) / g. g is an estimate of the quotient of a tension and the pull commanded for it, so the M^-1 of
-/// eq. 22 is multiplied by 1/g. g follows t / pull through a low-pass filter, where pull is the one that acted when t
+/// eq. 22 is multiplied by 1/g. g follows t / pull through a low-pass filter, where pull is the pull that acted when t
 /// was measured.
 ///
 /// Only the conversion from tension to torque is adapted. In (RM)^-T the same letter M is geometry. An estimate there
-/// would change the measured joint angles, these would change the tensions, and these would change the estimate.
+/// would change the measured joint angles, the angles would change the tensions, and the tensions would change the
+/// estimate.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure11 {
     /// Fraction of the remaining difference by which the estimate changes in a cycle.
@@ -45,7 +47,8 @@ impl Figure11 {
             if informative {
                 *ratio = (*ratio + self.gain * (measured / acted - *ratio)).clamp(RATIOS.0, RATIOS.1);
             }
-            // This value is the integral of the other schemes, so that one of them can continue from here.
+            // The integral of the other schemes would have this value, so that another scheme can continue from this
+            // state.
             state.integral[tendon] = desired / *ratio - desired;
             ((desired - self.motor_damping * input.speed[tendon]) / *ratio).clamp(-limit, limit)
         })

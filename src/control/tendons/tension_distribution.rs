@@ -47,8 +47,8 @@ impl TensionDistribution {
         let at_rest = tendons.pretension(minimum);
         if let Some(tendon) = (0..4).find(|&tendon| maximum[tendon] <= at_rest[tendon]) {
             let reason = format!(
-                "allows tendon {} {:.2} N, but with no tendon under {minimum} N a finger without joint torque already \
-                 has {:.2} N there: raise tendon.maximum or motor.torque_limit, or lower tendon.minimum",
+                "allows tendon {} only {:.2} N, but at zero joint torque, with at least {minimum} N in every tendon, that \
+                 tendon already has {:.2} N: raise tendon.maximum or motor.torque_limit, or lower tendon.minimum",
                 tendon + 1,
                 maximum[tendon],
                 at_rest[tendon]
@@ -70,9 +70,9 @@ impl TensionDistribution {
         })
     }
 
-    /// Returns the distribution with no more than `limit`, N, in any tendon: the tension that its motor can give now. A
-    /// limit below the tension at zero joint torque is raised to that tension. The distribution then permits no torque
-    /// that would raise the tension further.
+    /// Returns the distribution in which no tension exceeds `limit`, N, which is the tension that the motor of each
+    /// tendon can give now. A limit below the tension at zero joint torque is raised to that tension. The distribution
+    /// then permits no torque that would raise the tension further.
     pub fn below(&self, limit: &Vector4<f64>) -> BoundedDistribution<'_> {
         BoundedDistribution { of: self, maximum: self.maximum.inf(limit).sup(&self.at_rest) }
     }

@@ -11,9 +11,10 @@ pub(crate) struct TendonInput {
     pub desired: Vector4<f64>,
     /// Measured tensions, N.
     pub measured: Vector4<f64>,
-    /// Low-pass filtered speed of the motor side of each tendon, m/s. Positive pulls in.
+    /// Low-pass filtered speed of the motor side of each tendon, m/s. A positive speed pulls the tendon in.
     pub speed: Vector4<f64>,
-    /// Tendons whose integral must not grow: the tension of a slack tendon contains no information about the motor.
+    /// Whether each tendon is slack. The integral of a slack tendon must not grow, because its tension contains no
+    /// information about the motor.
     pub slack: [bool; 4],
     /// Largest pull of each motor now, N. It is lower for a warm motor than for a cold one.
     pub limit: Vector4<f64>,
@@ -48,8 +49,9 @@ impl TensionIntegral {
         Self { gain: gain / rate }
     }
 
-    /// Adds the integral to `rest`, the pull without it, N. While the motor is at its limit, the integral does not grow
-    /// further in that direction. When a warm motor's limit falls, the integral is reduced with it.
+    /// Returns the pull, N. It is the sum of the integral and `rest`, the pull without the integral, N. While the motor
+    /// is at its limit, the integral does not grow further toward that limit. When a warm motor's limit falls, the
+    /// integral is reduced with it.
     pub fn complete(&self, state: &mut TendonState, input: &TendonInput, rest: &Vector4<f64>) -> Vector4<f64> {
         Vector4::from_fn(|tendon, _| {
             let limit = input.limit[tendon];

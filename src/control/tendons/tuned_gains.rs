@@ -28,7 +28,7 @@ impl Tuned for TunedGains {
     }
 }
 
-/// Found by experiment with the default finger.
+/// These gains were found by experiments with the default finger.
 const FIGURE_9: [Row<TunedGains>; 3] = [
     (
         500.0,

@@ -218,11 +218,11 @@ faults! {
         "Close the hand and open it again, and please report the defect", [Close, Open];
     42 CurrentLimit "CURRENT_LIMIT" Warning Finger Nothing "current limit",
         "the board clips torques to its own limits",
-        "its limits are lower than finger.motor.torque_limit",
+        "the limits of the board are lower than finger.motor.torque_limit",
         "Lower finger.motor.torque_limit", [];
     43 TorqueNotAdmitted "TORQUE_NOT_ADMITTED" Warning Finger Share "torque not admitted",
         "the tension limits permit only this part of the desired joint torque",
-        "the set point is far away, or stiffness or load are more than the tendons can carry",
+        "the set point is far away, or the stiffness or the load is more than the tendons can carry",
         "Send set points that are nearer, or a softer Kx", [];
     44 CalibrationFailed "CALIBRATION_FAILED" Warning Finger Nothing "calibration failed",
         "the last calibration failed; the finger is limp, and its previous calibration is in force",
@@ -238,7 +238,7 @@ faults! {
         "Remove the cause of that fault, then recover every finger", [Recover];
     47 PortClosed "PORT_CLOSED" Fault Finger Nothing "port closed",
         "another part of the program has closed the descriptor of the port",
-        "the program closes descriptors that it has not opened, as programs do that become daemons",
+        "the program closes descriptors that it has not opened, as a program does when it becomes a daemon",
         "Close the hand and open it again; a daemon must detach before it opens the hand", [Close, Open];
     48 OpeningTimedOut "OPENING_TIMED_OUT" Fault Finger Time "opening timed out",
         "not all tendons were under tension at the end of hand.open_timeout_ms, because the servo ran too few of its \
