@@ -42,8 +42,8 @@ pub struct TooFast {
     pub fastest_rate: f64,
 }
 
-/// Returns how long one exchange with `fingers` fingers takes on the line, us. `more` is the number of extra bytes that
-/// a reply can once contain.
+/// Returns how long one exchange with `fingers` fingers takes on the line, us. `more` is the number of additional bytes
+/// in each reply, for example those of a sensor that is still to be added.
 ///
 /// The line is full duplex, so the first reply may begin while the second command is still being sent. Replies are
 /// longer than commands. An exchange therefore takes one command, the board's turnaround and all replies.
@@ -67,7 +67,8 @@ pub fn capacity(baud: u32, fingers: usize, rate: f64) -> Result<f64, TooFast> {
     if needed_us <= usable_us {
         return Ok(needed_us / period_us);
     }
-    // A period shorter than the turnaround gives a division by zero, which saturates at the largest number.
+    // If the usable part of a period is not longer than the turnaround, this divides by zero. The conversion to an
+    // integer then gives the largest one.
     let line_us = (usable_us - turnaround_us).max(0.0);
     let exact_baud = ((command_bits + reply_bits) / line_us * 1e6).ceil() as u32;
     Err(TooFast {

@@ -8,20 +8,22 @@
 use std::io;
 use std::os::fd::{AsRawFd, FromRawFd, IntoRawFd, OwnedFd, RawFd};
 
-/// Above the numbers that daemons close, and above those of a program with a usual number of open files.
+/// The lowest number for our descriptors. It is above the numbers that daemons close, and above those that a program
+/// with a usual number of open files uses.
 const LOWEST: RawFd = 512;
 
-/// If the process may have only few descriptors, 3/4 of them stay below ours.
+/// Numerator and denominator of the part of the permitted numbers that stays below ours, if the process may have only
+/// few descriptors.
 const BELOW: (libc::rlim_t, libc::rlim_t) = (3, 4);
 
 // These numbers are the same on every Linux architecture.
 const F_SETSIG: libc::c_int = 10;
 const F_GETSIG: libc::c_int = 11;
 
-/// Marks a file that was opened here. The mark is the signal that would announce input, which is never enabled, so the
-/// value is free for this use. No other code has a reason to select SIGPWR. Device and inode are worse marks: a new
-/// pseudo-terminal may have the same ones, all controlling ends share those of /dev/ptmx, and reading them takes twice
-/// as long.
+/// Marks a file that was opened here. The mark is stored as the signal that announces input (F_SETSIG). These files
+/// never send such a signal, so the value is free for this use. No other code has a reason to select SIGPWR. Device and
+/// inode would be worse marks: a new pseudo-terminal may have those of an old one, the controlling ends of all
+/// pseudo-terminals share those of /dev/ptmx, and reading them takes twice as long.
 const MARK: libc::c_int = libc::SIGPWR;
 
 /// An open descriptor that is checked before each use.
@@ -31,11 +33,11 @@ pub(crate) struct Descriptor {
 }
 
 impl Descriptor {
-    /// Takes the result of a system call that opens a file, or returns a negative number and sets errno. Marks the file
-    /// and moves it to a high descriptor number.
+    /// Takes the result of a system call that opens a file: the descriptor, or a negative number with errno set. Marks
+    /// the file and moves it to a high descriptor number.
     ///
     /// # Errors
-    /// The error that the system reports.
+    /// Returns the error that the system reports if the file was not opened or cannot be marked.
     pub fn opened(result: RawFd) -> io::Result<Self> {
         check(result)?;
         // SAFETY: the call has just created the descriptor, and no other code knows it.
@@ -78,7 +80,7 @@ impl Drop for Descriptor {
 /// Returns the lowest number for our descriptors.
 fn lowest() -> RawFd {
     let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
-    // SAFETY: `limit` is writable. If the call fails, the lowest number is 0.
+    // SAFETY: `limit` is writable. If the call fails, `limit` stays 0, and so does the result.
     unsafe { libc::getrlimit(libc::RLIMIT_NOFILE, &mut limit) };
     // The soft limit of most systems is 1024.
     RawFd::try_from(limit.rlim_cur / BELOW.1 * BELOW.0).map_or(LOWEST, |below| below.min(LOWEST))

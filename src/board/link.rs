@@ -33,14 +33,14 @@ pub struct Received {
     pub reply: Reply,
 }
 
-/// Counts of everything that a link has sent and received.
+/// Counts of what a link has received, and of the writes that failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinkCounters {
     /// Bytes received.
     pub bytes: u64,
     /// Undamaged frames received.
     pub frames: u64,
-    /// Pieces received that were not a valid frame.
+    /// Pieces received that were not valid frames.
     pub damaged: u64,
     /// Undamaged frames that were not expected, or have a type that this library does not know.
     pub foreign: u64,
@@ -54,7 +54,7 @@ impl LinkCounters {
         self.combined(other, u64::saturating_add)
     }
 
-    /// Returns the difference between these counts and those of another link.
+    /// Returns these counts minus those of another link, at least 0 each.
     pub fn saturating_sub(&self, other: &Self) -> Self {
         self.combined(other, u64::saturating_sub)
     }
@@ -142,8 +142,8 @@ impl<T: Transport> Link<T> {
     /// Sends the Commands of all fingers on the port, at most 15, in one write. Bytes that the port does not accept at
     /// once are lost and counted. The caller notices the loss by the missing Reply.
     pub fn send(&mut self, commands: &[OutgoingCommand]) -> Result<(), LinkError> {
-        // The first half of a Reply of the last period has become useless, and must not damage the next Reply. If
-        // reading was cut short, the other half is still to come.
+        // An incomplete Reply of the last period is now useless, and must not damage the next Reply. It is kept if
+        // reading was cut short, because the rest of it may still be unread.
         if self.unread.is_empty() && !self.cut_short {
             self.decoder.abandon();
         }
@@ -170,13 +170,13 @@ impl<T: Transport> Link<T> {
         self.receive_within(&mut Allowance::for_replies(deadline))
     }
 
-    /// Like [`receive`](Self::receive), for one of several Replies that are awaited together. All calls share one
-    /// allowance. Returns `None` when it is used up.
+    /// Does the same as [`receive`](Self::receive), for one of several Replies that are awaited together. The calls for
+    /// all these Replies share one allowance. Returns `None` when the allowance is used up.
     pub fn receive_within(&mut self, allowance: &mut Allowance) -> Result<Option<Received>, LinkError> {
         while let Some(Message { address, sequence, frame }) = self.next_message(allowance)? {
             match frame {
                 Frame::Reply(reply) => return Ok(Some(Received { address, sequence, reply })),
-                // The refusal of a handshake frame came too late, and is ignored.
+                // A refused handshake frame is no error here. Its refusal came too late, and is only counted.
                 Frame::Refused(refused) if refused.request == Kind::Command as u8 => {
                     return Err(LinkError::Refused { address, refused });
                 }
@@ -202,8 +202,8 @@ impl<T: Transport> Link<T> {
         Ok(())
     }
 
-    /// Returns the next message, or `None` when the allowance is used up. Messages already read are returned in any
-    /// case.
+    /// Returns the next message, or `None` when the allowance is used up. A message that has already been read is
+    /// returned even then.
     fn next_message(&mut self, allowance: &mut Allowance) -> Result<Option<Message>, LinkError> {
         loop {
             if let Some(message) = self.message_at_hand() {

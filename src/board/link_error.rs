@@ -28,7 +28,7 @@ pub enum LinkError {
     Unintelligible {
         /// Bytes received.
         bytes: u64,
-        /// Pieces that were not a valid frame.
+        /// Pieces that were not valid frames.
         damaged: u64,
     },
     /// Valid frames were received, but not the answer to the request.
@@ -44,8 +44,8 @@ pub enum LinkError {
         request: Kind,
     },
     /// The board has fingers, but none with this address.
-    #[error("the board at this port has no finger address {address}, but {}: set finger.address to one that it has, or \
-             check finger.port", listed(*addresses))]
+    #[error("the board at this port has no finger address {address}; it has {}: set finger.address to one that it has, \
+             or check finger.port", listed(*addresses))]
     WrongAddress {
         /// The requested address.
         address: u8,

@@ -36,8 +36,8 @@ impl Port {
         &self.path
     }
 
-    /// Returns the latency timer of an FTDI bridge, ms, or `None` if the port has none. With a value above 1, every
-    /// reply is delayed by it.
+    /// Returns the latency timer of an FTDI bridge, ms, or `None` if the port has none. A value above 1 delays every
+    /// reply by this time.
     pub fn latency_timer_ms(&self) -> Option<u32> {
         // Ports are often opened through a link in /dev/serial/by-id.
         let device = std::fs::canonicalize(&self.path).ok()?;
@@ -46,7 +46,7 @@ impl Port {
         text.trim().parse().ok()
     }
 
-    /// Checks that the descriptor is still the port's. Called before every use; costs 0.25 us.
+    /// Checks that the descriptor still refers to the port. Every use calls this first; it takes 0.25 us.
     fn check_own(&self) -> Result<(), PortError> {
         if self.descriptor.is_own() { Ok(()) } else { Err(PortError::Closed) }
     }
@@ -60,11 +60,12 @@ impl Port {
                 tv_nsec: (left % 1_000_000_000) as libc::c_long,
             };
             let mut poll = libc::pollfd { fd: self.descriptor.number(), events: libc::POLLIN, revents: 0 };
-            // SAFETY: one pollfd and a timespec, both alive; a null mask leaves the signal mask alone.
+            // SAFETY: the pointers refer to one pollfd and one timespec. A null mask leaves the signal mask unchanged.
             let ready = unsafe { libc::ppoll(&mut poll, 1, &timeout, std::ptr::null()) };
             match ready {
                 0 => return Ok(false),
-                // The kernel reports a hang-up together with the last bytes. The next read detects it again.
+                // The kernel may report a hang-up together with the last bytes. These bytes are read first, and the
+                // next read detects the hang-up again.
                 1 if poll.revents & libc::POLLIN != 0 => {
                     self.ready_at = realtime::now();
                     return self.check_own().map(|()| true);
@@ -139,9 +140,10 @@ impl Transport for Port {
 impl Drop for Port {
     fn drop(&mut self) {
         if self.process == std::process::id() && self.descriptor.is_own() {
-            // Closing a UART waits up to 30 s for bytes that cannot leave. They are discarded, because all requests
-            // that matter have been answered before. The mark of exclusive use would otherwise remain while another
-            // process has the port open, and the lock while a forked child runs.
+            // Closing a UART waits up to 30 s for bytes that cannot leave. These bytes are discarded, because all
+            // requests that matter have been answered before. The mark of exclusive use is removed, because it would
+            // otherwise remain while another process has the port open. The lock is released, because it would
+            // otherwise remain while a forked child runs.
             // SAFETY: no call takes a pointer.
             unsafe {
                 libc::tcflush(self.descriptor.number(), libc::TCOFLUSH);

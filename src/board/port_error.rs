@@ -9,22 +9,22 @@ use thiserror::Error;
 /// What is wrong with a port.
 #[derive(Debug, Error)]
 pub enum PortError {
-    /// ENOENT.
+    /// The path does not exist (ENOENT).
     #[error("{} does not exist: check the cable, the board's power and finger.port (ls -l \
              /dev/serial/by-id)", ShownPath(.0))]
     Missing(PathBuf),
-    /// EACCES.
+    /// The user may not open the port (EACCES).
     #[error("no permission to open {}: add the user to the port's group (usually dialout) and log in \
              again", ShownPath(.0))]
     Forbidden(PathBuf),
-    /// EBUSY.
+    /// Another program uses the port (EBUSY).
     #[error("{path} is in use by another program: end it (fuser -v {path} names it), or configure another \
              port", path = ShownPath(.0))]
     Busy(PathBuf),
-    /// ENOTTY.
+    /// The file is not a serial port (ENOTTY).
     #[error("{} is not a serial port: check finger.port", ShownPath(.0))]
     NotASerialPort(PathBuf),
-    /// EINVAL.
+    /// The adapter does not support the baud rate (EINVAL).
     #[error(
         "{} cannot run at {wanted} baud and selected {offered} instead: set finger.baud to a rate that the adapter \
          supports",
@@ -58,13 +58,13 @@ pub enum PortError {
         /// The error that the system reported.
         source: io::Error,
     },
-    /// EIO: hang-up.
+    /// The port hung up (EIO).
     #[error(
         "the port no longer exists: the cable was unplugged, the adapter or the board lost its power, or the simulated \
          board has ended. Restore the connection"
     )]
     Vanished,
-    /// EBADF: the descriptor is closed, or its number now belongs to another file.
+    /// The descriptor is closed, or its number now belongs to another file (EBADF).
     #[error("another part of this program has closed the descriptor of the port. Close the hand and open it again")]
     Closed,
     /// A read or write failed.
@@ -107,7 +107,7 @@ impl PortError {
 impl From<io::Error> for PortError {
     fn from(source: io::Error) -> Self {
         match source.raw_os_error() {
-            // What the driver of a removed adapter reports; it depends on the driver.
+            // The driver of a removed adapter reports one of these errors. Drivers differ in which one.
             Some(libc::EIO | libc::ENXIO | libc::ENODEV) => Self::Vanished,
             Some(libc::EBADF) => Self::Closed,
             _ => Self::Failed(source),
@@ -118,7 +118,7 @@ impl From<io::Error> for PortError {
 fn opening(source: &io::Error) -> String {
     match source.raw_os_error() {
         Some(libc::ENXIO | libc::ENODEV) => {
-            format!("{source}: no device is behind it. Check the cable, the adapter's driver (dmesg) and finger.port")
+            format!("{source}: no device belongs to it. Check the cable, the adapter's driver (dmesg) and finger.port")
         }
         Some(libc::EIO) => format!("{source}: the adapter does not respond. Unplug and replug it"),
         _ => with_remedy(source),

@@ -40,7 +40,7 @@ pub enum TermsError {
     /// The board's shortest watchdog time exceeds both the configured time and the protocol's limit.
     #[error(
         "its shortest watchdog time is {shortest} ms, but hand.watchdog_ms is {wanted} and the protocol permits at \
-         most {LONGEST_NEEDED_MS} ms: update its firmware, or raise hand.watchdog_ms to {shortest}, so that its motors \
+         most {LONGEST_NEEDED_MS} ms: update its firmware, or raise hand.watchdog_ms to {shortest}; its motors then \
          continue for that time when commands stop"
     )]
     Watchdog {
@@ -49,7 +49,7 @@ pub enum TermsError {
         /// The configured time, ms.
         wanted: u16,
     },
-    /// The board lacks *hold*.
+    /// The board does not support *hold*.
     #[error("it does not support holding the last torques: set hand.end_state = \"release\"")]
     Hold,
     /// A configured torque limit exceeds the board's.

@@ -1,6 +1,7 @@
 use super::port_error::PortError;
 
-/// Carries bytes to and from a board, and has a clock. A serial port is one; tests have others, with simulated time.
+/// Carries bytes to and from a board, and has a clock. A serial port is a transport. Tests use other transports, with
+/// simulated time.
 pub trait Transport {
     /// Sends bytes without waiting, and returns how many were sent. Bytes that do not fit now are lost.
     fn write(&mut self, bytes: &[u8]) -> Result<usize, PortError>;

@@ -1,10 +1,10 @@
 //! Limits how long and how much one receive reads, so that a board that sends without end cannot block its reader.
 
-/// The most bytes that one receive reads. This is ten times what the 15 fingers of a port answer in a period, and more
-/// than a line at 12 Mbaud carries in the longest period.
+/// The largest number of bytes that one receive reads. It is ten times the number of bytes that 15 fingers send in a
+/// period, and more than a line at 12 Mbaud carries in the longest period.
 const MOST_BYTES: usize = 4096;
 
-/// What a receive may still read.
+/// The time and the number of bytes that remain for a receive.
 #[derive(Clone, Debug)]
 pub struct Allowance {
     deadline: u64,

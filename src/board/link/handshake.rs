@@ -1,4 +1,5 @@
-//! Requests that are repeated until the board answers: its identity, its terms, and a stop.
+//! The requests outside the servo's cycle. Those for the board's identity and terms are repeated until the board
+//! answers. A Stop is sent once for each call.
 
 use super::{Allowance, Link};
 use crate::board::link_error::LinkError;
@@ -9,8 +10,8 @@ use crate::board::protocol::{
 use crate::board::terms::Terms;
 use crate::board::transport::Transport;
 
-/// How long an answer to a handshake frame may take before the frame is sent again, ns. A USB bridge in its slowest
-/// setting answers after about 35 ms.
+/// The longest wait for the answer to one request, ns. With a USB bridge in its slowest setting, the answer takes about
+/// 35 ms.
 const PATIENCE: u64 = 50_000_000;
 
 impl<T: Transport> Link<T> {
@@ -18,7 +19,7 @@ impl<T: Transport> Link<T> {
     /// `deadline` (ns on the transport's clock), because a board may still be starting. Returns at once if waiting
     /// cannot help.
     ///
-    /// Not for the servo's cycle, because it discards Replies of other fingers on the port.
+    /// Do not call this in the servo's cycle, because it discards Replies of other fingers on the port.
     pub fn shake_hands(
         &mut self,
         address: u8,
@@ -77,7 +78,8 @@ impl<T: Transport> Link<T> {
             match answer.frame {
                 Frame::Configured(configured) if configured.terms == configure => return Ok(configured),
                 Frame::Configured(_) => return Err(LinkError::OtherTerms { address }),
-                // After a program has died, the motors follow its last Command until the watchdog trips.
+                // If a program has died, the motors follow its last Command until the watchdog trips. The board then
+                // accepts the terms, so the request is repeated.
                 Frame::Refused(refused) if refused.reason == Reason::Running => {
                     running = Some(refused);
                     self.wait_until((self.transport.now() + PATIENCE).min(deadline))?;
@@ -92,9 +94,9 @@ impl<T: Transport> Link<T> {
         })
     }
 
-    /// Sends one Stop, which makes the finger enter its end state, and returns whether it confirmed by `deadline` (ns
-    /// on the transport's clock). Without an answer the finger's watchdog does the same a little later. Replies that
-    /// arrive meanwhile are discarded.
+    /// Sends one Stop, which makes the finger enter its end state. Returns whether the finger confirmed the Stop by
+    /// `deadline` (ns on the transport's clock) and within 50 ms. If the Stop was lost, the finger's watchdog makes the
+    /// finger enter its end state a little later. Replies that arrive meanwhile are discarded.
     pub fn stop(&mut self, address: u8, deadline: u64) -> Result<bool, LinkError> {
         let answer = self.exchange(address, Frame::Stop(Stop), deadline)?;
         Ok(matches!(answer, Some(Message { frame: Frame::Stopped(_), .. })))
@@ -128,7 +130,7 @@ impl<T: Transport> Link<T> {
         Ok(None)
     }
 
-    /// Waits without missing a hang-up, and discards what arrives.
+    /// Waits until the time `until`, ns, and discards what arrives. Returns an error at once if the port hangs up.
     fn wait_until(&mut self, until: u64) -> Result<(), LinkError> {
         let mut allowance = Allowance::until(until);
         while self.next_message(&mut allowance)?.is_some() {

@@ -10,9 +10,9 @@ use super::fields::{FieldReader, FieldWriter};
 pub struct Command {
     /// The handshake bit of the report. The servo toggles it every cycle, and the board outputs it on a pin.
     pub toggle: bool,
-    /// False: motors off.
+    /// False: the motors are off.
     pub enable: bool,
-    /// In units of [`Identity::torque_unit`](super::Identity::torque_unit).
+    /// Torques of motors 1 to 4, in units of [`Identity::torque_unit`](super::Identity::torque_unit).
     pub torques: [i16; 4],
 }
 

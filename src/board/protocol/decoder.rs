@@ -3,14 +3,14 @@
 use super::packet::MAX_FRAME;
 use super::{MAX_WIRE, Packet};
 
-/// Counts of everything that was received.
+/// Counts of what a decoder has received.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DecoderCounters {
     /// Bytes.
     pub bytes: u64,
     /// Frames with a correct check.
     pub frames: u64,
-    /// Pieces between two delimiters that were not a valid frame: damaged, incomplete or too long.
+    /// Pieces between two delimiters that were not valid frames: damaged, incomplete or too long.
     pub damaged: u64,
 }
 
@@ -62,7 +62,8 @@ impl Decoder {
             if let Some(room) = self.stuffed.get_mut(self.stuffed_length) {
                 *room = byte;
             }
-            // One byte beyond the buffer means that the frame is too long. The length stays there until the delimiter.
+            // A length of one byte more than the buffer means that the frame is too long. The length stays at this
+            // value until the delimiter.
             self.stuffed_length = (self.stuffed_length + 1).min(MAX_WIRE + 1);
             return None;
         }

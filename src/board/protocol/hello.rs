@@ -128,7 +128,7 @@ impl Identity {
     }
 
     /// Converts a torque in N cm to a torque count, rounded toward zero, so that a torque within a limit stays within
-    /// it. A torque out of range becomes the closest existing count, and NaN becomes 0.
+    /// it. A torque out of range becomes the closest valid count, and NaN becomes 0.
     pub fn torque_count(&self, newton_centimetres: f64) -> i16 {
         let exact = newton_centimetres * NANO_PER_CENTI / f64::from(self.torque_unit);
         // `as` converts NaN to 0. The count -32768 is not a valid torque, and has no positive counterpart.
@@ -141,7 +141,7 @@ impl Identity {
 
     /// Converts a torque count to N cm.
     pub fn torque(&self, count: i16) -> f64 {
-        // The product is exact, so the quotient equals the number that a configuration with the same decimals contains.
+        // The product is exact, so the quotient is the same number that a configuration with the same decimals gives.
         f64::from(count) * f64::from(self.torque_unit) / NANO_PER_CENTI
     }
 }

@@ -2,10 +2,10 @@
 
 use thiserror::Error;
 
-/// Frame types, the high half of the header. The top bit is clear in a request and set in an answer.
+/// The type of a frame. It is the high half of the header. The top bit is clear in a request and set in an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-#[allow(missing_docs, reason = "each is the type of the same name")]
+#[allow(missing_docs, reason = "each variant is the frame type of the same name")]
 pub enum Kind {
     Hello = 0x1,
     Configure = 0x2,
@@ -49,18 +49,18 @@ pub enum Malformed {
     /// This version has no type with this number.
     #[error("unknown frame type {0:#x}")]
     UnknownKind(u8),
-    /// The body has the wrong length for its type: another version of the protocol, or another protocol.
+    /// The body has the wrong length for its type. The sender uses another version of the protocol, or another one.
     #[error("a {kind:?} body has {expected} bytes, not {found}")]
     Length {
         /// The frame's type.
         kind: Kind,
-        /// Length that bodies of this type have, bytes.
+        /// Length of every body of this type, bytes.
         expected: usize,
         /// Length of this body, bytes.
         found: usize,
     },
     /// A field has a value without a meaning.
-    #[error("the field at byte {offset} of a {kind:?} has no such value")]
+    #[error("the field at byte {offset} of a {kind:?} has a value without a meaning")]
     Value {
         /// The frame's type.
         kind: Kind,

@@ -1,4 +1,5 @@
-//! A frame with its header and its fields, and its bytes on the wire: with check and byte stuffing, then a zero.
+//! Frames with header and fields, and their bytes on the wire. There a frame has a check, is byte-stuffed, and ends
+//! with a zero.
 
 use super::fields::{FieldReader, FieldWriter};
 use super::packet::{CHECK, MAX_FRAME, MAX_WIRE, PREFIX, WIRE_OVERHEAD, check};
@@ -33,7 +34,7 @@ impl Kind {
 
 /// The fields of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "each is the type of the same name")]
+#[allow(missing_docs, reason = "each variant has the fields of the frame type of the same name")]
 pub enum Frame {
     Hello(Hello),
     Configure(Configure),
@@ -138,7 +139,7 @@ impl WireFrame {
         fields.u32(check);
 
         let mut bytes = [0; MAX_WIRE];
-        // `cobs::encode` panics when the destination is too small; MAX_WIRE holds MAX_FRAME bytes stuffed.
+        // `cobs::encode` panics if the destination is too small. MAX_WIRE bytes hold any frame after stuffing.
         let stuffed = cobs::encode(fields.written(), &mut bytes);
         // The buffer was filled with zeros, so the delimiter is already there.
         Self { bytes, length: stuffed + 1 }

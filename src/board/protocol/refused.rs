@@ -24,7 +24,7 @@ pub enum Reason {
     /// 1: there is no common protocol version. Detail: the board's lowest version in the low byte, its highest in the
     /// high byte.
     Version,
-    /// 2: the board cannot carry out a field. Detail: offset of the field, counted from the header.
+    /// 2: the board cannot carry out the value of a field. Detail: offset of the field, counted from the header.
     Value,
     /// 3: a Command arrived before any Configure. The board was just switched on, or lost its power.
     NotConfigured,

@@ -30,7 +30,8 @@ impl Status {
     /// At least one damaged frame has arrived since the last Reply of this finger.
     pub const DAMAGED_INPUT: Status = Status(1 << 11);
 
-    /// The bits that take the torque off the motors at once, whatever the end state.
+    /// The fault bits. When one of them is set, the board takes the torque off the motors at once, whatever the end
+    /// state.
     pub const FAULTS: Status =
         Status(Self::EMERGENCY_STOP.0 | Self::SUPPLY_FAULT.0 | Self::DRIVER_FAULT.0 | Self::SENSOR_FAULT.0);
 

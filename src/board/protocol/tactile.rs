@@ -37,7 +37,7 @@ pub struct TactileEvent {
     pub count: u16,
     /// The board's clock at the event, us. It wraps.
     pub noticed_at: u32,
-    /// Events that did not fit into the queue since power-up. 255 means 255 or more.
+    /// Number of events since power-up that did not fit into the queue. 255 means 255 or more.
     pub lost: u8,
 }
 
