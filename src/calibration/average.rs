@@ -7,7 +7,7 @@ use nalgebra::Vector4;
 pub(super) struct Average {
     count: f64,
     sum: Vector4<f64>,
-    /// Values are relative to the first one, because the squares of large counts would lose digits.
+    /// The first value. The sums contain differences from it, because the squares of large counts would lose digits.
     first: Vector4<f64>,
     squares: Vector4<f64>,
 }

@@ -2,8 +2,9 @@
 //!
 //! Let t be the tensions that the gauges report, G their gains and g the torque of gravity. Then R G^-1 t = g +
 //! friction. Gravity is the same at two levels of common tension in the same pose, so it cancels in the difference
-//! between them. Friction cancels in the mean of two motions in opposite directions. So t_high - t_low is along G n,
-//! with n the null vector of R. This gives G up to a common factor, which a free finger does not show.
+//! between them. Friction cancels in the mean of two motions in opposite directions. So t_high - t_low is parallel to
+//! G n, with n the null vector of R. This gives G up to a common factor. The tensions of a free finger do not show this
+//! factor.
 
 use super::average::Average;
 use super::instruments::Instruments;
@@ -13,16 +14,19 @@ use super::step::Sample;
 use crate::model::Part;
 use nalgebra::{Vector3, Vector4};
 
-/// Amplitude of the joint motion to both sides, rad, and its speed, rad/s.
+/// Amplitude of the joint motion to either side, rad.
 pub(super) const SWING: f64 = 0.15;
+/// Speed of the joint motion, rad/s.
 const SPEED: f64 = 0.3;
 /// Samples are ignored for this time after every change of direction, s.
 const RUN_UP: f64 = 0.4;
-/// The higher level, as a fraction of t_max in the tendon with the largest pretension, and the rate of its rise, N/s.
+/// The tension of the higher level in the tendon with the largest pretension, as a fraction of t_max.
 const HIGH: f64 = 0.4;
+/// Rate at which the common tension changes, N/s.
 const RISING: f64 = 10.0;
-/// Plausible range of a gauge's relative gain.
+/// Smallest plausible factor of a gauge, relative to the mean factor.
 const LEAST: f64 = 0.5;
+/// Largest plausible factor of a gauge, relative to the mean factor.
 const MOST: f64 = 2.0;
 /// A joint whose torque stays at its limit for this time is blocked, s.
 const BLOCKED: f64 = 0.5;
@@ -30,8 +34,8 @@ const BLOCKED: f64 = 0.5;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Balance {
     centre: Vector3<f64>,
-    /// 0: to one side while the tension rises. 1 and 2: to the other side and back. 3 to 5: the same at the higher
-    /// level.
+    /// 0: to one side. 1 and 2: to the other side and back. 3: to the same side while the tension rises to the higher
+    /// level. 4 and 5: to the other side and back at that level.
     leg: usize,
     seconds: f64,
     strained: f64,
@@ -47,7 +51,7 @@ impl Balance {
         Self { centre, leg: 0, seconds: 0.0, strained: 0.0, low: none, high: none }
     }
 
-    /// Moves the joints by one cycle. When done, returns the factors for the gauges' tensions. The mean of the factors
+    /// Runs one cycle of the motion. When done, returns the factors for the gauges' tensions. The mean of the factors
     /// is 1.
     pub fn step(
         &mut self,
@@ -64,7 +68,7 @@ impl Balance {
         };
         let rise = RISING * instruments.period;
         guide.common += (level - guide.common).clamp(-rise, rise);
-        // Leg 0 of a level only brings the finger there.
+        // Leg 0 of each level only moves the finger to the start of leg 1.
         let leg = self.leg % 3;
         let target = self.centre.add_scalar(if leg == 1 { -SWING } else { SWING });
         (0..3).for_each(|joint| guide.advance(joint, target[joint], SPEED * instruments.period));

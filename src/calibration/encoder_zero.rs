@@ -30,7 +30,7 @@ impl Reading {
         self.seconds >= READING
     }
 
-    /// Refuses a finger that moved during the reading.
+    /// Returns an error if the finger moved during the reading.
     pub fn still(&self) -> Result<(), Obstacle> {
         match self.standstill.moved() {
             None => Ok(()),
@@ -58,7 +58,7 @@ impl Reading {
     ) -> [i32; 4] {
         let too_far = self.travel.mean() - instruments.travel_at(joints, &(self.tensions() - offset));
         let cm_per_count = instruments.radius.component_mul(&instruments.radians_per_count);
-        // A counter rounds down to whole counts, which is half a count too low on average.
+        // A counter rounds down to whole counts, so its count is half a count too low on average.
         let counts = too_far.component_div(&cm_per_count).add_scalar(0.5);
         std::array::from_fn(|motor| configured[motor].wrapping_add(counts[motor].round() as i32))
     }

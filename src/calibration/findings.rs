@@ -48,7 +48,7 @@ pub struct Zeros {
 pub struct Identified {
     /// `tendon.stiffness`, N/cm.
     pub tendon_stiffness: Vector4<f64>,
-    /// How well the four stiffnesses explain the travel of the motors: rms residual, cm.
+    /// Part of the motors' travel that the four stiffnesses do not explain: rms residual, cm.
     pub travel_residual: f64,
     /// `friction.motor_coulomb`, N cm of commanded torque.
     pub motor_coulomb: Vector4<f64>,
@@ -67,7 +67,7 @@ pub struct Identified {
 }
 
 impl Identified {
-    /// Returns the results that follow if every tension is larger by `factor`.
+    /// Returns the results for the case that every true tension is `factor` times the one used so far.
     pub(super) fn scaled(self, factor: f64) -> Self {
         Self {
             tendon_stiffness: self.tendon_stiffness * factor,

@@ -1,4 +1,5 @@
-//! Converts the measurements of a finger for every routine. The configured sensors and tendons give the factors.
+//! Converts the measurements of a finger to physical units, for every routine. The configured sensors and tendons give
+//! the factors.
 
 use crate::control::sensing::sensors::SensorScales;
 use crate::control::signals::Feedback;
@@ -30,10 +31,11 @@ pub(super) struct Instruments {
     pub strongest: f64,
     /// Error of the tensions due to the configured gauge zero, N.
     pub offset: Vector4<f64>,
-    /// Factors for the configured tensions, as far as known.
+    /// Factors for the tensions, found so far. They are 1 until the gauges have been compared.
     pub gain: Vector4<f64>,
-    /// t_min and t_max, N.
+    /// t_min, N.
     pub minimum: f64,
+    /// t_max, N.
     pub maximum: f64,
     /// The controller that moves the joints.
     pub hold: JointHold,
@@ -96,8 +98,8 @@ impl Instruments {
         self.tendons.r.tr_mul(joints) + (tensions - self.pretension).component_mul(&self.compliance)
     }
 
-    /// Converts tensions to those that the tendon controller must be given, which does not yet know the offsets and
-    /// gains.
+    /// Converts true tensions to set points for the tendon controller, N. The controller does not yet use the offsets
+    /// and gains found so far.
     pub fn for_controller(&self, tensions: Vector4<f64>) -> Vector4<f64> {
         tensions.component_div(&self.gain) + self.offset
     }

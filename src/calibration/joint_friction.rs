@@ -16,7 +16,7 @@ const SWINGS: [(f64, f64); 2] = [(0.15, 0.4), (0.6, 0.8)];
 /// Distance kept from the stop, rad.
 const CLEAR: f64 = 0.1;
 /// Samples are ignored for this time after every change of direction, s. An extended finger oscillates for this time,
-/// and its inertia then needs as much torque as its friction.
+/// and meanwhile its inertia takes as much torque as its friction.
 const RUN_UP: f64 = 0.5;
 /// A joint whose torque stays at its limit for this time is blocked, s.
 const BLOCKED: f64 = 0.3;
@@ -41,7 +41,7 @@ impl JointFriction {
         Self { joint, stop, leg: 0, from: None, strained: 0.0, fit: LeastSquares::new() }
     }
 
-    /// Moves the joint by one cycle. When done, returns C, N cm, and b, N cm s/rad.
+    /// Runs one cycle of the motion. When done, returns C, N cm, and b, N cm s/rad.
     pub fn step(
         &mut self,
         instruments: &Instruments,

@@ -1,5 +1,5 @@
-//! Moves the joints by a soft spring in joint space. The torque of the spring is limited, and its anchor stays close to
-//! a joint that cannot move.
+//! Moves the joints with a soft spring in joint space. The torque of the spring is limited, and its anchor stays close
+//! to a joint that cannot move.
 
 use super::instruments::Instruments;
 use super::step::Sample;
@@ -7,7 +7,8 @@ use crate::control::signals::Activity;
 use crate::control::spring::joint_hold::HOLDING_STIFFNESS;
 use nalgebra::{Vector3, Vector4};
 
-/// Time constant of the low-pass filter on the joints, s. The filter is for supervision, not for control.
+/// Time constant of the low-pass filter on the tensions and joint angles, s. The spring uses the filtered angles. Its
+/// damping does not: it uses the joint rates of the controller.
 const SMOOTHING: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +22,7 @@ pub(super) struct JointGuide {
     tensions: Vector4<f64>,
     /// Largest torque, N cm.
     limit: f64,
-    /// Common tension in addition to that of the torques, N in the tendon with the smallest pretension.
+    /// Common tension in addition to the tensions that the torques need, N in the tendon with the smallest pretension.
     pub common: f64,
 }
 
@@ -51,7 +52,8 @@ impl JointGuide {
         self.moved[joint] = self.anchor[joint] - before;
     }
 
-    /// Returns whether the torque of a joint is at its limit, because the joint lags the anchor as far as permitted.
+    /// Returns whether the spring torque of a joint is at its limit, because the joint lags its anchor by the largest
+    /// permitted angle.
     pub fn strained(&self, joint: usize) -> bool {
         (self.anchor[joint] - self.joints[joint]).abs() > 0.95 * self.limit / HOLDING_STIFFNESS
     }

@@ -1,7 +1,7 @@
-//! Determines the friction of the motors: they pull with more than the tension while they wind in, and with less while
-//! they let out.
+//! Determines the friction of the motors. The commanded pull of a motor is larger than the tension while the motor
+//! winds its tendon in, and smaller while it lets its tendon out.
 //!
-//! u = a t + s (C + mu t), with s = +1 winding in and -1 letting out. u is the commanded pull.
+//! u = a t + s (C + mu t). u is the commanded pull. s is +1 while winding in and -1 while letting out.
 
 use super::instruments::Instruments;
 use super::least_squares::LeastSquares;
@@ -10,9 +10,9 @@ use super::step::Sample;
 use crate::model::Part;
 use nalgebra::{Vector3, Vector4};
 
-/// Time constant of the filter on the travel, s, and the speed above which a motor counts as turning, cm/s at the
-/// tendon.
+/// Time constant of each filter on the travel, s.
 const SMOOTHING: f64 = 0.03;
+/// A motor counts as turning above this speed, cm/s at the tendon.
 const TURNING: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ pub(super) struct MotorFriction {
     smooth: Option<(Vector4<f64>, Vector4<f64>)>,
 }
 
-/// For each motor: C, N at the tendon; mu; a.
+/// C (N at the tendon), mu and a, each for all four motors.
 pub(super) type Friction = [Vector4<f64>; 3];
 
 impl MotorFriction {
@@ -54,7 +54,7 @@ impl MotorFriction {
             let (found, _) = fit.solve().ok_or(implausible("the friction", f64::NAN))?;
             let [a, coulomb, conduit]: [f64; 3] = found.into();
             if !(0.2..5.0).contains(&a) {
-                return Err(implausible("the commanded pull over the tension", a));
+                return Err(implausible("the ratio of commanded pull to tension", a));
             }
             if coulomb < -0.5 || conduit < -0.1 {
                 return Err(implausible("the friction, N,", coulomb));

@@ -38,7 +38,7 @@ pub enum Obstacle {
         /// Standard deviation, N rms.
         newton: f64,
     },
-    /// A gauge reports the same with a tight and a slack tendon.
+    /// A gauge reports the same tension with a tight and a slack tendon.
     #[error(
         "gauge {tendon} changes by no more than {newton:.2} N when its tendon is unwound: the gauge is dead, or the \
          tendon is stuck. Check both"
@@ -103,7 +103,7 @@ pub enum Obstacle {
     },
     /// The range of a joint between its stops is smaller than configured.
     #[error(
-        "joint {joint} moves {degrees:.1} degrees between its stops, and {expected:.1} are configured: something \
+        "joint {joint} moves {degrees:.1} degrees between its stops, but {expected:.1} are configured: something \
          blocks it, zeroing.torque is too small for its friction, or zeroing.lower_stop_degrees or upper_stop_degrees \
          is wrong. Check them"
     )]
@@ -115,7 +115,7 @@ pub enum Obstacle {
         /// Configured range, degrees.
         expected: f64,
     },
-    /// A joint does not follow although it is away from its stops.
+    /// A joint cannot be moved although it is away from its stops.
     #[error(
         "joint {joint} does not move freely: something blocks it, or zeroing.torque is too small for its friction. \
          Check both"
@@ -137,7 +137,7 @@ pub enum Obstacle {
         /// Its value.
         value: f64,
     },
-    /// A motor that turns both ways changes no tension.
+    /// A motor turns in both directions, but changes no tension.
     #[error(
         "motor {motor} turns but tightens no tendon in either direction: its tendon is broken or very slack, or the \
          gauges are dead. Check them"
@@ -180,7 +180,8 @@ pub enum Obstacle {
     },
     /// The routine exceeded its time limit.
     #[error(
-        "it did not finish within {seconds:.0} s: check that the finger can move freely, or raise zeroing.time_limit_s"
+        "the routine did not finish within {seconds:.0} s: check that the finger can move freely, or raise \
+         zeroing.time_limit_s"
     )]
     TimeLimit {
         /// The limit, s.

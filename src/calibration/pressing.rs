@@ -3,19 +3,20 @@
 use super::instruments::Instruments;
 use nalgebra::{Vector3, Vector4};
 
-/// Largest tension, as a fraction of t_max.
+/// Largest tension, as a fraction of t_max, or of the largest pull of the weakest motor if that is smaller.
 const HARDEST: f64 = 0.6;
-/// Rate of tension, N/s. A tendon that tightens at this rate turns its motor well above the quantisation of its
-/// encoder.
+/// Rate at which the tensions change, N/s. While a tendon tightens at this rate, the speed of its motor is well above
+/// the quantisation of the encoder.
 const SPEED: f64 = 20.0;
-/// Pause at each end, s.
+/// Pause at the end of each ramp, s.
 const DWELL: f64 = 0.15;
 /// Torque that keeps every joint at its stop, N cm.
 const HOLDING: f64 = 2.0;
 /// Number of times that every pattern is applied.
 const ROUNDS: usize = 2;
 
-/// Moves back and forth between a base and four patterns of tension: all tendons together, and each joint by itself.
+/// Changes the tensions back and forth between a base and four patterns. The first pattern raises all tensions
+/// together. Each of the others increases the torque of one joint.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pressing {
     base: Vector4<f64>,
@@ -45,8 +46,8 @@ impl Pressing {
         Self { base, patterns: [common, press(0), press(1), press(2)], leg: 0, seconds: 0.0, begun: None }
     }
 
-    /// Returns the tensions of this cycle, N, or `None` when every pattern has been applied. The first cycle starts at
-    /// `now`, N.
+    /// Returns the tensions of this cycle, N, or `None` when every pattern has been applied. The first ramp starts at
+    /// `now`, the present tensions, N.
     pub fn step(&mut self, instruments: &Instruments, now: &Vector4<f64>) -> Option<Vector4<f64>> {
         let begun = *self.begun.get_or_insert(*now);
         let pattern = |leg: usize| if leg.is_multiple_of(2) { self.base } else { self.patterns[leg / 2 % 4] };
@@ -66,7 +67,7 @@ impl Pressing {
         self.leg as f64 / (8 * ROUNDS) as f64
     }
 
-    /// Returns whether the first ramp, which starts at the tensions found, is complete.
+    /// Returns whether the first ramp, which starts at the tensions of the first cycle, is complete.
     pub fn under_way(&self) -> bool {
         self.leg > 0
     }

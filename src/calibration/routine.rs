@@ -15,8 +15,8 @@ use std::ops::ControlFlow::{Break, Continue};
 /// The routines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Task {
-    /// Finds the signs of motors, encoders and gauges. Every motor turns back and forth by a small amount; nothing else
-    /// moves fast.
+    /// Finds the signs of motors, encoders and gauges. Every motor turns back and forth by a small amount, and pulls its
+    /// tendon in short pulses.
     Signs,
     /// Zeros the gauges, and the encoders by the configured method.
     Zero,
@@ -36,8 +36,8 @@ pub enum Verdict {
     Refused(Obstacle),
 }
 
-/// A routine in progress. At first it may leave the finger to its controller. It takes over in the first cycle that
-/// returns an activity.
+/// A routine in progress. At first it may leave the finger under the finger's own controller. From the first cycle that
+/// returns an activity, the routine controls the finger.
 #[derive(Clone, Debug)]
 pub struct Calibration {
     instruments: Instruments,
@@ -60,7 +60,7 @@ impl Calibration {
     /// Creates a routine for a finger with its current configuration.
     ///
     /// # Errors
-    /// The configuration is unusable for a routine.
+    /// Returns an error if a routine cannot use the configuration.
     pub fn new(task: Task, finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         let routine = match task {
             Task::Signs => Routine::Signs(SignSearch::new(finger)),
@@ -102,8 +102,8 @@ impl Calibration {
     }
 
     fn step(&mut self, sample: &Sample) -> (Option<Activity>, Verdict) {
-        // After a refusal the motors are off, so that nothing pulls at the obstacle. A finger that the routine has not
-        // yet taken over keeps its controller.
+        // After a refusal the motors are off, so that no motor pulls against the obstacle. A finger that the routine
+        // does not control yet keeps its own controller.
         let motors_off = Activity::Turn(Vector4::zeros());
         let refused = |obstacle, in_charge: bool| (in_charge.then_some(motors_off), Verdict::Refused(obstacle));
         self.seconds += self.instruments.period;

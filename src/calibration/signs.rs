@@ -2,9 +2,9 @@
 //!
 //! First every motor receives a short push, which shows whether command and count have the same sign. From then on each
 //! motor can be held in place, whichever direction pulls its tendon. Then one motor after the other turns back and
-//! forth while the others hold. The tensions rise in the direction that tightens the tendon, and vanish in the other. A
-//! free finger shares every pull among all its tendons (its tensions stay along the null vector of R), so every gauge
-//! responds to every motor.
+//! forth while the others are held. The tensions rise while it turns in the direction that tightens its tendon, and
+//! vanish while it turns in the other. A free finger shares every pull among all its tendons (its tensions stay along
+//! the null vector of R), so every gauge responds to every motor.
 
 mod pushes;
 mod sweep;
@@ -21,10 +21,13 @@ use nalgebra::Vector4;
 use std::ops::ControlFlow::{Break, Continue};
 use sweep::Sweep;
 
-/// Gains that hold a motor: stiffness, N/cm; damping, N s/cm; largest pull, in t_min; corner of the speed filter, 1/s.
+/// Stiffness with which a motor is held, N/cm.
 const HOLD: f64 = 150.0;
+/// Damping of a held motor, N s/cm.
 const DAMPING: f64 = 2.0;
+/// Largest pull of a held motor, in t_min.
 const STRONGEST_HOLD: f64 = 1.2;
+/// Corner frequency of the speed filter, 1/s.
 const SPEED_CORNER: f64 = 1000.0;
 
 #[derive(Clone, Debug)]

@@ -20,12 +20,12 @@ pub(super) struct Standstill {
 }
 
 impl Standstill {
-    /// Adds the joint angles of a cycle, rad. `period`: s since the cycle before.
+    /// Adds the joint angles of a cycle, rad. `period` is the time since the previous cycle, s.
     pub fn note(&mut self, joints: &Vector3<f64>, period: f64) {
         self.samples += 1.0;
         self.sum += joints;
         let settled = SMOOTHING / period;
-        // At first this is the mean of all samples, which has as little noise as the settled filter.
+        // Until the filter has settled, this is the mean of all samples, which then has as little noise as the filter.
         self.smoothed += (joints - self.smoothed) / self.samples.min(settled);
         if self.samples >= settled {
             let (lowest, highest) = self.extremes.unwrap_or((self.smoothed, self.smoothed));

@@ -5,8 +5,9 @@ use super::joint_guide::JointGuide;
 use super::obstacle::Obstacle;
 use std::f64::consts::PI;
 
-/// A joint is at its stop when it has moved by less than this, rad, at full torque for this time, s.
+/// A joint at full torque is still while it moves by less than this, rad.
 const STILL: f64 = 0.004;
+/// A joint is at its stop when it has been still for this time, s.
 const DWELL: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug)]
@@ -15,8 +16,9 @@ pub(super) struct StopSearch {
     /// Largest permitted distance, rad, with the sign of its direction.
     range: f64,
     start: Option<f64>,
-    /// Angle at which the joint stopped, rad, and the time since, s.
+    /// Angle at which the joint became still, rad.
     still_at: f64,
+    /// Time for which the joint has been still, s.
     still: f64,
 }
 
@@ -26,7 +28,7 @@ impl StopSearch {
         Self { joint, range, start: None, still_at: f64::NAN, still: 0.0 }
     }
 
-    /// Moves the joint by one cycle. Returns the angle of the stop, rad with the configured zero, when the joint has
+    /// Runs one cycle of the motion. Returns the angle of the stop, rad with the configured zero, when the joint has
     /// reached it.
     pub fn step(
         &mut self,

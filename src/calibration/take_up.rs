@@ -9,8 +9,9 @@ use nalgebra::Vector4;
 
 /// A tendon counts as tight above this part of t_min.
 const TIGHT: f64 = 0.8;
-/// Time for which the tendons must be tight and at rest, and time limit, s.
+/// Time for which all tendons must be tight and all motors at rest, s.
 const SETTLED: f64 = 0.3;
+/// Time limit for taking up the slack, s.
 const LIMIT: f64 = 5.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +26,7 @@ impl TakeUp {
         Self { seconds: 0.0, settled: 0.0, stillness: Stillness::new(Vector4::zeros()) }
     }
 
-    /// Returns the activity, or `None` when every tendon has been tight and at rest for [`SETTLED`].
+    /// Returns the activity, or `None` when all tendons have been tight and all motors at rest for [`SETTLED`].
     pub fn step(&mut self, instruments: &Instruments, sample: &Sample) -> Result<Option<Activity>, Obstacle> {
         self.seconds += instruments.period;
         let tensions = instruments.tensions(sample.feedback);

@@ -1,15 +1,16 @@
 //! Checks that every motor pulls the tendon whose gauge has the same number.
 //!
-//! At rest a free finger shares every pull among all its tendons, so a steady pull does not show this. But a pull
-//! reaches the other tendons only by moving the links, whose inertia delays it. For some milliseconds after a sudden
-//! pull, the motor's own gauge therefore leads by far.
+//! At rest a free finger shares every pull among all its tendons, so a steady pull does not show which tendon the motor
+//! pulls. But a pull reaches the other tendons only by moving the links, whose inertia delays it. For some milliseconds
+//! after a sudden pull, the motor's own gauge therefore leads by far.
 
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
 use nalgebra::Vector4;
 
-/// A pulse: its pull, in t_min, and its duration, s.
+/// Pull of a pulse, in t_min.
 const PULSE: f64 = 2.0;
+/// Duration of a pulse, s.
 const LENGTH: f64 = 0.006;
 /// Time for which the gauges are observed from the start of a pulse, s.
 const WATCHED: f64 = 0.010;
@@ -19,9 +20,9 @@ const REST: f64 = 0.15;
 const BASE: f64 = 0.05;
 /// Number of pulses of each motor.
 const PULSES: u32 = 4;
-/// Another gauge leads if it rises by more than this factor times the rise of the motor's own gauge, and by more than
-/// this value, N.
+/// Another gauge leads only if it rises by more than this factor times the rise of the motor's own gauge.
 const LEADING_RATIO: f64 = 1.1;
+/// Another gauge leads only if it rises by more than this, N.
 const LEADING_RISE: f64 = 0.2;
 
 #[derive(Clone, Copy, Debug)]
@@ -42,8 +43,8 @@ impl Wiring {
         Self { motor: 0, pulses: 0, seconds: 0.0, base: zeros, bases: 0.0, risen: zeros, samples: 0.0 }
     }
 
-    /// Returns the pulls of this cycle, N at each tendon, or `None` when every motor has been checked. `tensions`, N,
-    /// need no correct zero, but correct signs of the gauges.
+    /// Returns the pulls of this cycle, N at each tendon, or `None` when every motor has been checked.
+    /// `tensions`, N, are those of gauges with correct signs. The zeros of the gauges need not be correct.
     pub fn step(
         &mut self,
         instruments: &Instruments,

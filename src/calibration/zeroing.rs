@@ -38,7 +38,7 @@ pub(super) struct Zeroing {
 #[derive(Clone, Copy, Debug)]
 enum Phase {
     Start,
-    /// The finger keeps its controller.
+    /// Reads counts and tensions while the finger keeps its own controller.
     Read,
     Gauges(GaugeZero),
     /// The offsets are known.

@@ -21,11 +21,12 @@ use std::ops::ControlFlow::{Break, Continue};
 const BEYOND: f64 = 0.17;
 /// A joint has returned when it is this close to its start, rad.
 const NEAR: f64 = 0.05;
-/// Torque limit of every joint while gauges are compared, N cm. Wrong gauge gains turn the joints.
+/// Torque limit of every joint while gauges are compared, N cm. The guide must hold the joints against the torques that
+/// wrong gauge gains cause.
 const BALANCING: f64 = 10.0;
-/// Distance that a joint then keeps from its stops in addition to its swing, rad.
+/// Distance that a joint keeps from its stops while gauges are compared, in addition to its swing, rad.
 const ROOM: f64 = 0.1;
-/// A joint whose torque stays at its limit for this time on its way back is blocked, s.
+/// A joint that returns to its start is blocked if its torque stays at the limit for this time, s.
 const BLOCKED: f64 = 0.5;
 
 /// The result of a step that continues with `activity`.
@@ -179,7 +180,7 @@ impl Identification {
         Phase::Swing { guide, friction: JointFriction::new(joint, self.stop[joint]), joint }
     }
 
-    /// Combines all results, with the mean of the gauge gains from the configured reference.
+    /// Combines all results. The configured reference determines the mean of the gauge gains.
     fn identified(
         &self,
         stiffness: &TendonStiffness,

@@ -6,12 +6,13 @@ use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
 use nalgebra::Vector4;
 
-/// A push counts when its motor has turned by this distance, cm at the tendon.
+/// A push is decided when its motor has turned by this distance, cm at the tendon.
 const TURNED: f64 = 0.005;
-/// First push, as a fraction of t_min at the tendon. Pushes grow by a factor, up to the hardest one, until the motor
-/// turns.
+/// First push, as a fraction of t_min at the tendon.
 const FIRST_PUSH: f64 = 0.4;
+/// Each push is larger than the previous one by this factor, until the motor turns.
 const GROWTH: f64 = 1.3;
+/// Largest push, in t_min.
 const HARDEST_PUSH: f64 = 2.0;
 /// Duration of a push, and of the pause after it, s.
 const PUSH: f64 = 0.1;

@@ -3,19 +3,21 @@
 use crate::calibration::average::Average;
 use nalgebra::Vector4;
 
-/// Smallest and largest amplitude, cm. The amplitude is doubled until one side is tight and the other slack.
+/// Amplitude of the first sweep, cm. The amplitude is doubled until one side is tight and the other slack.
 const SMALLEST_AMPLITUDE: f64 = 0.05;
+/// Largest permitted amplitude, cm.
 const LARGEST_AMPLITUDE: f64 = 1.0;
 /// Positions at which the motor stops, in amplitudes.
 const POSITIONS: [f64; 5] = [0.5, 1.0, -0.5, -1.0, 0.0];
-/// Settling time and reading time at each position, s.
+/// Settling time at each position, s.
 const SETTLING: f64 = 0.15;
+/// Reading time at each position, after the settling time, s.
 const READING: f64 = 0.1;
-/// A motor that lags by more than this has stalled: cm, plus a part of the amplitude.
+/// A motor has stalled if it lags by more than the first value, cm, plus the second value times the amplitude.
 const STALLED: (f64, f64) = (0.03, 0.25);
-/// Change of a tension over the outer half of one side, N: above the first value the side is tight, below the second it
-/// is slack.
+/// A side is tight if a tension changes by more than this over the outer half of the side, N.
 pub(super) const TIGHT: f64 = 0.5;
+/// A side is slack if every tension changes by less than this over the outer half of the side, N.
 const SLACK: f64 = 0.25;
 
 /// One motor that turns back and forth.
@@ -32,7 +34,7 @@ pub(super) struct Sweep {
 }
 
 impl Sweep {
-    /// The smallest sweep about `centre`, cm.
+    /// Creates the smallest sweep about `centre`, cm.
     pub fn first(centre: f64) -> Self {
         Self::new(centre, SMALLEST_AMPLITUDE)
     }
@@ -76,8 +78,8 @@ impl Sweep {
         self.read[1] - self.read[3]
     }
 
-    /// Returns the side, +1 or -1 in counts, on which the tensions rise while they vanish on the other. Returns `None`
-    /// if the difference is not clear.
+    /// Returns the tight side if the other side is slack: +1 for rising counts, -1 for falling counts. Returns `None`
+    /// if the difference between the sides is not clear.
     pub fn tight_side(&self) -> Option<f64> {
         let change = |inner: usize, outer: usize| (self.read[outer] - self.read[inner]).amax();
         let tight = |inner, outer: usize| change(inner, outer) > TIGHT || self.stalled[outer];

@@ -1,4 +1,5 @@
-//! Sweeps one motor after the other. This shows which direction tightens its tendon, and the signs of the gauges.
+//! Sweeps one motor after the other. A sweep shows which direction tightens the motor's tendon, and the signs of the
+//! gauges.
 
 use super::sweep::{Sweep, TIGHT};
 use super::{Phase, SignSearch};
@@ -12,8 +13,8 @@ use nalgebra::Vector4;
 const SPEED: f64 = 0.5;
 
 impl SignSearch {
-    /// Sweeps the motor while the others hold, and doubles the amplitude until one side is tight and the other slack.
-    /// Returns the motor torques, N cm.
+    /// Sweeps the motor while the others are held, and doubles the amplitude until one side is tight and the other
+    /// slack. Returns the motor torques, N cm.
     pub(super) fn sweep_motor(
         &mut self,
         mut sweep: Sweep,
@@ -45,7 +46,7 @@ impl SignSearch {
         Ok(Phase::Sweep(Sweep::first(self.target[self.motor])))
     }
 
-    /// Moves the motor by one cycle. Returns whether it has been at every position.
+    /// Runs one cycle of the motor's motion. Returns whether it has been at every position.
     fn advance(
         &mut self,
         sweep: &mut Sweep,

@@ -1,4 +1,4 @@
-//! Zeros the encoders by the two stops of every joint.
+//! Zeros the encoders with the two stops of every joint.
 
 use super::{Phase, Stepped, Zeroing, going};
 use crate::calibration::encoder_zero::Reading;

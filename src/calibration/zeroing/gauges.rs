@@ -16,7 +16,7 @@ use std::ops::ControlFlow::{Break, Continue};
 /// A finger is under control if every desired tension exceeds this part of t_min.
 const PULLED: f64 = 0.3;
 
-/// The finger continues under its own controller.
+/// The result of a step that leaves the finger under its own controller.
 fn as_before(part: f64) -> Stepped {
     Ok(Continue((None, Progress { step: Step::ReadingEncoders, part })))
 }
