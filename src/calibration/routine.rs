@@ -15,8 +15,8 @@ use std::ops::ControlFlow::{Break, Continue};
 /// The routines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Task {
-    /// Finds the signs of motors, encoders and gauges. Every motor turns back and forth by a small amount, and pulls its
-    /// tendon in short pulses.
+    /// Finds the signs of motors, encoders and gauges. Every motor turns back and forth by a small amount, and pulls
+    /// its tendon in short pulses.
     Signs,
     /// Zeros the gauges, and the encoders by the configured method.
     Zero,
