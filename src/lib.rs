@@ -11,8 +11,8 @@
 //! # Features
 //!
 //! `internals` exports the modules behind the types of this page: control, board protocol, simulated boards, physics
-//! and the search for the bound of Kx. Benchmarks, tools and simulators outside of this project use them. They may
-//! change in any version.
+//! and the search for the bound of Kx. Benchmarks, tools and simulators outside this project use these modules. They
+//! may change in any version.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]

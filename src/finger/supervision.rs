@@ -8,15 +8,17 @@ use crate::finger::{Fault, FaultKind};
 /// Window over which losses and overruns cause warnings, s.
 const WARNING_WINDOW: f64 = 1.0;
 
-/// Share of the window above which a line counts as noisy (lost replies) and a servo as overrunning (skipped periods).
+/// Share of lost replies in the window above which a line counts as noisy.
 const NOISY: f64 = 0.02;
+
+/// Share of overruns (skipped periods) in the window above which a servo counts as overrunning.
 const OVERRUN: f64 = 0.02;
 
 /// Share of damaged replies in the time-out window above which the line counts as unusable. With one damaged reply in
 /// two, the finger is still under control.
 const UNUSABLE: f64 = 0.6;
 
-/// If replies are missing altogether, a share of damaged ones above this is reported as the cause.
+/// Share of damaged replies above which a finger that gets no valid reply reports the damage as the cause of its fault.
 const DAMAGED: f64 = 0.25;
 
 /// State of the monitors of one finger.
@@ -54,7 +56,8 @@ impl Supervision {
         }
     }
 
-    /// Notes the warnings in a reply's status, and how many periods after the previous reply it was sampled.
+    /// Notes the warnings in the status of a reply. `age` is the number of periods between the sample of the previous
+    /// reply and the sample of this one.
     pub fn note_reply(&mut self, status: Status, age: f64) {
         self.age = age;
         self.clipped = status.has(Status::TORQUE_CLIPPED);
@@ -92,7 +95,8 @@ impl Supervision {
     /// none if the reply was lost.
     pub fn spring(&mut self, controller: &Controller, state: &State, feedback: Option<&Feedback>) -> Option<Fault> {
         let alarms = controller.watch(&mut self.watch, state, feedback?, self.age, self.full_scale);
-        // The state of the line and of the machine takes precedence, because it can explain the symptoms of the finger.
+        // The warning of `note_period` takes precedence, because the state of the line or of the machine can explain
+        // the symptoms of the finger.
         self.warning = self.warning.or(alarms.warning.map(Fault::from));
         alarms.fault.map(Fault::from)
     }

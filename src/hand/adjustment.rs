@@ -43,13 +43,15 @@ impl Hand {
     /// if it is less than the default bound, or if `keys` contains it too.
     ///
     /// # Errors
-    /// There is no such finger, or the finger is faulted. A key cannot be read, cannot change while the hand is open,
-    /// or results in a configuration that cannot be used. The set point that was sent last is outside the new limits,
-    /// unless commands are clamped. After an error nothing is changed.
+    /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a key cannot be
+    /// read, cannot change while the hand is open, or results in a configuration that cannot be used. Returns an error
+    /// if the set point that was sent last is outside the new limits, unless commands are clamped. After an error
+    /// nothing is changed.
     pub fn adjust(&self, finger: i32, keys: &str) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;
-        // The lock is held throughout, so that of two adjustments the second starts from the result of the first.
+        // The lock is held throughout, so that the second of two concurrent adjustments starts from the result of the
+        // first.
         let mut configuration = self.configuration.write();
         let mut changed = configuration.clone();
         changed.fingers[finger.index()] =
@@ -66,7 +68,7 @@ impl Hand {
     }
 }
 
-/// Replaces the limits and the controller in one step, as seen by every sender.
+/// Replaces the limits and the controller. No sender of set points sees one without the other.
 fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) -> Result<(), HandError> {
     let finger = changed.finger;
     let mut admission = member.admission.write();
@@ -80,7 +82,7 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     member.mailbox.adjust(adjustable).map_err(faulted)?;
     if admitted != sent {
         let clamp = |set_point: &mut SetPoint| {
-            // Otherwise the finger has restarted meanwhile and holds the pose that it was found in.
+            // If the set point differs, the finger has restarted meanwhile and holds the pose in which it was found.
             if *set_point == sent {
                 *set_point = admitted;
             }
@@ -119,7 +121,7 @@ fn adjusted(
     Ok(changed)
 }
 
-/// The first key that takes effect only at open.
+/// Returns the first key that takes effect only at open.
 fn permanent(table: &Table, above: &str) -> Option<String> {
     table.iter().find_map(|(key, item)| {
         let path = if above.is_empty() { key.to_string() } else { format!("{above}.{key}") };
@@ -151,7 +153,7 @@ mod tests {
         expected.controller.tension_gain = Some(3.0);
         assert_eq!(changed("tendon.minimum = 6\ncontroller.tension_gain = 3"), expected);
         assert_eq!(changed("tendon = { minimum = 6 }\n[controller]\ntension_gain = 3.0\n"), expected);
-        // On top of an earlier change, and with an optional table that is set.
+        // The change also works on top of an earlier change, and with an optional table that is set.
         expected.geometry.ghost_row = Some([1.0; 4]);
         expected.simulation.surface =
             Some(crate::model::configuration::Surface::Ball { centre: [0.0, 1.0, 9.0], radius: 2.0, stiffness: 30.0 });

@@ -22,7 +22,7 @@ pub(super) struct Admission {
     pub links: Links,
     /// R of eq. 14, cm.
     pub r: Matrix3x4<f64>,
-    /// The damping that is admissible with a stiffness.
+    /// The check of damping against stiffness.
     pub damping: DampingAdmission,
     /// The stiffness law for set points in joint angles.
     pub law: Law,
@@ -31,7 +31,7 @@ pub(super) struct Admission {
 }
 
 impl Admission {
-    /// Desired joint angles, rad, checked for the servo.
+    /// Checks desired joint angles, rad, and returns the angles for the servo.
     pub fn joints(&self, joints: [f64; 3]) -> Result<Vector3<f64>, SetPointError> {
         self.finite("Pos", &joints)?;
         let mut admitted = Vector3::from(joints);
@@ -48,19 +48,19 @@ impl Admission {
         Ok(admitted)
     }
 
-    /// The stiffness of a set point with this Kx. This converts the planner's rows to the form that the servo uses.
+    /// Checks the planner's Kx and converts it to the stiffness of a set point, which the servo uses.
     pub fn stiffness(&self, rows: [[f64; 3]; 3]) -> Result<Matrix6<f64>, SetPointError> {
         self.kx(rows).map(|kx| spatial(&kx))
     }
 
-    /// Kx, N/cm, checked to be symmetric, positive semi-definite and within the bound. The argument is
-    /// `rows[row][column]`.
+    /// Checks that Kx, N/cm, is symmetric, positive semi-definite and within the bound, and returns it. The argument
+    /// is `rows[row][column]`.
     pub fn kx(&self, rows: [[f64; 3]; 3]) -> Result<Matrix3<f64>, SetPointError> {
         // nalgebra is column-major. Only this line converts from the row-major order of C.
         let asked = Matrix3::from_fn(|row, column| rows[row][column]);
         let (symmetric, (smallest, largest)) = spring(&asked).map_err(|error| self.no_spring(error))?;
         let bound = self.stiffness_bound;
-        // A bound sent as `float` is a bound.
+        // A stiffness at the bound that is sent as `float` may be rounded beyond the bound. It must be accepted.
         let too_stiff = largest > bound * (1.0 + 8.0 * f64::from(f32::EPSILON));
         if too_stiff && self.out_of_range == OutOfRange::Refuse {
             return Err(SetPointError::TooStiff { finger: self.finger, largest, bound });
@@ -88,20 +88,21 @@ impl Admission {
         }
     }
 
-    /// Joint angles, rad, for a tip position, cm. Of several solutions it returns the one nearest to `present`. The
-    /// position is never clamped, because the nearest point of the workspace may be on the other side of an object.
+    /// Returns the joint angles, rad, for a tip position, cm. Of several solutions it returns the one nearest to
+    /// `present`. The position is never clamped, because the nearest point of the workspace may be on the other side
+    /// of an object.
     pub fn tip(&self, tip: [f64; 3], present: &Vector3<f64>) -> Result<Vector3<f64>, SetPointError> {
         self.finite("Tip", &tip)?;
         let found = self.inverse_kinematics.joints(&Vector3::from(tip), present);
         found.map_err(|source| SetPointError::OutOfReach { finger: self.finger, tip, source })
     }
 
-    /// The stiffness of a contact, checked against the bound. A rotational stiffness is converted with the length of
-    /// the last link.
+    /// Checks the stiffness of a contact against the bound, and returns it. A rotational stiffness is converted with
+    /// the length of the last link.
     pub fn contact(&self, contact: &Contact) -> Result<Matrix6<f64>, SetPointError> {
         let (bound, lever) = (self.stiffness_bound, self.links.0[2]);
         let largest = contact.largest_eigenvalue(lever);
-        // A bound sent as `float` is a bound.
+        // A stiffness at the bound that is sent as `float` may be rounded beyond the bound. It must be accepted.
         if largest <= bound * (1.0 + 8.0 * f64::from(f32::EPSILON)) {
             return Ok(*contact.stiffness());
         }
@@ -120,9 +121,9 @@ impl Admission {
     }
 }
 
-/// The check that damping and stiffness of a finger's set point suit each other. Each change of a set point carries a
-/// copy of the check: two planners may change damping and stiffness at the same time, so the check must run in the step
-/// that sends both.
+/// The check that the damping of a finger's set point is within the range for its stiffness. Each change of a set point
+/// contains a copy of the check: two planners may change damping and stiffness at the same time, so the check must run
+/// in the step that sends both.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampingAdmission {
     /// Number of the finger, 1 to 3.
@@ -139,7 +140,7 @@ impl DampingAdmission {
     /// Refuses a set point whose damping is outside the range of its stiffness, or clamps its damping.
     pub fn admit(&self, set_point: &mut SetPoint) -> Result<(), SetPointError> {
         if set_point.damping == 1.0 {
-            return Ok(()); // Admitted with every stiffness: the calls that planners make most need no eigenvalue.
+            return Ok(()); // A ratio of 1 is always admitted, so the most frequent calls need no eigenvalue.
         }
         let finger = self.finger;
         let contact = Contact::general(&set_point.stiffness, &Matrix6::identity());

@@ -10,7 +10,7 @@ impl Hand {
     /// The last two seconds of finger 1, 2 or 3; of a faulted finger, the last two seconds before the fault.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger, or if it has no cycle yet.
     pub fn recording(&self, finger: i32) -> Result<Recording, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.recording(finger)?.ok_or(HandError::NoAnswer(finger))
@@ -19,7 +19,7 @@ impl Hand {
     /// One cycle of the last two seconds of finger 1, 2 or 3, or the newest cycle.
     ///
     /// # Errors
-    /// There is no such finger, or the cycle is not in the black box.
+    /// Returns an error if there is no such finger, or if the cycle is not in the black box.
     pub fn record(&self, finger: i32, cycle: Option<u64>) -> Result<KeptRecord, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.record(finger, cycle)?.ok_or(HandError::NoRecord { finger, cycle: cycle.unwrap_or_default() })
@@ -29,7 +29,8 @@ impl Hand {
     /// only if the writing succeeds.
     ///
     /// # Errors
-    /// There is no such finger, the file cannot be written, or the path leads to something other than a regular file.
+    /// Returns an error if there is no such finger, if the file cannot be written, or if the path leads to something
+    /// other than a regular file.
     pub fn write_black_box(&self, finger: i32, path: &Path) -> Result<(), HandError> {
         save_recording(&self.recording(finger)?, path)
     }

@@ -12,10 +12,11 @@ use std::time::{SystemTime, UNIX_EPOCH};
 /// Largest number of files for one finger in one second.
 const MOST_FILES: u32 = 100;
 
-/// Writes a recording that was taken from an open hand. It needs no hand, because writing may outlast the hand.
+/// Writes a recording that was taken from an open hand. This function needs no hand, because the hand may be closed
+/// before the file is written.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Returns an error if the file cannot be written.
 pub fn save_recording(recording: &Recording, path: &Path) -> Result<(), HandError> {
     recording.save(path).map_err(|source| HandError::BlackBox { path: path.to_path_buf(), source })
 }

@@ -29,7 +29,7 @@ pub struct Calibrating {
     /// While this exists, no other call can calibrate the finger.
     _claim: Claim,
     order: u32,
-    /// The results, from the moment when the finger is ordered to restart with them.
+    /// The results; `None` until the finger is ordered to restart with them.
     found: Option<(Findings, Found)>,
     asked: Instant,
 }
@@ -51,7 +51,7 @@ pub enum CalibrationState {
 struct Claim(Arc<AtomicBool>);
 
 impl Claim {
-    /// Returns none if another caller has the right.
+    /// Returns `None` if another caller has the right.
     fn take(claimed: &Arc<AtomicBool>) -> Option<Self> {
         (!claimed.swap(true, Ordering::AcqRel)).then(|| Self(claimed.clone()))
     }
@@ -66,10 +66,11 @@ impl Drop for Claim {
 impl Calibrating {
     /// Begins a calibration. With [`Task::Identify`] the finger moves to its lower stops and presses. With
     /// [`Task::Zero`] its tendons are slack for a second. The whole range of its joints must be free. Set points are
-    /// ignored until it is done.
+    /// ignored until the calibration is done.
     ///
     /// # Errors
-    /// There is no such finger, the finger is faulted or busy, or the routine cannot work with the configuration.
+    /// Returns an error if there is no such finger, if the finger is faulted or busy, or if the routine cannot work
+    /// with the configuration.
     pub fn begin(hand: &Hand, finger: i32, task: Task) -> Result<Self, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = hand.dispatcher.member(finger)?;
@@ -94,17 +95,18 @@ impl Calibrating {
         given.map_err(|fault| HandError::Faulted { finger, fault })?.ok_or(HandError::Busy(finger))
     }
 
-    /// Returns the state of the calibration. When the routine is done, its results are put in force first: tendons are
-    /// brought under tension, and the finger becomes a spring that holds its pose at its initial stiffness. After
-    /// [`Task::Signs`] the finger stays limp, because its zeros may be wrong. Must not be called again after `Done`.
+    /// Returns the state of the calibration. When the routine is done, its results are put in force before this
+    /// returns `Done`: tendons are brought under tension, and the finger becomes a spring that holds its pose at its
+    /// initial stiffness. After [`Task::Signs`] the finger stays limp, because its zeros may be wrong. Must not be
+    /// called again after `Done`.
     ///
     /// # Errors
-    /// The routine failed and left the finger limp, or the finger faults.
+    /// Returns an error if the routine fails and leaves the finger limp, or if the finger faults.
     pub fn poll(&mut self, hand: &Hand) -> Result<CalibrationState, HandError> {
         let finger = self.finger;
         let report = hand.dispatcher.report(finger)?;
         if report.orders != self.order {
-            // Orders are counted from open, so in a hand that was opened again the number is never reached.
+            // Orders are counted from open. A hand that was opened again does not reach the number of this order.
             if self.asked.elapsed() > ANSWER {
                 return Err(HandError::NoAnswer(finger));
             }
@@ -150,7 +152,7 @@ impl Hand {
     /// `progress` is called 200 times per second.
     ///
     /// # Errors
-    /// As [`Calibrating::begin`] and [`Calibrating::poll`].
+    /// Returns the errors of [`Calibrating::begin`] and [`Calibrating::poll`].
     pub fn find_signs(&self, finger: i32, progress: impl FnMut(Progress)) -> Result<Findings, HandError> {
         self.calibrate(finger, Task::Signs, progress)
     }
@@ -158,7 +160,7 @@ impl Hand {
     /// Zeroes gauges and encoders of finger 1, 2 or 3. `zeroing.method` selects the method for the encoders.
     ///
     /// # Errors
-    /// As [`Calibrating::begin`] and [`Calibrating::poll`].
+    /// Returns the errors of [`Calibrating::begin`] and [`Calibrating::poll`].
     pub fn zero(&self, finger: i32, progress: impl FnMut(Progress)) -> Result<Findings, HandError> {
         self.calibrate(finger, Task::Zero, progress)
     }
@@ -166,7 +168,7 @@ impl Hand {
     /// Measures gauge gains, friction and tendon stiffness of finger 1, 2 or 3, which must have been zeroed.
     ///
     /// # Errors
-    /// As [`Calibrating::begin`] and [`Calibrating::poll`].
+    /// Returns the errors of [`Calibrating::begin`] and [`Calibrating::poll`].
     pub fn identify(&self, finger: i32, progress: impl FnMut(Progress)) -> Result<Findings, HandError> {
         self.calibrate(finger, Task::Identify, progress)
     }
@@ -185,7 +187,7 @@ impl Hand {
     /// The configuration of finger 1, 2 or 3, with all results of calibrations since open.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn calibrated(&self, finger: i32) -> Result<ConfiguredFinger, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?;
@@ -193,11 +195,11 @@ impl Hand {
     }
 
     /// Writes the calibration results of finger 1, 2 or 3 since the last such call into the configuration file that the
-    /// hand was opened with, by [`store_findings`]. Returns whether there is such a file, and something to write.
+    /// hand was opened with, by [`store_findings`]. Returns false if there is no such file, or nothing to write.
     ///
     /// # Errors
-    /// There is no such finger, or the file cannot be written ([`HandError::NotStored`] with the reason). In the second
-    /// case the results stay in force until the hand is closed, and a later call does not store them.
+    /// Returns an error if there is no such finger. Returns [`HandError::NotStored`] with the reason if the file cannot
+    /// be written. Then the results stay in force until the hand is closed, and a later call does not store them.
     pub fn store_calibration(&self, finger: i32) -> Result<bool, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?;

@@ -12,16 +12,16 @@ use editing::{child, same, set, written};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Value};
 
-/// Some editors put this at the beginning of a text.
+/// Some editors put this at the beginning of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// Writes results into the configuration file at `path`, where the file has other values. Everything else in the file
-/// is kept, including changes that others have made since it was read. Several processes may store at the same time:
-/// each waits for the others, for at most 30 seconds.
+/// Writes those results into the configuration file at `path` that differ from the values in the file. Everything else
+/// in the file is kept, including changes that others have made since it was read. Several processes may store at the
+/// same time: each waits for the others, for at most 30 seconds.
 ///
 /// # Errors
-/// The file cannot be read, used or written; [`ConfigurationError::Mismatch`] if the file has changed so that the
-/// results do not apply to it. The file is unchanged then.
+/// Returns an error if the file cannot be read, used or written. Returns [`ConfigurationError::Mismatch`] if the file
+/// has changed so that the results do not apply to it. After an error the file is unchanged.
 pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), ConfigurationError> {
     update_file(path, LARGEST, |text| change(path, text, found)).map_err(|error| match error {
         UpdateError::File(source) => ConfigurationError::Unwritable { path: path.to_path_buf(), source },
@@ -29,7 +29,7 @@ pub fn store_findings(path: &Path, found: &[Found]) -> Result<(), ConfigurationE
     })
 }
 
-/// The text with the results; none if it contains them already.
+/// Returns the text with the results, or `None` if the text contains them already.
 fn change(path: &Path, text: &str, found: &[Found]) -> Result<Option<String>, ConfigurationError> {
     let file = || path.to_path_buf();
     let before = parse(text).map_err(|wrong| ConfigurationError::Invalid {
@@ -86,7 +86,7 @@ fn write_finger(document: &mut DocumentMut, found: &Found, before: &Configuratio
     Ok(changed)
 }
 
-/// The numbers at a key, including default values; none if the key is not set.
+/// The numbers at a key, including default values. It is empty if the key is not set.
 fn numbers_at(finger: &ConfiguredFinger, section: &str, key: &str) -> Vec<f64> {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     let document = toml_edit::ser::to_document(finger).unwrap_or_default();
@@ -106,7 +106,7 @@ mod tests {
     use nalgebra::Vector3;
     use std::fs;
 
-    /// The file after storing, if it was read before its text became `text`.
+    /// Stores `found` in a file that contains `text`, and returns the text of the file afterwards.
     fn try_to_store(text: &str, found: &[Found]) -> Result<String, ConfigurationError> {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("hand.toml");
@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn others_findings_stay() {
-        // Both results were found with the file as it was at the beginning.
+        // All results were found before any of them was stored.
         let (first, second) =
             (zeros(FingerNumber::ONE, [5, 6, 7, 8], 200.0), zeros(FingerNumber::TWO, [9, 9, 9, 9], 190.0));
         let bound = Found::bound(7.5, FingerNumber::ONE, &parse(FILE).expect("usable"));

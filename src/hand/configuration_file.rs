@@ -23,23 +23,23 @@ pub(super) const LARGEST: u64 = 1 << 20;
 pub struct Configured {
     /// The hand.
     pub configuration: Configuration,
-    /// The file; none if no file was found.
+    /// The file; `None` if no file was found.
     pub file: Option<PathBuf>,
-    /// Whether the file names the port of each finger.
+    /// For each finger, whether the file names its port.
     ports_named: [bool; FINGERS],
 }
 
 /// Finds and reads the configuration file: the file that `SUN2XP_CONFIG` names, or else `sun2xp.toml` in the working
 /// directory, or else `sun2xp/sun2xp.toml` in the user's configuration folder, or else in the system's
-/// (`XDG_CONFIG_DIRS`, or `/etc/xdg`). If there is none of them, the hand is simulated. An empty `SUN2XP_CONFIG` counts
+/// (`XDG_CONFIG_DIRS`, or `/etc/xdg`). If none of them exists, the hand is simulated. An empty `SUN2XP_CONFIG` counts
 /// as unset.
 ///
 /// A program that is setuid or setgid, or whose file has capabilities, reads only `/etc/xdg/sun2xp/sun2xp.toml`,
 /// because its caller controls the environment and the working directory.
 ///
 /// # Errors
-/// A file that is named or found cannot be read or used. It is also an error if `SUN2XP_CONFIG` names a missing file,
-/// or is set although it is not trusted: a planner that expects a real hand must never get the simulation instead.
+/// Returns an error if the file cannot be read or used. It is also an error if `SUN2XP_CONFIG` names a missing file, or
+/// is set although it is not trusted: a planner that expects a real hand must never get the simulation instead.
 pub fn find_configuration() -> Result<Configured, ConfigurationError> {
     match place::locate()? {
         Some(path) => Configured::read(&path),
@@ -50,8 +50,8 @@ pub fn find_configuration() -> Result<Configured, ConfigurationError> {
 /// Reads and checks one configuration file.
 ///
 /// # Errors
-/// [`ConfigurationError::Invalid`] with file, line and reason; [`ConfigurationError::Unreadable`] if the file cannot be
-/// read, is not a regular file or is larger than 1 MiB.
+/// Returns [`ConfigurationError::Invalid`], with file, line and reason, if the text is wrong. Returns
+/// [`ConfigurationError::Unreadable`] if the file cannot be read, is not a regular file or is larger than 1 MiB.
 pub fn read_configuration(path: &Path) -> Result<Configuration, ConfigurationError> {
     Configured::read(path).map(|configured| configured.configuration)
 }
@@ -65,7 +65,7 @@ impl Configured {
     /// Reads and checks one configuration file.
     ///
     /// # Errors
-    /// As [`read_configuration`].
+    /// Returns the errors of [`read_configuration`].
     pub fn read(path: &Path) -> Result<Self, ConfigurationError> {
         let file = path.to_path_buf();
         let text = read_regular_file(path, LARGEST)
@@ -76,8 +76,8 @@ impl Configured {
         }
     }
 
-    /// Prints one line on standard error that names those of these fingers that are simulated although nothing requests
-    /// it.
+    /// Prints one line on standard error if some of these fingers are simulated although the configuration does not
+    /// request it. The line names them.
     pub fn announce(&self, fingers: Fingers) {
         if let Some(line) = self.announcement(fingers) {
             print_notice(&line);
@@ -138,7 +138,7 @@ mod tests {
             match expected {
                 None => assert_eq!(announcement, None),
                 Some(expected) => {
-                    let said = announcement.unwrap_or_else(|| panic!("nothing of {text:?}"));
+                    let said = announcement.unwrap_or_else(|| panic!("no announcement for {text:?}"));
                     assert!(said.starts_with(&format!("the/file names no port {expected} (")), "{said}");
                 }
             }

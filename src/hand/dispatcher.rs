@@ -32,7 +32,7 @@ pub(super) struct Member {
     pub calibrated: Arc<AtomicBool>,
 }
 
-/// Passes commands to the fingers, and collects from them.
+/// Passes commands to the fingers, and collects their timings and black boxes.
 pub(super) struct Dispatcher {
     members: Vec<Member>,
     collected: Arc<Vec<Mutex<Collected>>>,
@@ -60,8 +60,8 @@ impl Dispatcher {
         Self { members, collected: Arc::new(collected), collector: None }
     }
 
-    /// Starts the thread that collects timings and black boxes, so that none is lost while no planner calls. It also
-    /// has the black box of a faulted finger written into `folder`.
+    /// Starts the thread that collects timings and black boxes, so that none is lost while no planner calls. The thread
+    /// also causes the black box of a faulted finger to be written into `folder`.
     pub fn start_collecting(&mut self, folder: Option<PathBuf>) -> io::Result<()> {
         let (stop, stopped) = bounded(0);
         let fingers = self.collected.clone();
@@ -71,7 +71,7 @@ impl Dispatcher {
         Ok(())
     }
 
-    /// For a forked child, which does not have the thread.
+    /// Forgets the collecting thread. A forked child calls this, because it does not have the thread.
     pub fn forget_collector(&mut self) {
         std::mem::forget(self.collector.take());
     }
@@ -109,8 +109,8 @@ impl Dispatcher {
     pub fn losses(&self, finger: FingerNumber) -> Result<Losses, HandError> {
         let place = self.place(finger)?;
         // The report is read under the lock, so that a reset by another thread comes before both or after both. A servo
-        // publishes the report of a cycle before its timing. A caller that reads the timing first therefore never
-        // counts a timing whose cycle is not reported yet.
+        // publishes the report of a cycle before its timing. A caller that reads the timings before the losses
+        // therefore never gets a timing whose cycle is not counted.
         let collected = self.collected(finger)?;
         Ok(self.members[place].mailbox.report().losses.since(&collected.losses_before))
     }
@@ -119,8 +119,8 @@ impl Dispatcher {
     pub fn reset_timing(&self, finger: FingerNumber) -> Result<(), HandError> {
         let place = self.place(finger)?;
         let mut collected = self.collected(finger)?;
-        // The report is read before the timings for the same reason. The timings of uncounted cycles are then discarded
-        // here, except for a cycle that is just being published.
+        // The report is read before the timings, for the same reason as in `losses`. The timings of the cycles up to
+        // this report are then discarded here, except the timing of a cycle that the servo is just publishing.
         collected.losses_before = self.members[place].mailbox.report().losses;
         collected.collect();
         collected.histograms.reset();
@@ -141,8 +141,8 @@ impl Dispatcher {
         Ok(collected.black_box.record(cycle))
     }
 
-    /// Calls `give` with `adjustable` under its new number, to pass it to the finger. If that succeeds, the black box
-    /// stores the configuration that it was made from. If it is refused, the black box stores nothing.
+    /// Gives `adjustable` its number, and calls `give`, which passes it to the finger. If `give` succeeds, the black
+    /// box stores the configuration from which `adjustable` was made. If `give` fails, the black box stores nothing.
     pub fn hand_over<T>(
         &self,
         finger: FingerNumber,
@@ -153,7 +153,7 @@ impl Dispatcher {
         self.announce(finger, configuration, adjustable, give, BlackBox::announce)
     }
 
-    /// Like [`Dispatcher::hand_over`], for the data that the servo will use when a calibration takes over.
+    /// Like [`Dispatcher::hand_over`], for the controller that the servo will use when a calibration begins.
     pub fn hand_over_calibration<T>(
         &self,
         finger: FingerNumber,
@@ -173,8 +173,8 @@ impl Dispatcher {
         announce: impl FnOnce(&mut BlackBox, ConfiguredFinger, Vector3<f64>, u32),
     ) -> Result<T, HandError> {
         let place = self.place(finger)?;
-        // The lock is held throughout, so that no record that names the controller is collected before the black box
-        // has its source.
+        // The lock is held throughout. Otherwise a record that names the controller could be collected before the black
+        // box has the controller's source.
         let mut collected = self.collected(finger)?;
         let taken = self.members[place].mailbox.report().controller;
         collected.collect();
@@ -189,12 +189,12 @@ impl Dispatcher {
         Ok(self.collected[self.place(finger)?].lock())
     }
 
-    /// Every member, in the order of their numbers.
+    /// All members, in the order of their numbers.
     pub fn members(&self) -> &[Member] {
         &self.members
     }
 
-    /// The member with a number.
+    /// The member with this number.
     pub fn member(&self, finger: FingerNumber) -> Result<&Member, HandError> {
         self.place(finger).map(|place| &self.members[place])
     }

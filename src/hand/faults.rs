@@ -12,7 +12,7 @@ pub struct FingerFault {
     pub stopped: Option<Fault>,
     /// The newest warning, if it was given within the last second.
     pub warning: Option<Fault>,
-    /// Number of warnings since open. One that persists counts once.
+    /// Number of warnings since open. A warning that persists counts once.
     pub warnings: u64,
 }
 
@@ -20,7 +20,7 @@ impl Hand {
     /// The fault and the warnings of finger 1, 2 or 3.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn fault(&self, finger: i32) -> Result<FingerFault, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let report = self.dispatcher.last_report(finger)?;

@@ -6,9 +6,9 @@ use crate::hand::{Hand, HandError};
 use crate::model::FingerNumber;
 use nalgebra::{Matrix3, Vector3};
 
-/// Limit of observability, cm per rad. If the fingertip moves by less than this in a direction for a turn of the joints
-/// by 1 rad, the joint torques do not show a force in that direction: a torque error of 0.1 N cm would be a third of a
-/// newton. The default finger has such a direction within 9 degrees of the straight pose.
+/// Limit of observability, cm per rad. If a joint motion of 1 rad moves the fingertip in a direction by less than this,
+/// the force in that direction cannot be found from the joint torques: a torque error of 0.1 N cm would cause a force
+/// error of a third of a newton. The default finger has such a direction within 9 degrees of the straight pose.
 const FELT: f64 = 0.3;
 
 /// The state of a fingertip.
@@ -17,8 +17,8 @@ const FELT: f64 = 0.3;
 pub struct FingerTip {
     /// Position in the finger's frame, cm, from the measured joint angles.
     pub tip: [f64; 3],
-    /// Force on the touched object in the finger's frame, N: J^-T R t (eqs. 1 and 13) with the measured tensions t. It
-    /// includes friction and weight of the finger and the torque that accelerates it. It is never NaN: near the
+    /// Force on the touched object in the finger's frame, N: J^-T R t (eqs. 1 and 13) with the measured tensions t. The
+    /// force includes the effects of the finger's friction, weight and acceleration. It is never NaN: near the
     /// straight pose, the component in a direction that the joints do not feel is zero.
     pub force: [f64; 3],
     /// Number of directions that the joints feel: 3, or fewer near a singular pose.
@@ -28,10 +28,10 @@ pub struct FingerTip {
 }
 
 impl Hand {
-    /// Position and force of the tip and tendon tensions of finger 1, 2 or 3, not older than a cycle.
+    /// Position and force of the tip and tendon tensions of finger 1, 2 or 3, at most one cycle old.
     ///
     /// # Errors
-    /// There is no such finger, or the finger is faulted.
+    /// Returns an error if there is no such finger, or if the finger is faulted.
     pub fn fingertip(&self, finger: i32) -> Result<FingerTip, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let report = self.dispatcher.report(finger)?;

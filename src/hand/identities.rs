@@ -21,7 +21,7 @@ impl Identities {
     /// Adds the board of finger 1, 2 or 3.
     ///
     /// # Errors
-    /// A board at another port has the same number. Fingers on one port may share a number.
+    /// Returns an error if a board at another port has the same number. Fingers on one port may share a number.
     pub fn add(&mut self, finger: FingerNumber, port: &Path, identity: &Identity) -> Result<(), HandError> {
         let number = identity.unique_number;
         match self.0.iter().find(|known| known.number == number && known.port != port) {
@@ -43,7 +43,7 @@ pub(super) mod tests {
     use super::*;
     use crate::board::protocol::{Capabilities, FirmwareVersion, VERSION};
 
-    /// The identity of a board, which differs between calls only in its unique number.
+    /// The identity of a board. The identities from two calls differ only in the unique number.
     pub fn identity(number: u8) -> Identity {
         Identity {
             version: VERSION,

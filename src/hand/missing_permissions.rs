@@ -17,7 +17,7 @@ pub enum MissingPermission {
     Memory(io::Error),
     /// The configured core.
     #[error(
-        "the servo cannot run on its core ({0}): set `finger.core` to one that this process may use (taskset -p $$)"
+        "the servo cannot run on its core ({0}): set `finger.core` to a core that this process may use (taskset -p $$)"
     )]
     Core(io::Error),
 }
@@ -30,7 +30,7 @@ impl MissingPermission {
     }
 }
 
-/// The permissions that any of the threads lacks, at most one of each kind.
+/// The permissions that at least one of the threads lacks, at most one of each kind.
 pub fn missing_permissions(refusals: Vec<RealtimeRefusals>) -> Vec<MissingPermission> {
     let (mut scheduling, mut memory, mut core) = (None, None, None);
     for refused in refusals {

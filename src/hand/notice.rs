@@ -1,4 +1,4 @@
-//! Messages of a hand on standard error, for people who do not check results.
+//! Messages of a hand on standard error, for users of planners that do not check results.
 
 use crate::model::one_line;
 use crate::realtime::print_line;

@@ -20,7 +20,7 @@ use crate::simulated::{Pace, SimulatedBoard, SimulatedPort};
 use nalgebra::Matrix3;
 use std::path::{Path, PathBuf};
 
-/// Simulated boards run below the priority of every servo, because they represent devices outside of the machine.
+/// Highest priority of a simulated board. It is low, because the board represents a device outside the machine.
 const SIMULATED_BOARD_PRIORITY: u8 = 20;
 
 /// Capacity of the timing rings, s. If nothing is collected for longer than this, timings are lost.
@@ -81,9 +81,9 @@ pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<P
     }
 }
 
-/// The absolute path.
+/// Returns the absolute path.
 pub(super) fn from_here(path: PathBuf) -> PathBuf {
-    // Without a working directory, only absolute paths are valid.
+    // If there is no working directory, a relative path stays as it is. It is not valid then.
     std::path::absolute(&path).unwrap_or(path)
 }
 
@@ -121,7 +121,7 @@ pub(super) fn reach(
     simulated: &[Option<SimulatedPort>; FINGERS],
     limp: bool,
 ) -> Result<Connected, HandError> {
-    // Emergency stops from here on stop the hand.
+    // Emergency stop calls from here on stop the hand.
     let alarm = StopSignal::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
     let (mut lines, mut reached, mut repairs) = (Vec::new(), Vec::new(), Vec::new());
     let mut identities = Identities::default();
@@ -145,7 +145,7 @@ pub(super) fn reach(
             port: ServedPort::new(link, servos).with_handover(handover),
         });
         let baud = configuration.fingers[first.index()].baud;
-        // A built-in board's port is not reopened: when it is gone, its path may name a pseudo-terminal of the planner.
+        // A simulated board's port is not reopened: after its loss, its path may name a pseudo-terminal of the planner.
         let reconnects = |&number: &FingerNumber| {
             configuration.fingers[number.index()].reconnect && simulated[number.index()].is_none()
         };
@@ -156,7 +156,7 @@ pub(super) fn reach(
     Ok(Connected { lines, reached, repairs })
 }
 
-/// The ports of these fingers, each with at least one finger.
+/// Returns the ports of these fingers, each with its fingers.
 pub fn ports(
     configuration: &Configuration,
     fingers: Fingers,
@@ -211,7 +211,7 @@ fn shake_hands(
     let counts = identity.counts_per_revolution;
     if counts != 0 && finger.encoder.counts_per_revolution.iter().any(|&configured| configured != counts) {
         let reason =
-            format!("the board of finger {number} reports {counts} for its encoders: configure the same number");
+            format!("the board of finger {number} reports {counts} counts per revolution: configure the same number");
         return Err(unusable(Unusable { key: "encoder.counts_per_revolution", reason }).into());
     }
     let stiffness = initial_stiffness(configuration, number).map_err(unusable)?;

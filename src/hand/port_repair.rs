@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Time for a board to answer one attempt, ns. It is short, because the attempt is repeated.
 const ANSWER: u64 = 300_000_000;
 
-/// A port that may need repair, with its link while the servo has released it.
+/// A port that may need repair. It holds the port's link while the servo has released the link.
 pub(super) struct PortRepair {
     path: PathBuf,
     baud: u32,
@@ -21,9 +21,9 @@ pub(super) struct PortRepair {
     /// The boards, in the order of the servo's fingers.
     pub boards: Vec<KnownBoard>,
     handover: LinkRepairEnd<Port>,
-    /// Whether the servo has released its link and not got it back.
+    /// Whether the servo has released its link and has not got it back.
     released: bool,
-    /// The released link or a new one; none while the port is gone.
+    /// The released link or a new one; `None` while the port is gone.
     link: Option<Link<Port>>,
     /// Whether the boards have answered and are the same as at open.
     pub checked: bool,
@@ -61,7 +61,7 @@ impl PortRepair {
         self.released
     }
 
-    /// Whether the servo has ended, so it does not take a link back.
+    /// Whether the servo has ended. Then it does not take a link back.
     pub fn servo_ended(&self) -> bool {
         self.handover.released.is_abandoned()
     }
@@ -92,7 +92,8 @@ impl PortRepair {
         let mut all = [None; FINGERS];
         for (board, place) in self.boards.iter().zip(&mut all) {
             let KnownBoard { finger, address, ref terms, .. } = *board;
-            // A board whose port failed has not received a Stop. Cable and power may be back before its watchdog trips.
+            // A board whose port failed has not received a Stop. If cable and power are back before its watchdog trips,
+            // the board still executes its last command.
             let _ = link.stop(address, 0);
             let (identity, configured) = link
                 .shake_hands(address, terms, now() + ANSWER)
@@ -106,7 +107,7 @@ impl PortRepair {
     pub fn give_back(&mut self, configured: [Option<Configured>; FINGERS], stop_calls: u32) {
         if let Some(link) = self.link.take() {
             self.released = false;
-            // The ring has room: the servo has taken the last link, because it has released another one since.
+            // The ring has room: the servo has released a link since the last push, so it has taken the last one.
             let _ = self.handover.repaired.push(RepairedLink { link, configured, stop_calls });
         }
     }
@@ -131,7 +132,7 @@ mod tests {
     use crate::hand::identities::tests::identity;
     use crate::model::configuration::{ConfiguredFinger, ConfiguredHand};
 
-    /// This also keeps the numbers of a hand's boards different after a recovery.
+    /// The check also ensures that the numbers of a hand's boards still differ after a recovery.
     #[test]
     fn a_board_with_another_number_is_not_the_one_of_open() {
         let terms = Terms::new(&ConfiguredHand::default(), &ConfiguredFinger::default());

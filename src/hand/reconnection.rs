@@ -18,14 +18,14 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 pub(super) struct RepairablePort {
     /// Numbers of the fingers, 1 to 3.
     pub fingers: Vec<FingerNumber>,
-    /// Number of repairs after which the link was given back to the servo. The fingers' numbers of recoveries reach it
-    /// when the servo takes the link.
+    /// Number of repairs after which the link was given back to the servo. Each finger's number of recoveries reaches
+    /// this number when the servo takes the link.
     pub repairs: AtomicU32,
-    /// Locked during a repair, which takes long. None after the hand is closed.
+    /// Locked during a repair, which takes long. `None` after the hand is closed.
     pub repair: Mutex<Option<PortRepair>>,
 }
 
-/// Every port of a hand, and the thread that reopens those that are gone.
+/// All ports of a hand, and the thread that reopens those that are gone.
 pub(super) struct Recovery {
     pub ports: Vec<Arc<RepairablePort>>,
     reconnecting: Option<(Sender<()>, JoinHandle<()>)>,
@@ -53,7 +53,7 @@ impl Recovery {
         Ok(())
     }
 
-    /// For a forked child, which does not have the thread.
+    /// Forgets the thread. A forked child calls this, because it does not have the thread.
     pub fn forget(&mut self) {
         std::mem::forget(self.reconnecting.take());
     }

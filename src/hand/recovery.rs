@@ -2,8 +2,8 @@
 //! opening.
 //!
 //! The servo releases its link when every finger on it is at rest, because opening a port and shaking hands take too
-//! long for a servo. They run on the planner's thread in a recovery call. If `finger.reconnect` is set, a separate
-//! thread tries them before that.
+//! long for a servo. A recovery call does both on the planner's thread. If `finger.reconnect` is set, a separate thread
+//! tries both before that.
 
 use crate::finger::{Stage, stop_calls};
 use crate::hand::reconnection::RepairablePort;
@@ -28,7 +28,7 @@ const STALL_LIMIT: Duration = Duration::from_secs(5);
 /// need the hand.
 #[must_use = "a recovery does nothing before `reconnect` is called"]
 pub struct Recovering {
-    /// None if the finger is not faulted, so there is nothing to do.
+    /// `None` if the finger is not faulted. Then there is nothing to do.
     task: Option<Task>,
     begun: Instant,
 }
@@ -50,7 +50,7 @@ impl Recovering {
     /// other steps do nothing.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn begin(hand: &Hand, finger: i32) -> Result<Self, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let begun = Instant::now();
@@ -76,8 +76,8 @@ impl Recovering {
     /// and shakes hands, which may take a second. Only calls that repair the same port or close the hand wait for it.
     ///
     /// # Errors
-    /// Another finger runs on the same port; a port or board does not work, or is not the same as at open; the servo
-    /// has failed or does not run; the hand was closed.
+    /// Returns an error if another finger runs on the same port, if the port or a board does not work, if a board is
+    /// not the same as at open, if the servo has failed or does not run, or if the hand was closed.
     pub fn reconnect(&self) -> Result<(), HandError> {
         let Some(Task { finger, ref port, recoveries, running, stop_calls, .. }) = self.task else { return Ok(()) };
         let waiting = Instant::now();
@@ -112,7 +112,7 @@ impl Recovering {
     /// Whether every finger of the port holds its pose.
     ///
     /// # Errors
-    /// A finger of the port faults again.
+    /// Returns an error if a finger of the port faults again, or if its servo does not take the link back.
     pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
         let mut done = true;
         for &(finger, before) in self.task.iter().flat_map(|task| &task.fingers) {
@@ -132,7 +132,7 @@ impl Recovering {
     }
 }
 
-/// The error for a servo that has not released the link of a finger within the permitted time; none before that.
+/// The error for a servo that has not released the link of a finger within the permitted time; `None` before that.
 /// `running` is another finger of the port that was not faulted at the beginning.
 fn not_released(finger: FingerNumber, running: Option<FingerNumber>, waited: Duration) -> Option<RecoveryError> {
     match running {
@@ -144,11 +144,11 @@ fn not_released(finger: FingerNumber, running: Option<FingerNumber>, waited: Dur
 
 impl Hand {
     /// Makes a faulted finger 1, 2 or 3 a spring again, which holds its present pose at its initial stiffness. The
-    /// other faulted fingers on its port recover too. The cause of the fault must be removed before. Does nothing if
+    /// other faulted fingers on its port recover too. The cause of the fault must be removed first. Does nothing if
     /// the finger is not faulted.
     ///
     /// # Errors
-    /// As [`Recovering::begin`], [`Recovering::reconnect`] and [`Recovering::poll`].
+    /// Returns the errors of [`Recovering::begin`], [`Recovering::reconnect`] and [`Recovering::poll`].
     pub fn recover(&self, finger: i32) -> Result<(), HandError> {
         let recovering = Recovering::begin(self, finger)?;
         recovering.reconnect()?;
@@ -175,7 +175,7 @@ mod tests {
             not_released(FingerNumber::ONE, Some(FingerNumber::TWO), 2 * RELEASE_LIMIT),
             Some(RecoveryError::PortInUse { finger: FingerNumber::ONE, other: FingerNumber::TWO })
         ));
-        // The only finger of a port, whose servo does not run for a while.
+        // This is the only finger of its port, and its servo does not run for a while.
         assert!(not_released(FingerNumber::ONE, None, 2 * RELEASE_LIMIT).is_none());
         let text = not_released(FingerNumber::ONE, None, 2 * STALL_LIMIT).expect("too long").to_string();
         assert!(text.contains("no processor time") && text.contains("reduce the load"), "{text}");

@@ -20,7 +20,7 @@ use std::time::Duration;
 /// Largest component of a push, N. It is far above what would tear a finger off, and low enough to be simulated.
 const STRONGEST_PUSH: f64 = 1000.0;
 
-/// Time that a board takes at most to confirm that it has stopped, ns.
+/// Longest time that a board takes to confirm that it has stopped, ns.
 const STOP_CONFIRMATION: u64 = 300_000_000;
 
 /// Time for the last frames of a servo to leave the port.
@@ -38,7 +38,7 @@ pub struct Hand {
     servos: Vec<JoinHandle<PortServo>>,
     pub(super) recovery: Recovery,
     simulated: [Option<SimulatedPort>; FINGERS],
-    /// The configuration in force. Planners can adjust it, and calibration changes its results in it.
+    /// The configuration in force. Planners can adjust it, and a calibration puts its results into it.
     pub(super) configuration: RwLock<Configuration>,
     /// The configuration file, in which calibration results are stored.
     pub(super) file: Option<PathBuf>,
@@ -56,7 +56,7 @@ impl Hand {
     /// simulated because no file names their ports, one line on standard error names them.
     ///
     /// # Errors
-    /// As [`Hand::open`]. The configuration file cannot be read or used.
+    /// Returns the errors of [`Hand::open`]. Returns an error if the configuration file cannot be read or used.
     pub fn open_configured() -> Result<Self, HandError> {
         Self::open_as(find_configuration()?)
     }
@@ -64,7 +64,7 @@ impl Hand {
     /// Opens the hand that [`find_configuration`] has found.
     ///
     /// # Errors
-    /// As [`Hand::open`].
+    /// Returns the errors of [`Hand::open`].
     pub fn open_as(configured: Configured) -> Result<Self, HandError> {
         configured.announce(Fingers::ALL);
         Self::open_from(configured.configuration, configured.file, Fingers::ALL, false)
@@ -74,17 +74,18 @@ impl Hand {
     /// holds its pose at its initial stiffness.
     ///
     /// # Errors
-    /// The configuration cannot be used, a port or board does not work, or a finger faults. Everything that was opened
-    /// is closed again then, and every motor is in its end state.
+    /// Returns an error if the configuration cannot be used, if a port or board does not work, or if a finger faults.
+    /// Then everything that was opened is closed again, and every motor is in its end state.
     pub fn open(configuration: Configuration) -> Result<Self, HandError> {
         Self::open_from(configuration, None, Fingers::ALL, false)
     }
 
-    /// Opens these fingers of the hand with their motors off, in order to find signs and zeros before anything pulls.
-    /// Calibration results are stored in `file`. A finger becomes a spring after [`Hand::zero`] or [`Hand::identify`].
+    /// Opens these fingers of the hand with their motors off, so that signs and zeros can be found before a tendon is
+    /// pulled. Calibration results are stored in `file`. A finger becomes a spring after [`Hand::zero`] or
+    /// [`Hand::identify`].
     ///
     /// # Errors
-    /// As [`Hand::open`].
+    /// Returns the errors of [`Hand::open`].
     pub fn open_limp(configuration: Configuration, file: Option<PathBuf>, fingers: Fingers) -> Result<Self, HandError> {
         Self::open_from(configuration, file, fingers, true)
     }
@@ -98,7 +99,7 @@ impl Hand {
         check(&configuration)?;
         // A sandbox may forbid clock_nanosleep. Then servo threads would not wait, and other threads would panic.
         let waiting = MonotonicClock::check_sleep();
-        waiting.map_err(|source| HandError::System { doing: "wait for a time (clock_nanosleep)", source })?;
+        waiting.map_err(|source| HandError::System { doing: "sleep until a given time (clock_nanosleep)", source })?;
         let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
         let simulated = simulate(&configuration, fingers)?;
         let Connected { lines, reached, repairs } = reach(&configuration, fingers, &simulated, limp)?;
@@ -117,23 +118,23 @@ impl Hand {
         hand.real_time = start(&hand.configuration.read(), lines, &mut hand.servos)?;
         hand.wait_for_every_finger()?;
         let reconnecting = hand.recovery.start();
-        reconnecting.map_err(|source| HandError::System { doing: "start the thread that looks for ports", source })?;
+        reconnecting.map_err(|source| HandError::System { doing: "start the thread that reopens ports", source })?;
         Ok(hand)
     }
 
-    /// Measured joint angles of finger 1, 2 or 3, rad, not older than a cycle.
+    /// Measured joint angles of finger 1, 2 or 3, rad, at most one cycle old.
     ///
     /// # Errors
-    /// There is no such finger, or the finger is faulted.
+    /// Returns an error if there is no such finger, or if the finger is faulted.
     pub fn position(&self, finger: i32) -> Result<[f64; 3], HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.position(finger)
     }
 
-    /// The newest report of finger 1, 2 or 3, faulted or not.
+    /// The newest report of finger 1, 2 or 3, whether the finger is faulted or not.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn report(&self, finger: i32) -> Result<FingerReport, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.last_report(finger)
@@ -142,7 +143,7 @@ impl Hand {
     /// The duration of a stage of the cycles of finger 1, 2 or 3, since open or the last reset.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn timing(&self, finger: i32, stage: realtime::CycleStage) -> Result<Distribution, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.timing(finger, stage)
@@ -151,7 +152,7 @@ impl Hand {
     /// Counts of the cycles and errors of finger 1, 2 or 3, since open or the last reset.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn losses(&self, finger: i32) -> Result<Losses, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.losses(finger)
@@ -160,7 +161,7 @@ impl Hand {
     /// Resets timings and losses of finger 1, 2 or 3.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn reset_timing(&self, finger: i32) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.reset_timing(finger)
@@ -169,7 +170,8 @@ impl Hand {
     /// Pushes the fingertip of a simulated finger with a force in the finger's frame, N, until the next call.
     ///
     /// # Errors
-    /// There is no such finger, a number is NaN or infinite, or the finger has a real port.
+    /// Returns an error if there is no such finger, if a number is NaN, infinite or above 1000 N, or if the finger has
+    /// a real port.
     pub fn push_simulated(&self, finger: i32, force: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?.admission.read().finite("Force", &force)?;
@@ -184,9 +186,9 @@ impl Hand {
         Ok(())
     }
 
-    /// Requests the end state of every finger, and waits for the time that this takes. It takes no lock and frees
-    /// nothing, so it can be called when the process is about to end, even in a signal handler. The hand cannot be
-    /// used afterwards.
+    /// Requests the end state of every finger, and waits until all fingers have reached it or its time is over. This
+    /// function takes no lock and frees no memory, so it can be called when the process is about to end, even in a
+    /// signal handler. The hand cannot be used afterwards.
     pub fn end(&self) {
         let members = self.dispatcher.members();
         members.iter().for_each(|member| member.mailbox.close());

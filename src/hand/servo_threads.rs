@@ -32,11 +32,11 @@ pub(super) struct RealtimeState {
     pub core: bool,
 }
 
-/// Starts one servo thread for each thread number among the lines. The threads are added to `servos`, to be joined,
-/// even if this fails. After a failure, no thread has begun its first cycle.
+/// Starts one servo thread for each thread number among the lines. The threads are added to `servos` even after a
+/// failure, so that the caller can join them. After a failure, no thread has begun its first cycle.
 ///
 /// # Errors
-/// The system cannot start a thread, or real time is enforced but not permitted.
+/// Returns an error if the system cannot start a thread, or if real time is enforced but not permitted.
 pub(super) fn start(
     configuration: &Configuration,
     lines: Vec<Line>,
@@ -103,7 +103,8 @@ fn run(
         let stack = LockedStack::lock().map(|stack| locked = Some(stack));
         refusals.memory = stack.and_then(|()| servo.memory().lock()).err();
     }
-    // `start` waits for this report. If it has returned an error, it does not send the time of the first cycle either.
+    // `start` waits for this report, unless it has already returned an error. After an error it does not send the time
+    // of the first cycle, so `recv` fails.
     let _ = report.send(refusals);
     if let Ok(first) = beginning.recv() {
         servo = servo.later(first);

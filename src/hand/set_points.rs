@@ -10,7 +10,8 @@ impl Hand {
     /// Sends theta_d of finger 1, 2 or 3: joints 0, 1 and 2, rad. It takes effect within a cycle.
     ///
     /// # Errors
-    /// There is no such finger, an angle is NaN, infinite or beyond a joint limit, or the finger is faulted.
+    /// Returns an error if there is no such finger, if an angle is NaN, infinite or beyond a joint limit, or if the
+    /// finger is faulted.
     pub fn send_position(&self, finger: i32, joints: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let member = self.dispatcher.member(finger)?;
@@ -24,8 +25,9 @@ impl Hand {
     /// without a jump in torque; 95 % of the change is reached after 50 ms.
     ///
     /// # Errors
-    /// There is no such finger, or the finger is faulted. The stiffness has an entry that is NaN or infinite, is not
-    /// symmetric, has a negative eigenvalue, is above the bound, or is too high for the damping that was sent last.
+    /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the stiffness has
+    /// an entry that is NaN or infinite, is not symmetric, has a negative eigenvalue, is above the bound, or is too
+    /// high for the damping that was sent last.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, |admission| {
@@ -39,12 +41,13 @@ impl Hand {
 
     /// Sends the desired position of the tip of finger 1, 2 or 3 in the finger's frame, cm. The fingertip becomes the
     /// exact spring tau = J^T Kx (x_d - x), with the stiffness that was sent last. Of several joint solutions within
-    /// the limits, the one nearest to the present pose is used. It takes effect within a cycle. The motion is straight
-    /// in joint space, at the bounded joint speed.
+    /// the limits, the one nearest to the present pose is used. The position takes effect within a cycle. The motion is
+    /// straight in joint space, at the bounded joint speed.
     ///
     /// # Errors
-    /// There is no such finger, or the finger is faulted. A number is NaN or infinite, or the position is out of reach
-    /// or outside the joint limits, even if commands are clamped.
+    /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a number is NaN or
+    /// infinite. Even if commands are clamped, returns an error if the position is out of reach or outside the joint
+    /// limits.
     pub fn send_tip(&self, finger: i32, tip: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let present = self.dispatcher.last_report(finger)?.cycle.joints;
@@ -61,9 +64,9 @@ impl Hand {
     /// replaces the last Kx, and a later Kx replaces it.
     ///
     /// # Errors
-    /// There is no such finger, or the finger is faulted. The stiffness is above the bound, or is too high for the
-    /// damping that was sent last. A rotational stiffness k, N cm/rad, counts as k / l2^2 N/cm, by the motion of the
-    /// last joint.
+    /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the stiffness is
+    /// above the bound, or is too high for the damping that was sent last. A rotational stiffness k, N cm/rad, counts
+    /// as k / l2^2 N/cm, because the last joint moves the tip by l2 per rad.
     pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, |admission| {
@@ -76,12 +79,12 @@ impl Hand {
     }
 
     /// Sends the damping of finger 1, 2 or 3, relative to the damping that the controller chooses from the stiffness.
-    /// It is 1 after open. The range depends on controller, rate and stiffness
+    /// The ratio is 1 after open. Its range depends on controller, rate and stiffness
     /// ([`AdmissibleDamping`](crate::control::AdmissibleDamping)).
     ///
     /// # Errors
-    /// There is no such finger, or the finger is faulted. The ratio is NaN, infinite or outside the range of the
-    /// stiffness that was sent last.
+    /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the ratio is NaN,
+    /// infinite or outside the range for the stiffness that was sent last.
     pub fn send_damping(&self, finger: i32, ratio: f64) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.send(finger, |admission| {
@@ -95,7 +98,7 @@ impl Hand {
     }
 
     /// Sends the change that `admit` returns. The limits cannot change between the check and the sending. The change
-    /// itself may still refuse the set point that it starts from.
+    /// may still refuse the set point to which it is applied.
     fn send<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,
         finger: FingerNumber,

@@ -22,14 +22,14 @@ pub struct FingerStatus {
     pub rate: f64,
     /// Measured rate since open, Hz. It decreases while a cycle is missing.
     pub measured_rate: f64,
-    /// From the scheduled beginning of a cycle to its first instruction, microseconds: the jitter of the servo.
+    /// Time from the scheduled beginning of a cycle to its first instruction, microseconds: the jitter of the servo.
     pub wake_up: Distribution,
     /// Cycles and errors since open. The skipped periods include those that are missing now.
     pub losses: Losses,
-    /// Part of the wanted joint torque that the tension limits permitted in the last cycle, 0 to 1.
+    /// Part of the desired joint torque that the tension limits permitted in the last cycle, 0 to 1.
     pub torque_scale: f64,
-    /// Part of Kx that was applied in the last cycle, 0 to 1. It is less than 1 if the tendons cannot carry Kx in this
-    /// pose.
+    /// Part of Kx that was applied in the last cycle, 0 to 1. It is less than 1 if the tendons cannot produce Kx in
+    /// this pose.
     pub stiffness_scale: f64,
     /// Completed part of the calibration in progress, 0 to 1; 0 if there is none.
     pub calibration: f64,
@@ -39,7 +39,7 @@ impl Hand {
     /// The status of finger 1, 2 or 3 and of its servo thread.
     ///
     /// # Errors
-    /// There is no such finger.
+    /// Returns an error if there is no such finger.
     pub fn status(&self, finger: i32) -> Result<FingerStatus, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let report = self.dispatcher.last_report(finger)?;

@@ -25,7 +25,7 @@ pub struct Contact(Matrix6<f64>);
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ContactError {
-    /// NaN or infinity.
+    /// K or Normal contains NaN or infinity.
     #[error("an entry of K or Normal is {0}: every entry must be a finite number")]
     NotFinite(f64),
     /// `K[row][column]` and `K[column][row]` differ.
@@ -41,7 +41,7 @@ pub enum ContactError {
         /// Difference of the two entries, in their unit.
         difference: f64,
     },
-    /// A negative eigenvalue.
+    /// K has a negative eigenvalue.
     #[error("K has the negative eigenvalue {smallest:.3e}: send a K whose eigenvalues are zero or positive")]
     Negative {
         /// Smallest eigenvalue.
@@ -56,7 +56,7 @@ impl Contact {
     /// Constructs a hard finger with friction, which transmits three forces. `stiffness` is Kx, N/cm.
     ///
     /// # Errors
-    /// Kx is not a spring.
+    /// Returns an error if Kx is not a spring.
     pub fn hard_finger(stiffness: Matrix3<f64>) -> Result<Self, ContactError> {
         Self::general(&stiffness, &translation())
     }
@@ -65,7 +65,7 @@ impl Contact {
     /// and column 3 of `stiffness` belong to the rotation about `normal`: N cm/rad on the diagonal, otherwise N/rad.
     ///
     /// # Errors
-    /// K is not a spring, or the normal is zero.
+    /// Returns an error if K is not a spring, or if the normal is zero or not finite.
     pub fn soft_finger(stiffness: Matrix4<f64>, normal: Vector3<f64>) -> Result<Self, ContactError> {
         let (stiffness, normal) = directed(&stiffness, normal)?;
         let mut selection = SMatrix::<f64, 4, 6>::zeros();
@@ -78,7 +78,7 @@ impl Contact {
     /// in N/cm.
     ///
     /// # Errors
-    /// The stiffness is negative, or the normal is zero.
+    /// Returns an error if the stiffness is negative or not finite, or if the normal is zero or not finite.
     pub fn frictionless_point(stiffness: f64, normal: Vector3<f64>) -> Result<Self, ContactError> {
         let (stiffness, normal) = directed(&SMatrix::<f64, 1, 1>::new(stiffness), normal)?;
         let mut selection = SMatrix::<f64, 1, 6>::zeros();
@@ -90,7 +90,7 @@ impl Contact {
     /// translation (cm) and rotation (rad) to deflection i.
     ///
     /// # Errors
-    /// K is not a spring, or an entry of S is not finite.
+    /// Returns an error if K is not a spring, or if an entry of S is not finite.
     pub fn general<const D: usize>(
         stiffness: &SMatrix<f64, D, D>,
         selection: &SMatrix<f64, D, 6>,
@@ -112,7 +112,7 @@ impl Contact {
         let spatial = selection.transpose() * stiffness * selection;
         // The product of finite factors may be infinite.
         finite(spatial.as_slice())?;
-        // Rounding makes it slightly asymmetric, and the servo relies on its symmetry.
+        // Rounding makes the product slightly asymmetric, but the servo relies on its symmetry.
         Ok(Self(symmetrised(&spatial)))
     }
 
@@ -142,7 +142,7 @@ impl Contact {
     }
 
     /// Returns the largest entry, N/cm, and the stiffness divided by it, with rotations measured by `lever`. The
-    /// division comes first: with a short lever the product could be infinite, and its eigenvalues NaN.
+    /// division comes first: with a short lever the product could be infinite, and its eigenvalues would be NaN.
     fn measured(&self, lever: f64) -> (f64, Matrix6<f64>) {
         let size = self.0.amax().max(f64::MIN_POSITIVE);
         (size, symmetrised(&scaled(&(self.0 / size), 1.0 / lever)))
@@ -158,8 +158,8 @@ fn scaled(stiffness: &Matrix6<f64>, factor: f64) -> Matrix6<f64> {
 /// Returns a stiffness of any rank, made exactly symmetric, and its smallest and largest eigenvalue.
 ///
 /// # Errors
-/// An entry is NaN or infinite, the asymmetry exceeds a thousandth of the largest entry, or an eigenvalue is below
-/// minus a thousandth of the largest.
+/// Returns an error if an entry is NaN or infinite, if the asymmetry exceeds a thousandth of the largest entry, or if
+/// an eigenvalue is below minus a thousandth of the largest.
 pub fn spring<const D: usize>(asked: &SMatrix<f64, D, D>) -> Result<(SMatrix<f64, D, D>, (f64, f64)), ContactError>
 where
     Const<D>: DimSub<U1>,
@@ -185,10 +185,10 @@ where
     Ok((symmetric, (smallest, largest)))
 }
 
-/// Makes a matrix that is symmetric except for rounding exactly symmetric, so that its eigenvalues can be computed for
-/// any finite entries. The halves are added, because the sum of two entries may be infinite. Entries below the rounding
-/// error of the largest entry become zero, because the squares of much smaller ones underflow in the iteration. Either
-/// case would give NaN eigenvalues, which pass every comparison with a bound.
+/// Removes a slight asymmetry of a matrix, so that its eigenvalues can be computed for any finite entries. The halves
+/// are added, because the sum of two entries may be infinite. Entries below the rounding error of the largest entry
+/// become zero, because the squares of much smaller entries underflow in the iteration for the eigenvalues. Infinite
+/// sums and underflow would give NaN eigenvalues, which pass every comparison with a bound.
 fn symmetrised<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
     let negligible = f64::EPSILON * matrix.amax();
     (matrix * 0.5 + matrix.transpose() * 0.5).map(|entry| if entry.abs() < negligible { 0.0 } else { entry })
@@ -268,7 +268,7 @@ mod tests {
         let soft = Contact::soft_finger(k, normal).expect("a spring");
         let turned = nalgebra::Vector6::new(0.0, 0.0, 0.0, 0.1, 0.6, 0.8);
         let wrench = soft.stiffness() * turned;
-        // Rotated by 1 rad about the normal, and by 0.1 rad about x, which a soft finger does not transmit.
+        // The tip is rotated by 1 rad about the normal, and by 0.1 rad about x, which a soft finger does not transmit.
         let expected = nalgebra::Vector6::new(0.5, 0.0, 0.0, 0.0, 12.0, 16.0);
         assert!((wrench - expected).amax() < 1e-12, "{wrench}");
         assert!((soft.largest_eigenvalue(1.0) - 20.0147).abs() < 1e-3);
@@ -292,7 +292,7 @@ mod tests {
         assert!(matches!(refused, Err(ContactError::NotFinite(_))));
         let huge = Contact::hard_finger(Matrix3::from_diagonal_element(f64::MAX)).expect("a spring");
         assert!(huge.stiffness().iter().all(|entry| entry.is_finite()));
-        // A rotation with a negative stiffness is found although all translations are positive.
+        // A negative rotational stiffness is found although all translational stiffnesses are positive.
         let k = Matrix4::from_diagonal(&nalgebra::Vector4::new(3.0, 3.0, 3.0, -1.0));
         assert!(matches!(Contact::soft_finger(k, Vector3::x()), Err(ContactError::Negative { .. })));
     }

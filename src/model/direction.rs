@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-/// Returns the unit vector along a vector with finite components, or None for the zero vector.
+/// Returns the unit vector along a vector with finite components, or `None` for the zero vector.
 ///
-/// Every length from the smallest positive number to the largest has a direction. The squares of such components may be
-/// infinite or zero, so the vector is divided by its largest component first.
+/// A vector of any length, from the smallest positive number to the largest, has a direction. The squares of its
+/// components may be infinite or zero, so the vector is divided by its largest component first.
 pub fn direction(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
     let largest = vector.amax();
     // Each component is divided, because a subnormal number has no finite reciprocal.

@@ -8,7 +8,7 @@ pub const FINGERS: usize = 3;
 /// The number of a finger: 1, 2 or 3 in calls, configuration files and texts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FingerNumber {
-    /// Less than [`FINGERS`].
+    /// The number minus 1, less than [`FINGERS`].
     index: u8,
 }
 
@@ -22,10 +22,10 @@ impl FingerNumber {
     /// Finger 3.
     pub const THREE: Self = Self { index: 2 };
 
-    /// Every finger, in this order.
+    /// All fingers, in ascending order.
     pub const ALL: [Self; FINGERS] = [Self::ONE, Self::TWO, Self::THREE];
 
-    /// Returns the finger with this number, or None if there is no such finger.
+    /// Returns the finger with this number, or `None` if there is no such finger.
     #[must_use]
     pub fn new(number: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|finger| finger.get() == number)

@@ -13,7 +13,7 @@ const LIMIT_ROUNDING: f64 = 1e-5;
 /// angle is then kept.
 const ON_THE_AXIS: f64 = 1e-9;
 
-/// Fraction of the links' lengths by which rounding may put a tip outside of their reach.
+/// Fraction of l1 + l2 by which rounding may put a tip outside the reach of the finger.
 const REACH_ROUNDING: f64 = 1e-9;
 
 /// A^-1 of Figure 9 for one finger within its joint limits.
@@ -27,7 +27,7 @@ pub struct InverseKinematics {
 /// The reason why the finger cannot reach a tip position.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum OutOfReach {
-    /// The point is beyond the stretched finger.
+    /// The point is farther away than the outstretched finger reaches.
     #[error(
         "this point is {distance:.3} cm from the axis of joint 1, and the outstretched finger reaches {reach:.3} cm. \
          Send a point that is nearer"
@@ -38,7 +38,7 @@ pub enum OutOfReach {
         /// l1 + l2, cm.
         reach: f64,
     },
-    /// The point is nearer than the folded finger can reach.
+    /// The point is nearer than the tip of the folded finger can come.
     #[error(
         "this point is {distance:.3} cm from the axis of joint 1, and the folded finger comes no nearer than \
          {least:.3} cm. Send a point that is farther away"
@@ -67,17 +67,17 @@ pub enum OutOfReach {
 }
 
 impl InverseKinematics {
-    /// Constructs the box. `limits` are the lower and upper joint limits, rad, within -pi to pi.
+    /// Constructs A^-1. `limits` are the lower and upper joint limits, rad, within -pi to pi.
     pub fn new(links: Links, limits: (Vector3<f64>, Vector3<f64>)) -> Self {
         Self { links, low: limits.0, high: limits.1 }
     }
 
     /// Returns the joint angles within the limits, rad, with the tip at `tip` (cm, in the finger's frame). Of several
-    /// solutions it is the one whose largest joint motion from `present` is smallest, so that the finger keeps its
-    /// branch.
+    /// solutions it returns the one whose largest joint motion from `present` is smallest, so that the finger does not
+    /// change to another solution on its way.
     ///
     /// # Errors
-    /// There is no solution, or none within the limits.
+    /// Returns an error if there is no solution, or if no solution is within the limits.
     pub fn joints(&self, tip: &Vector3<f64>, present: &Vector3<f64>) -> Result<Vector3<f64>, OutOfReach> {
         let way = |joints: &Vector3<f64>| (joints - present).amax();
         let nearer = |one: Vector3<f64>, other: Vector3<f64>| if way(&other) < way(&one) { other } else { one };
@@ -95,7 +95,7 @@ impl InverseKinematics {
     /// 1 and 2. `open` is the angle of joint 0 for a tip on its axis.
     ///
     /// # Errors
-    /// There is no solution.
+    /// Returns an error if there is no solution.
     pub fn solutions(&self, tip: &Vector3<f64>, open: f64) -> Result<[Option<Vector3<f64>>; 4], OutOfReach> {
         let across = tip.x.hypot(tip.z);
         let toward = if across < ON_THE_AXIS { open } else { tip.x.atan2(tip.z) };
@@ -115,8 +115,9 @@ impl InverseKinematics {
         Ok([part(&near, 0), part(&near, 1), part(&far, 0), part(&far, 1)])
     }
 
-    /// Returns the two solutions for joints 1 and 2 in the plane of joint 0, by the law of cosines. `reach` and `y` are
-    /// those of the tip, cm.
+    /// Returns the two solutions for joints 1 and 2 in the plane of joint 0, by the law of cosines. `reach` is the
+    /// distance of the tip from the axis of joint 0, cm, negative if joint 0 points away from the tip. `y` is the tip's
+    /// y coordinate, cm.
     fn elbows(&self, reach: f64, y: f64) -> Result<[(f64, f64); 2], OutOfReach> {
         let [l0, l1, l2] = self.links.0;
         let (along, down) = (reach - l0, -y);
@@ -145,8 +146,8 @@ impl InverseKinematics {
     }
 
     fn refuse(&self, tip: &Vector3<f64>, solutions: &[Option<Vector3<f64>>; 4]) -> OutOfReach {
-        // If only the solution over the base is left and is outside the limits, the reason against the direct one is
-        // more useful.
+        // If the direct solution does not exist and the solution over the base is outside the limits, the reason why
+        // the direct one does not exist is more useful.
         if let Err(refusal) = self.elbows(tip.x.hypot(tip.z), tip.y) {
             return refusal;
         }

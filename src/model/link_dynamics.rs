@@ -2,8 +2,8 @@
 //! point mass.
 //!
 //! The angular velocity of links 1 and 2 is the rate of joint 0 about its axis plus a rate about the normal of the
-//! finger's plane. Both directions are principal axes of every link, so the inertia matrix does not couple joint 0 with
-//! the other joints.
+//! finger's plane. The normal is a principal axis of every link, and the centres of mass are in the plane, so the
+//! inertia matrix does not couple joint 0 with the other joints.
 
 use crate::model::Links;
 use nalgebra::{Matrix3, Vector3};
@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 struct Cylinder {
     /// Mass, kg.
     mass: f64,
-    /// Moment of inertia about the axis, kg m^2.
+    /// Moment of inertia about the axis of the cylinder, kg m^2.
     axial: f64,
     /// Moment of inertia about a transverse axis through the centre, kg m^2.
     transverse: f64,
@@ -97,7 +97,7 @@ impl LinkDynamics {
         0.5 * rate.dot(&(self.inertia(theta) * rate))
     }
 
-    /// Returns the coefficient of cos(theta_2) in the inertia of the finger's plane, kg m^2.
+    /// Returns the coefficient of cos(theta_2) in the inertia that couples joints 1 and 2, kg m^2.
     fn coupling(&self) -> f64 {
         let [_, l1, l2] = self.length;
         (self.link[2].mass / 2.0 + self.tip_mass) * l1 * l2

@@ -101,7 +101,7 @@ fn a_limit_rounded_to_float_is_within_the_limit() {
     let mut refuse = admission(OutOfRange::Refuse);
     refuse.joint_limits.1[2] = 120f64.to_radians();
     let sent = f64::from(120f32.to_radians());
-    assert!(sent > refuse.joint_limits.1[2], "the case must be one of rounding up");
+    assert!(sent > refuse.joint_limits.1[2], "the test needs a limit that is rounded up");
     assert_eq!(refuse.joints([0.0, 0.0, sent]).expect("admitted")[2], refuse.joint_limits.1[2]);
     assert!(matches!(refuse.joints([0.0, 0.0, sent + 1e-3]), Err(SetPointError::BeyondJointLimit { joint: 2, .. })));
 }
@@ -131,7 +131,7 @@ proptest! {
         mantissas in prop::array::uniform32(-1.0f64..1.0), exponents in prop::array::uniform6(-160i32..155),
         diagonal in prop::bool::ANY, lever in -1.0f64..2.0,
     ) {
-        // A A^T of rank 5 is a spring, except for rounding, with any magnitude in each of its directions.
+        // A A^T of rank 5 is a spring, except for rounding. Its magnitude in each direction is arbitrary.
         let root = nalgebra::SMatrix::<f64, 6, 5>::from_fn(|row, column| match diagonal && row != column {
             true => 0.0,
             false => mantissas[5 * row + column] * 10f64.powi(exponents[row]),

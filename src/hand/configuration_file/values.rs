@@ -163,7 +163,7 @@ impl<'de> serde::Deserializer<'de> for Node<'_> {
             Content::Boolean(flag) => visitor.visit_bool(flag),
             Content::Array(array) => visitor.visit_seq(Entries { entries: array.iter().enumerate() }),
             Content::Table(_) => self.deserialize_struct("", &[], visitor),
-            Content::Date | Content::Tables => self.refuse("something else"),
+            Content::Date | Content::Tables => self.refuse("a value of another kind"),
         }
     }
 

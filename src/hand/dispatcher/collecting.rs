@@ -1,6 +1,6 @@
-//! The thread that collects from the servos, so that nothing is lost while no planner calls. It has the black box of a
-//! finger written when the finger faults. Otherwise it allocates nothing: a planner that is out of memory keeps its
-//! hand.
+//! The thread that collects from the servos, so that nothing is lost while no planner calls. When a finger faults, it
+//! starts another thread that writes the finger's black box. Otherwise it allocates no memory, so that the hand keeps
+//! working if the planner is out of memory.
 
 use crate::finger::Recording;
 use crate::hand::black_box_file::save_at_fault;
@@ -26,7 +26,7 @@ pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopp
     let mut writing = Vec::new();
     let mut planner = PlannerWatch::default();
     while !ended {
-        // The loop runs once more after the end, because a finger may just have faulted.
+        // The loop runs once more after `stopped` is disconnected, because a finger may just have faulted.
         ended = stopped.recv_timeout(COLLECTING_INTERVAL) != Err(RecvTimeoutError::Timeout);
         planner.check();
         for collected in fingers {
@@ -48,8 +48,8 @@ pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopp
     }
 }
 
-/// Writes a black box in a separate thread, because a disk may take longer to confirm a file than the rings of the
-/// other fingers last.
+/// Writes a black box in a separate thread. A disk may take so long to confirm a file that the rings of the other
+/// fingers would overflow.
 fn write(recording: Recording, folder: PathBuf) -> Option<JoinHandle<()>> {
     let shared = Arc::new((recording, folder));
     let for_thread = shared.clone();

@@ -1,10 +1,10 @@
-//! Why a faulted finger cannot recover.
+//! The reasons why a faulted finger cannot recover.
 
 use crate::finger::FaultKind;
 use crate::model::FingerNumber;
 use thiserror::Error;
 
-/// A faulted finger that cannot recover.
+/// The reason why a faulted finger cannot recover.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecoveryError {

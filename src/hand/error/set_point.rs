@@ -4,7 +4,7 @@ use crate::model::FingerNumber;
 use crate::model::{ContactError, OutOfReach};
 use thiserror::Error;
 
-/// A set point, stiffness, contact or damping that a finger cannot take.
+/// The reason why a finger refuses a set point, stiffness, contact or damping.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SetPointError {
@@ -56,11 +56,11 @@ pub enum SetPointError {
     NotSymmetric {
         /// The finger.
         finger: FingerNumber,
-        /// Row of the worst pair.
+        /// Row of the first such pair.
         row: usize,
-        /// Column of the worst pair.
+        /// Column of the first such pair.
         column: usize,
-        /// Their difference, N/cm.
+        /// Difference of the two entries, N/cm.
         difference: f64,
     },
     /// Kx has a negative eigenvalue.
@@ -107,7 +107,7 @@ pub enum SetPointError {
     Damping {
         /// The finger.
         finger: FingerNumber,
-        /// The ratio to the damping that the controller chooses.
+        /// The requested ratio to the damping that the controller chooses.
         ratio: f64,
         /// Largest eigenvalue of the stiffness in force, N/cm.
         stiffness: f64,

@@ -43,14 +43,14 @@ pub struct ConfiguredController {
     pub law: Law,
     /// Whether the controller compensates the torques of gravity on the links.
     pub gravity_compensation: bool,
-    /// K_T, dimensionless: commanded tension for a tension error.
+    /// K_T, dimensionless: commanded tension per tension error.
     pub tension_gain: Option<f64>,
     /// K_TI, 1/s.
     pub tension_integral: Option<f64>,
     /// K_delta at the tendon, N s/m.
     pub motor_damping: Option<f64>,
-    /// beta at 3 N/cm and a bent finger, s: the ratio of joint damping to joint stiffness in the stiffness law. It is
-    /// proportional to 1/sqrt(K_theta).
+    /// beta at 3 N/cm and a bent finger, s: the ratio of joint damping to joint stiffness in the stiffness law. beta
+    /// is proportional to 1/sqrt(K_theta).
     pub rate_time: Option<f64>,
     /// Corner frequency of the low-pass filter on the motor speeds, Hz.
     pub speed_filter: Option<f64>,
@@ -60,8 +60,8 @@ pub struct ConfiguredController {
     pub set_point_speed: Option<f64>,
     /// Figure 11: bandwidth with which the motor model follows the gauges, 1/s.
     pub adaptation_gain: Option<f64>,
-    /// State feedback: alpha, the commanded tension for a tension error. The motors then appear to have 1/alpha of
-    /// their inertia.
+    /// State feedback: alpha, the commanded tension per tension error. The motors then appear to have 1/alpha of their
+    /// inertia.
     pub inertia_gain: Option<f64>,
     /// State feedback: damping ratio of the spring.
     pub damping_ratio: Option<f64>,

@@ -118,7 +118,8 @@ pub struct ConfiguredTendon {
     pub minimum: f64,
     /// t_max, N.
     pub maximum: f64,
-    /// Stiffness between motor pulley and joint, N/cm. It corrects for the stretch, which the encoders do not measure.
+    /// Stiffness between motor pulley and joint, N/cm. With it the controller computes the stretch, which the encoders
+    /// do not measure.
     pub stiffness: [f64; 4],
     /// Relative uncertainty of `stiffness`. It limits the disagreement of gauges and encoders that is attributed to
     /// `stiffness`. Identification sets it.

@@ -59,8 +59,8 @@ pub enum PeriodClock {
     /// The host's CLOCK_MONOTONIC.
     #[default]
     Host,
-    /// The clock of the board, which its replies contain. If a thread serves several boards, it is that of the first.
-    /// Threads that follow different boards do not stay staggered.
+    /// The clock of the board, whose time the replies contain. If a thread serves several boards, it follows the clock
+    /// of the first. Threads that follow different boards do not stay staggered.
     Board,
 }
 

@@ -188,7 +188,7 @@ impl Default for ConfiguredStiffness {
 
 impl ConfiguredStiffness {
     /// Returns the bound that is valid for the default finger with every controller at `rate` Hz, N/cm. It is less than
-    /// the result of `sun2xp bound` for any of them (`docs/stiffness.md`).
+    /// the result of `sun2xp bound` for each of these controllers (`docs/stiffness.md`).
     #[must_use]
     pub fn default_bound(rate: f64) -> f64 {
         if rate >= 1000.0 { 6.0 } else { 5.0 }
@@ -217,8 +217,8 @@ impl ConfiguredFinger {
     /// Returns R of eq. 14, Q of eq. 17 and M of eq. 21.
     ///
     /// # Errors
-    /// The tendons cannot hold the finger: R with its ghost row is singular, or the ghost column of Q is not all
-    /// positive.
+    /// Returns an error if the tendons cannot hold the finger: R with its ghost row is singular, or an entry of the
+    /// ghost column of Q is not positive.
     pub fn tendons(&self) -> Result<Tendons, TendonsError> {
         let ghost = self.geometry.ghost_row.map(RowVector4::from);
         Tendons::new(self.r(), Vector4::from(self.geometry.motor_radius), ghost)

@@ -1,4 +1,4 @@
-//! The kinds of TOML values, in a table, in an array or in one line.
+//! The kinds of TOML values. A value is in a table, in an inline table or in an array.
 
 use crate::model::Shown;
 use toml_edit::{Array, Item, TableLike, Value};
@@ -37,7 +37,7 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// The kind for use in an error text, with the contents of a string.
+    /// Returns the kind for use in an error text. For a string, the text includes its contents.
     pub(super) fn kind(&self) -> String {
         let kind = match self {
             Self::Text(text) => return format!("the text \"{}\"", Shown(text)),
