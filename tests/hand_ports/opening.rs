@@ -67,7 +67,7 @@ fn a_wrong_address() {
     let _turn = turn();
     let other = Board::start(&["3"]);
     let error = refusal_of_finger_2(&other.port);
-    assert_names(&error, libc::ENXIO, &["finger 2", "no finger address 2, but 3", "finger.address"]);
+    assert_names(&error, libc::ENXIO, &["finger 2", "no finger address 2; it has 3", "finger.address"]);
 }
 
 #[test]
