@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 /// Default length of one [`Plant::step`] in simulated time, s.
 pub const PLANT_STEP_SECONDS: f64 = 1e-4;
 
-/// One finger. Its state is theta, theta_dot, m and m_dot. It is integrated by the semi-implicit Euler method.
+/// One finger. Its state is theta, theta_dot, m and m_dot. The state is integrated by the semi-implicit Euler method.
 ///
 /// The rotors are locked until [`Plant::release_brake`]: a hand is braked at its homing pretension until its board
 /// receives commands.

@@ -1,5 +1,5 @@
-//! The physics of a finger and its sensors, which the simulated board uses. It uses SI units. Every number of the
-//! configuration is converted once, at construction.
+//! The physics of a finger and its sensors, which the simulated board uses. The computation is in SI units. Every
+//! number of the configuration is converted once, at construction.
 
 mod contact;
 mod finger_plant;

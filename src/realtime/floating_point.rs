@@ -196,7 +196,7 @@ mod tests {
     /// Computes one third between `enter` and `restore` in a thread that rounds upward.
     fn check<E>(enter: impl FnOnce() -> E, restore: impl FnOnce(E)) {
         let nearest = third();
-        // SAFETY: C functions without pointers. The rounding of this thread is restored below.
+        // SAFETY: the C functions take no pointer. The rounding of this thread is restored below.
         unsafe { fesetround(UPWARD) };
         let upward = third();
         unsafe { feclearexcept(EVERY_FLAG) };

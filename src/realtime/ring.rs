@@ -28,7 +28,7 @@ struct Line<T>(T);
 // SAFETY: only the writer accesses a place until `left` has passed it, and only the reader until `taken` has passed it.
 unsafe impl<T: Send> Sync for Ring<T> {}
 
-/// Returns both ends of a ring with room for `capacity` values, at least one.
+/// Returns both ends of a ring with room for `capacity` values, or for one value if `capacity` is 0.
 pub fn ring<T>(capacity: usize) -> (Producer<T>, Consumer<T>) {
     let ring = Ring {
         left: Line(AtomicUsize::new(0)),

@@ -102,7 +102,7 @@ impl Histograms {
         self.stages.iter_mut().for_each(Histogram::reset);
     }
 
-    /// The distribution of a stage; zeros if nothing was counted.
+    /// The distribution of a stage. All its numbers are 0 if nothing was counted.
     pub fn distribution(&self, stage: CycleStage) -> Distribution {
         let histogram = &self.stages[stage as usize];
         let microseconds = |ns: u64| ns as f64 * 1e-3;

@@ -1,5 +1,5 @@
-//! A board without hardware: the board protocol over the physics of its fingers. It has no clock and no thread.
-//! [`SimulatedPort`](crate::simulated::SimulatedPort) connects it to a serial port, and
+//! A board without hardware. It answers the board protocol, and computes the physics of its fingers. It has no clock
+//! and no thread. [`SimulatedPort`](crate::simulated::SimulatedPort) connects it to a serial port, and
 //! [`SimulatedCable`](crate::simulated::SimulatedCable) runs it in simulated time.
 
 use crate::board::protocol::{
@@ -41,11 +41,11 @@ pub struct SimulatedBoard {
 
 /// Duration of one step of the physics, ns.
 const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
-const _: () = assert!(STEP == 100_000, "the conversion to whole nanoseconds lost something");
+const _: () = assert!(STEP == 100_000, "the conversion to whole nanoseconds has rounded the step");
 
 impl SimulatedBoard {
-    /// Creates a board with these `fingers` (0 to 2) of a hand at their configured addresses. The fingers are braked at
-    /// their start poses. Each finger has its own noise.
+    /// Creates a board with these `fingers` of a hand, at their configured addresses. The fingers are braked at their
+    /// start poses. Each finger has its own noise.
     pub fn new(hand: &Configuration, fingers: &[FingerNumber]) -> Result<Self, SimulatedBoardError> {
         let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), time: None };
         for &number in fingers {
@@ -63,8 +63,8 @@ impl SimulatedBoard {
         Ok(board)
     }
 
-    /// Puts `number` into the unique numbers of the board's fingers. Two boards of one hand with the same fingers must
-    /// have different numbers.
+    /// Writes `number` into the unique numbers of the board's fingers. Two boards of one hand with the same fingers
+    /// must have different numbers.
     pub fn numbered(mut self, number: u32) -> Self {
         self.fingers.iter_mut().for_each(|finger| finger.set_board_number(number));
         self
@@ -80,7 +80,8 @@ impl SimulatedBoard {
         &mut self.fingers
     }
 
-    /// Advances the physics to `now`, ns. The first call sets the board's clock. Time does not run backward.
+    /// Advances the physics to `now`, ns. The first call sets the board's clock. A `now` before the present time has no
+    /// effect.
     pub fn advance(&mut self, now: u64) {
         let time = self.time.get_or_insert(now);
         while *time + STEP <= now {

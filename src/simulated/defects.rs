@@ -1,4 +1,4 @@
-//! Defects of a simulated finger, which can occur while it runs.
+//! Defects that a simulated finger can get while it runs.
 
 use crate::board::protocol::Status;
 use crate::simulated::finger::SimulatedFinger;
@@ -80,7 +80,7 @@ impl SimulatedFinger {
         true
     }
 
-    /// Removes all defects. Faults that the board has stored stay stored until the next Configure.
+    /// Removes all defects. Faults that the board has stored remain until the next Configure.
     pub fn repair(&mut self) {
         self.plant().repair();
         self.sensors().repair();

@@ -1,4 +1,4 @@
-//! One finger of a simulated board: the board's end of the protocol over the physics of a finger.
+//! One finger of a simulated board. It answers the frames of the protocol, and computes the physics.
 
 mod greeting;
 mod identity;
@@ -39,9 +39,9 @@ pub struct SimulatedFinger {
     state: State,
     /// Time up to which the physics has been computed, ns.
     clock: u64,
-    /// When the last obeyed Command arrived, and when silence or a Stop last ended the motion, ns. `None`: not since
-    /// the last Configure.
+    /// When the last obeyed Command arrived, ns. `None`: not since the last Configure.
     commanded_at: Option<u64>,
+    /// When silence or a Stop led to the end state, ns. `None`: not since the last Configure.
     ended_at: Option<u64>,
     terms: Configure,
     /// Torques of the motors, torque units.
@@ -59,7 +59,7 @@ pub struct SimulatedFinger {
 }
 
 impl SimulatedFinger {
-    /// `number`: the finger in its hand. `gravity`: in the finger's frame, m/s^2.
+    /// `number` is the finger's number in its hand. `gravity` is in the finger's frame, m/s^2.
     pub(super) fn new(
         number: FingerNumber,
         address: u8,
@@ -139,7 +139,7 @@ impl SimulatedFinger {
         state | zero | self.latched
     }
 
-    /// Sets the faults that are present: bits of [`Status::FAULTS`]. A fault takes the torque off at once.
+    /// Sets the faults that are present: bits of [`Status::FAULTS`]. A fault sets the torques to zero at once.
     pub fn set_faults(&mut self, faults: Status) {
         self.present = Status(faults.0 & Status::FAULTS.0);
         self.latched |= self.present;
@@ -165,7 +165,7 @@ impl SimulatedFinger {
     }
 
     /// Resets the finger as a loss of power does: it forgets its terms and stored faults, and the motors are off. The
-    /// encoders are absolute.
+    /// encoders are absolute and keep their zeros.
     pub fn reset(&mut self) {
         self.state = State::Idle;
         self.torques = [0; 4];
@@ -217,7 +217,7 @@ impl SimulatedFinger {
         Frame::Configured(Configured { terms: *terms, encoders, gauges, status: self.status() })
     }
 
-    /// Returns the refusal that precedes any check of the terms, even of terms that cannot be decoded.
+    /// Returns the refusal if this state refuses every Configure, even one whose terms cannot be decoded.
     pub(super) fn refuses_any_terms(&self) -> Option<Frame> {
         let refuse = |reason, detail| Some(Frame::Refused(Refused { request: 0x2, reason, detail }));
         if self.enabled() {
@@ -229,7 +229,7 @@ impl SimulatedFinger {
         None
     }
 
-    /// `damaged`: number of damaged frames on the port so far.
+    /// `damaged` is the number of damaged frames on the port so far.
     pub(super) fn command(&mut self, now: u64, command: &Command, damaged: u64) -> Frame {
         let mut clipped = false;
         match (self.state, command.enable) {

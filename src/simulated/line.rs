@@ -72,7 +72,7 @@ impl SimulatedLine {
         self.injected.push(Injected { fault, probability, until });
     }
 
-    /// Removes all faults. Delayed frames arrive next.
+    /// Removes all faults. Frames that are still delayed become due at once.
     pub fn clear(&mut self) {
         self.injected.clear();
         self.waiting.iter_mut().for_each(|waiting| waiting.due = 0);
@@ -85,8 +85,8 @@ impl SimulatedLine {
         self.held = None;
     }
 
-    /// Transports the bytes of consecutive frames, in pieces of any size, at `now`, ns. Otherwise like
-    /// [`SimulatedLine::carry`].
+    /// Transports the bytes of consecutive frames, in pieces of any size, at `now`, ns. Apart from that, it does the
+    /// same as [`SimulatedLine::carry`].
     pub fn carry_bytes(&mut self, now: u64, bytes: &[u8], deliver: &mut dyn FnMut(&[u8])) {
         if self.begun.is_empty() && self.is_good(now) {
             return deliver(bytes);
@@ -165,7 +165,7 @@ impl SimulatedLine {
 mod tests {
     use super::*;
 
-    /// Sends one byte per microsecond through a line, and returns what arrives with its time.
+    /// Sends one byte per microsecond through a line, and returns each byte that arrives, with the time of its arrival.
     fn out(line: &mut SimulatedLine, bytes: u8) -> Vec<(u64, u8)> {
         let mut came = Vec::new();
         for byte in 0..bytes {

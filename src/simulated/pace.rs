@@ -1,6 +1,6 @@
 //! Relates the time of a simulated board to real time. It has no clock and no thread; the caller passes both times.
 
-/// The most by which one wake-up of the board's thread advances the board's time, ns.
+/// The longest time by which one wake-up of the board's thread advances the board's time, ns.
 const LONGEST_STEP: u64 = 2_000_000;
 
 /// The longest silence that a [`Pace::Patient`] board attributes to a pause of the machine, ns. On a busy machine, the
@@ -10,8 +10,8 @@ const PATIENCE: u64 = 2_000_000_000;
 
 /// The rate at which the time of a simulated board passes.
 ///
-/// In both cases, time does not pass while the machine does not run the board's thread: a wake-up counts as at most 2
-/// ms.
+/// In both cases, the board's time stops while the machine does not run the board's thread, because a wake-up advances
+/// it by at most 2 ms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// The rate of real time. The watchdog trips in time when the host falls silent.
@@ -21,14 +21,15 @@ pub enum Pace {
     /// stop a simulated hand.
     Patient {
         /// How far the board's time continues after the last bytes, ns. It must not exceed the time for which a finger
-        /// can do without its controller. With 10 ms of an old torque, again and again, joints turned by radians. With
-        /// 1.5 ms at 1000 Hz they shook.
+        /// can do without its controller. When an old torque acted for 10 ms again and again, joints turned by radians.
+        /// When it acted for 1.5 ms at 1000 Hz, they shook.
         grace: u64,
     },
 }
 
 impl Pace {
-    /// Creates a patient pace for a host with `rate` cycles per second. A command is valid for one period.
+    /// Creates a patient pace for a host with `rate` cycles per second. A command is valid for one period, so the grace
+    /// is one period.
     pub fn patient(rate: f64) -> Self {
         Self::Patient { grace: (1e9 / rate) as u64 }
     }
@@ -41,7 +42,7 @@ pub struct PacedTime {
     board: u64,
     /// Real time of the last wake-up.
     woken: u64,
-    /// Time of the last bytes on the board's clock.
+    /// When the last bytes arrived, by the board's clock.
     received_at: u64,
     silence: u64,
 }

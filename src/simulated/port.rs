@@ -1,7 +1,7 @@
 //! A simulated board at a serial port: a pseudo-terminal and a thread.
 //!
-//! The time of the simulated board does not pass while the machine does not run its thread: each wake-up counts as at
-//! most 2 ms. Otherwise a pause of a virtual machine for 50 ms, which also stops the host's servo, would trip a
+//! The time of the simulated board stops while the machine does not run its thread, because each wake-up advances it by
+//! at most 2 ms. Otherwise a pause of a virtual machine for 50 ms, which also stops the host's servo, would trip a
 //! watchdog that no real board would trip. The finger would also move for 50 ms without its controller.
 
 use crate::realtime::{self, Priority, spawn};
@@ -25,7 +25,7 @@ const TICK: Duration = Duration::from_millis(1);
 /// exclusive use, but not its lock.
 const SILENCE: u64 = 100_000_000;
 
-/// A simulated board with its own port and a thread that runs it. Dropping it ends both.
+/// A simulated board with its own port and a thread that runs it. Dropping it ends the thread and removes the port.
 #[derive(Debug)]
 pub struct SimulatedPort {
     shared: Arc<Mutex<Shared>>,
@@ -43,7 +43,8 @@ struct Shared {
     line: SimulatedLine,
     /// The direction from the host to the board.
     line_to_board: SimulatedLine,
-    /// `None` while the cable is unplugged, and after another part of the program has closed its descriptors.
+    /// `None` while the cable is unplugged, and after another part of the program has closed the terminal's
+    /// descriptors.
     terminal: Option<Arc<PseudoTerminal>>,
     /// The board's clock, ns.
     time: u64,
@@ -58,13 +59,13 @@ impl SimulatedPort {
         let ended = Arc::new(AtomicBool::new(false));
         let thread = {
             let (shared, ended) = (shared.clone(), ended.clone());
-            // A simulation does not need real-time priority.
+            // The refusals are ignored, because a simulation does not need real-time priority.
             spawn("sun2xp board", priority, move |_| run(&shared, pace, &ended))?
         };
         Ok(Self { shared, ended, thread: Some(thread), process: std::process::id() })
     }
 
-    /// Returns the port to open, or an empty path while the cable is unplugged. After plugging in, the path differs.
+    /// Returns the path of the port, or an empty path while the cable is unplugged. Plugging in changes the path.
     pub fn path(&self) -> PathBuf {
         self.shared.lock().terminal.as_deref().map(PseudoTerminal::path).map(Path::to_owned).unwrap_or_default()
     }
@@ -92,7 +93,7 @@ impl SimulatedPort {
         shared.line.inject(fault, probability, until, seed);
     }
 
-    /// Does the same to frames to the board.
+    /// Applies `fault` to each frame to the board, see [`SimulatedPort::inject`].
     pub fn inject_to_board(&self, fault: LineFault, probability: f64, time: u64, seed: u64) {
         let mut shared = self.shared.lock();
         let until = shared.time.saturating_add(time);

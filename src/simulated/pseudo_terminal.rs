@@ -39,7 +39,8 @@ impl PseudoTerminal {
         let name = CStr::from_bytes_until_nul(&name).map_err(io::Error::other)?;
         // SAFETY: `name` is a C string.
         let host_end = Descriptor::opened(unsafe { libc::open(name.as_ptr(), FLAGS) })?;
-        // The terminal must be raw before its path is known. Until then it echoes, and removes some byte values.
+        // The terminal must be raw before its path is known. A terminal that is not raw echoes, and removes some byte
+        // values.
         make_raw(&host_end)?;
         // SAFETY: the command takes an integer.
         check(unsafe { libc::fcntl(board_end.number(), libc::F_SETFL, libc::O_RDWR | libc::O_NONBLOCK) })?;
@@ -56,7 +57,7 @@ impl PseudoTerminal {
     /// failed read.
     ///
     /// # Errors
-    /// The pseudo-terminal is lost.
+    /// Returns [`Closed`] if another part of the program has closed a descriptor.
     pub fn read(&self, buffer: &mut [u8], timeout: Duration) -> Result<usize, Closed> {
         let mut poll = libc::pollfd { fd: self.board_end.number(), events: libc::POLLIN, revents: 0 };
         // SAFETY: the pollfd lives during the call.
@@ -80,7 +81,7 @@ impl PseudoTerminal {
         Ok(0)
     }
 
-    /// Sends bytes without waiting, as a UART does. Bytes that nobody reads are lost.
+    /// Sends bytes without waiting, as a UART does. Bytes that the host does not read are lost.
     pub fn write(&self, bytes: &[u8]) {
         if self.board_end.is_own() {
             // SAFETY: `bytes` is readable for its length.

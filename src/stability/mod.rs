@@ -1,5 +1,5 @@
 //! Stability of a finger with its controller: the one-cycle map of core and plant, and the largest stiffness for which
-//! it is stable. Tools and measurements use this module. No servo thread runs any of it.
+//! the finger is stable. Tools and measurements use this module. No servo thread runs any of it.
 
 mod one_cycle_map;
 mod recurrence;

@@ -11,24 +11,26 @@ use nalgebra::{DVector, Matrix3, Vector3, Vector4};
 /// Time in which the filters and integrals of the controller settle, s.
 const SETTLING: f64 = 0.3;
 
-/// Time for which the motion is observed, s, and the longer time if the first observation is inconclusive.
+/// Time for which the motion is observed first, s.
 const OBSERVED: f64 = 1.0;
+
+/// Time for which the motion is observed again if the first observation is inconclusive, s.
 const OBSERVED_LONG: f64 = 4.0;
 
-/// The first observation is inconclusive if the largest modulus is not below 1 by at least this.
+/// The first observation is conclusive only if the largest modulus is below 1 by more than this.
 const SLOW: f64 = 2e-5;
 
 /// Interval between two observations, s. It is long enough to separate the remaining eigenvalues.
 const STRIDE: f64 = 0.005;
 
-/// Growth at which a displacement counts as diverged.
+/// Ratio to its initial size at which a displacement counts as diverged.
 const DIVERGED: f64 = 1e3;
 
-/// Fraction of a displacement below which it contains no information, because the finger itself is not at rest to the
-/// last bit.
+/// Fraction of its initial size below which a displacement contains no information, because the finger itself is not at
+/// rest to the last bit.
 const DECAYED: f64 = 1e-4;
 
-/// Motion by which a finger counts as having left its rest, rad.
+/// Motion of a joint beyond which the finger counts as having left its rest, rad.
 const FAR: f64 = 0.1;
 
 /// A finger at rest at `joints`. A force on the tip holds it at `deflection` from the anchor of its spring.
@@ -36,8 +38,8 @@ const FAR: f64 = 0.1;
 pub struct Rest {
     /// Joint angles, rad.
     pub joints: Vector3<f64>,
-    /// Anchor of the spring minus joint angles, rad. At zero deflection the tendons 1 and 4 share t_min, where eq. 20
-    /// has a kink.
+    /// Anchor of the spring minus joint angles, rad. At zero deflection, tendons 1 and 4 both have the tension t_min,
+    /// and eq. 20 has a kink there.
     pub deflection: Vector3<f64>,
     /// Kx, N/cm.
     pub stiffness: Matrix3<f64>,
@@ -45,8 +47,8 @@ pub struct Rest {
     pub damping: f64,
 }
 
-/// A finger without Coulomb friction and with exact sensors, whose parameters are those that its controller is
-/// configured with.
+/// A finger without Coulomb friction and with exact sensors. Its parameters are equal to those in the configuration of
+/// its controller.
 ///
 /// Friction and quantisation are left out because they only add a small persistent motion, or end a motion.
 pub struct OneCycleMap {
@@ -54,8 +56,9 @@ pub struct OneCycleMap {
     tendons: Tendons,
     controller: Controller,
     distribution: TensionDistribution,
-    /// Number of plant steps in a cycle, and the length of each, s.
+    /// Number of plant steps in a cycle.
     steps: usize,
+    /// Length of a plant step, s.
     step: f64,
 }
 
@@ -64,7 +67,7 @@ impl OneCycleMap {
     /// number of plant steps, none longer than [`PLANT_STEP_SECONDS`].
     ///
     /// # Errors
-    /// A value with which no controller can be constructed.
+    /// Returns the value with which no controller can be constructed.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         let finger = matching_simulation(finger);
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
@@ -80,7 +83,7 @@ impl OneCycleMap {
         })
     }
 
-    /// Returns the fraction of its stiffness that the servo gives the finger at `rest`, 0 to 1.
+    /// Returns the factor by which the servo scales the stiffness of `rest`, 0 to 1.
     pub fn scale(&self, rest: &Rest) -> f64 {
         let mut finger = self.start(rest, &self.tendons.pretension(self.finger.tendon.minimum));
         self.cycle(&mut finger);
@@ -142,7 +145,7 @@ impl OneCycleMap {
         let mut finger = self.finger.clone();
         finger.simulation.start_degrees = rest.joints.map(f64::to_degrees).into();
         let mut plant = Plant::new(&finger, Vector3::zeros())
-            .expect("the tendons of a controller that was made")
+            .expect("the controller was constructed with these tendons")
             .with_step(self.step);
         plant.release_brake();
         let stretch = (tensions - plant.tensions()).component_div(&Vector4::from(finger.simulation.tendon_stiffness));
@@ -190,7 +193,7 @@ struct Moving {
 }
 
 /// Returns a configuration whose simulated finger equals the controller's model, without Coulomb friction and noise.
-/// The controller's friction is zero too. The speed of set points is practically not limited.
+/// The controller's friction is zero too. The speed of set points is practically unlimited.
 fn matching_simulation(finger: &ConfiguredFinger) -> ConfiguredFinger {
     let mut finger = finger.clone();
     finger.motor.sign = [1; 4];

@@ -18,9 +18,9 @@ const LEAST_SHARE: f64 = 0.01;
 ///
 /// After the fast modes have decayed, the last samples follow a short recurrence `y[k] = a1 y[k-1] + ... + ap y[k-p]`
 /// with the same coefficients in every channel. The roots of this recurrence are the remaining eigenvalues (Prony). The
-/// shortest recurrence that explains the samples has hardly any other roots, and these do not contribute to the motion.
-/// If no recurrence explains the samples, the roots mean nothing, and the mean change of the samples is returned. This
-/// happens for example at a joint limit that one motion reaches and the other does not.
+/// shortest recurrence that explains the samples has hardly any other roots, and those other roots do not contribute to
+/// the motion. If no recurrence explains the samples, the roots mean nothing, and the mean change of the samples is
+/// returned. This happens for example at a joint limit that one motion reaches and the other does not.
 pub fn growth(samples: &[DVector<f64>]) -> f64 {
     if samples.iter().any(|sample| !sample.norm().is_finite()) {
         return f64::NAN;
@@ -46,7 +46,7 @@ fn has_decayed(follows: &[DVector<f64>], root: f64, rounding: f64) -> bool {
 }
 
 /// Returns the mean change per sample, from the largest sample of the first half to that of the second. Returns NaN for
-/// less than two samples.
+/// fewer than two samples.
 fn mean_change(window: &[DVector<f64>]) -> f64 {
     let half = window.len() / 2;
     if half == 0 {
@@ -77,8 +77,8 @@ fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f6
 
 /// Returns the largest modulus among the roots of z^p - a1 z^(p-1) - ... - ap that contribute to the last sample.
 ///
-/// The slowest mode contributes most to it. A larger root without a contribution fits rounding errors, and does not
-/// belong to the motion.
+/// The slowest mode contributes most to the last sample. A larger root without a contribution fits rounding errors, and
+/// does not belong to the motion.
 fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
     let order = coefficients.len();
     let companion = DMatrix::from_fn(order, order, |row, column| match (row, column) {

@@ -14,7 +14,7 @@ const SOFTEST: f64 = 1.0;
 /// Tolerance for a modulus above 1. A joint without stiffness has an eigenvalue of 1.
 const ROUNDING: f64 = 1e-5;
 
-/// A stiffness above what any pose supports, N/cm. The servo scales it down to the supported one.
+/// A stiffness that no pose supports, N/cm. The servo scales it down to the supported stiffness.
 const UNSUPPORTED: f64 = 1e3;
 
 /// A finger with its controller, for tests with many springs.
@@ -25,7 +25,7 @@ pub(super) struct Trial {
 
 impl Trial {
     /// # Errors
-    /// A value with which no controller can be constructed.
+    /// Returns the value with which no controller can be constructed.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         Ok(Self { map: OneCycleMap::new(finger, rate)?, admissible: AdmissibleDamping::new(finger, rate) })
     }

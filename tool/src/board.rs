@@ -27,14 +27,16 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 ///     ball FINGER X Y Z RADIUS K             put a ball
 ///     hold FINGER                            hold the finger in its current pose, like a jig
 ///     free FINGER                            remove force, wall, ball and jig
-///     state FINGER                           true joint angles (rad), tip (cm), tensions (N) and motor torques (N cm);
-///                                            times by the board's clock (ms): now, of the last Command that was
-///                                            obeyed, and of the end state after it; NaN if not since the last
-///                                            Configure; status bits as in a Reply
+///     state FINGER                           answer with the true joint angles (rad), tip (cm), tensions (N), motor
+///                                            torques (N cm), three times by the board's clock (ms), and the status
+///                                            bits of a Reply. The times are: now, the last obeyed Command, and the
+///                                            end state that silence or a Stop caused. A time is NaN if the event
+///                                            has not occurred since the last Configure
 ///     quit                                   end the program
 ///
-/// A defect stays until `mend`, a line fault until `good` or for the time MS. Tendons, motors, gauges and encoders are
-/// numbered 1 to 4. PROBABILITY applies to each frame from the board, or with `commands` to each frame to the board.
+/// A defect lasts until `mend`. A line fault lasts until `good`, or for MS milliseconds if MS is given. Tendons,
+/// motors, gauges and encoders are numbered 1 to 4. PROBABILITY applies to each frame from the board, or with
+/// `commands` to each frame to the board.
 ///
 ///     cut FINGER TENDON                      tear a tendon
 ///     slack FINGER TENDON GRIP               let a tendon slip at tensions above GRIP, N
@@ -64,10 +66,10 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// The configuration of the simulated fingers; default values without it. Its ports are ignored.
+    /// The configuration of the simulated fingers. Without it every key has its default value. Its ports are ignored.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// A finger of the board, 1 to 3; may be repeated. Its address is its number unless the configuration has another.
+    /// A finger of the board, 1 to 3. May be repeated. Its address is its number unless the configuration sets another.
     #[arg(
         long = "finger",
         value_name = "N",
@@ -75,7 +77,7 @@ pub struct Arguments {
         value_parser = clap::value_parser!(u8).range(1..=FINGERS as i64)
     )]
     fingers: Vec<u8>,
-    /// Push every fingertip from the start, N.
+    /// Push every fingertip with this force as soon as the board starts, N.
     #[arg(
         long,
         value_name = "X,Y,Z",
@@ -83,7 +85,7 @@ pub struct Arguments {
         value_parser = |list: &str| Action::from_list("force", list)
     )]
     force: Option<Action>,
-    /// Put a wall in front of every finger from the start, cm and N/cm.
+    /// Put a wall in front of every finger as soon as the board starts, cm and N/cm.
     #[arg(
         long,
         value_name = "PX,PY,PZ,NX,NY,NZ,K",
@@ -91,7 +93,7 @@ pub struct Arguments {
         value_parser = |list: &str| Action::from_list("wall", list)
     )]
     wall: Option<Action>,
-    /// Put a ball in front of every finger from the start, cm and N/cm.
+    /// Put a ball in front of every finger as soon as the board starts, cm and N/cm.
     #[arg(
         long,
         value_name = "X,Y,Z,RADIUS,K",
@@ -99,10 +101,10 @@ pub struct Arguments {
         value_parser = |list: &str| Action::from_list("ball", list)
     )]
     ball: Option<Action>,
-    /// Seed of the gauge noise. The seed of each finger is derived from it.
+    /// Seed of the gauge noise and of the line faults. The noise seed of each finger is derived from it.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// An order to carry out at the start; may be repeated.
+    /// An order to carry out at the start. May be repeated.
     #[arg(long = "order", value_name = "ORDER")]
     orders: Vec<String>,
     /// Make a symbolic link to the port, and remove it at `quit`. An existing symbolic link is replaced. The board's
@@ -172,9 +174,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The unique number of the board. It is derived from the link, so that it stays the same when the board is restarted,
-/// or from the process number without a link. Process numbers have less than 31 bits. Bit 31 marks a number from a
-/// link.
+/// Returns the unique number of the board. With a link it is derived from the path of the link, so that it stays the
+/// same when the board is restarted. Without a link it is the process number. Process numbers have less than 31 bits,
+/// and bit 31 marks a number from a link.
 fn number(link: Option<&Path>) -> io::Result<u32> {
     match link {
         Some(link) => Ok(check(std::path::absolute(link)?.as_os_str().as_bytes()) | 1 << 31),

@@ -12,9 +12,9 @@ use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger, FINGERS, RATES, Scheme};
 use sun2xp::stability::{Limit, Search, StiffnessBound};
 
-/// Finds the bound on the largest eigenvalue of Kx, up to which a finger is stable in every pose.
+/// Finds the bound on the eigenvalues of Kx up to which a finger is stable in every pose.
 ///
-/// The search simulates the configured controller, links, tendons and motors without friction, with exact measurements
+/// The search simulates the configured controller, links, tendons and motors, without friction, with exact measurements
 /// and one cycle of delay. Poses within the joint limits, axes of Kx and loads are random. In a pose that is stable
 /// only below the bound, the servo scales Kx down, and so does the search. The bound is low enough that no pose needs a
 /// scale below one half. The search takes up to a minute for each kind of finger.
@@ -110,14 +110,14 @@ fn report(
     let degrees =
         |pose: sun2xp::nalgebra::Vector3<f64>| format!("{:.0?} degrees", pose.map(f64::to_degrees).as_slice());
     match bound.limit {
-        Limit::Unstable(pose) => writeln!(output, "    above this, unstable at {}", degrees(pose))?,
+        Limit::Unstable(pose) => writeln!(output, "    above this, the finger is unstable at {}", degrees(pose))?,
         Limit::Scaled(pose) => {
             writeln!(output, "    above this, the servo would scale Kx down by more than half at {}", degrees(pose))?
         }
     }
     writeln!(
         output,
-        "    {} samples stable; in {:.1} % of the poses the servo scales Kx down, in the worst one to {:.2} of it",
+        "    {} samples stable; in {:.1} % of the poses the servo scales Kx down, at worst by a factor of {:.2}",
         bound.samples,
         100.0 * bound.scaled,
         bound.least_scale
@@ -128,7 +128,7 @@ fn report(
         _ => writeln!(
             output,
             "    not covered: {unstable} of {near} samples with the tip within 3 cm of the axis of joint 0 are \
-             unstable, at up to {distance:.1} cm"
+             unstable, at distances of up to {distance:.1} cm"
         ),
     }
 }

@@ -23,8 +23,8 @@ use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 /// `finger.zeroing.method`. Without that key, they are zeroed against the stops of the finger if `finger.zeroing` gives
 /// their angles, or else at a pose in which you hold the finger. A finger that is not held in the pose is refused.
 ///
-/// Identify: the finger goes to its lower stops, moves its joints in both directions and presses. It needs the whole
-/// range of its joints free of objects.
+/// Identify: the finger goes to its lower stops, moves its joints in both directions and presses against its stops. The
+/// whole range of its joints must be free of objects.
 ///
 /// Only the results are written; the rest of the file stays unchanged.
 #[derive(clap::Args)]
@@ -35,7 +35,7 @@ pub struct Arguments {
     /// The finger. May be repeated. The default is all fingers. The ports of other fingers are not opened.
     #[arg(long = "finger", value_name = "N", value_parser = clap::value_parser!(i32).range(1..=FINGERS as i64))]
     fingers: Vec<i32>,
-    /// Find the directions in which motors, encoders and gauges count.
+    /// Find the signs of motors, encoders and gauges.
     #[arg(long)]
     signs: bool,
     /// Zero gauges and encoders.
@@ -44,7 +44,7 @@ pub struct Arguments {
     /// Measure friction and tendon stiffness. The finger must have been zeroed.
     #[arg(long)]
     identify: bool,
-    /// Do not wait for Enter when a person is to hold a finger or let it go. For scripts, with a jig.
+    /// Do not wait for Enter when a person is to hold a finger or let it go. This is for scripts that use a jig.
     #[arg(long)]
     yes: bool,
     /// Do not write the results.
@@ -151,7 +151,7 @@ fn show(finger: i32, task: Task) -> impl FnMut(Progress) {
         let percent = (progress.part * 100.0) as u32;
         if last != Some((progress.step, if terminal { percent } else { 0 })) {
             let (begin, end) = if terminal { ("\r\x1b[K", "") } else { ("", "\n") };
-            // A failed write, for example because nobody reads, is no reason to stop the finger.
+            // A failed write, for example because no program reads standard error, is no reason to stop the finger.
             let _ = write!(io::stderr(), "{begin}finger {finger}, {doing}: {percent:3} %, {}{end}", progress.step);
             last = Some((progress.step, if terminal { percent } else { 0 }));
         }
@@ -170,7 +170,7 @@ fn report(findings: Findings) -> io::Result<()> {
             if let Some(range) = zeros.range_error {
                 writeln!(
                     output,
-                    "stop range beyond configuration, degrees:   {}",
+                    "measured minus configured range, degrees:   {}",
                     list(range.map(f64::to_degrees).as_slice(), 2)
                 )?;
             }

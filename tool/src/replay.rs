@@ -9,12 +9,13 @@ use sun2xp::control::Activity;
 use sun2xp::finger::{CycleRecord, Difference, Recording};
 use sun2xp::model::{Shown, ShownPath};
 
-/// Runs the controller over a black box file, and compares its commands with the recorded ones, bit for bit.
+/// Runs the controller with the inputs recorded in a black box file, and compares its commands with the recorded
+/// commands, bit for bit.
 ///
 /// Exit status: 0 if all are equal, 2 if something differs, 1 if the file cannot be replayed.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// A file written by WriteBlackBox or because of `hand.black_box`.
+    /// A file that WriteBlackBox wrote, or that was written at a fault because `hand.black_box` is set.
     #[arg(value_name = "FILE")]
     file: PathBuf,
 }

@@ -16,7 +16,7 @@ use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, RATES};
 use sun2xp::realtime::{CycleStage, Distribution};
 
-/// Largest file of costs, bytes. It holds four numbers.
+/// Largest size of a file of costs, bytes. The file contains four numbers.
 const LARGEST_COSTS: u64 = 1 << 16;
 
 /// Computes whether every cycle of the hand meets its deadline, from worst-case times, line times and the allocation of
@@ -25,8 +25,8 @@ const LARGEST_COSTS: u64 = 1 << 16;
 /// The worst cases of this machine are measured on the simulated hand, with the rate, threads, cores and priorities of
 /// the configuration. With --costs they are read from a TOML file with the keys `wake_up`, `write` (the commands of one
 /// port), `read` (receive and decode one reply) and `compute` (one finger), all in us. Lines are as configured; a
-/// simulated port counts as a serial line of its baud rate. The results hold for any phases of the threads. Exit status
-/// 1: a deadline may be missed.
+/// simulated port counts as a serial line of its baud rate. The results hold for any phases of the threads. The exit
+/// status is 1 if a deadline may be missed.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file. The default is the file that OpenHand would use.
@@ -146,7 +146,7 @@ fn table(out: &mut impl Write, schedule: &[Scheduled], title: &str) -> io::Resul
     writeln!(out)
 }
 
-/// What limits the rate.
+/// Returns the reason why the rate cannot be higher.
 fn limits(schedule: &[Scheduled]) -> String {
     let first = schedule.iter().find_map(|thread| {
         thread.limit.map(|limit| format!("above that, {}, thread {}", missed(limit), thread.thread))

@@ -154,6 +154,6 @@ fn a_finger_whose_stops_are_known_is_zeroed_against_them() {
     let text = said(&output);
     contains(&text, &["finger 1, zeroing:", "moving the joints against their stops"]);
     assert!(!text.contains("Press Enter"), "{text}");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("stop range beyond"), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("measured minus configured range"), "{output:?}");
     assert!(!desk.unchanged());
 }

@@ -11,7 +11,8 @@ const SIMULATED_BOARD: u16 = 1;
 const GAUGE_BITS: u8 = 12;
 
 impl SimulatedFinger {
-    /// Makes the unique number differ from that of the same finger on other simulated boards.
+    /// Writes the board's number into the unique number, which then differs from that of the same finger on other
+    /// simulated boards.
     pub(in crate::simulated) fn set_board_number(&mut self, number: u32) {
         self.unique_number[BOARD_NUMBER].copy_from_slice(&number.to_be_bytes());
     }

@@ -20,11 +20,11 @@ pub enum Trouble {
     PlugIn,
 }
 
-/// Longer than any program runs.
+/// A duration longer than any program runs, ns.
 const FOREVER: u64 = u64::MAX;
 
 impl Trouble {
-    /// Reads an order; none if it is not of this kind.
+    /// Reads an order. Returns `None` if the order does not cause or end a fault.
     pub fn read(words: &[&str]) -> Result<Option<Self>, String> {
         let [name, rest @ ..] = words else { return Ok(None) };
         let numbers = || -> Result<Vec<f64>, String> { rest.iter().map(|word| number(word)).collect() };
@@ -53,7 +53,7 @@ impl Trouble {
                     let fault = LineFault::Delay(nanoseconds(delay)?);
                     Trouble::Line(fault, probability(chance)?, nanoseconds(time)?)
                 }
-                _ => return Err("usage: delay PROBABILITY MS_LATER [MS]".into()),
+                _ => return Err("usage: delay PROBABILITY LATER [MS]".into()),
             },
             "stall" => match numbers()?[..] {
                 [time] => Trouble::Line(LineFault::Stall, 1.0, nanoseconds(time)?),

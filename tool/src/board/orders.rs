@@ -25,7 +25,7 @@ pub enum Action {
 }
 
 impl Order {
-    /// Reads an order; none for an empty line.
+    /// Reads an order. Returns `None` for an empty line.
     pub fn read(line: &str) -> Result<Option<Self>, String> {
         let words: Vec<&str> = line.split_whitespace().collect();
         if let Some(trouble) = Trouble::read(&words)? {

@@ -1,4 +1,4 @@
-//! Checks whether this machine and its ports can run a hand as configured, and what to change if not.
+//! Checks whether this machine and its ports can run a hand as configured, and finds what to change if they cannot.
 
 use super::finding::Finding;
 use super::{machine, measured, ports};
@@ -7,11 +7,12 @@ use std::time::Duration;
 use sun2xp::hand::{Fingers, HandError, check, simulate};
 use sun2xp::model::configuration::Configuration;
 
-/// Checks the machine, whose files are below `root` (`/`, except in tests), and the ports of a hand, which must be
-/// closed. The measurements take about `duration`. The motors stay off.
+/// Checks the machine, whose files are below `root` (`/`, except in tests), and the ports of a hand. No program may
+/// have the hand open. The measurements take about `duration`. The motors stay off.
 ///
 /// # Errors
-/// The configuration cannot be used, or the system cannot start a thread or open a pseudo-terminal.
+/// Returns an error if the configuration cannot be used, or if the system cannot start a thread or open a
+/// pseudo-terminal.
 pub fn examine(configuration: &Configuration, root: &Path, duration: Duration) -> Result<Vec<Finding>, HandError> {
     check(configuration)?;
     let mut findings = machine::findings(configuration, root);

@@ -5,7 +5,7 @@ use std::fs::read_to_string;
 use std::path::Path;
 use sun2xp::model::configuration::Configuration;
 
-/// Memory that three servo threads lock, with reserve, bytes: stacks, rings and mailboxes.
+/// Memory that three servo threads lock for stacks, rings and mailboxes, with a reserve, bytes.
 const LOCKED: u64 = 4 << 20;
 
 const CAP_IPC_LOCK: u32 = 14;
@@ -98,7 +98,7 @@ fn scheduling(configuration: &Configuration, limit: Option<u64>, capable: bool) 
         "The servos would have the jitter of ordinary threads. Write `@realtime - rtprio 90` into {LIMITS}, join the \
          group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
-    lacking(configuration, subject, format!("{wanted} is configured, the rtprio limit is {limit}"), advice)
+    lacking(configuration, subject, format!("{wanted} is configured, but the rtprio limit is {limit}"), advice)
 }
 
 fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> Finding {
@@ -113,7 +113,7 @@ fn memory(configuration: &Configuration, limit: Option<u64>, capable: bool) -> F
         "When memory is short, a servo may have to wait for its own pages. Write `@realtime - memlock unlimited` into \
          {LIMITS}, join the group (sudo groupadd -f realtime; sudo usermod -aG realtime $USER) and log in again"
     );
-    let found = format!("the memlock limit is {kilobytes} kB, the servos need {} kB", LOCKED / 1024);
+    let found = format!("the memlock limit is {kilobytes} kB, but the servos need {} kB", LOCKED / 1024);
     lacking(configuration, subject, found, advice)
 }
 
@@ -158,7 +158,7 @@ fn governor(online: &[usize], read: impl Fn(usize) -> Option<String>) -> Finding
     }
 }
 
-/// The soft limit in a line of /proc/self/limits; none if it is unlimited or the line is missing.
+/// The soft limit in a line of /proc/self/limits; `None` if it is unlimited or the line is missing.
 fn limit(limits: &str, name: &str) -> Option<u64> {
     field(limits, name).split_whitespace().next()?.parse().ok()
 }

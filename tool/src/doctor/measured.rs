@@ -12,17 +12,18 @@ use sun2xp::realtime::{Schedule, WakeUp, measure_wake_up, now};
 /// Time until all threads are ready, ns.
 const HEAD_START: u64 = 10_000_000;
 
-/// Part of the period. If the 99 % wake-up latency exceeds it, the time for the replies becomes short.
+/// Fraction of the period. If the 99 % wake-up latency exceeds it, the time for the replies becomes short.
 const LATE: f64 = 0.1;
 
-/// Part of the period. If the 99 % wake-up latency exceeds it, some periods are lost.
+/// Fraction of the period. If the 99 % wake-up latency exceeds it, some periods are lost.
 const TOO_LATE: f64 = 0.5;
 
 /// Largest acceptable timer slack of a thread that is not real-time, ns. Servos request 1 ns; the kernel's default is
 /// 50 us.
 const SLACK: u64 = 1000;
 
-/// Measures threads that wake up as the servos would: all at the same time, staggered like them.
+/// Measures threads that wake up as the servos would. All threads run at the same time, with the same stagger as the
+/// servos.
 pub(super) fn wake_ups(configuration: &Configuration, duration: Duration) -> Result<Vec<Finding>, HandError> {
     let period = (1e9 / configuration.hand.rate).round() as u64;
     let cycles = (duration.as_nanos() as u64 / period).max(1);
@@ -81,8 +82,8 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
     if asked && wake_up.refusals.scheduling.is_none() {
         return Finding::good(subject, format!("{slack} ns, which does not apply to a real-time thread"));
     }
-    let advice = "The kernel may wake this thread up late by this time, and refused to change it (prctl, \
-                  PR_SET_TIMERSLACK). Permit that call if a sandbox forbids it, or make the thread real-time \
+    let advice = "The kernel may wake this thread up late by this time, and the system refused to change it \
+                  (prctl, PR_SET_TIMERSLACK). Permit that call if a sandbox forbids it, or make the thread real-time \
                   (finger.priority)";
     Finding::new(Rating::Warning, subject, format!("{slack} ns"), advice)
 }

@@ -19,10 +19,10 @@ use sun2xp::realtime::{
 };
 use sun2xp::simulated::SimulatedPort;
 
-/// Part of the reply window. If the 99 % round trip exceeds it, little reserve is left.
+/// Fraction of the reply window. If the 99 % round trip exceeds it, little reserve is left.
 const LONG: f64 = 0.75;
 
-/// Largest acceptable part of lost replies.
+/// Largest acceptable fraction of lost replies.
 const TOO_MANY_LOST: f64 = 0.01;
 
 pub(super) fn findings(
@@ -66,7 +66,7 @@ fn advice(error: &LinkError, root: &Path, path: &Path) -> String {
         _ => None,
     };
     match group {
-        Some(group) => format!("{error}. Its group is {group}: sudo usermod -aG {group} $USER"),
+        Some(group) => format!("{error}. The group of the port is {group}: sudo usermod -aG {group} $USER"),
         None => error.to_string(),
     }
 }
@@ -100,7 +100,7 @@ struct Measured {
     lost: u64,
 }
 
-/// Exchanges frames with every finger on a port like its servo, but with the motors off.
+/// Exchanges frames with every finger on a port as its servo does, but with the motors off.
 fn round_trips(
     configuration: &Configuration,
     link: &mut Link<Port>,
@@ -126,7 +126,7 @@ fn round_trips(
         }
         let began = now();
         link.send(&commands[..fingers.len()])?;
-        // This waits longer than the servo, in order to measure how long a reply takes.
+        // The wait is longer than the servo's, so that late replies are measured too.
         let mut allowance = Allowance::for_replies(began + period);
         let mut missing = fingers.len();
         while missing > 0

@@ -29,7 +29,7 @@ impl Costs {
     /// Reads the four times from TOML text with the keys `wake_up`, `write`, `read` and `compute`.
     ///
     /// # Errors
-    /// The line number, and what is wrong with it.
+    /// Returns the line number, if known, and what is wrong.
     pub fn parse(text: &str) -> Result<Self, String> {
         let refused = |wrong: Wrong| match wrong.line(text) {
             Some(line) => format!("{line}: {wrong}"),
@@ -68,14 +68,14 @@ pub struct Scheduled {
     pub priority: u8,
     /// The fingers of the thread, in the order in which they are served.
     pub fingers: Vec<FingerNumber>,
-    /// Part of a period in which the thread computes.
+    /// Fraction of a period in which the thread computes.
     pub load: f64,
-    /// Part of a period in which the thread's busiest line is busy.
+    /// Fraction of a period in which the thread's busiest line is busy.
     pub line: f64,
-    /// The latest times at which the replies have arrived and the cycle is done, us after its scheduled beginning; none
-    /// if there is no bound within the period.
+    /// The latest times at which the replies have arrived and the cycle is done, us after the scheduled beginning of
+    /// the cycle. `None` if there is no bound within the period.
     pub response: Option<(f64, f64)>,
-    /// The deadline that may be missed.
+    /// The deadline that may be missed, if any.
     pub limit: Option<RateLimit>,
 }
 
@@ -120,7 +120,7 @@ pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor:
         .collect()
 }
 
-/// The highest whole rate up to `most`, Hz, at which every deadline is met; 0 if there is none.
+/// The highest whole rate up to `most`, Hz, at which every deadline is met. 0 if there is none.
 pub fn fastest_rate(hand: &Configuration, costs: &Costs, sensor: &Sensor, most: u32) -> u32 {
     let met = |rate: u32| {
         off_line_schedule(hand, rate.into(), costs, sensor).iter().all(|scheduled| scheduled.limit.is_none())
@@ -151,8 +151,8 @@ fn task(hand: &Configuration, fingers: &[FingerNumber], period: f64, costs: &Cos
     }
 }
 
-/// The ports of a thread, each as one of its fingers and the number of fingers on it. Every simulated finger has a port
-/// of its own.
+/// The ports of a thread. Each item is one finger on a port and the number of the thread's fingers on that port. Every
+/// simulated finger has a port of its own.
 fn lines<'a>(hand: &'a Configuration, fingers: &'a [FingerNumber]) -> impl Iterator<Item = (FingerNumber, usize)> + 'a {
     let shares = |a: FingerNumber, b: FingerNumber| {
         let (one, other) = (&hand.fingers[a.index()], &hand.fingers[b.index()]);
@@ -198,7 +198,8 @@ mod tests {
         // The line is the limit: 550 us are 80 % of a period at 1454.5 Hz.
         assert_eq!(fastest_rate(&hand, &COSTS, &Sensor::default(), 5000), 1454);
         assert_eq!(off_line_schedule(&hand, 1455.0, &COSTS, &Sensor::default())[0].limit, Some(RateLimit::Line));
-        // Ten more bytes take 100 us more. At 2 megabaud it is 225 + 100 + 50 us, which is 80 % of a period at 2133 Hz.
+        // Ten more bytes take 100 us more. At 2 megabaud the exchange takes 225 + 100 + 50 us, which is 80 % of a
+        // period at 2133 Hz.
         let sensor = Sensor { bytes: 10, compute: 50.0 };
         assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &sensor)[0].response, Some((760.0, 830.0)));
         hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
@@ -214,7 +215,7 @@ mod tests {
         hand.fingers.iter_mut().for_each(|finger| finger.core = Some(1));
         let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
         assert!(schedule.iter().all(|thread| thread.response == Some((780.0, 800.0))), "{schedule:?}");
-        // Threads that are not bound to cores may compete on one.
+        // Threads that are not bound to cores may compete for one core.
         hand.fingers.iter_mut().for_each(|finger| finger.core = None);
         assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default())[2].response, Some((780.0, 800.0)));
     }
@@ -241,7 +242,7 @@ mod tests {
         let hand = Configuration::default();
         let costs = Costs { wake_up: 300.0, write: 10.0, read: 1.0, compute: 1.0 };
         assert_eq!(off_line_schedule(&hand, 1000.0, &costs, &Sensor::default())[0].limit, None);
-        // 310 + 550 us of 850 us, with each finger on its own core.
+        // With each finger on its own core, 310 + 550 us exceed the reply window of 850 us.
         let mut apart = hand.clone();
         apart.fingers.iter_mut().enumerate().for_each(|(core, finger)| finger.core = Some(core));
         let costs = Costs { wake_up: 9.0, write: 310.0, ..costs };
