@@ -1108,7 +1108,7 @@ int PushFinger(int, const double *);
 
  Threads: any. Never waits for a servo.
 
- Example, with the newer half of the records:
+ Example, which prints the newer half of the records:
 
      struct FingerRecord Record;
      unsigned long Cycle, Last;
@@ -1137,7 +1137,7 @@ int GetRecord(int, unsigned long, struct FingerRecord *);
 
  The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and
  renames it when it is complete and on the disk. So the folder must be writable, and a refused call
- leaves an old file unchanged. The call takes about 50 ms, and the time that the disk needs for some
+ leaves an old file unchanged. The call takes about 50 ms plus the time that the disk needs for some
  MB. The servos continue.
 
  Returns 0, or -1 with
@@ -1197,7 +1197,7 @@ int WriteBlackBox(int, const char *);
               HandError gives the remedy. The finger is limp, unless it was refused before the
               calibration changed anything (it moved while it was read, or its counts were not
               valid): then it is in its former state
-   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise the same
+   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
    EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
               CloseHand
 
@@ -1220,8 +1220,8 @@ int ZeroFinger(int);
  Moves the joints a little back and forth where they are, moves the finger to its lower stops, moves
  each joint back and forth, presses against the stops with up to 0.6 of the largest tension, and
  returns to the start. Measures the gains of the gauges, the stiffness of each tendon and the
- friction of motors, conduits and joints. The results take effect and are stored as those of
- ZeroFinger. Takes about a minute, and all the room that the joints can reach.
+ friction of motors, conduits and joints. The results take effect and are stored like those of
+ ZeroFinger. Takes about a minute, and needs all the room that the joints can reach.
 
  Returns and waits as ZeroFinger does.
 

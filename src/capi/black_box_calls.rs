@@ -72,7 +72,7 @@ pub struct FingerRecord {
 ///
 /// Threads: any. Never waits for a servo.
 ///
-/// Example, with the newer half of the records:
+/// Example, which prints the newer half of the records:
 ///
 ///     struct FingerRecord Record;
 ///     unsigned long Cycle, Last;
@@ -89,7 +89,7 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
         let least = size_up_to!(self::FingerRecord, Torque: [f64; 4]);
         #[allow(clippy::useless_conversion, reason = "`unsigned long` has 32 bits on some machines")]
         let cycle = (Cycle != 0).then_some(u64::from(Cycle));
-        // SAFETY: by the contract in the manual, null or as many bytes as its first member gives.
+        // SAFETY: by the manual, `Record` is null or points to as many bytes as its first member says.
         unsafe { fill(Record, "Record", least, |hand| hand.record(i, cycle).map(|kept| to_c(&kept))) }
     })
 }
@@ -108,7 +108,7 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 ///
 /// The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and
 /// renames it when it is complete and on the disk. So the folder must be writable, and a refused call
-/// leaves an old file unchanged. The call takes about 50 ms, and the time that the disk needs for some
+/// leaves an old file unchanged. The call takes about 50 ms plus the time that the disk needs for some
 /// MB. The servos continue.
 ///
 /// Returns 0, or -1 with
@@ -128,17 +128,17 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 pub unsafe extern "C" fn WriteBlackBox(i: c_int, Path: *const c_char) -> c_int {
     delegated("WriteBlackBox", MEMORY_OF_CALL, || {
         non_null(Path, "Path", Wanted::FileName)?;
-        // SAFETY: checked for null above, and a C string by the contract in the manual.
+        // SAFETY: `Path` is not null, as checked above. By the manual it is a C string.
         let path = PathBuf::from(OsStr::from_bytes(unsafe { CStr::from_ptr(Path) }.to_bytes()));
         Ok(move || {
             let recording = default_hand::with(|hand| hand.recording(i))?;
-            // The hand is not locked here, so that CloseHand never waits for a slow disk.
+            // The hand is no longer locked here, so CloseHand never waits for a slow disk.
             Ok(hand::save_recording(&recording, &path)?)
         })
     })
 }
 
-/// `Size` is set when the room of the caller is known.
+/// Converts a record to the struct of the header. [`fill`] sets `Size` when it knows the size of the caller's struct.
 fn to_c(KeptRecord { record, oldest, newest }: &KeptRecord) -> FingerRecord {
     let found = record.control.map(|control| control.report).unwrap_or_default();
     let sent = match record.control.map(|control| control.input.activity) {

@@ -1,9 +1,9 @@
-//! The entry and exit of every call. No panic leaves a call, no cancellation interrupts it, and it restores the
-//! planner's errno, floating-point environment and signal mask.
+//! The entry and exit of every call. No panic leaves a call, and no cancellation interrupts it. Every call restores the
+//! planner's floating-point environment and signal mask. A successful call also restores the planner's errno.
 //!
 //! A quick call runs in the planner's thread. A slow call runs in its own thread, and the planner's thread waits for
-//! it. So it needs little of the planner's stack, and a signal handler that jumps out of the wait (siglongjmp) leaves
-//! nothing locked: the call continues to its end.
+//! it. So a slow call needs little of the planner's stack. If a signal handler jumps out of the wait (siglongjmp),
+//! nothing stays locked, because the call continues to its end.
 
 use crate::capi::forked::is_forked_child;
 use crate::capi::process;
@@ -19,7 +19,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// Memory that OpenHand may need, including the black boxes, bytes.
 pub(super) const MEMORY_OF_HAND: usize = 12 << 20;
 
-/// Memory that a slow call on an open hand may need, bytes. A black box needs most.
+/// Memory that a slow call on an open hand may need, bytes. WriteBlackBox needs the most.
 pub(super) const MEMORY_OF_CALL: usize = 4 << 20;
 
 /// Memory that the thread of a call may need, bytes.
@@ -51,7 +51,8 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
             if !is_memory_free(memory) {
                 return Err(Refusal::NoMemory);
             }
-            // The planner may handle SIGSEGV and SIGBUS to make pages accessible that `prepare` reads.
+            // The planner may have handlers of SIGSEGV and SIGBUS that make pages accessible. `prepare` may read such
+            // pages.
             let call = blocked.with_faults_unblocked(prepare)?;
             let start = |source| HandError::System { doing: "start a thread for this call", source };
             let delegated = DelegatedCall::begin(&blocked, || caught(call)).map_err(start)?;
@@ -60,7 +61,7 @@ pub(super) fn delegated<C: FnOnce() -> Result<(), Refusal> + Send + 'static>(
     })
 }
 
-/// Runs a slow call that must not fail. Differs from [`delegated`] in that the call runs in the planner's thread if
+/// Runs a slow call that must take place in any case. Unlike [`delegated`], it runs the call in the planner's thread if
 /// there is no memory for another thread or the system refuses to start one.
 #[inline(always)]
 pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<(), Refusal>) -> c_int {
@@ -81,8 +82,9 @@ pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<()
     })
 }
 
-/// Runs everything of a slow call except the wait itself with all signals blocked, so that no handler can jump out of
-/// it. During the wait the thread has the planner's floating-point environment, because a jump does not restore it.
+/// Runs a slow call. All signals are blocked except during the wait itself, so that no handler can jump out of any
+/// other part. During the wait the thread has the planner's floating-point environment, because a jump out of the wait
+/// does not restore it.
 fn slow(name: &str, _blocked: &SignalsBlocked, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
     let errno = process::errno();
     let outcome = unless_forked(call);
@@ -94,8 +96,8 @@ fn slow(name: &str, _blocked: &SignalsBlocked, call: impl FnOnce() -> Result<(),
 
 /// Runs `call` without cancellation. It must not panic, and its result must need no destructor.
 ///
-/// This function is inlined into the exported function. Nothing there has a destructor, because a thread with
-/// asynchronous cancellation may be unwound there before and after the call.
+/// This function is inlined into the exported function. No value in it has a destructor, because a thread with
+/// asynchronous cancellation may be unwound from this function before and after the call.
 #[inline(always)]
 pub(super) fn uncancelled<R, F: FnOnce() -> R>(call: F) -> R {
     let mut call = ManuallyDrop::new(call);
@@ -130,7 +132,8 @@ fn caught(call: impl FnOnce() -> Result<(), Refusal>) -> Result<(), Refusal> {
 fn finish(name: &str, errno: c_int, outcome: Result<(), Refusal>) -> c_int {
     match outcome {
         Ok(()) => {
-            // The system has set errno for missing optional files and for contended locks.
+            // System calls of a successful call may have set errno, for example for a missing optional file or a
+            // contended lock.
             process::set_errno(errno);
             0
         }
@@ -154,7 +157,7 @@ mod tests {
     use std::thread;
 
     fn last_text() -> String {
-        // SAFETY: the text is that of this thread, which makes no refused call meanwhile.
+        // SAFETY: the text belongs to this thread, which makes no refused call meanwhile.
         unsafe { CStr::from_ptr(text()) }.to_string_lossy().into_owned()
     }
 

@@ -48,7 +48,7 @@ use std::ffi::c_int;
 ///              HandError gives the remedy. The finger is limp, unless it was refused before the
 ///              calibration changed anything (it moved while it was read, or its counts were not
 ///              valid): then it is in its former state
-///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise the same
+///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
 ///              CloseHand
 ///
@@ -72,8 +72,8 @@ pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
 /// Moves the joints a little back and forth where they are, moves the finger to its lower stops, moves
 /// each joint back and forth, presses against the stops with up to 0.6 of the largest tension, and
 /// returns to the start. Measures the gains of the gauges, the stiffness of each tendon and the
-/// friction of motors, conduits and joints. The results take effect and are stored as those of
-/// ZeroFinger. Takes about a minute, and all the room that the joints can reach.
+/// friction of motors, conduits and joints. The results take effect and are stored like those of
+/// ZeroFinger. Takes about a minute, and needs all the room that the joints can reach.
 ///
 /// Returns and waits as ZeroFinger does.
 ///
