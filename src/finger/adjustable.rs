@@ -1,18 +1,18 @@
-//! The part of a servo's data that a planner can change while it runs.
+//! The part of a servo's data that a planner can change while the servo runs.
 
 use crate::control::Controller;
 use nalgebra::Vector3;
 
-/// The data that a servo computes with and that a planner can change while it runs.
+/// The data that a servo computes with and that a planner can change while the servo runs.
 #[derive(Clone, Debug)]
 pub struct Adjustable {
     /// Number of the controller in the finger's black box.
     pub number: u32,
-    /// The boxes of Figure 9.
+    /// The controller, which contains the boxes of Figure 9.
     pub controller: Controller,
     /// Lowest and highest joint angles that a finger under tension can have, rad.
     pub pose: (Vector3<f64>, Vector3<f64>),
 }
 
-// The servo copies this out of a buffer. The copy must neither allocate nor free.
+// The servo copies a value of this type out of a buffer. The copy must neither allocate nor free.
 const _: () = assert!(!std::mem::needs_drop::<Adjustable>());

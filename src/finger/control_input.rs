@@ -1,18 +1,19 @@
-//! Everything that decides a finger's command in one cycle, besides the controller and its state. Both the servo and a
-//! replay compute with [`ControlInput::run`].
+//! Everything that determines a finger's command in one cycle, except the controller and its state. Both the servo and
+//! a replay compute with [`ControlInput::run`].
 
 use crate::control::{Activity, Controller, Feedback, MotorCommand, Report, State};
 use crate::finger::Fading;
 use serde::{Deserialize, Serialize};
 
-/// The input of a controller in one cycle, besides the reply.
+/// The input of a controller in one cycle, except the reply.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct ControlInput {
-    /// If present, the controller first restarts from this feedback: it was replaced, or too many replies were lost.
+    /// If present, the controller first restarts from this feedback. The reason is an order to restart, a recovery from
+    /// a fault, or too many lost replies.
     pub anew_from: Option<Feedback>,
     /// The activity of the finger, with its set point.
     pub activity: Activity,
-    /// Periods that will be skipped after this cycle, because the servo is late.
+    /// Number of periods that will be skipped after this cycle, because the servo is late.
     pub skipped: u64,
     /// Present if so many replies in a row were lost that the motor torques are faded to their rest value.
     pub fading: Option<Fading>,
@@ -37,7 +38,8 @@ impl ControlInput {
         };
         // A skipped period is a period without a reply. The differentiators and predictors must take it into account.
         for _ in 0..self.skipped {
-            // Numbers that are not finite yield no finite ones, and cannot serve as limits.
+            // If numbers are not finite, no further cycle can make them finite, and they cannot serve as limits of a
+            // clamp.
             if !command.is_finite() {
                 break;
             }

@@ -7,7 +7,7 @@ use crate::realtime::CycleTiming;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// One cycle of one finger. `S` is its [`Stage`], or in a file the stage's name.
+/// One cycle of one finger. `S` is the type of the stage: [`Stage`], or, in a file, the name of the stage.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct CycleRecord<S = Stage> {
     /// Number of the cycle since open; the first is 1.
@@ -22,7 +22,7 @@ pub struct CycleRecord<S = Stage> {
     pub feedback: Option<Feedback>,
     /// Status bits of the newest reply.
     pub status: u16,
-    /// What the controller computed; none if the finger faulted before.
+    /// Input and output of the controller; none if it did not run in this cycle.
     pub control: Option<ControlRecord>,
 }
 
@@ -35,7 +35,7 @@ pub struct ControlRecord {
     pub previous: u32,
     /// Input of the controller.
     pub input: ControlInput,
-    /// The command that the motors get in the next cycle.
+    /// The command that is sent to the motors in the next cycle.
     pub command: MotorCommand,
     /// The controller's report.
     pub report: Report,
@@ -52,7 +52,7 @@ pub struct KeptRecord {
     pub newest: u64,
 }
 
-/// What a controller is made from.
+/// The data from which a controller is constructed.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct ControllerSource {
     /// Number of the controller since open; the first is 0.
@@ -64,7 +64,7 @@ pub struct ControllerSource {
 }
 
 impl CycleRecord {
-    /// The record with the name of its stage.
+    /// Returns the record with the name of its stage.
     pub(super) fn in_words(&self) -> CycleRecord<String> {
         let Self { cycle, began, stage, timing, feedback, status, control } = *self;
         CycleRecord { cycle, began, stage: stage.to_string(), timing, feedback, status, control }

@@ -10,7 +10,7 @@ use crate::realtime::{Consumer, Producer, ring};
 pub struct ReleasedLink<T> {
     /// The link.
     pub link: Link<T>,
-    /// Whether its port has failed, so the link can only be closed.
+    /// Whether the port of the link has failed. Such a link can only be closed.
     pub failed: bool,
 }
 
@@ -18,19 +18,19 @@ pub struct ReleasedLink<T> {
 pub struct RepairedLink<T> {
     /// The link.
     pub link: Link<T>,
-    /// What the board of each finger of the link has confirmed, in their order.
+    /// The confirmations of the boards, in the order of the fingers of the link.
     pub configured: [Option<Configured>; FINGERS],
     /// Number of emergency stops ([`stop_calls`](crate::finger::stop_calls)) when the repair was requested.
     pub stop_calls: u32,
 }
 
-/// The servo's end.
+/// The servo's end of the handover.
 pub struct LinkServoEnd<T> {
     pub(super) released: Producer<ReleasedLink<T>>,
     pub(super) repaired: Consumer<RepairedLink<T>>,
 }
 
-/// The repairing thread's end.
+/// The repairing thread's end of the handover.
 pub struct LinkRepairEnd<T> {
     /// Links from the servo.
     pub released: Consumer<ReleasedLink<T>>,
@@ -38,7 +38,7 @@ pub struct LinkRepairEnd<T> {
     pub repaired: Producer<RepairedLink<T>>,
 }
 
-/// Returns both ends.
+/// Returns both ends of a new handover.
 pub fn link_handover<T>() -> (LinkServoEnd<T>, LinkRepairEnd<T>) {
     let (released, released_out) = ring(1);
     let (repaired, repaired_out) = ring(1);

@@ -1,29 +1,30 @@
 //! The reaction to lost replies in a row. First the last command is held, or continued by prediction. Then the motor
-//! torques are faded to their rest values. Finally the finger faults, before the time of its board's watchdog is over.
+//! torques are faded to their rest values. Finally the finger faults, before the watchdog of its board trips.
 
 use crate::model::configuration::{ConfiguredHand, EndState};
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};
 
-/// How long the last command is held, ms.
+/// Time for which the last command is held, ms.
 const HELD_MS: f64 = 3.0;
 
-/// After this time, ms, the motor torques are at rest. An unmonitored torque winds a tendon up, or off its motor,
-/// within some milliseconds. The watchdog does not prevent that, because commands are still sent.
+/// Time after which the motor torques have reached their rest values, ms. A torque without feedback winds a tendon up,
+/// or off its motor, within some milliseconds. The watchdog does not prevent that, because commands are still sent.
 const BLIND_MS: f64 = 10.0;
 
-/// Lost replies in a row before the motor torques are at rest, at least. It matters at slow rates.
+/// Minimum number of lost replies in a row before the motor torques have reached their rest values. At low rates,
+/// [`BLIND_MS`] is shorter than this number of periods.
 const LEAST_BLIND: u32 = 3;
 
-/// Lost replies in a row before the finger faults, at least: at slow rates too, one lost reply is not a fault.
+/// Minimum number of lost replies in a row before the finger faults. At low rates too, one lost reply is not a fault.
 const LEAST_LOST: u32 = 2;
 
 /// Time-out of a built-in simulated board, ms. Such a board is silent when the machine is too busy to run it or to
-/// carry its bytes, which is no reason to stop the hand.
+/// transfer its bytes. This is not a reason to stop the hand.
 const SIMULATION_PATIENCE_MS: f64 = 5000.0;
 
-/// Time after which an unanswered command to such a board is sent again, ms. The command or the reply may have been
-/// discarded.
+/// Time after which an unanswered command to a built-in simulated board is sent again, ms. The command or the reply may
+/// have been discarded.
 const REPEAT_MS: f64 = 100.0;
 
 /// Motor torques that fade from the last command to their rest values.
@@ -36,12 +37,12 @@ pub struct Fading {
 }
 
 impl Fading {
-    /// Whether a finger of this hand can have this fade.
+    /// Returns whether a finger of this hand can have this fade.
     pub(super) fn possible(&self, hand: &ConfiguredHand) -> bool {
         (0.0..=1.0).contains(&self.left) && (0.0..=hand.hold_torque_limit).contains(&self.rest)
     }
 
-    /// The faded torques, N cm.
+    /// Returns the faded torques, N cm.
     pub fn torques(&self, commanded: &Vector4<f64>) -> Vector4<f64> {
         commanded.map(|torque| {
             let rest = torque.clamp(-self.rest, self.rest);
@@ -63,11 +64,11 @@ pub(super) struct LinkWatch {
 }
 
 impl LinkWatch {
-    /// `simulated`: whether the finger has a built-in simulated board.
+    /// Constructs the watch of a finger. `simulated` is true if the finger has a built-in simulated board.
     pub fn new(hand: &ConfiguredHand, simulated: bool) -> Self {
         let cycles = |milliseconds: f64| (milliseconds * 1e-3 * hand.rate).ceil() as u32;
-        // The board gets the Stop one period after the last lost reply. That must be within the watchdog's time after
-        // the last good reply.
+        // The board gets the Stop one period after the last lost reply. The board must get it within the watchdog's
+        // time after the last good reply.
         let within_watchdog = (f64::from(hand.watchdog_ms) * 1e-3 * hand.rate).floor() as u32;
         Self {
             simulated,
@@ -86,15 +87,16 @@ impl LinkWatch {
         }
     }
 
-    /// Whether the finger and its controller run in step, as built-in simulated fingers do. The next command is sent
-    /// when the last one was answered, however late. A cycle without a reply is none for the controller, and the board
-    /// does not move meanwhile. Otherwise, on a busy machine, the controller would count time that did not pass at the
-    /// finger, or the physics would run without its controller, and the finger would move wildly.
+    /// Returns whether the finger and its controller run in step, as built-in simulated fingers do. Then the next
+    /// command is sent only after the reply to the last one, however late the reply is. In a cycle without a reply, the
+    /// controller does not run and the simulated finger does not move. Otherwise, on a busy machine, the controller
+    /// would count time that did not pass at the finger, or the physics would run without its controller. The finger
+    /// would then move wildly.
     pub fn in_step(&self) -> bool {
         self.simulated
     }
 
-    /// Whether to send an unanswered command again.
+    /// Returns whether an unanswered command must be sent again.
     pub fn repeats(&self) -> bool {
         self.in_a_row.is_multiple_of(self.repeat)
     }
@@ -111,7 +113,7 @@ impl LinkWatch {
         (self.in_a_row >= self.lost).then_some(self.in_a_row)
     }
 
-    /// The fade of the next command; none while the command is held.
+    /// Returns the fade of the next command; none while the command is held.
     pub fn fading(&self) -> Option<Fading> {
         if self.in_a_row <= self.held || self.in_step() {
             return None;
@@ -120,7 +122,7 @@ impl LinkWatch {
         Some(Fading { left, rest: self.rest })
     }
 
-    /// Lost replies in a row at which the finger faults.
+    /// Returns the number of lost replies in a row at which the finger faults.
     pub fn most(&self) -> u32 {
         self.lost
     }

@@ -1,6 +1,6 @@
 //! Counts of the servo's timing and communication errors.
 
-/// Number of cycles of a finger, and of their errors.
+/// Numbers of the cycles of a finger and of their errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Losses {
@@ -16,14 +16,14 @@ pub struct Losses {
     pub late_replies: u64,
     /// Replies that arrived twice.
     pub duplicate_replies: u64,
-    /// Byte sequences on the finger's port that were no valid frame.
+    /// Byte sequences on the finger's port that were not valid frames.
     pub damaged_frames: u64,
     /// Valid frames on the finger's port that no finger waited for.
     pub foreign_frames: u64,
 }
 
 impl Losses {
-    /// The counts since `earlier`.
+    /// Returns the counts since `earlier`.
     #[must_use]
     pub fn since(&self, earlier: &Self) -> Self {
         Self {

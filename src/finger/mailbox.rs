@@ -26,9 +26,10 @@ struct PlannersEnd {
     reports: Output<FingerReport>,
 }
 
-/// A set point, valid for one spring phase of a finger: from becoming a spring to a fault or a calibration. Planners
-/// change parts of a set point, so they must start from the one that the servo holds, and the servo replaces it at the
-/// beginning of a spring phase. Both sides identify the phases by number.
+/// A set point. It is valid for one spring phase of a finger. A spring phase begins when the finger becomes a spring,
+/// and ends at a fault or a calibration. Planners change parts of a set point, so they must start from the set point
+/// that the servo holds. The servo replaces that set point at the beginning of a spring phase. Both sides identify the
+/// phases by number.
 #[derive(Clone, Copy)]
 struct SentSetPoint {
     /// Number of the spring phase, [`FingerReport::springs`].
@@ -74,7 +75,7 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
     (Mailbox { planners: Mutex::new(planners), closing }, servo, memory)
 }
 
-/// A triple buffer, whose pages are added to `memory`.
+/// Returns a triple buffer, and adds its pages to `memory`.
 fn shared<T: Clone + Send>(initial: &T, memory: &mut LockedMemory) -> (Input<T>, Output<T>) {
     let ends = triple_buffer(initial);
     ends.0.add_to(memory);
@@ -82,7 +83,7 @@ fn shared<T: Clone + Send>(initial: &T, memory: &mut LockedMemory) -> (Input<T>,
 }
 
 impl Mailbox {
-    /// The newest report.
+    /// Returns the newest report.
     pub fn report(&self) -> FingerReport {
         self.with_report(|report| *report)
     }
@@ -92,8 +93,9 @@ impl Mailbox {
         use_report(self.planners.lock().reports.read())
     }
 
-    /// Whether the servo has finished with the finger. Returns none while a planner's call uses the mailbox. That call
-    /// may be one that a signal handler of the calling thread has interrupted, and waiting for it would be a deadlock.
+    /// Returns whether the servo has finished with the finger, or none while a planner's call uses the mailbox. That
+    /// call may be one that a signal handler of the calling thread has interrupted, and waiting for it would be a
+    /// deadlock.
     pub fn ended(&self) -> Option<bool> {
         let mut planners = self.planners.try_lock()?;
         Some(matches!(planners.reports.read().stage, Stage::Closed | Stage::Faulted(_)))
@@ -104,7 +106,7 @@ impl Mailbox {
     /// for this spring phase only: if the finger faults meanwhile, it is discarded.
     ///
     /// # Errors
-    /// The fault, if the finger is faulted. Then nothing is sent.
+    /// Returns the fault if the finger is faulted. Nothing is sent in that case.
     pub fn send(&self, change: impl FnOnce(&mut SetPoint)) -> Result<(), Fault> {
         let planners = &mut *self.planners.lock();
         planners.begin()?;
@@ -117,7 +119,8 @@ impl Mailbox {
     /// copy, which takes longer.
     ///
     /// # Errors
-    /// The fault, if the finger is faulted; inside the result, the change's refusal. Then nothing is sent.
+    /// Returns the fault if the finger is faulted. The inner result is the refusal of `change`. Nothing is sent in
+    /// these cases.
     pub fn try_send<E>(&self, change: impl FnOnce(&mut SetPoint) -> Result<(), E>) -> Result<Result<(), E>, Fault> {
         let planners = &mut *self.planners.lock();
         planners.begin()?;
@@ -131,8 +134,8 @@ impl Mailbox {
         Ok(Ok(()))
     }
 
-    /// The last set point that was sent. If none was sent since the finger became a spring, the one that the servo
-    /// holds.
+    /// Returns the last set point that was sent. If none was sent since the finger became a spring, returns the set
+    /// point that the servo holds.
     pub fn sent(&self) -> SetPoint {
         let planners = &mut *self.planners.lock();
         planners.sent.begin_with(planners.reports.read());
@@ -142,7 +145,7 @@ impl Mailbox {
     /// Replaces the data that the servo computes with, unless the finger is faulted.
     ///
     /// # Errors
-    /// The fault, if the finger is faulted. Then nothing is changed.
+    /// Returns the fault if the finger is faulted. Nothing is changed in that case.
     pub fn adjust(&self, adjustable: Adjustable) -> Result<(), Fault> {
         let mut planners = self.planners.lock();
         if let Stage::Faulted(fault) = planners.reports.read().stage {
@@ -152,11 +155,12 @@ impl Mailbox {
         Ok(())
     }
 
-    /// Gives an order. Returns its number, which [`FingerReport::orders`] has when the servo takes the order. Returns
-    /// none while another order is being carried out.
+    /// Gives an order to the servo, and returns the number of the order. [`FingerReport::orders`] reaches this number
+    /// when the servo takes the order. Returns none, and gives no order, if the servo has not yet taken the previous
+    /// order, or if the finger is neither a spring nor limp.
     ///
     /// # Errors
-    /// The fault, if the finger is faulted. Then no order is given.
+    /// Returns the fault if the finger is faulted. No order is given in that case.
     pub fn order(&self, order: Order) -> Result<Option<u32>, Fault> {
         self.planners.lock().order(order, None)
     }
@@ -165,7 +169,7 @@ impl Mailbox {
     /// [`Mailbox::order`].
     ///
     /// # Errors
-    /// The fault, if the finger is faulted. Then nothing is changed.
+    /// Returns the fault if the finger is faulted. Nothing is changed in that case.
     pub fn restart(&self, adjustable: Adjustable, limp: bool) -> Result<Option<u32>, Fault> {
         self.planners.lock().order(Order::Restart { limp }, Some(adjustable))
     }
@@ -177,8 +181,8 @@ impl Mailbox {
 }
 
 impl SentSetPoint {
-    /// Prepares the next change: if the finger has become a spring since the last one, it starts from what the servo
-    /// holds.
+    /// Prepares the next change. If the finger has become a spring since the last change, the next change starts from
+    /// the set point that the servo holds.
     fn begin_with(&mut self, report: &FingerReport) {
         if report.springs != self.spring {
             *self = Self { spring: report.springs, set_point: report.set_point };
@@ -197,7 +201,8 @@ impl PlannersEnd {
         Ok(())
     }
 
-    /// The data is written before the order, so that a servo that has the order also has the data.
+    /// Gives `order`, and replaces the data if there is any. The data is written before the order, so that a servo that
+    /// has the order also has the data.
     fn order(&mut self, order: Order, adjustable: Option<Adjustable>) -> Result<Option<u32>, Fault> {
         let report = *self.reports.read();
         match report.stage {
@@ -215,23 +220,23 @@ impl PlannersEnd {
 }
 
 impl ServoEnd {
-    /// The set point, if a planner has sent one since the last call for this spring phase.
+    /// Returns the set point, if a planner has sent one for this spring phase since the last call.
     pub fn new_set_point(&mut self, spring: u32) -> Option<SetPoint> {
         let sent = self.set_points.update().then(|| *self.set_points.output_buffer());
         sent.filter(|sent| sent.spring == spring).map(|sent| sent.set_point)
     }
 
-    /// The data to compute with, if a planner has replaced it since the last call.
+    /// Returns the data to compute with, if a planner has replaced it since the last call.
     pub fn new_adjustable(&mut self) -> Option<&Adjustable> {
         self.adjustments.update().then(|| self.adjustments.output_buffer())
     }
 
-    /// The order, if a planner has given one since the last call.
+    /// Returns the order, if a planner has given one since the last call.
     pub fn new_order(&mut self) -> Option<Order> {
         self.orders.update().then(|| self.orders.output_buffer().clone())
     }
 
-    /// Whether to bring the finger to its end state.
+    /// Returns whether a planner has requested the end state of the finger.
     pub fn closing(&self) -> bool {
         self.closing.load(Ordering::Acquire)
     }

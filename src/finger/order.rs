@@ -1,4 +1,4 @@
-//! Orders of planners to a finger, besides set points.
+//! Orders that planners give to a finger in addition to set points.
 
 use crate::calibration::Calibration;
 use crate::finger::Adjustable;
@@ -18,12 +18,12 @@ pub enum Order {
     },
 }
 
-/// A calibration, and the data that the servo computes with until its verdict. Newer data from planners takes effect
-/// after that.
+/// A calibration, and the data that the servo computes with until the calibration has its verdict. Newer data from
+/// planners takes effect after the verdict.
 #[derive(Clone, Debug)]
 pub struct CalibrationRun {
     /// The routine.
     pub calibration: Calibration,
-    /// The data to compute with, made for [`Calibration::controlled`].
+    /// The data that the servo computes with. It is made for [`Calibration::controlled`].
     pub adjustable: Adjustable,
 }

@@ -1,5 +1,5 @@
-//! A black box as a file: lines of JSON. The first line holds what all others need. docs/black-box.md describes the
-//! format.
+//! A black box as a file that consists of lines of JSON. The first line contains the data that all other lines need.
+//! docs/black-box.md describes the format.
 
 mod reading;
 
@@ -22,7 +22,7 @@ const VERSION: u32 = 1;
 pub struct Recording {
     /// The data that all cycles start from.
     pub origin: Origin,
-    /// Version of the library that recorded it.
+    /// Version of the library that made the recording.
     pub library: String,
     /// The cycles, without a gap.
     pub cycles: Vec<CycleRecord<String>>,
@@ -54,7 +54,7 @@ struct Header {
     origin: Origin,
 }
 
-/// Why a file is not a recording that can be replayed.
+/// The reason why a file is not a recording that can be replayed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
@@ -109,7 +109,7 @@ pub enum RecordingError {
     },
 }
 
-/// A hint for files of another library version, because versions differ in what they record.
+/// Returns a hint if another version of the library wrote the file, because versions record different data.
 fn written_by(library: &str) -> String {
     match env!("CARGO_PKG_VERSION") {
         own if own == library => String::new(),
@@ -125,7 +125,8 @@ impl Recording {
     /// Writes the recording to a file. An existing file stays unchanged until the new one is complete.
     ///
     /// # Errors
-    /// The system's error. `path` leads to something other than a regular file, such as a symbolic link.
+    /// Returns the error that the system reports. Also returns an error if `path` leads to something other than a
+    /// regular file, such as a symbolic link.
     pub fn save(&self, path: &Path) -> io::Result<()> {
         replace_file(path, |output| self.write(output))
     }
@@ -133,7 +134,7 @@ impl Recording {
     /// Writes the recording.
     ///
     /// # Errors
-    /// The system's error.
+    /// Returns the error that the system reports.
     pub fn write(&self, output: impl Write) -> io::Result<()> {
         let mut output = BufWriter::new(output);
         let header = Header {

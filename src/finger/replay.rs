@@ -31,7 +31,7 @@ pub struct Difference {
     pub replayed: ControlRecord,
 }
 
-/// Why a recording cannot be replayed.
+/// The reason why a recording cannot be replayed.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NotReplayable {
     /// The hand's configuration, or a number in the data that all cycles start from, is invalid.
@@ -42,7 +42,7 @@ pub enum NotReplayable {
         /// What is wrong with it.
         reason: String,
     },
-    /// A configuration that no controller can be made from.
+    /// No controller can be constructed from a configuration.
     #[error("line 1: controller {number}: {key} {reason}")]
     Unusable {
         /// Number of the controller.
@@ -60,7 +60,7 @@ pub enum NotReplayable {
         /// Number of the controller.
         number: u32,
     },
-    /// A cycle that no servo can have recorded.
+    /// A cycle contains a value that no servo can have recorded.
     #[error("cycle {cycle}, line {line}: {key} {reason}")]
     Cycle {
         /// Number of the cycle.
@@ -83,8 +83,9 @@ impl Recording {
     /// Runs the controller over every cycle.
     ///
     /// # Errors
-    /// No hand opens with the configuration, a number is one that no servo records, or a controller is missing.
-    /// The first wrong number is named, and nothing is computed from it.
+    /// Returns an error if no hand opens with the configuration, if no servo can have recorded a number, if a
+    /// controller is missing, or if a controller computes a torque that is not finite. The error names the first wrong
+    /// number, and nothing is computed from this number.
     pub fn replay(&self) -> Result<Replayed, NotReplayable> {
         self.check()?;
         let mut controllers = Controllers { recording: self, made: HashMap::new() };
@@ -113,7 +114,7 @@ impl Recording {
     }
 }
 
-/// The controllers of a recording, each made when the first cycle names it.
+/// The controllers of a recording. Each controller is constructed when a cycle names it for the first time.
 struct Controllers<'a> {
     recording: &'a Recording,
     made: HashMap<u32, Controller>,

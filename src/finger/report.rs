@@ -1,18 +1,18 @@
-//! The servo's report of its finger.
+//! The servo's report on its finger.
 
 use crate::calibration::Verdict;
 use crate::control::{Report, SetPoint};
 use crate::finger::{Losses, Stage, Warnings};
 
-/// What a servo reports of its finger after every cycle.
+/// The data that a servo reports about its finger after every cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FingerReport {
     /// Stage of the finger between open and close.
     pub stage: Stage,
     /// The set point in force.
     pub set_point: SetPoint,
-    /// How many times the finger has become a spring that holds the pose it was found in: at open, after a fault, after
-    /// a calibration. Set points that were sent before that are discarded.
+    /// Number of times that the finger has become a spring: at open, after a fault, or after a calibration. The spring
+    /// first holds the pose that the finger then has. Set points that were sent earlier are discarded.
     pub springs: u32,
     /// The controller's report of the last cycle.
     pub cycle: Report,
@@ -38,14 +38,14 @@ pub struct FingerReport {
 }
 
 impl FingerReport {
-    /// Whole periods of `period` ns that have passed without a cycle and are not yet counted in
-    /// [`Losses::skipped_periods`], because the servo counts at the end of its next cycle. `now` is in ns of the
-    /// monotonic clock.
+    /// Returns the number of whole periods of `period` ns that have passed without a cycle and are not yet counted in
+    /// [`Losses::skipped_periods`]. The servo counts them at the end of its next cycle. `now` is in ns of the monotonic
+    /// clock.
     pub fn missing_periods(&self, now: u64, period: u64) -> u64 {
         if self.losses.cycles == 0 || self.stage == Stage::Closed {
             return 0;
         }
-        // As many periods as the servo would skip if its next cycle ended now.
+        // The servo would skip this number of periods if its next cycle ended now.
         now.saturating_sub(self.next + period) / period
     }
 }

@@ -33,20 +33,20 @@ pub struct FingerServo {
     /// Status of the newest reply.
     status: Status,
     feedback: Feedback,
-    /// The controller must restart from the feedback.
+    /// Whether the controller must restart from the feedback.
     restart: bool,
     command: MotorCommand,
     mailbox: ServoEnd,
     timing: CycleTiming,
     timings: Producer<CycleTiming>,
     black_box: Recorder,
-    /// The black box record of this cycle; none if the finger was faulted or closed before.
+    /// The black box record of this cycle; none if the finger was already faulted or closed.
     record: Option<CycleRecord>,
     /// Whether the last cycle was recorded.
     recording: bool,
     report: FingerReport,
     address: u8,
-    /// What the board reported about itself. It converts torques to counts.
+    /// The identity that the board has reported. It is used to convert torques to counts.
     board: Identity,
     sequence: u8,
     toggle: bool,
@@ -58,41 +58,42 @@ pub struct FingerServo {
     alarm: StopSignal,
     /// The board's clock at the last measurement, us modulo 65 536; none before the first measurement.
     sampled_at: Option<u16>,
-    /// Periods from that measurement to this cycle.
+    /// Number of periods from that measurement to this cycle.
     sample_age: u64,
     limits: Limits,
     settled_cycles: u32,
     /// Cycles since the stage began.
     stage_cycles: u32,
-    /// When the finger began to take up slack, ns; none until the next cycle of the opening stage.
+    /// Time at which the finger began to take up slack, ns; none until the first cycle of the opening stage.
     opening_since: Option<u64>,
     stops_left: u8,
-    /// How the finger holds the pose that it is in at open.
+    /// The spring with which the finger holds the pose that it has when it becomes a spring. The joint angles are not
+    /// used.
     initial: SetPoint,
     end_state: EndState,
-    /// The parts of the finger that are in memory of their own.
+    /// The memory of the finger that is not in this value itself.
     memory: LockedMemory,
 }
 
 /// Limits from the configuration, in cycles unless the name has a unit.
 struct Limits {
     period_ms: f64,
-    /// Longest time that the finger may take to become a spring, ms.
+    /// Longest permitted time until the finger becomes a spring, ms.
     opening_ms: f64,
     settled: u32,
     ramp: u32,
-    /// How long a warning is kept.
+    /// Time for which a warning is kept.
     warning: u32,
 }
 
 impl FingerServo {
-    /// Makes the motors stay off until an order to take up slack.
+    /// Keeps the motors off until a planner orders the finger to take up slack.
     pub fn limp(mut self) -> Self {
         self.go_limp();
         self
     }
 
-    /// The memory that the servo accesses and that is not in this value itself.
+    /// Returns the memory that the servo accesses and that is not in this value itself.
     pub fn memory(&self) -> &LockedMemory {
         &self.memory
     }
@@ -104,25 +105,25 @@ impl FingerServo {
         self
     }
 
-    /// Begins a period: faults after an emergency stop call or after the fault of a finger that stops together with
-    /// this.
+    /// Faults the finger after an emergency stop call, or after the fault of a finger that stops together with this
+    /// one. It is called in every period.
     pub fn check_stop_signal(&mut self) {
         if let Some(kind) = self.alarm.pending() {
             self.fault(Fault::new(kind));
         }
     }
 
-    /// Whether the finger has faulted and all of its Stop frames are sent.
+    /// Returns whether the finger has faulted, all of its Stop frames are sent, and it has not been asked to close.
     pub fn at_rest(&self) -> bool {
         matches!(self.report.stage, Stage::Faulted(_)) && self.stops_left == 0 && !self.mailbox.closing()
     }
 
-    /// The address of the finger on its port.
+    /// Returns the address of the finger on its port.
     pub fn address(&self) -> u8 {
         self.address
     }
 
-    /// Whether nothing is left to be sent to the board.
+    /// Returns whether the finger is closed, or is faulted and has been asked to close.
     pub fn finished(&self) -> bool {
         match self.report.stage {
             Stage::Closed => true,
@@ -182,8 +183,8 @@ impl FingerServo {
         self.timing.note(stage, from, to);
     }
 
-    /// Publishes the timing, the record and the report of this cycle. The report comes after the record, so that
-    /// whoever has read the report of a cycle finds its record.
+    /// Publishes the timing, the record and the report of this cycle. The report comes after the record, so that a
+    /// planner that has read the report of a cycle finds its record.
     pub fn publish(&mut self) {
         let timing = std::mem::take(&mut self.timing);
         if let Some(record) = self.record.take() {
@@ -191,7 +192,7 @@ impl FingerServo {
         }
         self.mailbox.publish(self.report);
         // The timings come after the report, so that no more timings than cycles are ever counted. The ring is full
-        // only if nothing is collected. The timing is dropped then, because the cycle is more important.
+        // only if no thread collects the timings. The timing is dropped then, because the cycle is more important.
         let _ = self.timings.push(timing);
     }
 

@@ -22,7 +22,7 @@ pub struct ServedPort<T> {
 }
 
 impl<T: Transport> ServedPort<T> {
-    /// The handshake with `fingers` over `link` must be complete.
+    /// Constructs a port. The handshake with `fingers` over `link` must be complete.
     pub fn new(link: Link<T>, fingers: Vec<FingerServo>) -> Self {
         Self {
             link: Some(link),
@@ -40,7 +40,8 @@ impl<T: Transport> ServedPort<T> {
     }
 }
 
-/// Time for a board to confirm its end state, ns: two attempts. Without a Stop frame the watchdog has the same effect.
+/// Time in which a board must confirm its end state, ns. It permits two attempts. Without a Stop frame, the watchdog of
+/// the board has the same effect.
 const CONFIRMATION: u64 = 100_000_000;
 
 /// One to three fingers on one to three ports, run by one thread.
@@ -53,7 +54,7 @@ pub struct Servo<T, C> {
 }
 
 impl<T: Transport, C: Clock> Servo<T, C> {
-    /// A servo whose first cycle begins at the start of `schedule`.
+    /// Constructs a servo whose first cycle begins at the start of `schedule`.
     pub fn new(clock: C, schedule: Schedule, ports: Vec<ServedPort<T>>) -> Self {
         let reply_window = (schedule.period() as f64 * REPLY_WINDOW) as u64;
         Self { clock, schedule, reply_window, ports: ports.into(), follower: None }
@@ -71,7 +72,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         self
     }
 
-    /// The memory that the servo accesses and that is not in this value itself.
+    /// Returns the memory that the servo accesses and that is not in this value itself.
     pub fn memory(&self) -> LockedMemory {
         let mut memory = LockedMemory::default();
         memory.add(&self.ports);
@@ -97,12 +98,12 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         }
     }
 
-    /// Whether every finger is closed, or faulted and asked to close.
+    /// Returns whether every finger is closed, or is faulted and has been asked to close.
     pub fn finished(&self) -> bool {
         self.ports.iter().flat_map(|port| port.fingers.iter()).all(FingerServo::finished)
     }
 
-    /// One period: wait, send commands, receive replies, compute, report. Nothing here allocates, locks, or blocks
+    /// Runs one period: wait, send commands, receive replies, compute, report. Nothing here allocates, locks, or blocks
     /// beyond the deadline.
     pub fn cycle(&mut self) {
         let beginning = self.schedule.next();
@@ -145,7 +146,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         }
     }
 
-    /// The last action after a panic: faults every finger and stops every board.
+    /// Faults every finger and stops every board. This is the last action after a panic.
     fn fail(&mut self) {
         // Dropping the handover informs the repairing thread that no servo runs the port any more.
         self.ports.iter_mut().for_each(|port| port.handover = None);
@@ -161,8 +162,9 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         self.confirm_stops();
     }
 
-    /// Sends Stop frames to every board until the board confirms or the line fails. Closing the port earlier would
-    /// discard bytes that have not been sent yet. The servo has no deadlines any more, so this may wait.
+    /// Sends Stop frames to every board until the board confirms, the line fails or [`CONFIRMATION`] has passed.
+    /// Closing the port earlier would discard bytes that have not been sent yet. The servo has no deadlines any more,
+    /// so this may wait.
     fn confirm_stops(&mut self) {
         self.send_stops();
         for port in self.ports.iter_mut() {
@@ -209,7 +211,7 @@ impl<T: Transport> ServedPort<T> {
         }
     }
 
-    /// Counters of the port since open.
+    /// Returns the counters of the port since open.
     fn counters(&self) -> LinkCounters {
         self.link.as_ref().map_or(self.earlier_counters, |link| self.earlier_counters.saturating_add(&link.counters()))
     }

@@ -47,8 +47,8 @@ impl TensionDistribution {
         let at_rest = tendons.pretension(minimum);
         if let Some(tendon) = (0..4).find(|&tendon| maximum[tendon] <= at_rest[tendon]) {
             let reason = format!(
-                "allows tendon {} only {:.2} N, but at zero joint torque, with at least {minimum} N in every tendon, that \
-                 tendon already has {:.2} N: raise tendon.maximum or motor.torque_limit, or lower tendon.minimum",
+                "allows tendon {} only {:.2} N, but at zero joint torque, with at least {minimum} N in every tendon, \
+                 that tendon already has {:.2} N: raise tendon.maximum or motor.torque_limit, or lower tendon.minimum",
                 tendon + 1,
                 maximum[tendon],
                 at_rest[tendon]

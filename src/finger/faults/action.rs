@@ -1,7 +1,7 @@
 //! The operations that remedies of faults and errors name.
 
-/// An operation of the library that a remedy asks the caller for. The texts describe it in words, and the C interface
-/// adds the name of its call.
+/// An operation of the library that a remedy asks the caller to perform. The texts describe the operation in words. The
+/// C interface adds the name of its call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Open the hand.

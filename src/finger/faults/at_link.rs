@@ -48,7 +48,7 @@ impl From<&Refused> for Fault {
 }
 
 impl Fault {
-    /// The fault for the status of a board that has stopped its motors.
+    /// Returns the fault for the status of a board that has stopped its motors.
     #[must_use]
     pub fn stopped(status: Status) -> Self {
         let kind = [

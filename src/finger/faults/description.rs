@@ -37,7 +37,7 @@ pub enum PartKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {
-    /// No value; it is 0.
+    /// The fault has no value, and the number is 0.
     Nothing,
     /// Tension, N.
     Tension,
@@ -82,7 +82,8 @@ pub struct Description {
 }
 
 impl Description {
-    /// What has happened, its likely cause and the remedy, as sentences. The last one has no full stop.
+    /// Returns sentences that state what has happened, the likely cause and the remedy. The last sentence has no full
+    /// stop.
     pub fn explanation(&self) -> impl Display {
         Explanation(*self)
     }
@@ -99,7 +100,7 @@ impl Display for Explanation {
 }
 
 impl PartKind {
-    /// The singular for use in a sentence; none for the whole finger.
+    /// Returns the singular for use in a sentence; none for the whole finger.
     pub fn word(self) -> Option<&'static str> {
         match self {
             PartKind::Finger => None,
@@ -113,7 +114,7 @@ impl PartKind {
 }
 
 impl Quantity {
-    /// The unit or the kind of the value for use in a table; none if there is no value.
+    /// Returns the unit or the kind of the value for use in a table; none if there is no value.
     #[must_use]
     pub fn words(self) -> Option<&'static str> {
         match self {

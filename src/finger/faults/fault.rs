@@ -18,13 +18,13 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// A fault of the whole finger, without a value.
+    /// Returns a fault of the whole finger, without a value.
     #[must_use]
     pub fn new(kind: FaultKind) -> Self {
         Self { kind, part: Part::Finger, value: 0.0 }
     }
 
-    /// A fault of the whole finger.
+    /// Returns a fault of the whole finger, with a value.
     #[must_use]
     pub fn of(kind: FaultKind, value: f64) -> Self {
         Self { kind, part: Part::Finger, value }

@@ -3,13 +3,13 @@
 use super::table::FaultKind;
 
 impl FaultKind {
-    /// The number, from 1. It is the same in every version of this library.
+    /// Returns the number of the kind, counted from 1. It is the same in every version of this library.
     #[must_use]
     pub fn number(self) -> u8 {
         self as u8
     }
 
-    /// The kind with this number.
+    /// Returns the kind with this number.
     #[must_use]
     pub fn from_number(number: i32) -> Option<Self> {
         Self::ALL.iter().copied().find(|kind| i32::from(kind.number()) == number)

@@ -21,7 +21,7 @@ macro_rules! faults {
             /// All kinds, in the order of their numbers.
             pub const ALL: &[FaultKind] = &[$(FaultKind::$kind,)*];
 
-            /// The row of the table for this kind.
+            /// Returns the row of the table for this kind.
             pub fn description(self) -> &'static Description {
                 match self {
                     $(FaultKind::$kind => &Description {

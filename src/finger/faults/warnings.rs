@@ -2,11 +2,11 @@
 
 use super::Fault;
 
-/// The newest warning. It stays for a while after it was last noted, so that a planner that polls slowly sees it.
+/// The newest warning. It is kept for some time after it was last noted, so that a planner that polls slowly sees it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Warnings {
     newest: Option<Fault>,
-    /// Cycles until it is cleared.
+    /// Number of cycles until the newest warning is cleared.
     left: u32,
     given: u64,
 }
@@ -25,12 +25,12 @@ impl Warnings {
         }
     }
 
-    /// The newest warning, if it was noted within the last second.
+    /// Returns the newest warning, until the number of cycles given to [`Warnings::note`] has passed without it.
     pub fn newest(&self) -> Option<Fault> {
         self.newest
     }
 
-    /// Number of warnings. One that persists counts once.
+    /// Returns the number of warnings. A warning that persists counts once.
     pub fn given(&self) -> u64 {
         self.given
     }

@@ -1,4 +1,5 @@
-//! Reading a black box file. Anybody may have altered the file, so nothing in it can make this program use much memory.
+//! Reading a black box file. The file may have been altered, so all sizes are limited. No file can make this program
+//! use much memory.
 
 use super::{Header, Recording, RecordingError, VERSION};
 use crate::files::open_regular_file;
@@ -16,10 +17,10 @@ const LARGEST: u64 = 1 << 26;
 /// Longest line of a cycle, bytes. The library writes about 1500.
 const LONGEST_LINE: u64 = 1 << 16;
 
-/// Largest number of cycles: five times those of two seconds at the highest rate.
+/// Largest number of cycles. It is five times the number of cycles in two seconds at the highest rate.
 const MOST_CYCLES: usize = 50_000;
 
-/// Largest number of controllers. A planner takes longer than half a millisecond to make one.
+/// Largest number of controllers. A planner needs more than half a millisecond for each.
 const MOST_CONTROLLERS: usize = 4096;
 
 /// Longest reason that is shown, characters.
@@ -36,7 +37,7 @@ impl Recording {
     /// Reads a file.
     ///
     /// # Errors
-    /// The file cannot be read, or is not a complete recording of this version.
+    /// Returns an error if the file cannot be read, or is not a complete recording of this version.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let file = ShownPath(path).to_string();
         match open_regular_file(path, LARGEST) {
@@ -45,10 +46,10 @@ impl Recording {
         }
     }
 
-    /// Reads a recording from `input`. Error texts name it `file`.
+    /// Reads a recording from `input`. Error texts use the name `file` for it.
     ///
     /// # Errors
-    /// As [`Recording::open`].
+    /// Returns an error if `input` cannot be read, or is not a complete recording of this version.
     pub fn read(mut input: impl BufRead, file: &str) -> Result<Self, RecordingError> {
         let file = file.to_string();
         let unreadable = |error| RecordingError::Unreadable(file.clone(), error);
@@ -78,7 +79,7 @@ impl Recording {
             }
             let cycle: CycleRecord<String> = serde_json::from_slice(&line).map_err(|error| wrong(describe(&error)))?;
             if cycles.last().is_some_and(|last| last.cycle.checked_add(1) != Some(cycle.cycle)) {
-                return Err(wrong("its cycle does not follow the one before".into()));
+                return Err(wrong("its cycle number does not follow that of the previous line".into()));
             }
             cycles.push(cycle);
         }
@@ -104,7 +105,7 @@ fn next_line(input: &mut impl BufRead, longest: u64) -> io::Result<Option<Vec<u8
     Ok(Some(line))
 }
 
-/// What is wrong with a line. The parser sees a single line, so only the column of its position is useful.
+/// Returns what is wrong with a line. The parser sees only a single line, so only the column of its position is useful.
 fn describe(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let reason = text.rsplit_once(" at line ").map_or(text.as_str(), |(reason, _)| reason);

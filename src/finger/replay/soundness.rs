@@ -1,5 +1,6 @@
-//! Checks of a recording before anything is computed from it: the configuration must be valid, and a servo must be able
-//! to have recorded the rest. A file can be altered, and with some numbers a controller would compute forever or panic.
+//! Checks of a recording before anything is computed from it: the configuration must be valid, and the rest must be
+//! data that a servo can have recorded. A file can be altered, and with some numbers a controller would compute forever
+//! or panic.
 
 use super::NotReplayable;
 use crate::finger::link_watch::LinkWatch;
@@ -10,17 +11,18 @@ use serde_json::Value;
 use std::ops::RangeInclusive;
 
 /// Largest number of controller cycles that a replay computes, including those for skipped periods: a hundred for every
-/// cycle of two seconds at the highest rate. They take some seconds.
+/// cycle of two seconds at the highest rate. The computation takes some seconds.
 const MOST_COMPUTED: u64 = 1_000_000;
 
-/// Larger than any quantity of a finger in any unit, and small enough that its powers are finite.
+/// Largest permitted size of a number. It is larger than any quantity of a finger in any unit, and small enough that
+/// its powers are finite.
 const LARGEST: f64 = 1e30;
 
 /// Range of each component of gravity, m/s^2. A configuration may have 100 in each of three components.
 const GRAVITY: RangeInclusive<f64> = -200.0..=200.0;
 
 impl Recording {
-    /// Refuses a recording that no servo can have made.
+    /// Returns an error for a recording that no servo can have made.
     pub(super) fn check(&self) -> Result<(), NotReplayable> {
         let origin = &self.origin;
         let wrong = |key: &str, reason: String| Err(NotReplayable::Origin { key: format!("origin.{key}"), reason });
@@ -51,8 +53,8 @@ impl Recording {
 
     fn check_cycles(&self) -> Result<(), NotReplayable> {
         let hand = &self.origin.hand;
-        // A built-in simulated finger waits for its servo and never skips a period, so the limit for real fingers
-        // serves for all.
+        // A built-in simulated finger waits for its servo and never skips a period, so the limit for real fingers is
+        // used for all fingers.
         let most_skipped = u64::from(LinkWatch::new(hand, false).most());
         let mut computed: u64 = 0;
         for (index, record) in self.cycles.iter().enumerate() {
@@ -63,7 +65,7 @@ impl Recording {
             };
             let ControlInput { skipped, fading, .. } = control.input;
             if skipped > most_skipped {
-                return wrong("skipped", format!("is {skipped}: with this watchdog it is {most_skipped} at most"));
+                return wrong("skipped", format!("is {skipped}: with this watchdog it is at most {most_skipped}"));
             }
             computed = computed.saturating_add(skipped + 1);
             if computed > MOST_COMPUTED {

@@ -1,4 +1,4 @@
-//! A finger that is being calibrated: when the routine takes over, and what the finger does after it.
+//! Runs a calibration in the servo: the start, the steps of the routine, and the stage of the finger afterwards.
 
 use super::FingerServo;
 use super::calibration::{Before, Calibrating};
@@ -16,7 +16,7 @@ impl FingerServo {
     }
 
     /// Runs one step of the calibration, if there is one, and sets the finger's activity. Returns the data that the
-    /// servo computed with until now, if the routine takes over in this cycle.
+    /// servo computed with until now, if other data replaces it in this cycle.
     pub(super) fn calibrate(&mut self) -> Option<Adjustable> {
         let Calibrating { run, before } = self.calibration.as_mut()?;
         if !self.answered {
@@ -42,10 +42,11 @@ impl FingerServo {
         previous
     }
 
-    /// Continues as before a calibration that has not moved the finger. Returns the data that the servo computed with
-    /// until now, if planners have replaced it meanwhile.
+    /// Returns to the stage before a calibration that has not moved the finger. Returns the data that the servo
+    /// computed with until now, if planners have replaced it meanwhile.
     fn go_on_from(&mut self, before: Before) -> Option<Adjustable> {
-        // Set points that planners sent meanwhile had no effect. They must not take effect with the next one either.
+        // Set points that planners sent meanwhile had no effect. They must not take effect with the next set point
+        // either.
         self.report.springs += u32::from(before.stage == Stage::Running);
         self.enter(before.stage);
         (before.adjustable.number != self.adjustable.number).then_some(before.adjustable)

@@ -3,7 +3,8 @@
 use crate::finger::Stage;
 use crate::finger::{Adjustable, CalibrationRun};
 
-/// A calibration, and the state of the finger before it, which is in force until the routine takes over.
+/// A calibration. `before` is the state of the finger before it. This state is in force until the routine gives its
+/// first activity, and is none afterwards.
 pub(super) struct Calibrating {
     pub run: CalibrationRun,
     pub before: Option<Before>,
@@ -16,12 +17,12 @@ pub(super) struct Before {
 }
 
 impl Calibrating {
-    /// The data that this cycle is computed with.
+    /// Returns the data that this cycle is computed with.
     pub fn computes_with(&self) -> &Adjustable {
         self.before.as_ref().map_or(&self.run.adjustable, |before| &before.adjustable)
     }
 
-    /// The data of the spring, if the finger still is one.
+    /// Returns the data of the spring, if the finger is still a spring.
     pub fn spring(&self) -> Option<&Adjustable> {
         self.before.as_ref().filter(|before| before.stage == Stage::Running).map(|before| &before.adjustable)
     }

@@ -16,17 +16,18 @@ use nalgebra::{Matrix3, Vector3};
 /// Time for which every tendon must be under tension, with the motors still, before the finger becomes a spring, s.
 const TENSION_SETTLED: f64 = 0.02;
 
-/// No joint gets this far beyond its soft limits, rad: mechanical stops are closer, and measured angles err by less.
+/// No joint can be this far beyond its soft limits, rad. Its mechanical stops are closer, and the errors of measured
+/// angles are smaller.
 const BEYOND_LIMITS: f64 = 0.5;
 
-/// How long a warning is kept after it was last noted, ms.
+/// Time for which a warning is kept after it was last noted, ms.
 const WARNING_MS: f64 = 1000.0;
 
 impl Adjustable {
-    /// The data that the configuration describes, with the number of a finger's first controller.
+    /// Constructs the data that the configuration describes. It has the number of a finger's first controller.
     ///
     /// # Errors
-    /// A configuration that no controller can be made from.
+    /// Returns an error if no controller can be constructed from the configuration.
     pub fn new(configuration: &Configuration, number: FingerNumber) -> Result<Self, Unusable> {
         let finger = &configuration.fingers[number.index()];
         let (low, high) = finger.joint_limits();
@@ -50,13 +51,15 @@ impl Limits {
 }
 
 impl FingerServo {
-    /// A limp finger in the pose that its board has reported, and the planners' end of its mailbox. Timings are written
-    /// to `timings`, and records of its cycles to `black_box`. Entries for which a ring has no room are dropped.
+    /// Constructs a finger in the pose that its board has reported, and the planners' end of its mailbox. The finger is
+    /// about to take up slack. Timings are written to `timings`, and records of its cycles to `black_box`. Entries for
+    /// which a ring has no room are dropped.
     ///
-    /// `stiffness` is the Kx with which the finger holds its initial pose. It must be admitted already.
+    /// `stiffness` is the Kx with which the finger holds its initial pose. The caller must have checked that this Kx is
+    /// admitted.
     ///
     /// # Errors
-    /// A configuration that no controller can be made from.
+    /// Returns an error if no controller can be constructed from the configuration.
     pub fn new(
         configuration: &Configuration,
         number: FingerNumber,
@@ -118,7 +121,7 @@ impl FingerServo {
     }
 }
 
-/// The report before the first cycle.
+/// Returns the report before the first cycle.
 fn opening_report(set_point: SetPoint) -> FingerReport {
     FingerReport {
         stage: Stage::Opening,

@@ -1,4 +1,4 @@
-//! Computation of a finger's command in one cycle: takes what planners have sent, then runs the controller.
+//! Computes a finger's command in one cycle. The servo takes what planners have sent, and then runs the controller.
 
 use super::FingerServo;
 use crate::control::Activity;
@@ -52,8 +52,8 @@ impl FingerServo {
             }
             self.carry_out(order);
         }
-        // A set point that was sent before the order to calibrate counts: the finger moves to it, and the routine must
-        // see the motion.
+        // A set point that was sent before the order to calibrate takes effect. The finger moves to it, and the routine
+        // must detect the motion.
         if let Some(set_point) = self.mailbox.new_set_point(self.report.springs)
             && running
         {

@@ -12,8 +12,8 @@ use nalgebra::Vector4;
 /// 0.55 rad beyond its limits, and returned.
 const BLOW_MARGIN: f64 = 0.3;
 
-/// Share of its cycles that a finger must have run while it opened, so that a timed-out opening is blamed on a tendon
-/// and not on the machine.
+/// Fraction of the scheduled cycles that must have run while a finger opened. If fewer have run, an opening that times
+/// out is blamed on the machine, and otherwise on a tendon.
 const MOST_CYCLES: f64 = 0.75;
 
 impl FingerServo {
@@ -103,8 +103,8 @@ impl FingerServo {
         self.restart = true;
         self.link.answered();
         self.calibration = None;
-        // An order from before the fault that has not started is discarded. The data stays, and the controller starts
-        // with it instead of taking over from the previous one.
+        // An order that was given before the fault and was not taken is discarded. New data is kept. The controller
+        // starts with this data, and does not continue from the state of the previous controller.
         self.report.orders += u32::from(self.mailbox.new_order().is_some());
         if let Some(new) = self.mailbox.new_adjustable() {
             self.adjustable = new.clone();
