@@ -7,7 +7,7 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Slack is being taken up.
+    /// The finger takes up the slack of its tendons.
     #[default]
     Opening,
     /// The motors are off: the finger was opened that way, or a calibration has ended.

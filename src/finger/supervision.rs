@@ -91,8 +91,8 @@ impl Supervision {
         }
     }
 
-    /// Runs the monitors for one cycle of a finger that is a spring, after `controller` has computed. `feedback` is
-    /// none if the reply was lost.
+    /// Runs the monitors for one cycle of a finger that is a spring, after `controller` has computed the cycle.
+    /// `feedback` is `None` if the reply was lost.
     pub fn spring(&mut self, controller: &Controller, state: &State, feedback: Option<&Feedback>) -> Option<Fault> {
         let alarms = controller.watch(&mut self.watch, state, feedback?, self.age, self.full_scale);
         // The warning of `note_period` takes precedence, because the state of the line or of the machine can explain

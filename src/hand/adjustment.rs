@@ -40,7 +40,7 @@ impl Hand {
     /// in torque. Other keys keep their values. `controller.law` applies to later set points.
     ///
     /// A configured `stiffness.bound` was found for one controller. Under another `controller.scheme` it is used only
-    /// if it is less than the default bound, or if `keys` contains it too.
+    /// if it is less than the default bound, or if `keys` contains `stiffness.bound` too.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a key cannot be
@@ -93,7 +93,7 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     Ok(())
 }
 
-/// The configuration of a finger, with `keys` replacing some of its values. `rate` is in Hz.
+/// Returns the configuration of a finger in which `keys` have replaced some values. `rate` is in Hz.
 fn adjusted(
     number: FingerNumber,
     finger: &ConfiguredFinger,

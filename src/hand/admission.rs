@@ -17,7 +17,7 @@ pub(super) struct Admission {
     pub joint_limits: (Vector3<f64>, Vector3<f64>),
     /// Bound on the largest eigenvalue of Kx, N/cm.
     pub stiffness_bound: f64,
-    /// A^-1, limited to the joint limits.
+    /// A^-1 within the joint limits.
     pub inverse_kinematics: InverseKinematics,
     pub links: Links,
     /// R of eq. 14, cm.

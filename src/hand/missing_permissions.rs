@@ -7,15 +7,15 @@ use thiserror::Error;
 /// A permission that a servo thread needs and does not have. The texts name the remedy.
 #[derive(Debug, Error)]
 pub enum MissingPermission {
-    /// SCHED_FIFO.
+    /// The permission to run under SCHED_FIFO.
     #[error("the servo cannot run under SCHED_FIFO ({0}): grant CAP_SYS_NICE or raise the rtprio limit (ulimit -r)")]
     Scheduling(io::Error),
-    /// Locked memory.
+    /// The permission to lock memory.
     #[error(
         "the servo's memory cannot be locked ({0}): grant CAP_IPC_LOCK or raise the memlock limit to 8 MiB (ulimit -l)"
     )]
     Memory(io::Error),
-    /// The configured core.
+    /// The permission to run on the configured core.
     #[error(
         "the servo cannot run on its core ({0}): set `finger.core` to a core that this process may use (taskset -p $$)"
     )]

@@ -31,7 +31,7 @@ pub(super) struct Reached {
     pub number: FingerNumber,
     /// The planners' end.
     pub mailbox: Mailbox,
-    /// The checks of its commands.
+    /// The checks of the planners' commands.
     pub admission: Admission,
     /// Timings from the servo.
     pub timings: Consumer<CycleTiming>,
@@ -68,8 +68,8 @@ pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration>
     Ok(())
 }
 
-/// The folder for black boxes. It must exist at open. Its absolute path is kept, so that it stays the same if the
-/// planner changes its working directory.
+/// Returns the absolute path of the folder for black boxes, which must exist at open. With an absolute path the folder
+/// stays the same if the planner changes its working directory.
 pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<PathBuf>, UnusableConfiguration> {
     match &configuration.hand.black_box {
         Some(folder) if !Path::new(folder).is_dir() => {

@@ -14,8 +14,8 @@ use std::sync::atomic::Ordering;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Time in which a servo releases its link after the last of its fingers has faulted. Until then, a running finger of
-/// the port may be about to fault too.
+/// Time in which a servo releases its link after the last of its fingers has faulted. During this time, a finger of the
+/// port that still runs may be about to fault too.
 const RELEASE_LIMIT: Duration = Duration::from_millis(500);
 
 /// Interval at which a recovery is polled.
@@ -109,7 +109,7 @@ impl Recovering {
         }
     }
 
-    /// Whether every finger of the port holds its pose.
+    /// Returns whether every finger of the port holds its pose.
     ///
     /// # Errors
     /// Returns an error if a finger of the port faults again, or if its servo does not take the link back.

@@ -186,9 +186,9 @@ impl Hand {
         Ok(())
     }
 
-    /// Requests the end state of every finger, and waits until all fingers have reached it or its time is over. This
-    /// function takes no lock and frees no memory, so it can be called when the process is about to end, even in a
-    /// signal handler. The hand cannot be used afterwards.
+    /// Requests the end state of every finger, and waits until all fingers have reached it or the time limit is over.
+    /// This function takes no lock and frees no memory, so it can be called when the process is about to end, even in
+    /// a signal handler. The hand cannot be used afterwards.
     pub fn end(&self) {
         let members = self.dispatcher.members();
         members.iter().for_each(|member| member.mailbox.close());

@@ -78,7 +78,7 @@ fn by_thread(lines: Vec<Line>) -> BTreeMap<u8, Vec<ServedPort<Port>>> {
     ports
 }
 
-/// The servo of the thread at `place` among `threads`.
+/// Returns the servo of the thread at `place` among `threads` threads.
 fn port_servo(configuration: &Configuration, ports: Vec<ServedPort<Port>>, place: usize, threads: usize) -> PortServo {
     let period = configuration.hand.period();
     let servo = Servo::new(MonotonicClock, Schedule::staggered(0, period, place, threads), ports);
@@ -103,8 +103,8 @@ fn run(
         let stack = LockedStack::lock().map(|stack| locked = Some(stack));
         refusals.memory = stack.and_then(|()| servo.memory().lock()).err();
     }
-    // `start` waits for this report, unless it has already returned an error. After an error it does not send the time
-    // of the first cycle, so `recv` fails.
+    // `start` waits for this report, unless it has already returned an error. After an error `start` does not send the
+    // time of the first cycle, so `recv` fails.
     let _ = report.send(refusals);
     if let Ok(first) = beginning.recv() {
         servo = servo.later(first);

@@ -1,4 +1,4 @@
-//! The calls that send set points. Each checks the planner's arguments and writes to the mailbox of the finger.
+//! The calls that send set points. Each call checks the planner's arguments and writes to the mailbox of the finger.
 
 use crate::control::{Law, SetPoint};
 use crate::hand::admission::Admission;
@@ -7,7 +7,7 @@ use crate::model::Contact;
 use crate::model::FingerNumber;
 
 impl Hand {
-    /// Sends theta_d of finger 1, 2 or 3: joints 0, 1 and 2, rad. It takes effect within a cycle.
+    /// Sends theta_d of finger 1, 2 or 3: joints 0, 1 and 2, rad. The angles take effect within a cycle.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, if an angle is NaN, infinite or beyond a joint limit, or if the

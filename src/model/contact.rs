@@ -31,7 +31,7 @@ pub enum ContactError {
     /// `K[row][column]` and `K[column][row]` differ.
     #[error(
         "K is not symmetric: K[{row}][{column}] and K[{column}][{row}] differ by {difference:.3e}, more than a \
-         thousandth of its largest entry. Send a symmetric K, as every spring has"
+         thousandth of its largest entry. Send a symmetric K: the stiffness of a spring is always symmetric"
     )]
     NotSymmetric {
         /// Row of the first such pair.

@@ -1,6 +1,6 @@
-//! The thread that collects from the servos, so that nothing is lost while no planner calls. When a finger faults, it
-//! starts another thread that writes the finger's black box. Otherwise it allocates no memory, so that the hand keeps
-//! working if the planner is out of memory.
+//! The thread that collects from the servos, so that nothing is lost while no planner calls. When a finger faults and a
+//! folder is configured, it starts another thread that writes the finger's black box. Otherwise it allocates no memory,
+//! so that the hand keeps working if the planner is out of memory.
 
 use crate::finger::Recording;
 use crate::hand::black_box_file::save_at_fault;

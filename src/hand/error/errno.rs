@@ -5,7 +5,7 @@ use crate::calibration::Obstacle;
 use crate::files::errno;
 
 impl HandError {
-    /// The nearest errno.
+    /// Returns the errno that describes the error best.
     #[must_use]
     pub fn errno(&self) -> i32 {
         match self {

@@ -8,7 +8,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecoveryError {
-    /// Another finger uses the port.
+    /// Another finger on the same port is running.
     #[error(
         "finger {finger} shares its port with finger {other}, which is running, and fingers on one port recover only \
          together: stop all fingers, then recover finger {finger}"
@@ -41,7 +41,7 @@ pub enum RecoveryError {
 }
 
 impl RecoveryError {
-    /// The nearest errno.
+    /// Returns the errno that describes the error best.
     #[must_use]
     pub fn errno(&self) -> i32 {
         match self {

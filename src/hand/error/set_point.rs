@@ -85,7 +85,7 @@ pub enum SetPointError {
         source: OutOfReach,
     },
     /// The stiffness or normal of a contact is invalid.
-    #[error("the contact of finger {finger}: {source}")]
+    #[error("the contact of finger {finger} is invalid: {source}")]
     Contact {
         /// The finger.
         finger: FingerNumber,
@@ -119,7 +119,7 @@ pub enum SetPointError {
 }
 
 impl SetPointError {
-    /// The nearest errno.
+    /// Returns the errno that describes the error best.
     #[must_use]
     pub fn errno(&self) -> i32 {
         match self {

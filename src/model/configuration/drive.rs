@@ -42,7 +42,7 @@ pub struct ConfiguredMotor {
     pub inertia: [f64; 4],
     /// Viscous friction of each motor, N m s/rad.
     pub viscous_friction: [f64; 4],
-    /// Torque that each motor can give permanently, N cm.
+    /// Torque that each motor can give continuously, N cm.
     pub continuous_torque: [f64; 4],
     /// Thermal time constant of the motors, s.
     pub thermal_time: f64,

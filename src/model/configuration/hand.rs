@@ -84,7 +84,8 @@ pub struct ConfiguredHand {
     pub release_ramp_ms: u16,
     /// Time without a command after which the board goes to its end state, ms: 2 to 1000.
     pub watchdog_ms: u16,
-    /// Time-out for the board's reply and for the tensioning of a finger during open, ms of real time.
+    /// Time-out for the board's reply and for the tensioning of a finger during open, ms. It is a time and not a number
+    /// of cycles.
     pub open_timeout_ms: u32,
     /// The fingers that stop when a finger faults.
     pub on_fault: OnFault,
@@ -92,7 +93,7 @@ pub struct ConfiguredHand {
     pub out_of_range: OutOfRange,
     /// Whether the first refusal of each kind prints one line on standard error.
     pub print_refusals: bool,
-    /// Folder for the last two seconds of a finger that faults. Without it they are not written.
+    /// Folder for files with the last two seconds of a finger that faults. Without a folder, no file is written.
     pub black_box: Option<String>,
     /// Gravity in palm coordinates, m/s^2.
     pub gravity: [f64; 3],
@@ -117,8 +118,9 @@ impl Default for ConfiguredHand {
             hold_torque_limit: 1.0,
             release_ramp_ms: 200,
             // A finger must be in its end state 20 ms after the last good reply, or after the death of its planner. A
-            // board's timer may have a resolution of 1 ms and an error of 1 %. With 20 ms and whole periods, a Stop
-            // that is sent slightly late would be too late.
+            // board's timer may have a resolution of 1 ms and an error of 1 %. The servo sends a Stop this time after
+            // the last good reply, in whole periods. With 20 ms, a Stop that leaves late in its period would be too
+            // late.
             watchdog_ms: 18,
             open_timeout_ms: 5000,
             on_fault: OnFault::Finger,

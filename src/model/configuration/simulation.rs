@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 /// The parameters of a simulated finger: `[finger.simulation]`. The defaults are plausible for a finger of this size
-/// with small geared motors. Nothing was compared with the real hand. Units are SI, except that geometric lengths are
-/// in cm.
+/// with small geared motors. No value was compared with the real hand. Units are SI, except that stiffnesses are in
+/// N/cm, the lengths of a surface in cm, and angles in degrees.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredSimulation {
@@ -14,7 +14,7 @@ pub struct ConfiguredSimulation {
     pub link_radii: [f64; 3],
     /// Viscous friction of each joint, N m s/rad.
     pub joint_viscous_friction: [f64; 3],
-    /// Coulomb friction of each joint, N m. A harsh joint has 2e-3.
+    /// Coulomb friction of each joint, N m. A joint with much friction has 2e-3.
     pub joint_coulomb_friction: [f64; 3],
     /// True stiffness of each simulated tendon between motor pulley and joint, N/cm. The controller uses
     /// `tendon.stiffness` instead. Experiments with a wrong stiffness set the two to different values.
