@@ -1,20 +1,26 @@
 //! Identifies the gains of the gauges, the friction of joints and motors, and the stiffness of the tendons.
 
+mod balance;
+mod joint_friction;
+mod least_squares;
+mod motor_friction;
 mod phases;
+mod pressing;
+mod tendon_stiffness;
 
-use super::balance::Balance;
 use super::findings::Identified;
 use super::instruments::Instruments;
-use super::joint_friction::JointFriction;
 use super::joint_guide::JointGuide;
-use super::motor_friction::MotorFriction;
-use super::pressing::Pressing;
 use super::step::{Sample, Stepped};
 use super::stop_search::StopSearch;
 use super::take_up::TakeUp;
-use super::tendon_stiffness::TendonStiffness;
 use crate::model::configuration::{ConfiguredFinger, GaugeReference};
+use balance::Balance;
+use joint_friction::JointFriction;
+use motor_friction::MotorFriction;
 use nalgebra::Vector3;
+use pressing::Pressing;
+use tendon_stiffness::TendonStiffness;
 
 #[derive(Clone, Debug)]
 pub(super) struct Identification {

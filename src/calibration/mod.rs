@@ -5,27 +5,16 @@
 //! hand stores and applies the findings.
 
 mod average;
-mod balance;
-mod encoder_zero;
 mod findings;
-mod gauge_zero;
-mod grip;
 mod identification;
 mod instruments;
-mod joint_friction;
 mod joint_guide;
-mod least_squares;
-mod motor_friction;
 mod obstacle;
-mod pressing;
 mod routine;
 mod signs;
-mod standstill;
 mod step;
 mod stop_search;
 mod take_up;
-mod tendon_stiffness;
-mod wiring;
 mod zeroing;
 
 pub use findings::{Findings, Identified, Signs, Zeros};

@@ -9,17 +9,18 @@
 mod pushes;
 mod sweep;
 mod sweeping;
+mod wiring;
 
 use super::findings::{Findings, Signs};
 use super::instruments::Instruments;
 use super::obstacle::Obstacle;
 use super::step::{Progress, Sample, Step, Stepped};
-use super::wiring::Wiring;
 use crate::control::signals::{Activity, Feedback};
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 use std::ops::ControlFlow::{Break, Continue};
 use sweep::Sweep;
+use wiring::Wiring;
 
 /// Stiffness with which a motor is held, N/cm.
 const HOLD: f64 = 150.0;

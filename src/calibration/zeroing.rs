@@ -2,12 +2,13 @@
 
 mod at_pose;
 mod at_stops;
+mod encoder_zero;
+mod gauge_zero;
 mod gauges;
+mod grip;
+mod standstill;
 
-use super::encoder_zero::Reading;
 use super::findings::{Findings, Zeros};
-use super::gauge_zero::GaugeZero;
-use super::grip::Grip;
 use super::instruments::Instruments;
 use super::joint_guide::JointGuide;
 use super::obstacle::Obstacle;
@@ -16,6 +17,9 @@ use super::stop_search::StopSearch;
 use super::take_up::TakeUp;
 use crate::control::signals::Activity;
 use crate::model::configuration::{ConfiguredFinger, ZeroingMethod};
+use encoder_zero::Reading;
+use gauge_zero::GaugeZero;
+use grip::Grip;
 use nalgebra::{Vector3, Vector4};
 use std::ops::ControlFlow::{self, Continue};
 

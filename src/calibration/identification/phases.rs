@@ -1,18 +1,18 @@
 //! The phases of identification.
 
+use super::balance::{Balance, SWING};
+use super::joint_friction::JointFriction;
+use super::motor_friction::MotorFriction;
+use super::pressing::Pressing;
+use super::tendon_stiffness::TendonStiffness;
 use super::{Identification, Phase};
-use crate::calibration::balance::{Balance, SWING};
 use crate::calibration::findings::{Findings, Identified};
 use crate::calibration::instruments::Instruments;
-use crate::calibration::joint_friction::JointFriction;
 use crate::calibration::joint_guide::JointGuide;
-use crate::calibration::motor_friction::MotorFriction;
 use crate::calibration::obstacle::Obstacle;
-use crate::calibration::pressing::Pressing;
 use crate::calibration::step::{Progress, Sample, Step, Stepped};
 use crate::calibration::stop_search::StopSearch;
 use crate::calibration::take_up::TakeUp;
-use crate::calibration::tendon_stiffness::TendonStiffness;
 use crate::control::signals::Activity;
 use crate::model::configuration::GaugeReference;
 use std::ops::ControlFlow::{Break, Continue};

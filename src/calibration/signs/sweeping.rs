@@ -2,11 +2,11 @@
 //! gauges.
 
 use super::sweep::{Sweep, TIGHT};
+use super::wiring::Wiring;
 use super::{Phase, SignSearch};
 use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
 use crate::calibration::step::Sample;
-use crate::calibration::wiring::Wiring;
 use nalgebra::Vector4;
 
 /// Speed of a sweep, cm/s.

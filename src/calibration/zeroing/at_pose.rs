@@ -1,9 +1,9 @@
 //! Zeros the encoders in the configured pose, in which something holds the finger.
 
+use super::encoder_zero::Reading;
+use super::grip::Grip;
 use super::{Phase, Stepped, Zeroing, going};
-use crate::calibration::encoder_zero::Reading;
 use crate::calibration::findings::Findings;
-use crate::calibration::grip::Grip;
 use crate::calibration::instruments::Instruments;
 use crate::calibration::step::{Sample, Step};
 use nalgebra::Vector4;

@@ -1,7 +1,7 @@
 //! Zeros the encoders with the two stops of every joint.
 
+use super::encoder_zero::Reading;
 use super::{Phase, Stepped, Zeroing, going};
-use crate::calibration::encoder_zero::Reading;
 use crate::calibration::instruments::Instruments;
 use crate::calibration::joint_guide::JointGuide;
 use crate::calibration::obstacle::Obstacle;

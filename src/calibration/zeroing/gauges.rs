@@ -1,8 +1,8 @@
 //! The first phases of zeroing, until the gauges are zeroed and the tendons are tight.
 
+use super::gauge_zero::GaugeZero;
+use super::grip::Grip;
 use super::{Phase, Stepped, Zeroing, going};
-use crate::calibration::gauge_zero::GaugeZero;
-use crate::calibration::grip::Grip;
 use crate::calibration::instruments::Instruments;
 use crate::calibration::joint_guide::JointGuide;
 use crate::calibration::obstacle::Obstacle;

@@ -8,6 +8,7 @@ mod fault;
 mod from_monitors;
 mod kind;
 mod table;
+mod table_macro;
 mod warnings;
 
 pub use action::Action;

@@ -1,21 +1,34 @@
 //! The types of a hand's configuration, with a default for every value: the finger of the report, and plausible values
-//! for what the report omits. The layer `hand` reads them from a file. This layer checks them.
+//! for what the report omits. Each table of the configuration file has a Rust file here, and each key is a field of the
+//! table's type. `[finger]` itself is in this file. The layer `hand` reads the values from a file. `model/validation.rs`
+//! checks them.
 
 mod controller;
-mod drive;
+mod encoder;
+mod friction;
+mod gauge;
+mod geometry;
 mod hand;
-mod mechanics;
+mod joints;
+mod links;
+mod motor;
 mod simulation;
+mod stiffness;
+mod tendon;
 mod zeroing;
 
 pub use controller::{ConfiguredController, Law, Scheme};
-pub use drive::{
-    ConfiguredEncoder, ConfiguredGauge, ConfiguredGeometry, ConfiguredJoints, ConfiguredMotor, ConfiguredTendon,
-    GaugeReference,
-};
+pub use encoder::ConfiguredEncoder;
+pub use friction::ConfiguredFriction;
+pub use gauge::{ConfiguredGauge, GaugeReference};
+pub use geometry::ConfiguredGeometry;
 pub use hand::{ConfiguredHand, EndState, OnFault, OutOfRange, PeriodClock, RealTime};
-pub use mechanics::{ConfiguredFriction, ConfiguredLinks};
+pub use joints::ConfiguredJoints;
+pub use links::ConfiguredLinks;
+pub use motor::ConfiguredMotor;
 pub use simulation::{ConfiguredSimulation, Surface};
+pub use stiffness::ConfiguredStiffness;
+pub use tendon::ConfiguredTendon;
 pub use zeroing::{ConfiguredZeroing, ZeroingMethod};
 
 pub use crate::model::finger_number::FINGERS;
@@ -93,16 +106,6 @@ pub struct ConfiguredFinger {
     pub simulation: ConfiguredSimulation,
 }
 
-/// `[finger.stiffness]`
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct ConfiguredStiffness {
-    /// Kx with which the finger holds its pose after opening, N/cm, row-major.
-    pub initial: [[f64; 3]; 3],
-    /// Bound of the largest eigenvalue of Kx, N/cm. Without it the bound is 6 from 1000 Hz up, and 5 below.
-    pub bound: Option<f64>,
-}
-
 /// The configuration of a complete hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Configuration {
@@ -177,21 +180,6 @@ impl Default for ConfiguredFinger {
             controller: Default::default(),
             simulation: Default::default(),
         }
-    }
-}
-
-impl Default for ConfiguredStiffness {
-    fn default() -> Self {
-        Self { initial: [[3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]], bound: None }
-    }
-}
-
-impl ConfiguredStiffness {
-    /// Returns the bound that is valid for the default finger with every controller at `rate` Hz, N/cm. It is less than
-    /// the result of `sun2xp bound` for each of these controllers (`docs/stiffness.md`).
-    #[must_use]
-    pub fn default_bound(rate: f64) -> f64 {
-        if rate >= 1000.0 { 6.0 } else { 5.0 }
     }
 }
 

@@ -1,10 +1,10 @@
 //! Determines the gauge offsets with the motors off. Friction in motor and conduit keeps a tendon tight although its
 //! motor is off, so every motor first lets its tendon out.
 
-use super::average::Average;
-use super::instruments::Instruments;
-use super::obstacle::Obstacle;
-use super::step::Sample;
+use crate::calibration::average::Average;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::step::Sample;
 use crate::control::signals::Activity;
 use nalgebra::Vector4;
 use std::ops::ControlFlow::{self, Break, Continue};

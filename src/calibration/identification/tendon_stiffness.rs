@@ -5,10 +5,10 @@
 //! unknown compliances. They can be separated if the four tensions vary independently. The tensions vary independently
 //! only with joint torques, so something must hold the finger.
 
-use super::instruments::Instruments;
 use super::least_squares::LeastSquares;
-use super::obstacle::Obstacle;
-use super::step::Sample;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::step::Sample;
 use crate::model::Part;
 use nalgebra::{SVector, Vector4};
 

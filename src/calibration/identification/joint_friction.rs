@@ -3,11 +3,11 @@
 //! (R t)_j = g + s (C + b |v|), with s the sign of the motion. The two speeds separate Coulomb friction C from viscous
 //! friction b. Gravity g does not change with direction, and is discarded.
 
-use super::instruments::Instruments;
-use super::joint_guide::JointGuide;
 use super::least_squares::LeastSquares;
-use super::obstacle::Obstacle;
-use super::step::Sample;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::joint_guide::JointGuide;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::step::Sample;
 use crate::model::Part;
 use nalgebra::Vector3;
 

@@ -1,6 +1,6 @@
 //! Varies the four tensions independently while the finger presses against its lower stops.
 
-use super::instruments::Instruments;
+use crate::calibration::instruments::Instruments;
 use nalgebra::{Vector3, Vector4};
 
 /// Largest tension, as a fraction of t_max, or of the largest pull of the weakest motor if that is smaller.

@@ -4,8 +4,8 @@
 //! pulls. But a pull reaches the other tendons only by moving the links, whose inertia delays it. For some milliseconds
 //! after a sudden pull, the motor's own gauge therefore leads by far.
 
-use super::instruments::Instruments;
-use super::obstacle::Obstacle;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::obstacle::Obstacle;
 use nalgebra::Vector4;
 
 /// Pull of a pulse, in t_min.

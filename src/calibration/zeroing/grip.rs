@@ -1,11 +1,11 @@
 //! Checks whether something holds a limp finger in its pose. Each joint is pushed lightly in both directions, as in a
 //! search for stops. A held joint yields by at most a small angle.
 
-use super::instruments::Instruments;
-use super::joint_guide::JointGuide;
-use super::obstacle::Obstacle;
 use super::standstill::TOLERANCE;
-use super::step::Sample;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::joint_guide::JointGuide;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::step::Sample;
 use crate::control::signals::Activity;
 use nalgebra::Vector3;
 use std::f64::consts::PI;

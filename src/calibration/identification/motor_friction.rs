@@ -3,10 +3,10 @@
 //!
 //! u = a t + s (C + mu t). u is the commanded pull. s is +1 while winding in and -1 while letting out.
 
-use super::instruments::Instruments;
 use super::least_squares::LeastSquares;
-use super::obstacle::Obstacle;
-use super::step::Sample;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::step::Sample;
 use crate::model::Part;
 use nalgebra::{Vector3, Vector4};
 

@@ -1,10 +1,10 @@
 //! Computes m_0 of eq. 28 from one known pose.
 
-use super::average::Average;
-use super::instruments::Instruments;
-use super::obstacle::Obstacle;
 use super::standstill::Standstill;
-use super::step::Sample;
+use crate::calibration::average::Average;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::step::Sample;
 use nalgebra::{Vector3, Vector4};
 
 /// Duration of a reading, s.

@@ -6,11 +6,11 @@
 //! G n, with n the null vector of R. This gives G up to a common factor. The tensions of a free finger do not show this
 //! factor.
 
-use super::average::Average;
-use super::instruments::Instruments;
-use super::joint_guide::JointGuide;
-use super::obstacle::Obstacle;
-use super::step::Sample;
+use crate::calibration::average::Average;
+use crate::calibration::instruments::Instruments;
+use crate::calibration::joint_guide::JointGuide;
+use crate::calibration::obstacle::Obstacle;
+use crate::calibration::step::Sample;
 use crate::model::Part;
 use nalgebra::{Vector3, Vector4};
 

@@ -1,0 +1,25 @@
+//! `[finger.tendon]`: tension bounds and stiffness of the tendons.
+
+use serde::{Deserialize, Serialize};
+
+/// `[finger.tendon]`
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredTendon {
+    /// t_min of eq. 19, N. It is also the homing pretension.
+    pub minimum: f64,
+    /// t_max, N.
+    pub maximum: f64,
+    /// Stiffness between motor pulley and joint, N/cm. With it the controller computes the stretch, which the encoders
+    /// do not measure.
+    pub stiffness: [f64; 4],
+    /// Relative uncertainty of `stiffness`. It limits the disagreement of gauges and encoders that is attributed to
+    /// `stiffness`. Identification sets it.
+    pub stiffness_tolerance: f64,
+}
+
+impl Default for ConfiguredTendon {
+    fn default() -> Self {
+        Self { minimum: 5.0, maximum: 60.0, stiffness: [300.0; 4], stiffness_tolerance: 0.2 }
+    }
+}
