@@ -79,7 +79,7 @@ pub struct State {
     stillness: Stillness,
     /// Commanded pulls at the tendons, N.
     pulls: Vector4<f64>,
-    /// The pulls that act until the next sample, N. The previous cycle commanded them.
+    /// The pulls that the previous cycle commanded, N. They act until the next sample.
     acting: Vector4<f64>,
     /// The part of `pulls` that is friction feed-forward, N.
     against_friction: Vector4<f64>,
@@ -135,8 +135,8 @@ impl Controller {
         }
     }
 
-    /// Runs one cycle that continues from the state of another controller of the same finger without a jump in torque.
-    /// Both controllers have the same encoders and the same rate.
+    /// Runs one cycle that continues without a jump in torque from the state of `previous`, another controller of the
+    /// same finger. Both controllers have the same encoders and the same rate.
     ///
     /// The cycle starts from the command that `previous` would compute in this cycle, and not from the last command of
     /// `previous`. A planner that adjusts the controller in every cycle therefore neither stops the feedback nor delays
@@ -167,8 +167,8 @@ impl Controller {
         self.cycle_measured(state, measured.as_ref(), activity)
     }
 
-    /// Runs [`Controller::cycle`] with sensor values in units instead of counts. Without quantisation the cycle is a
-    /// smooth map, which a linear analysis needs.
+    /// Runs [`Controller::cycle`] with sensor values in physical units instead of counts. Without quantisation the
+    /// cycle is a smooth map, as a linear analysis requires.
     pub fn cycle_measured(
         &self,
         state: &mut State,

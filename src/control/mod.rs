@@ -1,8 +1,8 @@
 //! The pure core: one servo cycle is a function of feedback, set point and controller state. The core has no access to
 //! threads, ports or clocks, and allocates nothing.
 //!
-//! One file is one box of Figure 9, 10 or 11, or one part of the state feedback that can replace those boxes.
-//! [`Controller::cycle`] connects them.
+//! Each file is one box of Figure 9, 10 or 11, or one part of the state feedback that can replace those boxes.
+//! [`Controller::cycle`] connects the boxes.
 
 mod cycle;
 mod eigenvalues;

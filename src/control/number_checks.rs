@@ -15,7 +15,7 @@ pub(super) fn not_negative(key: &'static str, value: f64) -> Result<(), Unusable
     if value.is_finite() && value >= 0.0 {
         return Ok(());
     }
-    Err(Unusable { key, reason: format!("is {value}; it must be 0 or a number above") })
+    Err(Unusable { key, reason: format!("is {value}; it must be 0 or a number above 0") })
 }
 
 /// Returns an error unless every value is +1 or -1.

@@ -2,18 +2,18 @@
 
 /// The numbers of one row of a table.
 pub(super) trait Tuned: Copy {
-    /// Computes every number from the same number of two rows.
+    /// Computes each number of a new row by applying `number` to the corresponding numbers of two rows.
     fn combine(lower: &Self, upper: &Self, number: impl Fn(f64, f64) -> f64) -> Self;
 }
 
 /// A rate, Hz, and the numbers at that rate. No number is negative. The rates of a table increase from row to row.
 pub(super) type Row<Numbers> = (f64, Numbers);
 
-/// Returns the numbers of a table for `rate`, Hz. Between two rows each number is a power of the rate. Below the first
-/// row and above the last row the numbers are constant.
+/// Returns the numbers of a table for `rate`, Hz. Between two rows each number is proportional to a power of the rate.
+/// Below the first row and above the last row the numbers are constant.
 ///
-/// The nearest row cannot be used instead: the gains of a higher rate are too large for the longer delay, and were
-/// unstable in every pose tried.
+/// The nearest row cannot be used instead: the gains of a higher rate are too large for the longer delay of a lower
+/// rate. They were unstable in every pose tried.
 pub(super) fn at<Numbers: Tuned>(table: &[Row<Numbers>], rate: f64) -> Numbers {
     let above = table.iter().position(|row| row.0 >= rate).unwrap_or(table.len() - 1);
     let ((low, lower), (high, upper)) = (table[above.saturating_sub(1)], table[above]);

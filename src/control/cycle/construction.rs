@@ -27,12 +27,13 @@ const TIGHT: f64 = 0.8;
 
 impl Controller {
     /// Constructs the controller of `finger` at `rate`, Hz, without gravity. Gains that are not configured follow from
-    /// the rate. If no controller can use a value, the error names its key.
+    /// the rate. Returns an error that names the key if no controller can use the value of this key.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         Self::in_gravity(finger, &Vector3::zeros(), rate)
     }
 
-    /// Constructs the controller of `finger`, which compensates `gravity`, m/s^2 in the finger's frame.
+    /// Constructs a controller of `finger` that compensates `gravity`, m/s^2 in the finger's frame. Otherwise it equals
+    /// the controller that [`Controller::new`] constructs.
     pub fn in_gravity(finger: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Result<Self, Unusable> {
         positive("rate", &[rate])?;
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
@@ -48,7 +49,7 @@ impl Controller {
             }
             Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };
-        // The bounds leave room for the variation of the tensions by dither, noise and friction.
+        // The reserves keep the tensions within their bounds despite the variation by dither, noise and friction.
         let lower_reserve = state_feedback.as_ref().map_or(0.0, |law| law.lower_reserve);
         let upper_reserve = state_feedback.as_ref().map_or(Vector4::zeros(), |law| law.upper_reserve);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;

@@ -14,8 +14,8 @@ impl Controller {
             travel: state.motor_angles.component_mul(&self.radius),
             speeds: state.motor_speeds.component_mul(&self.radius),
             tensions: state.report.tensions - offset,
-            // The observed joints of state feedback are not used: Figures 9 and 10 control the tensions here, and they
-            // need the low-pass filtered stretch.
+            // The joints that state feedback observes are not used: Figures 9 and 10 control the tensions here, and
+            // they need the low-pass filtered stretch.
             joints: self.joint_positions.joints(&state.motor_angles, &state.tensions),
             joint_rates: self.joint_positions.joint_rates(&state.motor_speeds),
         };

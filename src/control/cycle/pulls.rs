@@ -1,4 +1,4 @@
-//! Pulls of the motors: for desired tensions, without tension feedback, and during a release.
+//! The pulls of the motors: with control of the tensions, without feedback from the gauges, and during a release.
 
 use super::{Controller, Doing, State};
 use crate::control::tendons::release::Release;
@@ -6,8 +6,8 @@ use crate::control::tendons::tension_distribution::BoundedDistribution;
 use crate::control::tendons::tension_integral::{TendonInput, TendonState};
 use nalgebra::{Vector3, Vector4};
 
-/// Fraction of its desired tension below which a tendon counts as slack while slack is taken up. It is well below the
-/// fraction that a motor reaches without the integral, despite its friction and the error of its torque constant.
+/// Fraction of its desired tension below which a tendon counts as slack while slack is taken up. Without the integral
+/// a motor reaches a much larger fraction, even with its friction and the error of its torque constant.
 const SLACK: f64 = 0.2;
 
 impl Controller {
@@ -38,8 +38,8 @@ impl Controller {
         open_loop(state, state.pulls);
     }
 
-    /// Returns the box R^-1, limited to tensions that motors reach with pulls of at most `limit`, N. Clamping the pulls
-    /// instead would change the direction of the joint torque.
+    /// Returns the box R^-1, limited to tensions that the motors reach with pulls of at most `limit`, N. Clamping the
+    /// pulls instead would change the direction of the joint torque.
     pub(super) fn reachable(&self, limit: &Vector4<f64>) -> BoundedDistribution<'_> {
         self.distribution.below(&self.motor_torque.tensions(limit))
     }
@@ -62,7 +62,8 @@ impl Controller {
         state.report.desired_tensions = desired;
     }
 
-    /// Commands pulls within `limit`, N. Where an activity begins, they start without a jump.
+    /// Commands the pulls `asked`, limited to `limit`, N. If an activity begins, or this controller replaces another
+    /// one, the pulls change without a jump.
     pub(super) fn command_pulls(&self, state: &mut State, asked: &Vector4<f64>, limit: &Vector4<f64>, begins: bool) {
         let goes_on_from = state.goes_on_from.take();
         if let Some(before) = goes_on_from.or(begins.then_some(state.pulls)) {
@@ -84,7 +85,7 @@ impl Controller {
     }
 }
 
-/// Reports pulls that the tension controller did not compute, and resets that controller.
+/// Reports pulls that the tension controller did not compute, and resets the state of the tension controller.
 pub(super) fn open_loop(state: &mut State, pulls: Vector4<f64>) {
     state.goes_on_from = None;
     state.tendons = TendonState::default();

@@ -16,15 +16,15 @@ use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
 
-/// Disagreement that is always tolerated, N. A fraction of the change of the tensions is tolerated as well, for the
-/// error of k.
+/// Disagreement that is always tolerated, N. In addition, a fraction of the change of the tensions is tolerated,
+/// because k is not known exactly.
 const TOLERANCE: f64 = 0.5;
 
-/// Fraction of t_min below which a tendon may hang slack. The stretch that the encoders show is then negative, and so
-/// is the difference.
+/// Fraction of t_min below which a tendon may hang slack. The encoders then show a negative stretch, so the difference
+/// is negative too.
 const SLACK: f64 = 0.35;
 
-/// Number of samples whose mean is the zero.
+/// Number of samples whose mean difference counts as zero.
 const ZEROING: u32 = 32;
 
 /// Time for which the disagreement must last, s.
@@ -35,11 +35,13 @@ const AVERAGING: f64 = 0.05;
 
 #[derive(Clone, Debug)]
 pub(super) struct Agreement {
-    /// n, all positive, scaled so that an error of 1 N in all tensions gives a difference of 1 N.
+    /// Weights of the travels, N/cm: n, which is all positive, divided by the sum of n / k.
     of_travel: Vector4<f64>,
+    /// Weights of the tensions: n / k, scaled so that an error of 1 N in all tensions gives a difference of 1 N.
     of_tension: Vector4<f64>,
     /// Tensions at which the encoders are zeroed, N.
     home: Vector4<f64>,
+    /// Tension below which a tendon may hang slack, N.
     slack: f64,
     /// `tendon.stiffness_tolerance`.
     tolerance: f64,
@@ -47,6 +49,7 @@ pub(super) struct Agreement {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
+    /// Mean difference during zeroing, N.
     zero: f64,
     /// Mean tensions above the homing pretension during zeroing, N.
     above: Vector4<f64>,
@@ -55,6 +58,7 @@ pub(super) struct Memory {
     difference: f64,
     /// Disagreement divided by the tolerated one.
     ratio: f64,
+    /// Time for which the disagreement has lasted, s.
     duration: f64,
     /// Tension of each tendon minus the tension that its gauge shows, if the other three gauges are right, N.
     missing: Vector4<f64>,
@@ -110,7 +114,8 @@ impl Agreement {
         memory.ratio = if explained { 0.0 } else { memory.difference.abs() / tolerated };
     }
 
-    /// Returns an alarm if the disagreement has lasted too long. `explained` means that another fault causes it.
+    /// Returns an alarm if the disagreement has lasted too long. `explained` means that another fault causes the
+    /// disagreement.
     pub fn watch(&self, memory: &mut Memory, sample: &Sample, explained: bool) -> Option<Alarm> {
         let counts = memory.ratio > 1.0 && !explained;
         memory.duration = if counts { memory.duration + sample.elapsed } else { 0.0 };

@@ -38,7 +38,7 @@ pub enum Symptom {
 pub struct Alarm {
     /// The symptom.
     pub symptom: Symptom,
-    /// The part that has it.
+    /// The part that has the symptom.
     pub part: Part,
     /// The value, in the unit of the symptom.
     pub value: f64,

@@ -7,30 +7,32 @@ use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 use std::f64::consts::TAU;
 
-/// Factor for the uncertainty of the largest acceleration, which follows from motor torque, pull of the strongest
-/// tendon, and rotor inertia.
+/// Factor for the uncertainty of the largest acceleration. The acceleration follows from the torque limit of the motor,
+/// the maximum tension of its tendon and the rotor inertia.
 const MARGIN: f64 = 1.25;
 
-/// Additional tolerance, counts. The last bit flickers at both ends of two differences.
+/// Additional tolerance, counts. Two differences of counts have four ends, and the last bit may flicker at each.
 const FLICKER: f64 = 4.0;
 
 /// Shortest interval over which a speed is measured, as a fraction of a period. A late cycle is followed immediately by
-/// another one, in which nothing turns. Over such a short interval the last bit alone would be a high speed.
+/// the next one, and the motor does not turn between them. Over such a short interval, a change of the last bit alone
+/// would appear as a high speed.
 const SHORTEST: f64 = 0.75;
 
 #[derive(Clone, Debug)]
 pub(super) struct EncoderJump {
     /// Shortest interval over which a speed is measured, s.
     shortest: f64,
-    /// Largest change of speed, rad/s^2.
+    /// Largest acceleration of each motor, rad/s^2.
     strongest: Vector4<f64>,
     counts_per_radian: Vector4<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
-    /// Angle that the motors have turned since the last measured speed, rad, and the time, s.
+    /// Angle that each motor has turned since the last measurement of the speed, rad.
     turned: Vector4<f64>,
+    /// Time since the last measurement of the speed, s.
     elapsed: f64,
     /// The last measured speed, rad/s.
     speed: Option<Vector4<f64>>,
@@ -59,7 +61,7 @@ impl EncoderJump {
         let before = memory.speed.replace(turned / elapsed)?;
         first_of(Symptom::EncoderJump, Part::encoder, |encoder| {
             let unexpected = (turned[encoder] - before[encoder] * elapsed) * self.counts_per_radian[encoder];
-            // Both speeds are means, so the change of speed took up to two intervals of this length.
+            // Both speeds are means, so the speed may have changed during up to two intervals of this length.
             let possible = 2.0 * self.strongest[encoder] * elapsed.powi(2) * self.counts_per_radian[encoder];
             (unexpected.abs() > possible + FLICKER).then_some(unexpected)
         })

@@ -5,33 +5,37 @@ use super::sample::Sample;
 use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 
-/// Factor by which a tendon may exceed t_max. Commands stay below t_max, but impacts and steps overshoot it.
+/// Largest tolerated tension divided by t_max. Commands stay below t_max, but after impacts and steps the tension
+/// overshoots.
 const OVERSHOOT: f64 = 1.3;
 
 /// A gauge that shows less than minus this fraction of t_min is defective.
 const BELOW_ZERO: f64 = 0.5;
 
-/// If the last tension before the end of the range was above this fraction of t_max, the tendon was pulled to the end.
-/// From a lower tension the gauge has jumped there, and is defective.
+/// If a gauge reaches the end of its range from a tension above this fraction of t_max, its tendon has too much
+/// tension. If it reaches the end from a lower tension, it has jumped there and is defective.
 const PULLED: f64 = 0.5;
 
-/// Time for which either condition must last, s.
+/// Time for which a gauge must be out of range, or a tension too large, s.
 const DURATION: f64 = 0.004;
 
 #[derive(Clone, Debug)]
 pub(super) struct GaugeRange {
-    /// Tensions, N.
+    /// Tension from which a tendon can pull its gauge to the end of the range, N.
     pulled: f64,
+    /// Largest tolerated tension, N.
     highest: f64,
+    /// Lowest tension that a working gauge shows, N.
     lowest: f64,
 }
 
-/// Time for which each tendon has had too much tension, and each gauge has been out of its range, s.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
+    /// Time for which each tendon has had too much tension, s.
     over: [f64; 4],
     /// Whether each gauge showed more than `pulled` when it was last below the end of its range.
     loaded: [bool; 4],
+    /// Time for which each gauge has been out of its range, s.
     out: [f64; 4],
 }
 

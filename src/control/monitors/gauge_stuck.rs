@@ -1,6 +1,6 @@
 //! Detects a gauge that shows the same count permanently. A working gauge flickers in its last bits. The monitor learns
-//! for each gauge how much. Gauges without noise all show constant counts at rest, so a gauge is judged only while
-//! others flicker.
+//! how much each gauge flickers. Working gauges without noise show constant counts at rest, so a gauge is judged only
+//! while others flicker.
 
 use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
@@ -13,30 +13,31 @@ const LEARNING: f64 = 1.0 / 256.0;
 /// Number of samples after which the flicker is known.
 const KNOWN: u32 = 256;
 
-/// A gauge that shows one count in this number of samples, while all others are known to flicker, was dead from the
-/// start.
+/// A gauge that shows one count in this number of consecutive samples was dead from the start, if all others are known
+/// to flicker.
 const DEAD_FROM_START: u32 = 512;
 
-/// A dead gauge soon differs from the commanded tension by more than this fraction of t_min, because the commands keep
-/// changing; at rest the dither changes them. A gauge without noise whose tendon has the commanded tension may show one
-/// count permanently. This was observed while other gauges flickered.
+/// The tension that a dead gauge shows soon differs from the commanded one by more than this fraction of t_min, because
+/// the commands keep changing; at rest the dither changes them. A working gauge without noise may show one count
+/// permanently, if its tendon has the commanded tension. This was observed while other gauges flickered.
 const OFFSET: f64 = 0.015;
 
-/// Natural logarithm of the probability below which a constant count means a dead gauge. The probability is that of a
-/// working gauge with the learned flicker showing one count for this long. The value is once in 10^11 samples, a year
-/// of four gauges at 1000 Hz.
+/// Natural logarithm of the probability below which a constant count means a dead gauge. It is the probability that a
+/// working gauge with the learned flicker shows one count for so long. The value means once in 10^11 samples. Four
+/// gauges at 1000 Hz give this number of samples in about a year.
 const UNLIKELY: f64 = -25.3;
 
-/// Lowest assumed probability that a sample of a gauge repeats the previous one. A gauge in motion hardly repeats a
-/// count, but its flicker at rest must still be recognised.
+/// Lowest assumed probability that a sample of a gauge repeats the previous one. While the tension changes, a gauge
+/// hardly repeats a count. At rest it repeats more counts, and must not be taken for a dead gauge.
 const LEAST_REPEATS: f64 = 0.2;
 
-/// A gauge that repeats its count more often than this is not known to flicker. It has no noise, or its converter is
-/// slow.
+/// Largest fraction of repeating samples with which a gauge is known to flicker. A gauge that repeats its count more
+/// often has no noise, or its converter is slow.
 const MOST_REPEATS: f64 = 0.7;
 
-/// Lowest fraction of samples in which a gauge with noise reverses its direction. About half of its samples do. Motion
-/// does not reverse. So a gauge without noise that comes to rest is not taken for a dead one.
+/// Lowest fraction of samples in which a gauge that is known to flicker reverses its direction. Noise reverses the
+/// direction in about half of the samples, and motion hardly ever. So a gauge without noise that comes to rest is not
+/// taken for a dead one.
 const LEAST_REVERSALS: f64 = 0.15;
 
 /// Gain per sample of the mean of the reversals. It is small, because noise is not visible during fast motion.
@@ -48,17 +49,18 @@ const SLACK: f64 = 0.3;
 /// Number of samples with the same count after which a gauge may be judged.
 const LEAST_ROW: u32 = 4;
 
-/// A gauge that flickered and then showed one count in this number of samples is dead if another monitor indicates it
-/// too.
+/// A gauge that flickered and then showed one count in this number of consecutive samples is dead if gauges and
+/// encoders disagree too.
 const SILENT: u32 = 10;
 
-/// A gauge without known flicker is reported as dead only because of its tendon; see `tension_lost`.
+/// A gauge that is not known to flicker is reported as dead in two cases: if all others are known to flicker, and
+/// because of its tendon; see `tension_lost`.
 #[derive(Clone, Debug)]
 pub(super) struct GaugeStuck {
-    /// Tension below which a tendon may hang slack, N. If the range of its gauge ends there, noise is visible on one
-    /// side only. Such a gauge is not used to judge others.
+    /// Tension below which a tendon may hang slack, N. Its gauge is then not used to judge others: if the range of the
+    /// gauge ends there, only half of its noise is visible.
     slack: f64,
-    /// Difference from the commanded tension, N.
+    /// Difference from the commanded tension beyond which a gauge may be dead, N.
     offset: f64,
 }
 
@@ -82,7 +84,7 @@ impl Default for Memory {
     }
 }
 
-/// What is known about the flicker of four gauges.
+/// The learned flicker of the four gauges.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flicker {
     /// Whether the gauge is known to flicker.
@@ -92,7 +94,7 @@ pub(super) struct Flicker {
 }
 
 impl Flicker {
-    /// Returns whether a gauge that flickered shows one count.
+    /// Returns whether a gauge that flickered has shown one count in the last [`SILENT`] samples.
     pub fn silent(&self, gauge: usize) -> bool {
         self.known[gauge] && self.same[gauge] >= SILENT
     }

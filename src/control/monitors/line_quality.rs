@@ -1,6 +1,6 @@
-//! Fraction of the recent periods that failed: replies lost or damaged, and periods skipped.
+//! Fraction of the recent periods that failed: their reply was lost or damaged, or they were skipped.
 
-/// A fading mean: the weight of a failure is 1/e after as many periods as the window has.
+/// A mean in which old periods fade: after one window, the weight of a period has fallen to 1/e.
 #[derive(Clone, Copy, Debug)]
 pub struct LineQuality {
     gain: f64,
@@ -8,7 +8,7 @@ pub struct LineQuality {
 }
 
 impl LineQuality {
-    /// Constructs a mean with a window of this many periods, at least one.
+    /// Constructs a mean with a window of `window` periods, or of one period if `window` is smaller.
     pub fn new(window: f64) -> Self {
         Self { gain: 1.0 / window.max(1.0), share: 0.0 }
     }

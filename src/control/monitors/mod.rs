@@ -1,5 +1,5 @@
-//! Monitors: they detect faults of tendons, gauges, encoders, motors and joints from the measurements and commands of a
-//! cycle. Each file is one monitor and defines its fault.
+//! The monitors detect faults of tendons, gauges, encoders, motors and joints from the measurements and commands of a
+//! cycle. Each monitor has one file, which defines the fault.
 //!
 //! The monitors run while a finger follows a set point. Taking up slack, calibration and release can cause the same
 //! symptoms without a fault.

@@ -1,4 +1,4 @@
-//! Detects warm motors by the filtered mean square of their torque.
+//! Detects warm and overheated motors by the filtered mean square of their torque.
 
 use super::alarm::{Alarms, Symptom, first_of};
 use super::sample::Sample;
@@ -6,7 +6,7 @@ use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 
-/// Fraction of the continuous heat from which a motor counts as warm, because its torque is limited.
+/// Fraction of the continuous heat from which a motor counts as warm. Its torque is limited from there on.
 const WARM: f64 = 0.8;
 
 /// Fraction of the continuous heat from which a motor counts as hot.

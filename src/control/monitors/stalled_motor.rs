@@ -6,9 +6,11 @@ use crate::control::motors::motor_friction::MotorFriction;
 use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
 
-/// Imbalance that friction may hold: a multiple of the configured friction, because friction is known poorly, and a
-/// fraction of the pull, for the error of the torque constant.
+/// Tolerated imbalance as a multiple of the configured friction. It is more than 1 because friction is known poorly.
 const FRICTION: f64 = 3.0;
+
+/// Additional tolerance as a fraction of the pull or of the tension, whichever is larger. It allows for the error of
+/// the torque constant.
 const TORQUE_CONSTANT: f64 = 0.3;
 
 /// Additional tolerance, N.
@@ -28,9 +30,9 @@ pub(super) struct StalledMotor {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
-    /// Time for which each motor has been stalled, s, with the sign of pull minus tension, and the angle that it has
-    /// turned since then, rad.
+    /// Time for which each motor has been stalled, s, with the sign of pull minus tension.
     duration: [f64; 4],
+    /// Angle that each motor has turned in this time, rad.
     turned: [f64; 4],
 }
 

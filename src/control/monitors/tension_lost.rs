@@ -1,10 +1,10 @@
 //! Detects tendons that lose their tension because they are torn, slip, or have a dead gauge.
 //!
 //! A fast motion or an impact makes an intact tendon slack for a moment, and the tendon hangs. A torn or slipping
-//! tendon, or one with a dead gauge, shows no tension although the other three gauges and the encoders show that it is
-//! stretched. In these cases the difference appears from one sample to the next. If it grew while the gauge still
-//! showed tension, the gauge drifts, and the controller keeps the tendon at the tension that the gauge shows.
-//! `agreement` detects that case.
+//! tendon, or one with a dead gauge, shows no tension although the other three gauges and the encoders indicate that it
+//! is stretched. In these cases the difference between indicated and shown tension appears from one sample to the next.
+//! If the difference grew while the gauge still showed tension, the gauge drifts, and the controller keeps the tendon
+//! at the tension that the gauge shows. `agreement` detects that case.
 
 use super::alarm::{Alarm, Alarms, Symptom, first_of};
 use super::gauge_stuck::{self, Flicker};
@@ -19,43 +19,47 @@ const LOW: f64 = 0.3;
 /// Fraction of t_min below which the tension of a tendon is gone.
 const GONE: f64 = 0.1;
 
-/// Fraction of t_min from which the tension of a low tendon counts as missing. It applies to the tension that the
-/// stretch shows beyond the gauge, minus what the stretch showed before the tendon became low.
+/// Fraction of t_min from which the tension of a low tendon counts as missing. The missing tension is the tension that
+/// the stretch indicates minus the tension that the gauge shows. If its mean before the tendon became low is positive,
+/// the mean is subtracted.
 const MISSED: f64 = 0.3;
 
-/// Time constant of the mean before the tendon became low, s.
+/// Time constant of the mean of the missing tension before the tendon became low, s.
 const BEFORE: f64 = 0.02;
 
 /// Time for which a tendon with missing tension must be low, s.
 const DURATION: f64 = 0.012;
 
-/// Time for which no motion keeps an intact tendon slack, s.
+/// Time after which a low tendon has lost its tension, s. No motion keeps an intact tendon slack for so long.
 const TOO_LONG: f64 = 0.5;
 
 /// Time for which tension must be gone for a warning, s.
 const NOTICED: f64 = 0.003;
 
-/// A gauge that flickered, and has shown one count in this number of samples since its tendon became low, is dead. If
-/// the range of a gauge ends at zero tension, noise is visible on one side only, and the gauge of a torn tendon
-/// occasionally repeats a count too.
+/// A gauge that flickered is dead if it has shown one count since its tendon became low, in at least this number of
+/// samples. Fewer samples are not enough: if the range of a gauge ends at zero tension, only half of its noise is
+/// visible, and the gauge of a torn tendon occasionally repeats a count too.
 const CERTAIN: u32 = 15;
 
 #[derive(Clone, Debug)]
 pub(super) struct TensionLost {
-    /// Tensions, N.
+    /// Tension below which a tendon is low, N.
     low: f64,
+    /// Tension below which the tension of a tendon is gone, N.
     gone: f64,
+    /// Difference from which tension counts as missing, N.
     missed: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
-    /// Time for which each tendon has been low, s, the number of samples in this time, and the integral of its tension,
-    /// N s.
+    /// Time for which each tendon has been low, s.
     low: Vector4<f64>,
+    /// Number of samples in this time.
     samples: [u32; 4],
+    /// Integral of the tension over this time, N s.
     impulse: Vector4<f64>,
-    /// Mean of the tension that the stretch showed beyond the gauge before the tendon became low, N.
+    /// Mean of the missing tension before the tendon became low, N.
     before: Vector4<f64>,
     /// Time for which each tendon has been low with missing tension, s.
     missed: Vector4<f64>,
@@ -97,8 +101,8 @@ impl TensionLost {
         let warning = first_of(Symptom::SlackInMotion, Part::tendon, |tendon| {
             (memory.gone[tendon] >= NOTICED).then_some(sample.tensions[tendon])
         });
-        // The other tendons lose their tension after a torn one, because nothing balances them. So the first one to
-        // lose its tension is reported.
+        // After a tendon has torn, the others lose their tension too, because nothing balances them. So the tendon that
+        // lost its tension first is reported.
         let (missed, lowest) = (memory.missed.imax(), memory.low.imax());
         let fault = if memory.missed[missed] >= DURATION {
             self.fault(memory, sample, flicker, missed)

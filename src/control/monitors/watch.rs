@@ -115,7 +115,7 @@ impl Monitors {
         let silent = (0..4).find(|&gauge| flickers.silent(gauge)).filter(|_| disagrees.is_some());
         let stuck = stuck.or(silent.map(|gauge| gauge_stuck::alarm(&sample, gauge)));
         let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
-        // If the gauge drifts, its motor stands still against a tension that does not exist.
+        // The motor of a drifting gauge also seems stalled: it stands still against a tension that does not exist.
         let doubtful = watch.agreement.doubtful();
         let stalled = stalled.map(|alarm| {
             if doubtful {

@@ -4,7 +4,7 @@ use crate::model::Tendons;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 
-/// Friction at the tendon with the tension t: coulomb + conduit t, N.
+/// Friction of a motor and its conduit, N at the tendon: coulomb + conduit t, where t is the tension.
 #[derive(Clone, Debug)]
 pub(crate) struct MotorFriction {
     /// Coulomb friction at the tendon, N.

@@ -1,21 +1,22 @@
-//! I^2 t limit: a motor may give its largest torque for a limited time only.
+//! The I^2 t limit: a motor may give its largest torque only for a limited time.
 
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector4;
 use serde::{Deserialize, Serialize};
 
-/// Fraction of the continuous heat at which the limit begins to fall. The limit reaches the continuous torque when the
-/// fraction is 1.
+/// Fraction of the continuous heat at which the limit of the torque begins to fall. At a fraction of 1 the limit is the
+/// continuous torque.
 const WARM: f64 = 0.8;
 
 /// h' = (tau^2 - h) / T. The heat of a winding is the filtered mean square of its torque, because the torque is
 /// proportional to the current.
 #[derive(Clone, Debug)]
 pub(crate) struct MotorHeating {
-    /// Largest and continuous pull of each motor, N.
+    /// Largest pull of each motor, N.
     largest: Vector4<f64>,
+    /// Pull that each motor may give permanently, N.
     continuous: Vector4<f64>,
-    /// Fraction of the remaining difference by which the heat changes in a cycle.
+    /// Change of the heat in a cycle as a fraction of tau^2 - h.
     gain: f64,
 }
 

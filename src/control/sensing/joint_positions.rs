@@ -32,8 +32,8 @@ impl JointPositions {
         })
     }
 
-    /// Returns theta, rad. `tensions` must be low-pass filtered: the correction closes a positive feedback around the
-    /// tendon controller, which is stable only if it is slow.
+    /// Returns theta, rad. `tensions` must be low-pass filtered: the correction closes a positive feedback loop around
+    /// the tendon controller, which is stable only if the correction is slow.
     pub fn joints(&self, motor_angles: &Vector4<f64>, tensions: &Vector4<f64>) -> Vector3<f64> {
         self.from_motors * motor_angles + self.from_tensions * (tensions - self.home)
     }
