@@ -796,7 +796,7 @@ struct FingerRecord {
     int Answered;                   /* 1: the board's reply arrived. 0: it was lost. */
     int StatusBits;                 /* Status bits of the newest reply (docs/board-protocol.md). */
     int Computed;                   /* 1: the controller ran and computed the members below. 0: they are 0, because
-                                       the finger was faulted already or the simulated finger waited. */
+                                       the finger was already faulted or a simulated finger had not answered. */
     int Follows;                    /* 1: PosSent is the set point in force. 0: none is in force, and PosSent is 0. */
     double Pos[3];                  /* Measured joint angles, rad. */
     double PosSent[3];              /* Joint angles at which the spring is anchored, rad. */

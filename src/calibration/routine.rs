@@ -77,8 +77,9 @@ impl Calibration {
     }
 
     /// Returns the configuration of the finger's controller while a routine runs at `rate`, Hz. The scheme is Figure
-    /// 10, and configured gains of Figure 10 stay in force. State feedback relies on the stiffness, friction and zeros
-    /// that a routine has yet to find, and Figure 11 adapts to uncalibrated gauges.
+    /// 10, and configured gains of Figure 10 stay in force. State feedback is not used, because it relies on the
+    /// stiffness, friction and zeros that a routine has yet to find. Figure 11 is not used, because it would adapt to
+    /// uncalibrated gauges.
     pub fn controlled(finger: &ConfiguredFinger, rate: f64) -> ConfiguredFinger {
         let configured = &finger.controller;
         let controller = match configured.scheme(rate) {

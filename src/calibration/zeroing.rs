@@ -45,7 +45,7 @@ enum Phase {
     /// Reads counts and tensions while the finger keeps its own controller.
     Read,
     Gauges(GaugeZero),
-    /// The offsets are known.
+    /// Tightens the tendons. The gauge offsets are now known.
     Tighten(TakeUp),
     /// The finger was limp at the beginning. Checks whether something holds it in its pose.
     Try(Grip),

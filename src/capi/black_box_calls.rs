@@ -35,8 +35,8 @@ pub struct FingerRecord {
     pub Answered: c_int,
     /// Status bits of the newest reply (docs/board-protocol.md).
     pub StatusBits: c_int,
-    /// 1: the controller ran and computed the members below. 0: they are 0, because the finger was faulted already or
-    /// the simulated finger waited.
+    /// 1: the controller ran and computed the members below. 0: they are 0, because the finger was already faulted or
+    /// a simulated finger had not answered.
     pub Computed: c_int,
     /// 1: PosSent is the set point in force. 0: none is in force, and PosSent is 0.
     pub Follows: c_int,
@@ -89,7 +89,7 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
         let least = size_up_to!(self::FingerRecord, Torque: [f64; 4]);
         #[allow(clippy::useless_conversion, reason = "`unsigned long` has 32 bits on some machines")]
         let cycle = (Cycle != 0).then_some(u64::from(Cycle));
-        // SAFETY: by the manual, `Record` is null or points to as many bytes as its first member says.
+        // SAFETY: by the contract in the manual, `Record` is null or points to as many bytes as its first member gives.
         unsafe { fill(Record, "Record", least, |hand| hand.record(i, cycle).map(|kept| to_c(&kept))) }
     })
 }
@@ -128,7 +128,7 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 pub unsafe extern "C" fn WriteBlackBox(i: c_int, Path: *const c_char) -> c_int {
     delegated("WriteBlackBox", MEMORY_OF_CALL, || {
         non_null(Path, "Path", Wanted::FileName)?;
-        // SAFETY: `Path` is not null, as checked above. By the manual it is a C string.
+        // SAFETY: `Path` is not null, as checked above. By the contract in the manual, it is a C string.
         let path = PathBuf::from(OsStr::from_bytes(unsafe { CStr::from_ptr(Path) }.to_bytes()));
         Ok(move || {
             let recording = default_hand::with(|hand| hand.recording(i))?;

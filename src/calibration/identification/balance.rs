@@ -28,7 +28,7 @@ const RISING: f64 = 10.0;
 const LEAST: f64 = 0.5;
 /// Largest plausible factor of a gauge, relative to the mean factor.
 const MOST: f64 = 2.0;
-/// A joint whose torque stays at its limit for this time is blocked, s.
+/// A joint is blocked if its torque stays at the limit for this time, s.
 const BLOCKED: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug)]

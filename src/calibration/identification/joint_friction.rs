@@ -18,7 +18,7 @@ const CLEAR: f64 = 0.1;
 /// Samples are ignored for this time after every change of direction, s. An extended finger oscillates for this time,
 /// and meanwhile its inertia takes as much torque as its friction.
 const RUN_UP: f64 = 0.5;
-/// A joint whose torque stays at its limit for this time is blocked, s.
+/// A joint is blocked if its torque stays at the limit for this time, s.
 const BLOCKED: f64 = 0.3;
 /// Speed of the motion away from the stop and back, rad/s.
 const IN_BETWEEN: f64 = 0.7;

@@ -6,7 +6,7 @@ use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
 use nalgebra::Vector4;
 
-/// A push is decided when its motor has turned by this distance, cm at the tendon.
+/// A motor counts as turned when it has moved by more than this distance, cm at the tendon.
 const TURNED: f64 = 0.005;
 /// First push, as a fraction of t_min at the tendon.
 const FIRST_PUSH: f64 = 0.4;

@@ -20,7 +20,7 @@ pub(super) const TIGHT: f64 = 0.5;
 /// A side is slack if every tension changes by less than this over the outer half of the side, N.
 const SLACK: f64 = 0.25;
 
-/// One motor that turns back and forth.
+/// A sweep: one motor turns back and forth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sweep {
     pub centre: f64,
@@ -73,7 +73,7 @@ impl Sweep {
         self.position == POSITIONS.len()
     }
 
-    /// Returns the difference of the gauges between the two ends of the sweep, N.
+    /// Returns the difference of the tensions between the two ends of the sweep, N.
     pub fn change_between_ends(&self) -> Vector4<f64> {
         self.read[1] - self.read[3]
     }

@@ -47,7 +47,7 @@ impl Standstill {
 mod tests {
     use super::*;
 
-    /// Returns the verdict on a joint 1 that moves along `path`, rad as a function of s, for 0.3 s at 1000 Hz.
+    /// Returns the verdict on joint 1, which moves along `path`, rad as a function of s, for 0.3 s at 1000 Hz.
     fn moved(path: impl Fn(f64) -> f64) -> Option<(usize, f64)> {
         let mut standstill = Standstill::default();
         for cycle in 0..300 {
