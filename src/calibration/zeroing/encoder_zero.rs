@@ -48,8 +48,8 @@ impl Reading {
         instruments.joints(&self.travel.mean(), &(self.tensions() - offset))
     }
 
-    /// Returns the encoder zeros with which this reading gives the joint angles `joints`, rad. `configured` contains the
-    /// zeros of the configuration.
+    /// Returns the encoder zeros with which this reading gives the joint angles `joints`, rad. `configured` contains
+    /// the zeros of the configuration.
     pub fn zeros(
         &self,
         instruments: &Instruments,
