@@ -626,8 +626,8 @@ int GetPosD(int, double *);
 
  Returns the text of the calling thread's last refused call, or an empty string if no call was
  refused. Like errno, the text stays when a call succeeds, so read it only after a call has returned
- -1. Never null. Do not free it: it belongs to the library, and is valid until the next refused call
- of the same thread.
+ -1. The pointer is never null. Do not free the text: it belongs to the library, and is valid until
+ the next refused call of the same thread.
 
  Threads: any; each has its own text. Works in a forked child too.
  */
@@ -722,10 +722,10 @@ struct FingerStatus {
     double Rate;                    /* Configured servo rate, Hz. */
     double MeasuredRate;            /* Measured servo rate since OpenHand, Hz. It falls while the servo does not run,
                                        because the periods that are missing up to now count. */
-    double WakeUpMedian;            /* Jitter: delay of the beginning of the cycles since OpenHand or ResetTiming,
-                                       us. Median. */
-    double WakeUp99;                /* The same delay, us. 99 of 100 cycles began no later. */
-    double WakeUpMaximum;           /* The same delay, us. Maximum. */
+    double WakeUpMedian;            /* Jitter: median delay of the start of a cycle, since OpenHand or ResetTiming,
+                                       us. */
+    double WakeUp99;                /* Delay that 99 of 100 cycles did not exceed, over the same time, us. */
+    double WakeUpMaximum;           /* Maximum delay over the same time, us. */
     double TorqueScale;             /* Fraction of the joint torque that the tension limits admitted in the last
                                        cycle, 0 to 1. The direction of the torque is kept. */
     unsigned long Cycles;           /* Cycles since OpenHand. */
@@ -1262,8 +1262,9 @@ int GetFault(int, struct Fault *);
    Number   FAULT_...
 
  Returns one line with the fault's name, its meaning, the likely cause and the remedy, or an empty
- string for a number that is no fault. Never null. The text stays valid until the process ends. If a
- call was refused because of a fault, HandError gives the same text with the part and the values.
+ string for a number that is no fault. The pointer is never null, and the text stays valid until the
+ process ends. If a call was refused because of a fault, HandError gives the same text with the part
+ and the values.
 
  Threads: any. Works in a forked child too.
  */

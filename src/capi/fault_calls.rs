@@ -70,8 +70,9 @@ pub unsafe extern "C" fn GetFault(i: c_int, Fault: *mut Fault) -> c_int {
 ///   Number   FAULT_...
 ///
 /// Returns one line with the fault's name, its meaning, the likely cause and the remedy, or an empty
-/// string for a number that is no fault. Never null. The text stays valid until the process ends. If a
-/// call was refused because of a fault, HandError gives the same text with the part and the values.
+/// string for a number that is no fault. The pointer is never null, and the text stays valid until the
+/// process ends. If a call was refused because of a fault, HandError gives the same text with the part
+/// and the values.
 ///
 /// Threads: any. Works in a forked child too.
 #[unsafe(no_mangle)]

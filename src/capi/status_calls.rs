@@ -45,11 +45,11 @@ pub struct FingerStatus {
     /// Measured servo rate since OpenHand, Hz. It falls while the servo does not run, because the periods that are
     /// missing up to now count.
     pub MeasuredRate: f64,
-    /// Jitter: delay of the beginning of the cycles since OpenHand or ResetTiming, us. Median.
+    /// Jitter: median delay of the start of a cycle, since OpenHand or ResetTiming, us.
     pub WakeUpMedian: f64,
-    /// The same delay, us. 99 of 100 cycles began no later.
+    /// Delay that 99 of 100 cycles did not exceed, over the same time, us.
     pub WakeUp99: f64,
-    /// The same delay, us. Maximum.
+    /// Maximum delay over the same time, us.
     pub WakeUpMaximum: f64,
     /// Fraction of the joint torque that the tension limits admitted in the last cycle, 0 to 1. The direction of the
     /// torque is kept.
