@@ -46,7 +46,7 @@ impl Descriptor {
         check(unsafe { libc::fcntl(low.as_raw_fd(), F_SETSIG, MARK) })?;
         // SAFETY: as above.
         let high = unsafe { libc::fcntl(low.as_raw_fd(), libc::F_DUPFD_CLOEXEC, lowest()) };
-        // If no high number is free, a low one is used.
+        // If no high number is free, the low one stays in use.
         Ok(Self { number: if high < 0 { low.into_raw_fd() } else { high } })
     }
 
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!(unsafe { libc::dup2(open().number(), ALONE) }, ALONE);
         let descriptor = Descriptor { number: ALONE };
         assert!(descriptor.is_own());
-        // SAFETY: the owner checks the number before it uses it.
+        // SAFETY: `descriptor` checks the number before it uses it.
         unsafe { libc::close(ALONE) };
         assert!(!descriptor.is_own());
         assert_eq!(descriptor.error().raw_os_error(), Some(libc::EBADF));

@@ -1,8 +1,9 @@
 //! A serial port for a servo.
 //!
 //! The port is read and written through its raw descriptor. No wait changes the signal mask, so no signal handler of a
-//! planner runs on the servo thread. Nothing allocates, and nothing waits past its deadline. Every use first checks the
-//! descriptor: if another part of the program has closed it, its number may now belong to a file of the planner.
+//! planner runs on the servo thread. No read or write allocates memory or waits past its deadline. Every use first
+//! checks the descriptor: if another part of the program has closed it, its number may now belong to a file of the
+//! planner.
 #![allow(unsafe_code, reason = "the raw descriptor of the port")]
 
 mod opening;
@@ -16,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// The pause after a driver announced bytes and had none.
+/// The pause after a driver has announced bytes but has none.
 const NOTHING_TO_READ: Duration = Duration::from_micros(100);
 
 /// An open serial port: exclusive, raw, eight data bits, no parity, one stop bit, no flow control.

@@ -15,7 +15,7 @@ use crate::board::transport::Transport;
 const PATIENCE: u64 = 50_000_000;
 
 impl<T: Transport> Link<T> {
-    /// Finds the finger `address`, 1 to 15, and agrees on `terms` with it. The motors stay off. Retries until
+    /// Finds the finger with this address, 1 to 15, and agrees on `terms` with it. The motors stay off. Retries until
     /// `deadline` (ns on the transport's clock), because a board may still be starting. Returns at once if waiting
     /// cannot help.
     ///

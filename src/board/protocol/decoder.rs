@@ -6,7 +6,7 @@ use super::{MAX_WIRE, Packet};
 /// Counts of what a decoder has received.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DecoderCounters {
-    /// Bytes.
+    /// Bytes received.
     pub bytes: u64,
     /// Frames with a correct check.
     pub frames: u64,
