@@ -6,6 +6,7 @@ mod circles;
 mod crate_tree;
 mod imports;
 mod limits;
+mod named_files;
 mod set_point;
 
 use crate_tree::CrateTree;
@@ -59,6 +60,30 @@ fn imports_run_downward() {
         })
         .collect();
     assert!(upward.is_empty(), "imports that do not run downward:\n{}", upward.join("\n"));
+}
+
+#[test]
+fn the_core_imports_only_the_model() {
+    let imports = imports::all(&library());
+    let of_core = imports.iter().filter(|import| import.from.starts_with("control::"));
+    let others: Vec<String> = of_core
+        .filter(|import| !["control", "model"].contains(&import.to.split("::").next().unwrap_or_default()))
+        .map(ToString::to_string)
+        .collect();
+    assert!(others.is_empty(), "imports of the core from other layers:\n{}", others.join("\n"));
+}
+
+#[test]
+fn every_file_that_the_page_names_exists() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = fs::read_to_string(root.join("docs/architecture.md")).expect("the page");
+    assert!(named_files::named(&page).len() > 80, "the page names its files in backticks");
+    let missing = named_files::missing(root, &page);
+    assert!(missing.is_empty(), "docs/architecture.md names files that do not exist:\n{}", missing.join("\n"));
+    assert_eq!(
+        named_files::missing(root, "`src/nowhere.rs`, `nowhere/`, `hand/root.rs`"),
+        ["nowhere/", "src/nowhere.rs"]
+    );
 }
 
 #[test]
