@@ -20,8 +20,8 @@ use crate::simulated::{Pace, SimulatedBoard, SimulatedPort};
 use nalgebra::Matrix3;
 use std::path::{Path, PathBuf};
 
-/// Highest SCHED_FIFO priority of a simulated board. A servo has priority 80 by default, so a board does not delay it. A
-/// board does not get a higher priority than its finger, and none if its finger has none.
+/// Highest SCHED_FIFO priority of a simulated board. A servo has priority 80 by default, so a board does not delay it.
+/// A board does not get a higher priority than its finger, and none if its finger has none.
 const SIMULATED_BOARD_PRIORITY: u8 = 20;
 
 /// Capacity of the timing rings, s. If nothing is collected for longer than this, timings are lost.

@@ -1,6 +1,6 @@
 //! `[finger.friction]`: the controller's model of the friction of a finger. The true values of the simulated finger are
-//! in `[finger.simulation]`. The defaults here equal the defaults there. An experiment with a wrong model sets different
-//! values in the two places.
+//! in `[finger.simulation]`. The defaults here equal the defaults there. An experiment with a wrong model sets
+//! different values in the two places.
 
 use serde::{Deserialize, Serialize};
 
