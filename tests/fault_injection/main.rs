@@ -9,7 +9,7 @@ mod rig;
 
 use cases::{Case, Injected, line, of_the_finger, of_the_line, warnings};
 use rig::{Bench, MICROSECOND, MILLISECOND};
-use sun2xp::finger::Losses;
+use sun2xp::finger::{Losses, Severity};
 use sun2xp::model::configuration::{Configuration, Scheme};
 use sun2xp::simulated::LineFault;
 
@@ -102,7 +102,10 @@ fn median_and_worst(outcomes: &[Outcome], of: fn(&Outcome) -> f64) -> String {
 /// Injects every case the given number of times and prints a row of the table for each. Returns the failures.
 fn inject_all(cases: &[Case], rate: f64, times: u64, warns: bool) -> Vec<String> {
     let mut wrong = Vec::new();
+    // The trials below show that the finger stops with each fault and continues with each warning.
+    let severity = if warns { Severity::Warning } else { Severity::Fault };
     for (index, case) in cases.iter().enumerate() {
+        assert_eq!(case.expected.description().severity, severity, "{}: the table of faults", case.what);
         let mut outcomes = Vec::new();
         for time in 0..times {
             match trial(case, rate, 1000 * index as u64 + time, warns) {
