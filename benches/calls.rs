@@ -1,10 +1,10 @@
-//! Measures the calls that a planner makes all the time, through the C entry points, on an open simulated hand with
-//! running servos.
+//! Measures the calls that a planner makes most often. They go through the C entry points to an open simulated hand
+//! with running servos.
 
 use divan::{Bencher, black_box};
 use std::ffi::{CStr, c_char, c_int};
 
-// The library's own symbols, as a C program links them.
+// Links the library, which defines the C symbols below.
 use sun2xp as _;
 
 unsafe extern "C" {
@@ -17,15 +17,14 @@ unsafe extern "C" {
     fn GetPos(i: c_int, pos: *mut f32) -> c_int;
 }
 
-/// Other work on the machine can prevent the hand from opening in time.
+/// Number of attempts to open the hand. Other work on the machine can prevent it from opening in time.
 const ATTEMPTS: u32 = 3;
 
 fn main() {
     let mut attempts = 0;
-    // SAFETY: the call takes no arguments. It opens the configuration of the working directory, which is the default
-    // simulated hand.
+    // SAFETY: the call takes no arguments. Without a configuration file it opens the default simulated hand.
     while unsafe { OpenHand() } != 0 {
-        // SAFETY: the text lives until this thread's next call.
+        // SAFETY: HandError returns a C string that lives until this thread's next call.
         let reason = unsafe { CStr::from_ptr(HandError()) }.to_string_lossy();
         attempts += 1;
         eprintln!("attempt {attempts} of {ATTEMPTS} to open the simulated hand: {reason}");
@@ -41,14 +40,14 @@ fn main() {
 #[divan::bench]
 fn send_pos(bencher: Bencher) {
     let pos = [0.1f32, 0.5, 1.0];
-    // SAFETY: three values, which are read during the call.
+    // SAFETY: `pos` has three values, which the call reads before it returns.
     bencher.bench_local(|| unsafe { SendPos(1, black_box(pos.as_ptr())) });
 }
 
 #[divan::bench]
 fn get_pos(bencher: Bencher) {
     let mut pos = [0.0f32; 3];
-    // SAFETY: room for three values, which are written during the call.
+    // SAFETY: `pos` has room for three values, which the call writes before it returns.
     bencher.bench_local(|| unsafe { GetPos(1, black_box(pos.as_mut_ptr())) });
 }
 
@@ -56,13 +55,13 @@ fn get_pos(bencher: Bencher) {
 #[divan::bench]
 fn send_kx(bencher: Bencher) {
     let kx = [3.0f32, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0];
-    // SAFETY: nine values, which are read during the call.
+    // SAFETY: `kx` has nine values, which the call reads before it returns.
     bencher.bench_local(|| unsafe { SendKx(1, black_box(kx.as_ptr())) });
 }
 
 #[divan::bench]
 fn send_kx_double(bencher: Bencher) {
     let kx = [3.0f64, 0.2, 0.1, 0.2, 4.0, 0.3, 0.1, 0.3, 2.0];
-    // SAFETY: nine values, which are read during the call.
+    // SAFETY: `kx` has nine values, which the call reads before it returns.
     bencher.bench_local(|| unsafe { SendKxD(1, black_box(kx.as_ptr())) });
 }

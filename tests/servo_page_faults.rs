@@ -1,11 +1,11 @@
-//! The servo loop must cause no page fault. The test has a process of its own: after a fork in another test, the
-//! threads would fault on each of their pages once more.
+//! The servo loop must cause no page fault. This test runs alone in its process, because a fork by another test would
+//! make the servo threads fault on each of their pages once more.
 
 use std::fs;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::{Configuration, RealTime};
 
-/// The number of page faults so far, minor and major, of each servo thread of this process.
+/// Returns the name of each servo thread of this process, and the number of its page faults so far, minor and major.
 fn page_faults() -> Vec<(String, u64)> {
     let threads = fs::read_dir("/proc/self/task").expect("the threads of this process");
     let stat = threads.map(|thread| fs::read_to_string(thread.expect("a thread").path().join("stat")));
@@ -25,7 +25,7 @@ fn page_faults() -> Vec<(String, u64)> {
 
 #[test]
 fn a_servo_thread_causes_no_page_fault() {
-    // Slower without real time, because such threads wait for all other threads of the machine.
+    // Threads without real time wait for all other threads of the machine, so the second hand runs at a lower rate.
     for (real_time, rate, periods) in [(RealTime::Try, 1000.0, 1000), (RealTime::Ignore, 500.0, 400)] {
         let mut configuration = Configuration::default();
         (configuration.hand.real_time, configuration.hand.rate) = (real_time, rate);

@@ -67,7 +67,7 @@ pub struct Identified {
 }
 
 impl Identified {
-    /// Returns the results for the case that every true tension is `factor` times the one used so far.
+    /// Returns the results that follow if every true tension is `factor` times the tension used to compute `self`.
     pub(super) fn scaled(self, factor: f64) -> Self {
         Self {
             tendon_stiffness: self.tendon_stiffness * factor,

@@ -59,19 +59,19 @@ pub fn spatial(kx: &Matrix3<f64>) -> Matrix6<f64> {
 #[expect(clippy::large_enum_variant, reason = "a set point in a box would be allocated and freed in the servo")]
 pub enum Activity {
     /// Brings every tendon to the pretension of eq. 20 at zero joint torque, from any amount of slack. The joints are
-    /// held where they are.
+    /// held where they are when the last tendon comes taut.
     TakeUpSlack,
-    /// The same as `TakeUpSlack`, but without gravity compensation, and with gauges whose readings exceed the true
-    /// tensions by the given values, N. For calibration.
+    /// The same as `TakeUpSlack`, but without gravity compensation. The given values, N, are the errors of the gauges
+    /// (shown minus true tension). For calibration.
     Tighten(Vector4<f64>),
-    /// Makes the fingertip a spring.
+    /// Makes the fingertip the spring of this set point.
     Follow(SetPoint),
     /// Ramps the pulls of the motors to zero. The ramp starts in the first cycle of the release.
     Release {
         /// Length of the ramp, s.
         ramp: f64,
     },
-    /// Brings every tendon to its own tension, N, from any amount of slack. For calibration.
+    /// Brings every tendon to the given tension, N, from any amount of slack. For calibration.
     Tense(Vector4<f64>),
     /// Applies the given pull of each motor to its tendon, N. The only feedback is the damper of the motor. A negative
     /// pull lets the tendon out. For calibration.
@@ -103,8 +103,8 @@ pub struct Report {
     pub joint_rates: Vector3<f64>,
     /// Measured tensions, N.
     pub tensions: Vector4<f64>,
-    /// Commanded tensions, N, including the dither of state feedback. They are below t_min only while slack is taken up
-    /// and during a release.
+    /// Commanded tensions, N, including the dither of state feedback. They are below t_min only while slack is taken
+    /// up, during a release and in the activities for calibration.
     pub desired_tensions: Vector4<f64>,
     /// Joint torques of the stiffness law, N cm.
     pub joint_torques: Vector3<f64>,
@@ -115,7 +115,7 @@ pub struct Report {
     /// Whether every tendon has a tension of at least 0.8 t_min and the motors are at rest. While slack is taken up,
     /// this is true only after the desired tensions have reached the pretension.
     pub under_tension: bool,
-    /// The tendon that is farthest from being under tension, 0 to 3. It is valid while slack is taken up.
+    /// The tendon that is farthest from being under tension, 0 to 3. This value is valid only while slack is taken up.
     pub slackest: usize,
     /// Commanded motor torques, N cm.
     pub motor_torques: Vector4<f64>,

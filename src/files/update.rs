@@ -1,4 +1,4 @@
-//! Changes a file that other processes change too: reads, changes and replaces it under a lock.
+//! Changes a file that other processes may change too. The file is read, changed and replaced under a lock.
 
 use super::regular::{open, read_text};
 use super::replace::NewFile;
@@ -9,13 +9,13 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// How long an update waits for other updates. Each of them takes some milliseconds.
+/// Maximum time that an update waits for other updates. Each of them takes some milliseconds.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Interval at which the lock is tried. The system offers no wait with a time-out for this lock.
+/// Interval between attempts to take the lock. The system offers no wait with a time-out for this lock.
 const LOOKING: Duration = Duration::from_millis(5);
 
-/// Why a file was not updated. The file is unchanged.
+/// Why an update failed. The file is unchanged, unless only its folder could not be written to the disk afterwards.
 #[derive(Debug)]
 pub enum UpdateError<E> {
     /// The system reported an error, or another process did not release the file.
@@ -33,18 +33,19 @@ impl<E> From<io::Error> for UpdateError<E> {
 /// Replaces the text of the file at `path` by the result of `change`. If `change` returns `None`, the file stays
 /// unchanged.
 ///
-/// Updates of a file by several threads and processes exclude each other: each waits for the others, at most 30
+/// Updates of a file by several threads and processes exclude each other. Each waits for the others, at most 30
 /// seconds. If a program that does not use the lock, such as an editor, changes the file meanwhile, `change` is called
 /// again with the new text. Only a change between the last check and the replacement is not detected. The file is
 /// replaced as by [`replace_file`](super::replace_file). A symbolic link is kept, and its target is replaced. The lock
 /// belongs to the open file, so the system releases it when the process ends.
 ///
 /// # Errors
-/// - the error that the system reports
+/// Returns the error of `change`, the error that the system reports, or an error of one of these kinds:
 /// - [`io::ErrorKind::InvalidInput`] if the path does not lead to a regular file
+/// - [`io::ErrorKind::InvalidData`] if the file is not UTF-8 text
 /// - [`io::ErrorKind::FileTooLarge`] if the file has more than `largest` bytes
 /// - [`io::ErrorKind::ResourceBusy`] if other threads or processes do not release the file in time
-/// - the error of `change`
+/// - [`io::ErrorKind::Unsupported`] if the file system does not support locks
 pub fn update_file<E>(
     path: &Path,
     largest: u64,

@@ -11,7 +11,7 @@ const DEADLINE: c_int = 6;
 /// The remedy for an error of a call that creates a thread, a descriptor or a pseudo-terminal. `None` if neither a
 /// limit nor a sandbox is the cause.
 pub fn remedy(error: &io::Error) -> Option<&'static str> {
-    // SAFETY: the call takes no pointer. 0 is the calling thread, to which the call was refused.
+    // SAFETY: the call takes no pointer. 0 means the calling thread, whose call was refused.
     remedy_under(unsafe { libc::sched_getscheduler(0) }, error)
 }
 
@@ -60,12 +60,12 @@ pub fn with_remedy(error: &io::Error) -> String {
     }
 }
 
-/// The text of an error of a call that opens a pseudo-terminal, followed by its remedy.
+/// The text of an error of a call that opens a pseudo-terminal, followed by its remedy if there is one.
 pub fn with_terminal_remedy(error: &io::Error) -> String {
     match error.raw_os_error() {
         // ENOENT: /dev/ptmx or the terminal under /dev/pts is missing. ENODEV: nothing is mounted on /dev/pts. EACCES:
-        // no ordinary user may open /dev/pts/ptmx, which is the default of a mount. EINVAL and ENOTTY: /dev/ptmx is
-        // another device or a file.
+        // the mount does not let ordinary users open /dev/pts/ptmx, which is its default. EINVAL and ENOTTY: /dev/ptmx
+        // is another device or a file.
         Some(libc::ENOENT | libc::ENODEV | libc::EACCES | libc::EINVAL | libc::ENOTTY) => format!(
             "{error}: pseudo-terminals are not available here. Mount them (mount -t devpts -o ptmxmode=666 devpts \
              /dev/pts) and make /dev/ptmx a link to /dev/pts/ptmx, or set `finger.port` to a real port"

@@ -1,7 +1,7 @@
 //! Periods with absolute deadlines.
 
-/// The times at which the cycles of a servo begin: every `period` ns, counted from the first. Errors do not accumulate,
-/// because a beginning does not depend on when the previous cycle ran.
+/// The times at which the cycles of a servo begin. They are whole multiples of `period` ns after the first. Errors do
+/// not accumulate, because these times do not depend on when the previous cycle ran.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule {
     next: u64,
@@ -14,24 +14,25 @@ impl Schedule {
         Self { next: first, period }
     }
 
-    /// Creates the schedule of thread `place` (0 to `of` - 1) of `of` threads. The beginnings of their cycles are
-    /// spread evenly over the period, because the threads share cores and other resources.
+    /// Creates the schedule of one of several threads. `of` is the number of threads, and `place` is the thread's place
+    /// among them, 0 to `of` - 1. The beginnings of the threads' cycles are spread evenly over the period, because the
+    /// threads share cores and other resources.
     pub fn staggered(first: u64, period: u64, place: usize, of: usize) -> Self {
         Self::new(first + period * place as u64 / of as u64, period)
     }
 
-    /// When the next cycle begins, ns.
+    /// Returns the time at which the next cycle begins, ns.
     pub fn next(&self) -> u64 {
         self.next
     }
 
-    /// Length of a period, ns.
+    /// Returns the length of a period, ns.
     pub fn period(&self) -> u64 {
         self.period
     }
 
-    /// Moves to the next cycle after one that ended at `now`. Whole periods that have already passed are skipped and
-    /// not made up for in a burst. Returns the number of skipped periods.
+    /// Moves to the next cycle, after a cycle that ended at `now`, ns. Skips whole periods that have already passed, so
+    /// that no burst of cycles follows. Returns the number of skipped periods.
     pub fn advance(&mut self, now: u64) -> u64 {
         self.next += self.period;
         let skipped = now.saturating_sub(self.next) / self.period;

@@ -2,31 +2,32 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Fraction of the largest sample below which a sample is rounding error.
+/// A sample is only rounding error if it is at most this fraction of the largest sample.
 const ROUNDING: f64 = 1e-6;
 /// Number of samples to which a recurrence is fitted.
 const WINDOW: usize = 80;
-/// Relative error below which a recurrence explains the samples.
+/// A recurrence explains the samples if its relative error is below this value.
 const EXPLAINED: f64 = 1e-3;
 const LARGEST_ORDER: usize = 8;
-/// Smallest fraction of the last sample that a root must contribute to count.
+/// A root counts only if it contributes at least this fraction of the last sample.
 const LEAST_SHARE: f64 = 0.01;
 
 /// Returns the factor by which the slowest mode of a freely decaying or growing linear system changes from one sample
-/// to the next. This is the largest modulus of its eigenvalues. `samples` has one vector of channels for each instant,
-/// at equal intervals. The channels must be comparable in size.
+/// to the next. This factor is the largest modulus of the system's eigenvalues. `samples` has one vector of channels
+/// for each instant, at equal intervals. The channels must be comparable in size.
 ///
 /// After the fast modes have decayed, the last samples follow a short recurrence `y[k] = a1 y[k-1] + ... + ap y[k-p]`
 /// with the same coefficients in every channel. The roots of this recurrence are the remaining eigenvalues (Prony). The
 /// shortest recurrence that explains the samples has hardly any other roots, and those other roots do not contribute to
 /// the motion. If no recurrence explains the samples, the roots mean nothing, and the mean change of the samples is
-/// returned. This happens for example at a joint limit that one motion reaches and the other does not.
+/// returned. For example, this happens if the samples are the difference of two motions, and only one of them reaches a
+/// joint limit.
 pub fn growth(samples: &[DVector<f64>]) -> f64 {
     if samples.iter().any(|sample| !sample.norm().is_finite()) {
         return f64::NAN;
     }
     let largest = samples.iter().map(|sample| sample.norm()).fold(0.0, f64::max);
-    // Samples after the first one that is rounding error are unusable too.
+    // The window ends before the first sample that is only rounding error. All later samples are unusable too.
     let end = samples.iter().position(|sample| sample.norm() <= ROUNDING * largest).unwrap_or(samples.len());
     let window = &samples[end.saturating_sub(WINDOW)..end];
     for order in 1..=LARGEST_ORDER.min(window.len().saturating_sub(2)) {
@@ -39,13 +40,14 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
     mean_change(window)
 }
 
-/// Returns whether the samples in `follows` contradict a root. With the smallest contribution that counts, a mode with
-/// this root would have grown above `rounding`, but all samples are below it.
+/// Returns whether the samples in `follows` contradict a root. A root that counts contributes at least `LEAST_SHARE` of
+/// the sample before `follows`, which is above `rounding`. It is contradicted if this contribution would have grown
+/// above `rounding` within `follows`, but no sample of `follows` is above it.
 fn has_decayed(follows: &[DVector<f64>], root: f64, rounding: f64) -> bool {
     root.powi(follows.len() as i32) * LEAST_SHARE > 1.0 && follows.iter().all(|sample| sample.norm() <= rounding)
 }
 
-/// Returns the mean change per sample, from the largest sample of the first half to that of the second. Returns NaN for
+/// Returns the mean factor per sample, computed from the largest sample of each half of the window. Returns NaN for
 /// fewer than two samples.
 fn mean_change(window: &[DVector<f64>]) -> f64 {
     let half = window.len() / 2;
@@ -75,7 +77,7 @@ fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f6
     Some((coefficients, missed))
 }
 
-/// Returns the largest modulus among the roots of z^p - a1 z^(p-1) - ... - ap that contribute to the last sample.
+/// Returns the largest modulus among those roots of z^p - a1 z^(p-1) - ... - ap that contribute to the last sample.
 ///
 /// The slowest mode contributes most to the last sample. A larger root without a contribution fits rounding errors, and
 /// does not belong to the motion.
@@ -106,8 +108,8 @@ fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns the growth of a decay with a tiny growing component over `length` samples, followed by the samples
-    /// `after`.
+    /// Returns [`growth`] for a decay of `length` samples with a tiny growing component. The samples `after` follow the
+    /// decay.
     fn growing(length: i32, after: &[f64]) -> f64 {
         let decay = (0..length).map(|k| 0.8f64.powi(k) + 1e-14 * 1.3f64.powi(k));
         let samples: Vec<_> = decay.chain(after.iter().copied()).map(|sample| DVector::repeat(2, sample)).collect();

@@ -3,14 +3,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Lines of a file.
+/// Maximum number of lines of a file.
 const FILE: usize = 300;
-/// Lines of a function, from its name to its last brace.
+/// Maximum number of lines of a function, from its name to its last brace.
 const FUNCTION: usize = 60;
-/// Columns of a line.
+/// Maximum number of columns of a line.
 const LINE: usize = 120;
 
-/// The Rust and C files below a folder, without build products.
+/// Returns the Rust and C files below a folder, without build products.
 pub fn source_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).expect("a folder") {
@@ -26,7 +26,7 @@ pub fn source_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Every limit that a source file exceeds.
+/// Returns a text for every limit that a source file exceeds.
 pub fn exceeded(path: &Path, text: &str) -> Vec<String> {
     let name = path.display();
     let lines: Vec<&str> = text.lines().collect();
@@ -54,14 +54,14 @@ fn is_rust_function(line: &str) -> bool {
     line.split_once("fn ").is_some_and(|(before, _)| before.split_whitespace().all(qualifies))
 }
 
-/// A definition begins in the first column, with a type before the name.
+/// Returns whether a C function begins on this line: in the first column, with a type before the name.
 fn is_c_function(line: &str) -> bool {
     line.starts_with(|first: char| first.is_ascii_alphabetic())
         && line.split_once('(').is_some_and(|(start, _)| start.contains(' ') && !start.contains('='))
 }
 
-/// Counts the lines up to the closing brace, which stands in the column in which the function begins. Returns 0 for a
-/// declaration and for a function on one line.
+/// Counts the lines up to the closing brace, which has the same indentation as the function's first line. Returns 0 for
+/// a declaration and for a function on one line.
 fn function_length(lines: &[&str]) -> usize {
     let signature_end = lines.iter().find(|line| line.ends_with(['{', '}', ';']));
     if !signature_end.is_some_and(|line| line.ends_with('{')) {

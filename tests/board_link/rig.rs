@@ -32,7 +32,7 @@ pub fn in_time(link: &mut Link<SimulatedCable>, milliseconds: u64) -> u64 {
     link.transport().now() + milliseconds * MS
 }
 
-/// One cycle of one finger at 1 kHz.
+/// Runs one cycle of the finger at address 1, at 1 kHz, and returns its reply.
 pub fn cycle(link: &mut Link<SimulatedCable>, sequence: u8, command: Command) -> Reply {
     link.send(&[OutgoingCommand { address: 1, sequence, command }]).unwrap();
     let deadline = in_time(link, 1);
@@ -46,12 +46,12 @@ pub fn pull(count: i16) -> Command {
     Command { toggle: false, enable: true, torques: [count; 4] }
 }
 
-/// Torques that the motors are commanded to give, N cm.
+/// Returns the torques of the motors at address 1, N cm.
 pub fn torques(link: &mut Link<SimulatedCable>) -> Vector4<f64> {
     link.transport().board().finger(1).unwrap().motor_torques()
 }
 
-/// Compares to within one torque unit, 1.6e-4 N cm.
+/// Checks that every torque is `expected`, to within one torque unit, 1.6e-4 N cm.
 pub fn assert_all(torques: Vector4<f64>, expected: f64) {
     assert!((torques.add_scalar(-expected)).amax() < 1.6e-4, "{torques} is not {expected} N cm");
 }

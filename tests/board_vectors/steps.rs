@@ -1,26 +1,27 @@
-//! The steps of a conversation: an action on the board and the result that must follow.
+//! The steps of a conversation, and functions that construct them.
 
 use super::frames::sealed;
 use sun2xp::board::protocol::*;
 use sun2xp::model::configuration::EndState;
 
-/// An action on the board and the result that must follow.
+/// A step: an action on the board with the answer that must follow, or a check of the motors.
 #[derive(Clone)]
 pub enum Step {
     /// Sends bytes and compares the answer. `None` means that the board must stay silent.
     Send(Vec<u8>, Option<Answer>),
-    /// Lets this much time pass, ms.
+    /// Waits for this time, ms.
     Wait(u64),
-    /// Faults that are present from now on.
+    /// Gives the board these faults, which stay until the next such step.
     Faults(Status),
-    /// The present torques of the motors, torque units.
+    /// Compares the present torques of the motors with these, torque units.
     Torques([i16; 4]),
 }
 
+/// The expected answer.
 #[derive(Clone)]
 pub enum Answer {
     Identity,
-    /// The status in this answer and the next two. *zero valid* depends on the board and is left out.
+    /// This status and those of the other answers are compared without *zero valid*, which depends on the board.
     Configured(Status),
     Reply(Status),
     Stopped(Status),

@@ -1,4 +1,4 @@
-//! Zeroing and identification in closed loop with the simulated finger: their findings and their refusals.
+//! Runs the calibration routines in closed loop with the simulated finger. Checks their findings and their refusals.
 
 mod bench;
 mod identifying;

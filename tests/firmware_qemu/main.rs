@@ -1,5 +1,5 @@
-//! The library against the reference firmware on an emulated Cortex-M3: the protocol core that laboratories port,
-//! compiled for a microcontroller, with its own interrupts and its own time.
+//! Tests the library against the reference firmware on an emulated Cortex-M3. This runs the protocol core, which
+//! laboratories port to their boards, as compiled for a microcontroller, with its own interrupts and its own time.
 
 #[path = "../common/attempts.rs"]
 mod attempts;
@@ -38,7 +38,7 @@ fn alone() -> Option<MutexGuard<'static, ()>> {
     usable.then(|| ONE.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// `keys` are added to the table `[hand]`.
+/// Returns the configuration of a hand on this port. `keys` are added to the table `[hand]`.
 fn configuration(port: &Path, keys: &str) -> Configuration {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let path = folder.path().join("sun2xp.toml");
@@ -74,8 +74,8 @@ fn settled(hand: &Hand) -> Result<[[f64; 3]; 3], String> {
     settling.wait(hand, [(1, TARGETS[0]), (2, TARGETS[1]), (3, TARGETS[2])])
 }
 
-/// Attempts to open a hand on the firmware and to work with it, each time on a new emulator. A busy machine may slow
-/// the emulator down too much.
+/// Opens a hand on the firmware and calls `work` with it. An attempt may fail, because a busy machine may slow the
+/// emulator down too much. Every attempt starts a new emulator.
 fn with_hand(what: &str, work: impl Fn(&Machine, &Hand) -> Result<(), String>) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let image = build(folder.path());
@@ -90,8 +90,8 @@ fn with_hand(what: &str, work: impl Fn(&Machine, &Hand) -> Result<(), String>) {
     });
 }
 
-/// A servo that receives nothing for 10 ms lets the motors go and starts again (docs/architecture.md). A hand survives
-/// that.
+/// A hand must survive shorter pauses. A servo that receives nothing for 10 ms has faded its command to the torque of
+/// the end state, and its controller restarts when replies arrive again (docs/architecture.md).
 const TOLERATED_PAUSE: Duration = Duration::from_millis(50);
 
 const KEYS: &str = "rate = 500.0\nwatchdog_ms = 1000";
@@ -134,10 +134,11 @@ fn its_emergency_stop_stops_the_hand() {
     });
 }
 
-/// Name of the environment variable that makes this test program a planner: it holds the port and the keys of `[hand]`.
+/// Name of the environment variable that makes this test program a planner. Its value is the port, a line feed and the
+/// keys of `[hand]`.
 const PLANNER: &str = "SUN2XP_TEST_PLANNER";
 
-/// A planner that holds the hand in its pose until it is killed.
+/// Opens a hand and holds it in its pose, until this process is killed.
 fn plan(port_and_keys: &str) -> ! {
     let (port, keys) = port_and_keys.split_once('\n').expect("a port and keys");
     loop {
@@ -190,9 +191,9 @@ fn wait_until(patience: Duration, mut holds: impl FnMut() -> bool) -> bool {
     false
 }
 
-/// Returns whether the firmware reports that its watchdog ended all fingers. A pause of the machine can end them in
-/// another way: the planner then detects a fault and stops the fingers itself, with frames that may reach the firmware
-/// after the planner was killed.
+/// Returns whether the firmware reports that its watchdog ended all fingers. After a pause of the machine, the planner
+/// may instead detect a fault and stop the fingers itself. Its frames may reach the firmware after the planner was
+/// killed.
 fn ended_by_watchdog(machine: &Machine) -> bool {
     let mut link = Link::open(&machine.port, 1_000_000).expect("the port is free");
     // Discards what the killed planner did not read.
@@ -211,8 +212,8 @@ fn ended_by_watchdog(machine: &Machine) -> bool {
     })
 }
 
-/// Kills a planner. Returns how long after the arrival of its last command each finger's watchdog set the currents, us
-/// in the firmware's time.
+/// Kills a planner. Returns the time from the arrival of its last command until the watchdog set the currents, for each
+/// finger, us in the firmware's time.
 fn kill_a_planner(
     machine: &Machine,
     planner: &mut Planner,
@@ -225,7 +226,7 @@ fn kill_a_planner(
     let ran = wait_until(PATIENCE / 2, || moved_on() && running());
     planner.kill();
     let ran = ran && running();
-    // Commands in transit still arrive, and the slowest watchdog has time to trip.
+    // Commands in transit still arrive. 400 ms after the last of them, the slowest watchdog has had time to trip.
     let long_ago = |asked: Asked| asked.now.saturating_sub(asked.arrived_at) > 400_000;
     assert!(
         wait_until(PATIENCE, || (0..3).all(|finger| long_ago(machine.finger(finger).asked))),
@@ -241,7 +242,7 @@ fn kill_a_planner(
     assert!(asked.iter().all(|asked| in_end_state(asked.currents)), "motors are not in their end state");
     match asked.map(|asked| asked.set_at.checked_sub(asked.arrived_at)) {
         [Some(one), Some(two), Some(three)] => Ok([one, two, three]),
-        // The command came from a planner that had not yet noticed the end.
+        // The planner sent this command before it noticed that the finger had been ended.
         _ => Err("a command came after the end".into()),
     }
 }
@@ -255,7 +256,7 @@ fn a_killed_planner_leaves_the_motors_in_their_end_state() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let machine = Machine::start(&build(folder.path()));
     let none = |currents: [i32; 4]| currents == [0; 4];
-    // 0.1 N cm over 2.34 N cm/A is 42 735 uA. The least tension of a tendon needs more.
+    // 0.1 N cm over 2.34 N cm/A is 42 735 uA. The minimum tension of a tendon needs more.
     let held = |currents: [i32; 4]| !none(currents) && currents.iter().all(|current| current.abs() <= 42_736);
     let release = "end_state = \"release\"";
     let hold = "end_state = \"hold\"\nhold_torque_limit = 0.1\nhold_time_ms = 1500";
@@ -279,5 +280,5 @@ fn a_killed_planner_leaves_the_motors_in_their_end_state() {
 
 const WATCHDOG_MS: u32 = 18;
 
-/// Two periods less than the watchdog: the servo stops a finger one period before its watchdog does.
+/// Two periods of 2 ms less than the watchdog's time. The servo stops a finger one period before its watchdog does.
 const TOLERATED_BY_WATCHDOG: Duration = Duration::from_millis(14);

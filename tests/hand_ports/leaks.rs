@@ -1,5 +1,5 @@
-//! Everything that can happen to a finger on a port, repeatedly: it recovers every time, and the process holds no more
-//! resources than before.
+//! Provokes everything that can happen to a finger on a port, repeatedly. The finger must recover every time, and the
+//! process must hold no more resources than before.
 
 use crate::pauses::name_pauses;
 use crate::recovery::{fault, held};
@@ -16,12 +16,12 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Defect, LineFault, Pace, SimulatedBoard, SimulatedPort};
 
-/// Bytes on the heap.
+/// Number of bytes that are allocated on the heap.
 static ALLOCATED: AtomicI64 = AtomicI64::new(0);
 
 struct Counting;
 
-// SAFETY: the system's allocator with a count.
+// SAFETY: both functions pass their arguments on to the system's allocator, which satisfies the contract of the trait.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATED.fetch_add(layout.size() as i64, Ordering::Relaxed);
@@ -39,7 +39,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-/// Variation of the heap, bytes: black boxes make room for a few more states if recoveries follow closely.
+/// Permitted growth of the heap, bytes. If recoveries follow closely, the black boxes store a few more keyframes.
 const COMES_AND_GOES: i64 = 128 * 1024;
 
 #[derive(Debug)]
@@ -70,7 +70,7 @@ const TROUBLES: [Trouble; 18] = [
     Trouble::Finger(Defect::Sensor),
 ];
 
-/// A board behind a link to its port.
+/// A simulated board. The hand opens its port through a symbolic link.
 struct Bench {
     /// 1 to 3.
     finger: i32,
@@ -91,8 +91,9 @@ impl Bench {
         bench
     }
 
+    /// Makes the link point to the port.
     fn name(&self) {
-        // There is no link the first time.
+        // The first call finds no link to remove.
         let _ = remove_file(&self.link);
         symlink(self.port.path(), &self.link).expect("a link");
     }
@@ -153,9 +154,9 @@ fn everything_that_happens_to_a_finger_is_recovered_from_and_nothing_leaks() {
     configuration.fingers.iter_mut().for_each(|finger| finger.reconnect = true);
     let hand = open(configuration);
     let all = || TROUBLES.chunks(3).for_each(|troubles| recover_from(&hand, &benches, troubles));
-    // Makes every allocation that happens only once.
+    // The first round makes every allocation that happens only once.
     all();
-    // Black boxes are full after two seconds.
+    // The black boxes are full after two seconds. 1500 cycles at 500 Hz are three seconds.
     let cycles = |finger: i32| hand.report(finger).expect("a report").losses.cycles;
     let full = [1, 2, 3].map(|finger| cycles(finger) + 1500);
     wait_until("run for three seconds", || (1..=3).zip(full).all(|(finger, full)| cycles(finger) > full));

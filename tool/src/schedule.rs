@@ -16,7 +16,7 @@ use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, RATES};
 use sun2xp::realtime::{CycleStage, Distribution};
 
-/// Largest size of a file of costs, bytes. The file contains four numbers.
+/// Maximum size of the file that --costs names, bytes. The file contains four numbers.
 const LARGEST_COSTS: u64 = 1 << 16;
 
 /// Computes whether every cycle of the hand meets its deadline, from worst-case times, line times and the allocation of

@@ -12,8 +12,8 @@ impl Port {
     /// Opens, locks and configures the port at `path` for `baud` bit/s, and discards bytes that have already arrived.
     ///
     /// # Errors
-    /// The path is not a serial port, this user may not open it, another program has it open, or it cannot run at this
-    /// rate.
+    /// Returns an error if `path` is not a serial port, if this user may not open it, or if another program has it
+    /// open. Returns an error if the driver does not support `baud` or refuses another setting.
     pub fn open(path: &Path, baud: u32) -> Result<Self, PortError> {
         let port = Self { descriptor: open(path)?, path: path.to_owned(), ready_at: 0, process: std::process::id() };
         port.lock()?;
@@ -89,7 +89,7 @@ impl Port {
     /// error. [`Port::latency_timer_ms`] returns the resulting latency.
     fn request_low_latency(&self) {
         let mut serial = SerialStruct([0; SERIAL_STRUCT_WORDS]);
-        // SAFETY: the descriptor is open, and `serial` is at least as large and as aligned as the kernel's
+        // SAFETY: the descriptor is open. The size and the alignment of `serial` are at least those of the kernel's
         // serial_struct.
         let known = unsafe { libc::ioctl(self.descriptor.number(), libc::TIOCGSERIAL, &mut serial) } == 0;
         if known {
@@ -100,7 +100,7 @@ impl Port {
     }
 }
 
-/// The kernel's `struct serial_struct`, of which only `flags` is used: the fifth int (after type, line, port and irq).
+/// The kernel's `struct serial_struct`. Only its fifth int is used, which is `flags` (after type, line, port and irq).
 /// The kernel's structure is 72 bytes long on 64-bit machines. The rest of this type is a margin.
 #[repr(C, align(8))]
 struct SerialStruct([libc::c_int; SERIAL_STRUCT_WORDS]);
@@ -119,7 +119,7 @@ fn open(path: &Path) -> Result<Descriptor, PortError> {
     match unsafe { libc::isatty(descriptor.number()) } {
         1 => Ok(descriptor),
         _ => match io::Error::last_os_error() {
-            // A sandbox does not permit the system call of isatty.
+            // These errors mean that a sandbox forbids the system call of isatty.
             error if matches!(error.raw_os_error(), Some(libc::EPERM | libc::ENOSYS)) => Err(failed(error)),
             _ => Err(PortError::NotASerialPort(path.to_owned())),
         },

@@ -8,7 +8,7 @@ use super::fields::{FieldReader, FieldWriter};
 /// | 2 | number of the last event that the host received; 0 if none |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TactileRequest {
-    /// The last event that the host received. The board deletes this event and those before it.
+    /// Number of the last event that the host received. The board deletes this event and those before it.
     pub received: u8,
 }
 
@@ -35,7 +35,7 @@ pub struct TactileEvent {
     pub element: u16,
     /// The element's current raw count.
     pub count: u16,
-    /// The board's clock at the event, us. It wraps.
+    /// The board's clock at the event, us, modulo 2^32.
     pub noticed_at: u32,
     /// Number of events since power-up that did not fit into the queue. 255 means 255 or more.
     pub lost: u8,
