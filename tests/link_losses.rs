@@ -1,4 +1,4 @@
-//! Lost, damaged, late, doubled and foreign bytes on the cable of a finger, on simulated time: the cost of each.
+//! Measures the cost of lost, damaged, late, doubled and foreign bytes on the cable of a finger, on simulated time.
 //!
 //! `SUN2XP_SECONDS=60 cargo test --release --test link_losses -- --nocapture` prints the table of docs/measurements.md.
 
@@ -33,13 +33,13 @@ impl Mishap {
     const ALL: [Mishap; 6] =
         [Mishap::Dropped, Mishap::Damaged, Mishap::CutShort, Mishap::Late, Mishap::Doubled, Mishap::AmongRubbish];
 
-    /// Whether the reply does not arrive in its period.
+    /// Returns whether the mishap costs a period, because the reply does not arrive in it.
     fn costs(self) -> bool {
         !matches!(self, Mishap::Doubled | Mishap::AmongRubbish)
     }
 }
 
-/// The effect of the cable on replies.
+/// A cable that disturbs replies.
 struct Line {
     random: Pcg64,
     /// Fraction of the replies that are affected.
@@ -67,7 +67,7 @@ impl Line {
     fn spoil(&mut self, mut reply: Vec<u8>) {
         let place = self.random.next_u64() as usize % reply.len();
         let other = self.random.next_u64();
-        // Delayed bytes arrive before those that are in time.
+        // A delayed reply arrives before the reply of this period.
         let mut bytes = std::mem::take(&mut self.late);
         match self.mishap() {
             None => bytes.extend(&reply),
@@ -127,7 +127,7 @@ struct Rig {
 }
 
 impl Rig {
-    /// Finger 1 on a cable, running.
+    /// Opens finger 1 on a cable, and waits until it is running.
     fn new(configuration: &mut Configuration) -> Self {
         // The port must not be "simulated": the time limits of a built-in board are longer.
         configuration.fingers[0].port = "/dev/cable".into();
@@ -197,7 +197,8 @@ fn each_mishap_costs_its_own_period_and_no_more() {
         assert_eq!(report.losses.lost_replies, line.cost, "{percent} %");
         assert!(line.happened.iter().all(|&count| count > 0), "{:?}", line.happened);
         assert!(!faultless || report.stage == Stage::Running, "{percent} %: {:?}", report.stage);
-        // A late or doubled reply is recognised by its number. The last one may still be in transit.
+        // The servo recognises a late or doubled reply by its sequence number. The last such reply may still be in
+        // transit.
         let of = |mishap: Mishap| line.happened[mishap as usize];
         let near = |counted: u64, happened: u64| counted <= happened && counted + 1 >= happened;
         assert!(near(report.losses.late_replies, of(Mishap::Late)), "{percent} %: {report:?}");
@@ -209,7 +210,7 @@ fn each_mishap_costs_its_own_period_and_no_more() {
     }
 }
 
-/// As after SIGKILL: the commands stop from one moment to the next.
+/// The commands stop abruptly, as they do after SIGKILL of the planner.
 #[test]
 fn a_board_without_its_planner_is_in_its_end_state_within_the_watchdogs_time() {
     for (end_state, rest) in [(EndState::Release, 0.0), (EndState::Hold, 0.2)] {
@@ -228,7 +229,7 @@ fn a_board_without_its_planner_is_in_its_end_state_within_the_watchdogs_time() {
         }
         let strongest = cable.board().finger(1).expect("finger 1").motor_torques().amax();
         println!("{end_state:?}: in its end state {:.1} ms after the last command", (now - last) as f64 * 1e-6);
-        // The physics advances in steps of its own.
+        // The simulated board checks its watchdog only at steps of the physics, so it may trip slightly late.
         assert!(now - last <= 18 * MS + MS / 2, "{} ns", now - last);
         assert!((strongest - rest).abs() < 1e-3, "{strongest} N cm");
     }
@@ -237,7 +238,7 @@ fn a_board_without_its_planner_is_in_its_end_state_within_the_watchdogs_time() {
 #[test]
 fn a_finger_whose_board_falls_silent_is_held_faded_and_faulted_within_20_ms() {
     let mut configuration = Configuration::default();
-    // Figure 10 repeats its command, while state feedback would predict.
+    // After a lost reply, Figure 10 repeats its last command. State feedback would compute a new one from predictions.
     configuration.fingers[0].controller.scheme = Some(Scheme::Figure10);
     let mut rig = Rig::new(&mut configuration);
     rig.cycles(200);

@@ -3,9 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 pub use sun2xp::stability::growth;
 
-/// Returns the relative error of a spring in its worst direction: the largest singular value of S K S - 1 with S =
-/// Kx^-1/2. K is the stiffness fitted to forces (N) and deflections (cm). For an error e, u^T K u is within (1 +- e)
-/// u^T Kx u for every u.
+/// Returns the relative error of a spring in its worst direction. K is the stiffness fitted to forces (N) and
+/// deflections (cm). The error e is the largest singular value of S K S - 1, where S = Kx^-1/2. For every u, the ratio
+/// of u^T K u to u^T Kx u is between 1 - e and 1 + e.
 pub fn spring_error(forces: &[Vector3<f64>], deflections: &[Vector3<f64>], kx: &Matrix3<f64>) -> f64 {
     let found = apparent_stiffness(forces, deflections);
     let mut eigen = kx.symmetric_eigen();
@@ -15,7 +15,7 @@ pub fn spring_error(forces: &[Vector3<f64>], deflections: &[Vector3<f64>], kx: &
     if error.iter().all(|entry| entry.is_finite()) { error.singular_values().max() } else { f64::INFINITY }
 }
 
-/// Returns K of f = K d by least squares, N/cm.
+/// Returns the least-squares fit of K in f = K d, N/cm.
 pub fn apparent_stiffness(forces: &[Vector3<f64>], deflections: &[Vector3<f64>]) -> Matrix3<f64> {
     let sum = |a: &[Vector3<f64>], b: &[Vector3<f64>]| -> Matrix3<f64> {
         a.iter().zip(b).map(|(a, b)| a * b.transpose()).sum()

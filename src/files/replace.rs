@@ -112,8 +112,8 @@ impl NewFile {
             // Dropping this value removes the temporary name.
             Ok(()) => Ok(()),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(error),
-            // The file system has no hard links (FAT, for example). Here a file that another process creates between
-            // the two steps is lost.
+            // The file system has no hard links (FAT, for example). If another process creates a file at `path` after
+            // this check, the rename overwrites that file.
             Err(_) if fs::symlink_metadata(path).is_err() => {
                 fs::rename(&self.path, path)?;
                 self.placed = true;
@@ -127,7 +127,7 @@ impl NewFile {
 impl Drop for NewFile {
     fn drop(&mut self) {
         if !self.placed {
-            // A file that cannot be removed stays behind, because there is no other remedy.
+            // If the file cannot be removed, it stays behind. No other remedy exists.
             let _ = fs::remove_file(&self.path);
         }
     }
@@ -151,30 +151,30 @@ fn create_unpredictable(folder: &Path, mode: u32) -> io::Result<(PathBuf, File)>
     Err(last)
 }
 
-/// Sets owner, group and permissions to those of the old file, as far as this process may.
+/// Sets owner, group and permissions to those of the old file, where this process is permitted to set them.
 fn inherit(file: &File, old: &Metadata) -> io::Result<()> {
     let new = file.metadata()?;
     let mut mode = old.mode() & PERMISSIONS;
     if new.uid() != old.uid() {
-        // Only root may change the owner of a file. When this user replaces another user's file, the new file belongs
-        // to this user.
+        // Only root may change the owner of a file. If the user of this process replaces another user's file, the new
+        // file belongs to the user of this process.
         let _ = fchown(file, Some(old.uid()), None);
     }
     if new.gid() != old.gid() && fchown(file, None, Some(old.gid())).is_err() {
-        // The group of the new file is not the old one, so it gets at most the permissions that others have.
+        // The new file does not have the old group, so its group gets at most the permissions that others have.
         mode &= 0o707 | (mode & 0o007) << 3;
     }
-    // A file system without permissions refuses to set any.
+    // A file system without permissions refuses to set any, so they are set only if they differ.
     if file.metadata()?.mode() & PERMISSIONS == mode {
         return Ok(());
     }
     file.set_permissions(Permissions::from_mode(mode))
 }
 
-/// Writes the folder to the disk. Without this, a power cut can undo the change of name.
+/// Writes the folder to the disk. Without this step, a power cut can undo the new name of the file.
 fn flush_folder(folder: &Path) -> io::Result<()> {
     // A folder that cannot be opened for reading is not an error, because the file is already at its place. A power cut
-    // may then undo the change of name.
+    // may then undo its new name.
     let Ok(folder) = File::open(folder) else { return Ok(()) };
     match folder.sync_all() {
         // This file system cannot flush folders.

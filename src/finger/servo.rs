@@ -1,4 +1,5 @@
-//! One finger in its servo thread: from the reply to the next command, and from open to close.
+//! One finger in its servo thread. In each cycle it uses the board's reply to compute the next command. It does this
+//! from the opening of the finger until the finger is closed.
 
 mod calibrating;
 mod calibration;
@@ -58,7 +59,7 @@ pub struct FingerServo {
     alarm: StopSignal,
     /// The board's clock at the last measurement, us modulo 65 536; none before the first measurement.
     sampled_at: Option<u16>,
-    /// Number of periods from that measurement to this cycle.
+    /// Number of periods from the last measurement to this cycle.
     sample_age: u64,
     limits: Limits,
     settled_cycles: u32,
@@ -67,11 +68,11 @@ pub struct FingerServo {
     /// Time at which the finger began to take up slack, ns; none until the first cycle of the opening stage.
     opening_since: Option<u64>,
     stops_left: u8,
-    /// The spring with which the finger holds the pose that it has when it becomes a spring. The joint angles are not
-    /// used.
+    /// The set point at the time when the finger becomes a spring. The finger then holds its present pose, so the joint
+    /// angles of this set point are not used.
     initial: SetPoint,
     end_state: EndState,
-    /// The memory of the finger that is not in this value itself.
+    /// The memory that the finger uses outside this value.
     memory: LockedMemory,
 }
 
@@ -93,7 +94,7 @@ impl FingerServo {
         self
     }
 
-    /// Returns the memory that the servo accesses and that is not in this value itself.
+    /// Returns the memory that the servo accesses outside this value.
     pub fn memory(&self) -> &LockedMemory {
         &self.memory
     }
@@ -132,8 +133,8 @@ impl FingerServo {
         }
     }
 
-    /// Ends a cycle and computes the next command. `next` is the scheduled beginning of the next cycle, ns. `overrun`
-    /// is the number of skipped periods, if the next cycle should have begun already.
+    /// Ends a cycle and computes the next command. `next` is the scheduled beginning of the next cycle, ns. If that time
+    /// has already passed, `overrun` is the number of skipped periods, which may be 0. Otherwise it is None.
     pub fn end(&mut self, began: u64, next: u64, overrun: Option<u64>, counters: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
         self.sample_age += 1 + skipped;
@@ -147,7 +148,7 @@ impl FingerServo {
             self.report.first = began;
         }
         if self.under_control()
-            // In step with a simulated board, a missing reply means a busy machine and not noise on the line.
+            // If the servo and a simulated board run in step, a missing reply indicates a busy machine, not line noise.
             && let Some(fault) =
                 self.supervision.note_period(self.answered || self.link.in_step(), skipped, counters.damaged)
         {
@@ -191,8 +192,8 @@ impl FingerServo {
             self.black_box.record(CycleRecord { timing, ..record });
         }
         self.mailbox.publish(self.report);
-        // The timings come after the report, so that no more timings than cycles are ever counted. The ring is full
-        // only if no thread collects the timings. The timing is dropped then, because the cycle is more important.
+        // The timing comes after the report, so that a reader never counts more timings than cycles. The ring is full
+        // only if no thread collects the timings. Then the timing is dropped, because the cycle is more important.
         let _ = self.timings.push(timing);
     }
 

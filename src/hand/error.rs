@@ -22,7 +22,7 @@ use crate::realtime::{with_remedy, with_terminal_remedy};
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// A refused call. Nothing was changed. The text names the cause and the remedy.
+/// A call that was refused or that failed. A refused call changes nothing. The text names the cause and the remedy.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum HandError {
@@ -112,7 +112,7 @@ pub enum HandError {
     Calibration {
         /// The finger.
         finger: FingerNumber,
-        /// Whether the finger is limp now. If it is not, it still is the spring that it was before the calibration.
+        /// Whether the finger is limp now. If false, the finger is still the spring that it was before the calibration.
         limp: bool,
         /// The cause and the remedy.
         obstacle: Obstacle,
@@ -165,9 +165,9 @@ pub enum HandError {
     TooMuchForce {
         /// The finger.
         finger: FingerNumber,
-        /// The largest component, N.
+        /// The magnitude of the largest component of the requested force, N.
         force: f64,
-        /// The bound, N.
+        /// The largest permitted magnitude of a component, N.
         strongest: f64,
     },
     /// Only a simulated finger can be pushed.

@@ -1,4 +1,5 @@
-//! The tendons of a finger: the matrix R with its ghost row and the inverse Q, eqs. 13-18, and the motor radii M.
+//! The tendons of a finger: the matrix R with its ghost row, the inverse Q (eqs. 13-18), and the motor radii, which
+//! determine M.
 
 use nalgebra::{Matrix3x4, Matrix4, RowVector4, Vector4};
 use thiserror::Error;

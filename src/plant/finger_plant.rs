@@ -75,8 +75,9 @@ impl Plant {
         })
     }
 
-    /// Sets the length of a step to `seconds`, which must be above 0. This is for periods of a controller that are not
-    /// a multiple of [`PLANT_STEP_SECONDS`]. With steps longer than that constant the integration may be unstable.
+    /// Sets the length of a step to `seconds`, which must be above 0. Callers use this function if the period of a
+    /// controller is not a multiple of [`PLANT_STEP_SECONDS`]. The integration may be unstable with longer steps than
+    /// that constant.
     pub fn with_step(self, seconds: f64) -> Self {
         Self { step: seconds, ..self }
     }
@@ -138,7 +139,7 @@ impl Plant {
         self.motor_dot
     }
 
-    /// Turns a motor by hand, rad. A negative angle unwinds its tendon.
+    /// Turns a motor by `angle`, rad, as a person could by hand. A negative angle unwinds its tendon.
     pub fn turn_motor(&mut self, motor: usize, angle: f64) {
         self.motor[motor] += angle;
     }
@@ -215,8 +216,8 @@ impl Plant {
     }
 }
 
-/// Returns the inverse of an inertia matrix. Joint 0 is decoupled, so the inverse has a 1 x 1 and a 2 x 2 block. It
-/// exists because the masses are positive.
+/// Returns the inverse of an inertia matrix. Joint 0 is decoupled, so the inverse has a 1 x 1 and a 2 x 2 block. The
+/// inverse exists because the masses are positive.
 fn inverse(h: &Matrix3<f64>) -> Matrix3<f64> {
     let determinant = h[(1, 1)] * h[(2, 2)] - h[(1, 2)] * h[(1, 2)];
     let off = -h[(1, 2)] / determinant;

@@ -22,7 +22,8 @@ pub struct PlannerWatch {
 }
 
 impl PlannerWatch {
-    /// Checks once a second. This function must be called more often than once a second.
+    /// Checks whether the planner's threads have ended, at most once a second. The caller must call this function more
+    /// often than once a second.
     pub fn check(&mut self) {
         if self.ending || now() < self.next_check {
             return;
@@ -37,8 +38,8 @@ impl PlannerWatch {
     }
 }
 
-/// Whether all threads of the process have ended, except the threads of this library. Returns false if /proc cannot be
-/// read.
+/// Returns whether all threads of the process, except the threads of this library, have ended. Returns false if /proc
+/// cannot be read.
 fn planner_has_ended() -> bool {
     // The main thread stays as a zombie if it ends before other threads. Usually the main thread is alive, and then the
     // other threads need not be checked.
@@ -57,12 +58,12 @@ fn others_have_ended() -> Option<bool> {
     Some(true)
 }
 
-/// Whether a thread is a zombie or dead. Allocates nothing, because the process may be out of memory.
+/// Returns whether a thread is a zombie or dead. It allocates no memory, because the process may be out of memory.
 fn has_ended(thread: impl Display) -> bool {
     state(thread).is_some_and(|state| matches!(state, b'Z' | b'X'))
 }
 
-/// The letter of the thread's state in /proc.
+/// Returns the letter that /proc gives for the state of the thread.
 fn state(thread: impl Display) -> Option<u8> {
     let mut path = Cursor::new([0; 64]);
     write!(path, "/proc/self/task/{thread}/stat").ok()?;

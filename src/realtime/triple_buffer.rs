@@ -1,5 +1,5 @@
-//! A wait-free channel for the newest value of one thread: three places in memory pages of their own. One belongs to
-//! the writer and one to the reader. The third is swapped with one of them.
+//! A wait-free channel that passes the newest value of one thread to another. It has three places in memory pages of
+//! their own. One place belongs to the writer, and one to the reader. Each end swaps its place for the third one.
 #![allow(unsafe_code, reason = "places that two threads access in turns")]
 
 use super::LockedMemory;
@@ -26,7 +26,8 @@ pub struct Output<T> {
 }
 
 struct Places<T> {
-    /// The place that belongs to neither end. It has cache lines of its own, because both threads write to it.
+    /// The number of the place that belongs to neither end, and the bit [`NEW`]. This field has cache lines of its own,
+    /// because both threads write to it.
     between: Line<AtomicU8>,
     places: [Line<UnsafeCell<T>>; 3],
 }
@@ -55,8 +56,8 @@ impl<T> Input<T> {
 
     /// Publishes the buffer.
     pub fn publish(&mut self) {
-        // Release: the value was written before this swap. Acquire: the reader has finished reading the place that
-        // comes back.
+        // Release: the value was written before this swap. Acquire: the reader has finished reading the place that this
+        // end gets back.
         self.own = self.places.between.0.swap(self.own | NEW, Ordering::AcqRel) & PLACE;
     }
 
@@ -73,7 +74,7 @@ impl<T> Input<T> {
 }
 
 impl<T> Output<T> {
-    /// Takes the newest value if one was published since the last call. Returns whether there was one.
+    /// Takes the newest value if a value was published since the last call. Returns whether it took a value.
     pub fn update(&mut self) -> bool {
         let between = &self.places.between.0;
         if between.load(Ordering::Relaxed) & NEW == 0 {
@@ -84,13 +85,13 @@ impl<T> Output<T> {
         true
     }
 
-    /// The value that was taken last.
+    /// Returns the value that was taken last.
     pub fn output_buffer(&mut self) -> &T {
         // SAFETY: only this end has the number of this place, and this end is borrowed mutably.
         unsafe { &*self.places.places[usize::from(self.own)].0.get() }
     }
 
-    /// The newest value.
+    /// Takes the newest value if there is one, and returns the value that was taken last.
     pub fn read(&mut self) -> &T {
         self.update();
         self.output_buffer()

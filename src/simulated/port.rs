@@ -1,8 +1,9 @@
 //! A simulated board at a serial port: a pseudo-terminal and a thread.
 //!
-//! The time of the simulated board stops while the machine does not run its thread, because each wake-up advances it by
-//! at most 2 ms. Otherwise a pause of a virtual machine for 50 ms, which also stops the host's servo, would trip a
-//! watchdog that no real board would trip. The finger would also move for 50 ms without its controller.
+//! Each wake-up of the board's thread advances the time of the simulated board by at most 2 ms, so this time stops
+//! while the machine does not run the thread. Otherwise a pause of a virtual machine for 50 ms, which also stops the
+//! host's servo, would trip a watchdog that no real board would trip. The finger would also move for 50 ms without its
+//! controller.
 
 use crate::realtime::{self, Priority, spawn};
 use crate::simulated::board::SimulatedBoard;
@@ -21,8 +22,8 @@ use std::time::Duration;
 /// Interval at which the physics advances while no bytes arrive.
 const TICK: Duration = Duration::from_millis(1);
 
-/// After this silence the port is prepared for a new host, ns. A silent host that is still there loses its mark of
-/// exclusive use, but not its lock.
+/// The port is prepared for a new host when the host has sent nothing for longer than this time, ns. If that host still
+/// runs, the port loses the host's mark of exclusive use (TIOCEXCL). The host's lock (flock) stays.
 const SILENCE: u64 = 100_000_000;
 
 /// A simulated board with its own port and a thread that runs it. Dropping it ends the thread and removes the port.
@@ -31,7 +32,7 @@ pub struct SimulatedPort {
     shared: Arc<Mutex<Shared>>,
     ended: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
-    /// The process that has the thread. A forked child inherits this value, but not the thread.
+    /// The process in which the thread runs. A forked child inherits this value, but not the thread.
     process: u32,
 }
 
@@ -51,7 +52,7 @@ struct Shared {
 }
 
 impl SimulatedPort {
-    /// Starts the board. Its thread requests this priority, and continues without it if the system does not permit it.
+    /// Starts the board. Its thread requests `priority`, and runs without it if the system refuses the request.
     pub fn start(board: SimulatedBoard, pace: Pace, priority: Priority) -> io::Result<Self> {
         let terminal = Some(Arc::new(PseudoTerminal::open()?));
         let [line, line_to_board] = [(); 2].map(|()| SimulatedLine::new());
@@ -65,12 +66,13 @@ impl SimulatedPort {
         Ok(Self { shared, ended, thread: Some(thread), process: std::process::id() })
     }
 
-    /// Returns the path of the port, or an empty path while the cable is unplugged. Plugging in changes the path.
+    /// Returns the path of the port, or an empty path while the cable is unplugged. The path changes when the cable is
+    /// plugged in again.
     pub fn path(&self) -> PathBuf {
         self.shared.lock().terminal.as_deref().map(PseudoTerminal::path).map(Path::to_owned).unwrap_or_default()
     }
 
-    /// Unplugs the cable. For the host the port vanishes, and bytes on their way are lost. The board continues to run.
+    /// Unplugs the cable. The host loses the port, and bytes in transit are lost. The board continues to run.
     pub fn unplug(&self) {
         let mut shared = self.shared.lock();
         shared.terminal = None;
@@ -78,15 +80,15 @@ impl SimulatedPort {
         shared.line_to_board.cut();
     }
 
-    /// Plugs the cable in again. The port is a new one, see [`SimulatedPort::path`].
+    /// Plugs the cable in again, at a new port, see [`SimulatedPort::path`].
     pub fn plug_in(&self) -> io::Result<()> {
         let terminal = PseudoTerminal::open()?;
         self.shared.lock().terminal.get_or_insert(Arc::new(terminal));
         Ok(())
     }
 
-    /// Applies `fault` to each frame from the board with this probability, for `time`, ns. A stall ignores the
-    /// probability. `seed` restarts the random numbers.
+    /// Applies `fault` to each frame from the board with this probability. The fault lasts for `time`, ns. A stall
+    /// ignores the probability. `seed` restarts the random numbers.
     pub fn inject(&self, fault: LineFault, probability: f64, time: u64, seed: u64) {
         let mut shared = self.shared.lock();
         let until = shared.time.saturating_add(time);

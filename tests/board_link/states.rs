@@ -19,7 +19,8 @@ fn a_cycle_echoes_sequence_and_measures_before_the_command_acts() {
     for sequence in [255, 0, 1] {
         last = cycle(&mut link, sequence, pull(3000));
     }
-    // The board's clock advances on the time grid of the physics.
+    // The board's clock advances in steps of the physics of 100 us, so the three periods of 1 ms may measure one step
+    // more or less.
     assert!((2900..=3100).contains(&last.sampled_at.wrapping_sub(first.sampled_at)));
     assert_eq!(link.counters().damaged + link.counters().foreign + link.counters().unsent, 0);
 }
@@ -44,7 +45,7 @@ fn silence_trips_the_watchdog_after_its_time_and_only_a_configure_leads_back() {
     for sequence in 0..100 {
         cycle(&mut link, sequence, pull(3000));
     }
-    // 17 more ms make 18 since the last command.
+    // The last command was sent 1 ms ago. After 17 ms more, it is 18 ms old.
     let almost = in_time(&mut link, 17);
     link.transport().advance_to(almost);
     assert!(link.transport().board().finger(1).unwrap().enabled());
@@ -67,7 +68,7 @@ fn silence_trips_the_watchdog_after_its_time_and_only_a_configure_leads_back() {
 fn hold_is_bounded_in_torque_and_time() {
     let mut link = link(&[1]);
     link.shake_hands(1, &terms(EndState::Hold), 500 * MS).unwrap();
-    // 1.58, 0.32, 0 and -1.58 N cm. The terms allow 0.5 N cm in hold.
+    // The torques are 1.58, 0.32, 0 and -1.58 N cm. The terms permit 0.5 N cm during a hold.
     let command = Command { torques: [10_000, 2000, 0, -10_000], ..pull(0) };
     cycle(&mut link, 0, command);
     let before = torques(&mut link);

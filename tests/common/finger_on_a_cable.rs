@@ -1,4 +1,4 @@
-//! A finger with its servo, its link and its board in memory, on simulated time: every run is identical.
+//! A finger with its servo, its link and its board in memory, on simulated time, so that every run is identical.
 
 use std::cell::{RefCell, RefMut};
 use std::rc::Rc;
@@ -10,7 +10,8 @@ use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, Consumer, CycleTiming, Schedule, ring};
 use sun2xp::simulated::{SimulatedBoard, SimulatedCable};
 
-/// Interventions between a servo and the cable to its board. The default is none.
+/// Functions that stand between a servo and the cable to its board. A test can replace them to disturb the line. The
+/// default functions pass every call to the cable.
 pub trait Hooks {
     fn write(&mut self, cable: &mut SimulatedCable, bytes: &[u8]) -> Result<usize, PortError> {
         cable.write(bytes)
@@ -28,13 +29,13 @@ pub trait Hooks {
         cable.advance_to(deadline);
     }
 
-    /// The time of the host, ns.
+    /// Returns the time of the host, ns.
     fn now(&self, cable: &SimulatedCable) -> u64 {
         cable.now()
     }
 }
 
-/// A cable and its interventions.
+/// A cable and its hooks.
 pub struct Place<H> {
     pub cable: SimulatedCable,
     pub hooks: H,
@@ -50,7 +51,7 @@ impl<H> Clone for World<H> {
 }
 
 impl<H> World<H> {
-    /// A cable to a simulated board with finger 1.
+    /// Constructs a cable to a simulated board with finger 1.
     pub fn new(configuration: &Configuration, hooks: H) -> Self {
         let board = SimulatedBoard::new(configuration, &[FingerNumber::ONE]).expect("a board");
         Self(Rc::new(RefCell::new(Place { cable: SimulatedCable::new(board), hooks })))
@@ -110,7 +111,8 @@ impl<W: Transport + Clock + Clone> ServedFinger<W> {
         Self::believing(world, configuration, configuration)
     }
 
-    /// The same with a servo whose configuration differs from the board's.
+    /// Does the same as [`ServedFinger::new`], but gives the servo the configuration `belief`, which may differ from
+    /// that of the board.
     pub fn believing(world: &W, configuration: &Configuration, belief: &Configuration) -> Self {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
         let period = (1e9 / hand.rate) as u64;

@@ -1,5 +1,5 @@
-//! A finger with its servo, its link and its board in memory, on simulated time, and a link that can be repaired after
-//! a fault.
+//! A finger with its servo, its link and its board in memory, on simulated time. The link can be repaired after a
+//! fault.
 
 use crate::finger_on_a_cable::{Hooks, ServedFinger, World};
 use nalgebra::Vector3;
@@ -11,17 +11,17 @@ use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
 
 pub const MILLISECOND: u64 = 1_000_000;
 
-/// A pose.
+/// Joint angles of a pose, rad.
 pub const TARGET: Vector3<f64> = Vector3::new(0.2, 0.6, 1.1);
 
 type Read = Result<Vec<u8>, PortError>;
 
-/// Replaces the board's answers in what the host reads.
+/// Replaces the board's answers before the host reads them.
 #[derive(Default)]
 pub struct Line {
-    /// The result of the next read, instead of the board's answer.
+    /// The result that the next read returns instead of the board's answer.
     instead: Option<Read>,
-    /// Frames that every read returns before the board's answers.
+    /// The frame that every read returns instead of the board's answers.
     flood: Option<Flood>,
 }
 
@@ -34,7 +34,7 @@ struct Flood {
 /// Duration of a read during the flood, ns.
 const FLOODED_READ: u64 = 10_000;
 
-/// More reads of the flood than any test needs. Without this bound a failing test would never end.
+/// Limit on the reads during a flood. No test needs that many. Without this limit a failing test would never end.
 const MOST_FLOODED_READS: u32 = 1_000_000;
 
 impl Hooks for Line {
@@ -73,14 +73,15 @@ impl Bench {
         Self::with(|_| {})
     }
 
-    /// The same with another configuration.
+    /// Opens the finger of a changed default configuration and waits until it is a spring.
     pub fn with(change: impl FnOnce(&mut Configuration)) -> Self {
         let mut bench = Self::believing(change, |_| {});
         bench.opens();
         bench
     }
 
-    /// A finger that begins to open, with a servo whose configuration differs from the board's.
+    /// Constructs a finger that opens in the next periods. `is` changes the configuration of the board. `believed`
+    /// changes only the servo's copy of it, so that the servo's configuration differs from the board's.
     pub fn believing(is: impl FnOnce(&mut Configuration), believed: impl FnOnce(&mut Configuration)) -> Self {
         let mut configuration = Configuration::default();
         // The port must not be "simulated": the time limits of a built-in board are longer.
@@ -109,7 +110,7 @@ impl Bench {
         }
     }
 
-    /// The present warning of the finger.
+    /// The newest present warning of the finger.
     pub fn warning(&self) -> Option<Fault> {
         self.report().warnings.newest()
     }
@@ -122,7 +123,7 @@ impl Bench {
         self.with_cable(|cable| act(cable.board().finger(1).expect("the board has finger 1")))
     }
 
-    /// The next read of the port fails with this error.
+    /// Makes the next read of the port fail with this error.
     pub fn fail_port(&self, failure: PortError) {
         self.world.place().hooks.instead = Some(Err(failure));
     }
@@ -133,7 +134,7 @@ impl Bench {
         self.world.place().hooks.instead = Some(Ok(wire.as_bytes().to_vec()));
     }
 
-    /// From now on this frame arrives without end, and the board's answers are lost in it.
+    /// Starts a flood: every read returns copies of this frame, and the board's answers do not reach the host.
     pub fn flood_with(&self, frame: Frame) {
         let wire = WireFrame::new(&Message { address: 1, sequence: 200, frame }).as_bytes().to_vec();
         self.world.place().hooks.flood = Some(Flood { wire, reads: 0 });
@@ -143,7 +144,8 @@ impl Bench {
         self.world.place().hooks.flood = None;
     }
 
-    /// Another program on the same port sends this to the finger's board. The answer goes to whoever reads first.
+    /// Sends this frame to the finger's board, as another program on the same port would. The first reader of the port
+    /// gets the answer.
     pub fn another_program_sends(&mut self, frame: Frame) {
         let message = Message { address: 1, sequence: 200, frame };
         self.world.write(WireFrame::new(&message).as_bytes()).expect("written");
@@ -156,7 +158,7 @@ impl Bench {
         }
     }
 
-    /// Runs periods until the condition holds, at most 10 000.
+    /// Runs periods until the condition holds. Panics if it does not hold within 10 000 periods.
     pub fn until(&mut self, what: &str, wanted: impl Fn(&Self) -> bool) {
         for _ in 0..10_000 {
             if wanted(self) {
@@ -173,7 +175,7 @@ impl Bench {
         assert_eq!(self.stage(), Stage::Running);
     }
 
-    /// Sends the finger to a pose.
+    /// Sends the finger to a pose, and checks that it arrives.
     pub fn goes(&mut self, joints: Vector3<f64>) {
         self.mailbox.send(|set_point| set_point.joints = joints).expect("not faulted");
         self.cycles(1500);
@@ -198,7 +200,8 @@ impl Bench {
         self.warning().expect("warned")
     }
 
-    /// Takes the link from the servo, shakes hands with the board and returns the link. The finger then takes up slack.
+    /// Takes the link from the servo, shakes hands with the board and gives the link back to the servo. The finger then
+    /// takes up slack.
     pub fn repair(&mut self) {
         self.until("at rest", |bench| !bench.repair_end.released.is_empty());
         let mut link = self.repair_end.released.pop().expect("released").link;

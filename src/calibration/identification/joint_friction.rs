@@ -13,20 +13,21 @@ use nalgebra::Vector3;
 
 /// Speed, rad/s, and amplitude, rad, of each motion.
 const SWINGS: [(f64, f64); 2] = [(0.15, 0.4), (0.6, 0.8)];
-/// Distance kept from the stop, rad.
+/// Distance of the back-and-forth motion from the stop, rad. The last leg aims this far beyond the stop, so that the
+/// finger presses against it.
 const CLEAR: f64 = 0.1;
 /// Samples are ignored for this time after every change of direction, s. An extended finger oscillates for this time,
 /// and meanwhile its inertia takes as much torque as its friction.
 const RUN_UP: f64 = 0.5;
 /// A joint is blocked if its torque stays at the limit for this time, s.
 const BLOCKED: f64 = 0.3;
-/// Speed of the motion away from the stop and back, rad/s.
+/// Speed of the motions away from the stop and back to the stop, rad/s.
 const IN_BETWEEN: f64 = 0.7;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointFriction {
     joint: usize,
-    /// The lower stop of the joint, rad with the configured zero.
+    /// The angle of the joint at its lower stop, rad, measured from the configured zero.
     stop: f64,
     /// 0: away from the stop. 1 and 2: back and forth slowly. 3 and 4: back and forth faster. 5: back to the stop.
     leg: usize,
@@ -41,7 +42,7 @@ impl JointFriction {
         Self { joint, stop, leg: 0, from: None, strained: 0.0, fit: LeastSquares::new() }
     }
 
-    /// Runs one cycle of the motion. When done, returns C, N cm, and b, N cm s/rad.
+    /// Runs one cycle of the motion. When the motion is complete, returns C, N cm, and b, N cm s/rad.
     pub fn step(
         &mut self,
         instruments: &Instruments,

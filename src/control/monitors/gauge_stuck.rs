@@ -7,28 +7,29 @@ use super::sample::Sample;
 use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
 
-/// Gain per sample of the mean of the flicker.
+/// Gain per sample of the running mean `Memory::repeats`.
 const LEARNING: f64 = 1.0 / 256.0;
 
-/// Number of samples after which the flicker is known.
+/// Minimum number of samples before a gauge can be known to flicker.
 const KNOWN: u32 = 256;
 
-/// A gauge that shows one count in this number of consecutive samples was dead from the start, if all others are known
-/// to flicker.
+/// A gauge that repeats the same count for this number of consecutive samples was dead from the start, if all others
+/// are known to flicker.
 const DEAD_FROM_START: u32 = 512;
 
-/// The tension that a dead gauge shows soon differs from the commanded one by more than this fraction of t_min, because
-/// the commands keep changing; at rest the dither changes them. A working gauge without noise may show one count
-/// permanently, if its tendon has the commanded tension. This was observed while other gauges flickered.
+/// A gauge is reported as dead only if its tension differs from the commanded tension by more than this fraction of
+/// t_min. A dead gauge reaches this difference soon, because the commands keep changing; at rest the dither changes
+/// them. A working gauge without noise may repeat the same count permanently if its tendon has the commanded tension.
+/// This was observed while other gauges flickered.
 const OFFSET: f64 = 0.015;
 
-/// Natural logarithm of the probability below which a constant count means a dead gauge. It is the probability that a
-/// working gauge with the learned flicker shows one count for so long. The value means once in 10^11 samples. Four
-/// gauges at 1000 Hz give this number of samples in about a year.
+/// Natural logarithm of a probability. A gauge that repeats one count is taken for dead if a working gauge with the
+/// learned flicker would repeat it for so long with a lower probability than this. The value corresponds to one case in
+/// 10^11 samples. Four gauges at 1000 Hz give this number of samples in about a year.
 const UNLIKELY: f64 = -25.3;
 
 /// Lowest assumed probability that a sample of a gauge repeats the previous one. While the tension changes, a gauge
-/// hardly repeats a count. At rest it repeats more counts, and must not be taken for a dead gauge.
+/// hardly repeats a count. At rest it repeats counts more often, and must not be taken for a dead gauge.
 const LEAST_REPEATS: f64 = 0.2;
 
 /// Largest fraction of repeating samples with which a gauge is known to flicker. A gauge that repeats its count more
@@ -46,19 +47,21 @@ const LEARNING_REVERSALS: f64 = 1.0 / 512.0;
 /// Fraction of t_min below which a tendon may hang slack.
 const SLACK: f64 = 0.3;
 
-/// Number of samples with the same count after which a gauge may be judged.
+/// A gauge that has repeated the same count for this number of consecutive samples does not flicker at present. While
+/// others flicker, it is being judged, and its samples are not learned.
 const LEAST_ROW: u32 = 4;
 
-/// A gauge that flickered and then showed one count in this number of consecutive samples is dead if gauges and
+/// A gauge that flickered and then repeated the same count for this number of consecutive samples is dead if gauges and
 /// encoders disagree too.
 const SILENT: u32 = 10;
 
-/// A gauge that is not known to flicker is reported as dead in two cases: if all others are known to flicker, and
-/// because of its tendon; see `tension_lost`.
+/// The monitor of dead gauges. A gauge that is not known to flicker can be reported as dead in two cases. In the first
+/// case, all others are known to flicker. In the second case, its tendon seems to lose its tension while the other
+/// tendons keep theirs; see `tension_lost`.
 #[derive(Clone, Debug)]
 pub(super) struct GaugeStuck {
-    /// Tension below which a tendon may hang slack, N. Its gauge is then not used to judge others: if the range of the
-    /// gauge ends there, only half of its noise is visible.
+    /// Tension below which a tendon may hang slack, N. The gauge of such a tendon is not used to judge others: if the
+    /// range of the gauge ends there, only half of its noise is visible.
     slack: f64,
     /// Difference from the commanded tension beyond which a gauge may be dead, N.
     offset: f64,
@@ -94,7 +97,7 @@ pub(super) struct Flicker {
 }
 
 impl Flicker {
-    /// Returns whether a gauge that flickered has shown one count in the last [`SILENT`] samples.
+    /// Returns whether a gauge that flickered has repeated the same count for at least [`SILENT`] samples.
     pub fn silent(&self, gauge: usize) -> bool {
         self.known[gauge] && self.same[gauge] >= SILENT
     }
@@ -125,7 +128,7 @@ impl GaugeStuck {
         let rises = |gauge: usize| counts[gauge] > last[gauge];
         memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge] + 1 } else { 0 });
         let same_for = memory.same;
-        // Whether at least two other gauges have changed recently.
+        // Whether at least two other gauges, of tendons that are not slack, have changed recently.
         let others_flicker = |gauge: usize| {
             let flickers =
                 |&other: &usize| other != gauge && same_for[other] < LEAST_ROW && sample.tensions[other] > self.slack;
@@ -146,7 +149,7 @@ impl GaugeStuck {
         let known = memory.flickers().known;
         let alone = |gauge: usize| (0..4).all(|other| other == gauge || known[other]);
         first_of(Symptom::GaugeStuck, Part::gauge, |gauge| {
-            // The gauge of a hanging tendon may be at the end of its range, and then shows only half of its noise.
+            // The gauge of a slack tendon may be at the end of its range, and then shows only half of its noise.
             let least = if sample.tensions[gauge] < self.slack { MOST_REPEATS } else { LEAST_REPEATS };
             let unlikely = f64::from(memory.same[gauge]) * memory.repeats[gauge].max(least).ln() < UNLIKELY;
             let off = (sample.tensions[gauge] - sample.report.desired_tensions[gauge]).abs() > self.offset;

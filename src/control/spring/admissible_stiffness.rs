@@ -5,9 +5,9 @@ use crate::model::Tendons;
 use crate::model::configuration::{ConfiguredFinger, Scheme};
 use nalgebra::{Matrix3, Matrix3x4, Vector3};
 
-/// Returns the fraction of the stiffness of the locked tendons that K_theta may use. It is the largest fraction with
-/// which the loop was found stable. It is smaller below 750 Hz, and at every rate with Figure 11, which has no gain on
-/// the tension error.
+/// Returns the fraction of R k R^T that K_theta may use; see [`AdmissibleStiffness`]. It is the largest fraction with
+/// which the loop was found stable. The fraction is smaller below 750 Hz. With Figure 11, which has no gain on the
+/// tension error, it is smaller at every rate.
 fn share(scheme: Scheme, rate: f64) -> f64 {
     match scheme {
         Scheme::Figure11 => 0.7,
@@ -18,8 +18,9 @@ fn share(scheme: Scheme, rate: f64) -> f64 {
     }
 }
 
-/// Limits K_theta to a share of R k R^T = L L^T, the stiffness with which locked tendons hold the joints. The largest
-/// eigenvalue of L^-1 K_theta L^-T is the largest share, over all directions, that K_theta uses.
+/// Limits K_theta to a share of R k R^T = L L^T. R k R^T is the stiffness with which the tendons hold the joints while
+/// the motors are locked, and the diagonal matrix k contains the stiffnesses of the tendons. The largest eigenvalue of
+/// L^-1 K_theta L^-T is the largest share that K_theta uses in any direction.
 #[derive(Clone, Debug)]
 pub(crate) struct AdmissibleStiffness {
     /// L^-1, (N cm/rad)^(-1/2).
@@ -39,18 +40,18 @@ impl AdmissibleStiffness {
         Some(Self { inverse, compliance, share: share(finger.controller.scheme(rate), rate) })
     }
 
-    /// Returns the factor, 0 to 1, by which K_theta must be scaled to leave room for `limits`, the stiffness of the
-    /// soft joint limits. Both are in N cm/rad.
+    /// Returns the factor, 0 to 1, by which K_theta must be scaled so that K_theta and the soft joint limits together
+    /// stay within the share. `limits` is the stiffness of the soft joint limits. K_theta and `limits` are in N cm/rad.
     ///
-    /// The largest eigenvalue of a sum is at most the sum of the largest eigenvalues. The largest eigenvalue of the
-    /// soft limits is at most their trace.
+    /// The largest eigenvalue of a sum of matrices is at most the sum of their largest eigenvalues. For the soft
+    /// limits, the trace is used instead of the largest eigenvalue, because it is at least as large.
     pub fn scale(&self, k_theta: &Matrix3<f64>, limits: &Vector3<f64>) -> f64 {
         let [largest, ..] = eigenvalues(&(self.inverse * k_theta * self.inverse.transpose()));
         let left = self.share - limits.dot(&self.compliance);
         if largest > left { left / largest } else { 1.0 }
     }
 
-    /// Returns the stiffness that each joint can have while the others have none, N cm/rad.
+    /// Returns the largest stiffness that each joint can have while the other joints have none, N cm/rad.
     pub fn of_joints(&self) -> Vector3<f64> {
         self.compliance.map(|compliance| self.share / compliance)
     }

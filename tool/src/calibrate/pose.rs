@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use std::io::{self, Write};
 use sun2xp::model::configuration::ConfiguredFinger;
 
-/// Asks the person to hold the finger in its zeroing pose. With `yes` it does not wait for Enter.
+/// Asks the person to hold the finger in its zeroing pose. If `yes` is true, the function does not wait for Enter.
 pub fn ask_to_hold(finger: i32, configured: &ConfiguredFinger, yes: bool) -> Result<(), Failure> {
     let reason = match configured.zeroing.method {
         Some(_) => "zeroing.method is \"pose\"",
@@ -18,7 +18,7 @@ pub fn ask_to_hold(finger: i32, configured: &ConfiguredFinger, yes: bool) -> Res
     wait(&text, "when you hold it there", yes)
 }
 
-/// Asks the person to let go of a finger that will move by itself.
+/// Asks the person to let go of a finger that will move by itself. `yes` has the same meaning as in [`ask_to_hold`].
 pub fn ask_to_release(finger: i32, yes: bool) -> Result<(), Failure> {
     wait(
         &format!("finger {finger} will move by itself. Let go of it and clear the space around it.\n"),

@@ -1,4 +1,4 @@
-//! Wake-up latencies of threads like the servos', compared with the period.
+//! Measures the wake-up latencies of threads that run like the servo threads, and compares them with the period.
 
 use super::finding::{Finding, Rating, lacking};
 use std::time::Duration;
@@ -9,17 +9,17 @@ use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Schedule, WakeUp, measure_wake_up, now};
 
-/// Time until all threads are ready, ns.
+/// Time that the threads have to become ready before the first period begins, ns.
 const HEAD_START: u64 = 10_000_000;
 
-/// Fraction of the period. If the 99 % wake-up latency exceeds it, the time for the replies becomes short.
+/// If the 99 % wake-up latency exceeds this fraction of the period, the time left for the replies becomes short.
 const LATE: f64 = 0.1;
 
-/// Fraction of the period. If the 99 % wake-up latency exceeds it, some periods are lost.
+/// If the 99 % wake-up latency exceeds this fraction of the period, some periods are lost.
 const TOO_LATE: f64 = 0.5;
 
-/// Largest acceptable timer slack of a thread that is not real-time, ns. Servos request 1 ns; the kernel's default is
-/// 50 us.
+/// Largest acceptable timer slack of a thread that is not real-time, ns. Servo threads request 1 ns. The default of the
+/// kernel is 50 us.
 const SLACK: u64 = 1000;
 
 /// Measures threads that wake up as the servos would. All threads run at the same time, with the same stagger as the
