@@ -66,7 +66,7 @@ fn a_failed_handshake_names_its_reason() {
         wire
     });
     assert!(matches!(error, LinkError::WrongAddress { address: 1, .. }), "{error}");
-    assert!(error.to_string().contains("but 4, 7") && when < 1000 * MS, "{error}");
+    assert!(error.to_string().contains("it has 4, 7:") && when < 1000 * MS, "{error}");
 
     let (error, when) = failure(good_but(|message| {
         message.frame = Frame::Refused(Refused { request: 1, reason: Reason::Version, detail: 0x0302 });
