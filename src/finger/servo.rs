@@ -133,8 +133,8 @@ impl FingerServo {
         }
     }
 
-    /// Ends a cycle and computes the next command. `next` is the scheduled beginning of the next cycle, ns. If that time
-    /// has already passed, `overrun` is the number of skipped periods, which may be 0. Otherwise it is None.
+    /// Ends a cycle and computes the next command. `next` is the scheduled beginning of the next cycle, ns. If that
+    /// time has already passed, `overrun` is the number of skipped periods, which may be 0. Otherwise it is None.
     pub fn end(&mut self, began: u64, next: u64, overrun: Option<u64>, counters: &LinkCounters) {
         let skipped = overrun.unwrap_or(0);
         self.sample_age += 1 + skipped;
