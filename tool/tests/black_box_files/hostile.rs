@@ -105,7 +105,7 @@ fn files_that_no_black_box_writes_are_refused() {
     assert!(refusal_of(many.as_bytes()).contains("more than 50000 cycles"));
     let number = cycles.split_once(',').expect("a number").0;
     let last = text.replacen(number, "{\"cycle\":18446744073709551615", 1);
-    assert!(refusal_of(last.as_bytes()).contains("line 3: its cycle does not follow"));
+    assert!(refusal_of(last.as_bytes()).contains("line 3: its cycle number does not follow"));
     let controller = "{\"number\":0,\"gravity\":[0,0,0],\"finger\":{}},".repeat(5000);
     let crowded = text.replacen("\"controllers\":[", &format!("\"controllers\":[{controller}"), 1);
     assert!(refusal_of(crowded.as_bytes()).contains("line 1: more than 4096 controllers"));
