@@ -17,8 +17,9 @@ const PERMISSIONS: u32 = 0o777;
 
 /// Writes a file with the content that `write` gives. The new file replaces the file at `path`, if there is one.
 ///
-/// A reader sees either the complete old file or the complete new one, even after a power cut. If anything fails, the
-/// old file stays unchanged. The new file gets the permissions of the old one, and its owner and group if this process
+/// A reader sees either the complete old file or the complete new one, even after a power cut. If anything fails before
+/// the replacement, the old file stays unchanged. If the folder cannot be flushed afterwards, the call fails although
+/// the file is the new one. The new file gets the permissions of the old one, and its owner and group if this process
 /// may set them.
 ///
 /// Symbolic links are not followed. A caller that wants to replace the target of a link must resolve the link first.
