@@ -43,23 +43,23 @@
        cc planner.c -I include -L lib -lsun2xp -Wl,-rpath,lib
        ./a.out
 
-   Angles are in rad, stiffness in N/cm. Each finger is a spring: until the next command it pulls
-   its tip to the pose of SendPos with the stiffness of SendKx. Without a configuration file the
+   Angles are in rad, stiffness in N/cm. Each finger is a spring: it pulls its tip toward the pose
+   sent last by SendPos, with the stiffness sent last by SendKx. Without a configuration file the
    program moves a simulated hand, and one line on standard error says so.
 
 
    2. RETURN VALUES, ERRNO
 
    Every call except HandError and FaultText returns an int: 0 if it succeeded, -1 if it was
-   refused. A refused call has changed nothing, unless its entry says otherwise. errno gives the
-   kind of the refusal, HandError() its cause and remedy:
+   refused. A refused call changes nothing, unless its entry says otherwise. errno gives the kind of
+   the refusal. HandError() gives its cause and the remedy:
 
        EPERM      the process is a forked child (chapter 6)
        EFAULT     an argument is a null pointer
        ENODEV     no hand is open
        EBUSY      a hand is open already, or is being opened or closed; the finger is being
-                  calibrated or recovered, or another one on its port runs; the key cannot change while
-                  a hand is open
+                  calibrated or recovered, or another finger on its port runs; the key cannot change
+                  while a hand is open
        EINVAL     no such finger; NaN or infinity; an unusable configuration
        ERANGE     angles outside the joint limits; a tip out of reach; Kx stiffer than the bound;
                   damping outside its range
@@ -67,10 +67,10 @@
        EIO        the finger is faulted: it has stopped by itself
        ENOTSUP    not for a finger on a real port
        ESHUTDOWN  the process is exiting, and the hand is closed (chapter 6)
-       others     configuration file, port, enforced real time: errno of the system, or the nearest
+       others     errno of the system, or the nearest: configuration file, port, enforced real time
 
-   If several reasons apply, a call reports the first one in its entry. A call that succeeds changes
-   neither errno nor HandError().
+   If several reasons apply, a call reports the one that its entry lists first. A call that succeeds
+   changes neither errno nor the text of HandError().
 
    Arrays, structs and texts are read and written only during the call. An output is written only if
    the call returns 0.
@@ -91,7 +91,7 @@
        y = -l1 sin(j1) - l2 sin(j1 + j2)
        z = (l0 + l1 cos(j1) + l2 cos(j1 + j2)) cos(j0)
 
-   At 0, 0, 0 the finger is straight along z; bending moves the tip toward -y. Kx, forces and
+   At angles 0, 0, 0 the finger is straight along z. Bending moves the tip toward -y. Kx, forces and
    displacements are in this frame. Matrices are in row-major order, as in C: Kx[row][column].
 
 
@@ -103,8 +103,8 @@
    and 0 compile, and are refused with EFAULT. C arrays of variable length compile, but their
    lengths are not checked.
 
-   The C macros are function-like, so they do not serve a planner that declares the functions itself
-   or takes their addresses. Compile such a planner with
+   The C macros are function-like, so they do not work for a planner that declares the functions
+   itself or takes their addresses. Compile such a planner with
 
        -DSUN2XP_REAL=float     or      -DSUN2XP_REAL=double
 
@@ -113,9 +113,9 @@
    declarations may be int SendPos(); or those below. If they differ from those below, add
    -DSUN2XP_H, which leaves out this header.
 
-   The plain symbols of the library take float, those ending in D take double. Compilers without
-   _Generic (gcc before 4.9) choose by the size of an element: they treat an array of int as one of
-   float, and NULL needs a cast.
+   In the library, the symbols SendPos, SendKx and GetPos take float, and those ending in D take
+   double. Compilers without _Generic (gcc before 4.9) choose by the size of an element: they treat
+   an array of int as one of float, and NULL needs a cast.
 
 
    5. PLANNERS OF 1990
@@ -141,11 +141,11 @@
        _Pragma, and names that the compiler defines itself
        _Generic, default and sizeof where a C file calls SendPos, SendKx or GetPos
 
-   A poisoned name (#pragma GCC poison) must not be a name of this header. With other compilers, no
-   macro of the planner may have the name of a C keyword or of a struct, member or call of this
-   header.
+   A planner must not poison a name that this header uses (#pragma GCC poison). With other
+   compilers, no macro of the planner may have the name of a C keyword or of a struct, member or
+   call of this header.
 
-   Packing: with gcc and clang the structs of this header have the library's layout also after
+   Packing: with gcc and clang the structs of this header have the library's layout even after
    #pragma pack. If a 64-bit compiler gives them another layout, as gcc -fpack-struct does, the
    header does not compile.
 
@@ -156,19 +156,19 @@
    for a call. A call waits for a servo only if its entry says so. If two threads command one
    finger, the later call wins; each command takes effect as a whole.
 
-   Signals: the servo threads block all signals, so the planner's own threads serve its alarms and
-   handlers. A signal handler may call StopHand, and no other call. C does not guarantee that exit
-   works in a signal handler. If a handler calls it nevertheless, the library closes the hand. If
-   the signal interrupted OpenHand or CloseHand, the process may end before that is done, and then
-   the boards end the motion.
+   Signals: the servo threads block all signals, so only the planner's own threads run its signal
+   handlers, also for alarms. A signal handler may call StopHand, and no other call. C does not
+   guarantee that exit works in a signal handler. If a handler calls exit nevertheless, the library
+   closes the hand. If the signal interrupted OpenHand or CloseHand, the process may end before the
+   hand is closed. Then the boards' watchdogs end the motion.
 
    The planner's arrays, structs and texts may lie in pages that its own handler of SIGSEGV or
    SIGBUS makes accessible when a call first accesses them.
 
-   Standard error: lines of the library are lost if nobody reads standard error, or if it is a file
-   that may not grow. The planner gets no SIGPIPE and no SIGXFSZ for them. A call that prints a line
-   waits until it is written. So a full pipe or a stopped terminal (Control-S) delays OpenHand and
-   the first refusal of each kind, but no servo.
+   Standard error: lines of the library are lost if standard error is a pipe without a reader, or a
+   file that may not grow. The planner gets no SIGPIPE and no SIGXFSZ for these lines. A call that
+   prints a line waits until the line is written. So a full pipe or a stopped terminal (Control-S)
+   delays OpenHand and the first refusal of each kind, but no servo.
 
    Stack: a call needs up to 16 KiB of its thread's stack. The library's threads also contain the
    planner's thread-local data (__thread). These data enlarge their stacks, and with hand.real_time
@@ -182,16 +182,18 @@
    handler may jump out of that wait (siglongjmp). The call then continues to its end; until then
    OpenHand is refused with EBUSY, and CloseHand waits.
 
-   Undefined behaviour: jumping out of any other call (longjmp, siglongjmp), calling pthread_exit in
-   a signal handler that interrupted a call, and in C++ throwing an exception out of such a handler.
+   Undefined behaviour: the behaviour is undefined if a signal handler jumps out of any other call
+   (longjmp, siglongjmp). The same holds if a handler that interrupted a call calls pthread_exit or,
+   in C++, lets an exception escape.
 
    Memory: OpenHand allocates the memory for the servos, for CloseHand and for all calls that are
-   not slow. These work even if malloc later returns NULL. OpenHand (12 MiB), RecoverHand,
+   not slow. These calls work even if malloc later returns NULL. OpenHand (12 MiB), RecoverHand,
    ZeroFinger, IdentifyFinger, AdjustFinger and WriteBlackBox (4 MiB) are refused with ENOMEM if
    that much memory is not free. If memory runs out while one of them runs, the process is aborted,
-   and the boards end the motion. A fault that finds no 4 MiB for its black box is reported without
-   one, and a line on standard error says so. If the library was loaded with dlopen, the first call
-   of a thread needs memory for its thread-local data; without it the C library aborts the process.
+   and the boards' watchdogs end the motion. If less than 4 MiB are free when a finger faults, the
+   fault is reported but no black box is written, and a line on standard error says so. If the
+   library was loaded with dlopen, the first call of a thread needs memory for its thread-local
+   data. If there is none, the C library aborts the process.
 
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the planner's next
    cancellation point or, with asynchronous cancellation, when the call returns.
@@ -202,19 +204,20 @@
 
    Fork: a child process has no servo threads. Once a process has called OpenHand, every call in a
    child forked from it is refused with EPERM, except HandError, FaultText and StopHand; the parent
-   is not affected. This applies to children of fork, _Fork and the system calls fork and clone, and
-   inside handlers of pthread_atfork. Before Linux 4.14 it applies only to children of fork, after
-   these handlers. A child that shares the memory of its parent (vfork) may only call exec. A child
-   that calls exec starts afresh.
+   is not affected. This applies to children of fork, of _Fork and of the system calls fork and
+   clone, and already inside handlers of pthread_atfork. Before Linux 4.14 it applies only to
+   children of fork, and only after these handlers have run. A child that shares the memory of its
+   parent (vfork) may only call exec. A child that calls exec starts afresh.
 
    CloseHand releases the ports even if forked children are alive. If the planner ends without
    CloseHand, its ports stay locked until those children have ended too.
 
    Descriptors: a daemon must detach before it calls OpenHand. The library's descriptors close at
    exec. Their numbers are 512 or more if the limit (ulimit -n) permits it, so a planner may close
-   all descriptors up to 255 and keep its hand. A planner that closes all of them loses it: the
-   fingers fault with FAULT_PORT_CLOSED or FAULT_PORT_VANISHED. The library does not touch files
-   that the planner then opens under these numbers. CloseHand and OpenHand start the hand again.
+   all descriptors up to 255 and keep its hand. A planner that closes all descriptors loses its
+   hand: the fingers fault with FAULT_PORT_CLOSED or FAULT_PORT_VANISHED. The library does not touch
+   files that the planner then opens under these numbers. CloseHand and OpenHand start the hand
+   again.
 
    Exit: when a planner exits with a hand open, an exit handler of the library brings the fingers to
    their end state, as CloseHand does. The first OpenHand registers that handler (atexit). Exit
@@ -224,8 +227,8 @@
 
    A planner that is killed or calls _exit leaves the motors to the boards, which receive no more
    commands and enter the configured end state. If the last thread of a process ends by pthread_exit
-   with a hand open, the library ends the process within some seconds, as by exit (0). dlclose does
-   not unload the library, and the hand stays open.
+   with a hand open, the library ends the process within some seconds, as exit (0) does. dlclose
+   does not unload the library, and the hand stays open.
 
 
    7. SERVO AND REAL TIME
@@ -234,15 +237,15 @@
    with locked memory and on the configured core. If the system does not permit that, OpenHand
    follows hand.real_time:
 
-       "try"      continues without; one line on standard error and GetStatus report it. Everything
-                  works, but with the jitter of an ordinary process
-       "enforce"  is refused, and HandError says what to change
-       "ignore"   does not try
+       "try"      OpenHand continues without it; one line on standard error and GetStatus report
+                  that. Everything works, but with the jitter of an ordinary process
+       "enforce"  OpenHand is refused, and HandError says what to change
+       "ignore"   OpenHand does not try to get real time
 
    RLIMIT_RTTIME (ulimit -R) limits how long a thread under SCHED_FIFO may run without waiting. The
    system ends a process that exceeds it, by SIGXCPU at the soft limit and by SIGKILL at the hard
-   limit. A servo waits in every cycle, but the system counts in ticks of up to 10 ms. Set the limit
-   to 100000 (microseconds) or more, or to unlimited, or set hand.real_time to "ignore".
+   limit. A servo waits in every cycle, but the system counts the time in ticks of up to 10 ms. Set
+   the limit to 100000 (microseconds) or more, or to unlimited, or set hand.real_time to "ignore".
 
    sun2xp doctor examines a machine and says what to change. GetTiming reports where the time of a
    cycle goes.
@@ -250,7 +253,7 @@
 
    8. CONFIGURATION
 
-   OpenHand takes the first of
+   OpenHand uses the first of these:
 
        1. the file that the environment variable SUN2XP_CONFIG names; it must exist. An empty
           SUN2XP_CONFIG counts as not set
@@ -289,11 +292,11 @@
    10. FAULTS
 
    Every fault has a number that never changes (FAULT_..., below). FaultText gives its text, likely
-   cause and remedy. A fault stops the finger: its motors enter the configured end state, and its
-   calls are refused with EIO until RecoverHand, or CloseHand and OpenHand. HandError gives the
-   reason. A warning does not stop the finger; it lasts until one second after its cause was last
+   cause and remedy. A fault stops the finger: its motors enter the configured end state, and calls
+   for it are refused with EIO until RecoverHand, or CloseHand and OpenHand. HandError gives the
+   reason. A warning does not stop the finger. It lasts until one second after its cause was last
    detected. GetFault reports both. Some faults make OpenHand fail; HandError gives their numbers.
-   docs/faults.md lists all faults, and how and how fast each is detected. */
+   docs/faults.md lists all faults, and describes how each is detected and how long that takes. */
 
 #ifndef SUN2XP_H
 #define SUN2XP_H
@@ -625,9 +628,9 @@ int GetPosD(int, double *);
      const char *HandError(void);
 
  Returns the text of the calling thread's last refused call, or an empty string if no call was
- refused. Like errno, the text stays when a call succeeds, so read it only after a call has returned
- -1. The pointer is never null. Do not free the text: it belongs to the library, and is valid until
- the next refused call of the same thread.
+ refused. A call that succeeds does not change the text, as it does not change errno. So read the
+ text only after a call has returned -1. The pointer is never null. Do not free the text: it belongs
+ to the library, and is valid until the next refused call of the same thread.
 
  Threads: any; each has its own text. Works in a forked child too.
  */
@@ -692,9 +695,9 @@ const char *HandError(void);
 #define FINGER_FAULTED 2            /* The finger has stopped because of a fault. Its motors are in the configured
                                        end state. Calls for the finger are refused with EIO until RecoverHand, or
                                        CloseHand and OpenHand. */
-#define FINGER_LIMP 3               /* The motors are off after a refused calibration. Set points have no effect.
-                                       Another calibration, or CloseHand and OpenHand, make the finger a spring
-                                       again. */
+#define FINGER_LIMP 3               /* The motors are off after a refused calibration. Set points have no effect. The
+                                       finger becomes a spring again after another calibration, or after CloseHand
+                                       and OpenHand. */
 #define FINGER_CALIBRATING 4        /* ZeroFinger or IdentifyFinger moves the finger. Set points have no effect. */
 #define FINGER_TENSIONING 5         /* RecoverHand or the end of a calibration brings the tendons under tension. Set
                                        points have no effect. */
@@ -721,7 +724,7 @@ struct FingerStatus {
                                        not. */
     double Rate;                    /* Configured servo rate, Hz. */
     double MeasuredRate;            /* Measured servo rate since OpenHand, Hz. It falls while the servo does not run,
-                                       because the periods that are missing up to now count. */
+                                       because the time without cycles counts too. */
     double WakeUpMedian;            /* Jitter: median delay of the start of a cycle, since OpenHand or ResetTiming,
                                        us. */
     double WakeUp99;                /* Delay that 99 of 100 cycles did not exceed, over the same time, us. */
@@ -885,7 +888,8 @@ int GetTiming(int, int, struct FingerTiming *);
 
    i        finger, 1 to 3; 0: all
 
- The counts of GetStatus continue. Its wake-up times restart, because they are those of GetTiming.
+ The counts of GetStatus continue. The wake-up times of GetStatus restart, because they are those of
+ GetTiming.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -904,11 +908,11 @@ int ResetTiming(int);
    i     finger, 1 to 3
    Tip   Tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm. Always double
 
- From the next cycle on the fingertip is a spring anchored at Tip, with the stiffness sent last. If p
- is the present position of the tip, the force is Kx (Tip - p) at any distance. SendPos by default
- uses the law of the report, which holds for small distances. If several joint solutions are within
- the joint limits, the call takes the one nearest to the present pose. The anchor moves to Tip along
- a straight line in joint angles, at a bounded speed.
+ From the next cycle on the anchor of the fingertip's spring moves to Tip, along a straight line in
+ joint angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at Tip
+ and p is the position of the fingertip, the force is Kx (Tip - p) at any distance. SendPos by
+ default uses the law of the report, which holds for small distances. If several joint solutions are
+ within the joint limits, the call takes the one nearest to the present pose.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -972,9 +976,9 @@ int GetTip(int, struct FingerTip *);
 
  The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last,
  and a later SendKx replaces it. In directions outside the contact, the finger is limp but still
- damped. K must be symmetric and without a negative eigenvalue, as for SendKx. To compare it with the
- bound, a rotational stiffness of k N cm/rad is converted to k / (l2 l2) N/cm, where l2 is the length
- of the last link.
+ damped. K must be symmetric and must have no negative eigenvalue, as for SendKx. To compare it with
+ the bound, a rotational stiffness of k N cm/rad is converted to k / (l2 l2) N/cm, where l2 is the
+ length of the last link.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1039,9 +1043,9 @@ int SendDamping(int, double);
    Keys   lines of TOML, in UTF-8, as under [finger.i] of the configuration file (chapter 8)
 
  All keys take effect together, within a cycle and without a jump in torque; other keys stay as they
- are. The change lasts until CloseHand: the file is not written. controller.law applies from the
- next SendPos on. These keys cannot change while the hand is open: port, baud, reconnect, address,
- thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
+ are. The change lasts until CloseHand: the file is not written. A new controller.law applies from
+ the next SendPos on. These keys cannot change while the hand is open: port, baud, reconnect,
+ address, thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
  motor.torque_constant, stiffness.initial and simulation.
 
  A configured stiffness.bound is valid for one controller. If Keys changes controller.scheme, the
@@ -1058,7 +1062,7 @@ int SendDamping(int, double);
             "clamp" clamps it instead)
    EIO      the finger is faulted
 
- Threads: any. Never waits for a servo. Takes about 200 us, and allocates.
+ Threads: any. Never waits for a servo. Takes about 200 us, and allocates memory.
 
  Example:
 
@@ -1093,7 +1097,7 @@ int PushFinger(int, const double *);
      int GetRecord(int i, unsigned long Cycle, struct FingerRecord *Record);
 
    i        finger, 1 to 3
-   Cycle    Record->Oldest to Record->Newest of an earlier call; 0: the newest cycle
+   Cycle    a cycle from Record->Oldest to Record->Newest of an earlier call; 0: the newest cycle
    Record   result; set Record->Size before the call
 
  A record is a part of what WriteBlackBox writes into a file. Every cycle adds a record and removes
@@ -1128,12 +1132,12 @@ int GetRecord(int, unsigned long, struct FingerRecord *);
      int WriteBlackBox(int i, const char *Path);
 
    i       finger, 1 to 3
-   Path    the file, new or to be replaced
+   Path    the file; an existing file is replaced
 
  The library stores the last two seconds of every finger: feedback, set points, motor commands,
  timing and state. For a faulted finger these are the last two seconds before the fault.
- docs/black-box.md describes the file, and `sun2xp replay Path` recomputes it. With hand.black_box
- the library also writes such a file whenever a finger faults.
+ docs/black-box.md describes the file, and `sun2xp replay Path` recomputes its cycles. If
+ hand.black_box is set, the library also writes such a file whenever a finger faults.
 
  The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and
  renames it when it is complete and on the disk. So the folder must be writable, and a refused call
@@ -1174,8 +1178,8 @@ int WriteBlackBox(int, const char *);
    "kept"   The configured zero stays, if the board reports that its counts are still valid.
 
  The default is "stops" if the finger is simulated or the configuration gives the positions of its
- stops, otherwise "pose". At the end the finger holds its present pose at its initial stiffness.
- While it was limp, a free finger may have moved by up to some tenths of a radian.
+ stops, otherwise "pose". At the end the finger holds its present pose at its initial stiffness. A
+ free finger may have moved by up to some tenths of a radian while it was limp.
 
  The zeros take effect at once. If OpenHand has read a configuration file, they are written into
  that file; all other keys and comments stay as they are in the file at that time. So several
@@ -1217,11 +1221,11 @@ int ZeroFinger(int);
 
    i        finger, 1 to 3; it must have been zeroed
 
- Moves the joints a little back and forth where they are, moves the finger to its lower stops, moves
- each joint back and forth, presses against the stops with up to 0.6 of the largest tension, and
- returns to the start. Measures the gains of the gauges, the stiffness of each tendon and the
- friction of motors, conduits and joints. The results take effect and are stored like those of
- ZeroFinger. Takes about a minute, and needs all the room that the joints can reach.
+ Moves the joints a little back and forth around their present angles, moves the finger to its lower
+ stops, moves each joint back and forth, presses against the stops with up to 0.6 of the largest
+ tension, and returns to the start. Measures the gains of the gauges, the stiffness of each tendon
+ and the friction of motors, conduits and joints. The results take effect and are stored like those
+ of ZeroFinger. Takes about a minute, and needs free space over the whole range of the joints.
 
  Returns and waits as ZeroFinger does.
 
@@ -1262,7 +1266,7 @@ int GetFault(int, struct Fault *);
    Number   FAULT_...
 
  Returns one line with the fault's name, its meaning, the likely cause and the remedy, or an empty
- string for a number that is no fault. The pointer is never null, and the text stays valid until the
+ string if no fault has this number. The pointer is never null, and the text stays valid until the
  process ends. If a call was refused because of a fault, HandError gives the same text with the part
  and the values.
 
@@ -1313,9 +1317,9 @@ int StopHand(void);
 
  Queries the identity of the finger's board and configures the board again. If the port has failed
  and finger.reconnect is true, reopens the port first. Then brings the tendons under tension. The
- finger holds its present pose at the configured initial stiffness. Fingers on the same port recover
- with it. A finger that is not faulted continues unchanged. Remove the cause of the fault
- first: GetFault and FaultText name it.
+ finger holds its present pose at the configured initial stiffness. Other faulted fingers on the
+ same port recover with it. A finger that is not faulted continues unchanged. Remove the cause of
+ the fault first: GetFault and FaultText name it.
 
  Waits until the finger holds its pose or faults again, up to some seconds. Other calls work
  meanwhile. CloseHand works too, and this call is then refused.
@@ -1376,9 +1380,9 @@ typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
 
 #elif defined(__cplusplus)
 
-/* Templates, because NULL and 0 would match two overloads for pointers. They match no template, so the plain function
-   is called, which refuses them. The block is extern "C++", because a planner may include this header inside its own
-   extern "C". */
+/* These are templates, because NULL and 0 would match two overloads for pointers. NULL and 0 match no template, so the
+   compiler calls the plain function, which refuses them. The block is extern "C++", because a planner may include this
+   header inside its own extern "C". */
 extern "C++" {
 
 inline int Sun2XpSendPos(int Sun2XpFinger, const float *Sun2XpArray) { return ::SendPos(Sun2XpFinger, Sun2XpArray); }
@@ -1475,7 +1479,7 @@ typedef struct Sun2XpNull Sun2XpNull;
         Sun2XpNull *: Single)((Finger), (Sun2XpVoid *)Array))
 #else
 /* float, float[3], float[9] have 4, 12, 36 bytes; double, double[3], double[9] have 8, 24, 72. If the size is not a
-   multiple of a float's, as that of void for some compilers, the type char[-1] does not compile. */
+   multiple of the size of a float (some compilers give void the size 1), the type char[-1] does not compile. */
 #define SUN2XP_IS_FLOAT(Array) \
     (sizeof *Array % sizeof(Sun2XpDouble) + 0 * sizeof(Sun2XpChar[sizeof *Array % sizeof(Sun2XpFloat) ? -1 : 1]))
 #define SUN2XP_SEND(Single, Double, Finger, Array) \
@@ -1484,7 +1488,7 @@ typedef struct Sun2XpNull Sun2XpNull;
     (SUN2XP_IS_FLOAT(Array) ? Single((Finger), (Sun2XpVoid *)Array) : Double((Finger), (Sun2XpVoid *)Array))
 #endif
 
-/* From C99 on the array may be a compound literal. Its commas separate arguments of the macro. */
+/* From C99 on the array may be a compound literal. Its commas separate macro arguments, so the macros are variadic. */
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
 #define SendPos(Finger, ...) SUN2XP_SEND(SendPos, SendPosD, Finger, (__VA_ARGS__))
 #define SendKx(Finger, ...) SUN2XP_SEND(SendKx, SendKxD, Finger, (__VA_ARGS__))

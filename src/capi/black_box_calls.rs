@@ -57,7 +57,7 @@ pub struct FingerRecord {
 ///     int GetRecord(int i, unsigned long Cycle, struct FingerRecord *Record);
 ///
 ///   i        finger, 1 to 3
-///   Cycle    Record->Oldest to Record->Newest of an earlier call; 0: the newest cycle
+///   Cycle    a cycle from Record->Oldest to Record->Newest of an earlier call; 0: the newest cycle
 ///   Record   result; set Record->Size before the call
 ///
 /// A record is a part of what WriteBlackBox writes into a file. Every cycle adds a record and removes
@@ -99,12 +99,12 @@ pub unsafe extern "C" fn GetRecord(i: c_int, Cycle: c_ulong, Record: *mut Finger
 ///     int WriteBlackBox(int i, const char *Path);
 ///
 ///   i       finger, 1 to 3
-///   Path    the file, new or to be replaced
+///   Path    the file; an existing file is replaced
 ///
 /// The library stores the last two seconds of every finger: feedback, set points, motor commands,
 /// timing and state. For a faulted finger these are the last two seconds before the fault.
-/// docs/black-box.md describes the file, and `sun2xp replay Path` recomputes it. With hand.black_box
-/// the library also writes such a file whenever a finger faults.
+/// docs/black-box.md describes the file, and `sun2xp replay Path` recomputes its cycles. If
+/// hand.black_box is set, the library also writes such a file whenever a finger faults.
 ///
 /// The library writes a temporary file in the same folder, whose name begins with ".sun2xp-", and
 /// renames it when it is complete and on the disk. So the folder must be writable, and a refused call

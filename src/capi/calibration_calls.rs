@@ -25,8 +25,8 @@ use std::ffi::c_int;
 ///   "kept"   The configured zero stays, if the board reports that its counts are still valid.
 ///
 /// The default is "stops" if the finger is simulated or the configuration gives the positions of its
-/// stops, otherwise "pose". At the end the finger holds its present pose at its initial stiffness.
-/// While it was limp, a free finger may have moved by up to some tenths of a radian.
+/// stops, otherwise "pose". At the end the finger holds its present pose at its initial stiffness. A
+/// free finger may have moved by up to some tenths of a radian while it was limp.
 ///
 /// The zeros take effect at once. If OpenHand has read a configuration file, they are written into
 /// that file; all other keys and comments stay as they are in the file at that time. So several
@@ -69,11 +69,11 @@ pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
 ///
 ///   i        finger, 1 to 3; it must have been zeroed
 ///
-/// Moves the joints a little back and forth where they are, moves the finger to its lower stops, moves
-/// each joint back and forth, presses against the stops with up to 0.6 of the largest tension, and
-/// returns to the start. Measures the gains of the gauges, the stiffness of each tendon and the
-/// friction of motors, conduits and joints. The results take effect and are stored like those of
-/// ZeroFinger. Takes about a minute, and needs all the room that the joints can reach.
+/// Moves the joints a little back and forth around their present angles, moves the finger to its lower
+/// stops, moves each joint back and forth, presses against the stops with up to 0.6 of the largest
+/// tension, and returns to the start. Measures the gains of the gauges, the stiffness of each tendon
+/// and the friction of motors, conduits and joints. The results take effect and are stored like those
+/// of ZeroFinger. Takes about a minute, and needs free space over the whole range of the joints.
 ///
 /// Returns and waits as ZeroFinger does.
 ///

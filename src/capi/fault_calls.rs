@@ -70,7 +70,7 @@ pub unsafe extern "C" fn GetFault(i: c_int, Fault: *mut Fault) -> c_int {
 ///   Number   FAULT_...
 ///
 /// Returns one line with the fault's name, its meaning, the likely cause and the remedy, or an empty
-/// string for a number that is no fault. The pointer is never null, and the text stays valid until the
+/// string if no fault has this number. The pointer is never null, and the text stays valid until the
 /// process ends. If a call was refused because of a fault, HandError gives the same text with the part
 /// and the values.
 ///

@@ -38,11 +38,11 @@ pub struct FingerTip {
 ///   i     finger, 1 to 3
 ///   Tip   Tip[3]: desired x, y, z of the tip in the finger's frame (chapter 3), cm. Always double
 ///
-/// From the next cycle on the fingertip is a spring anchored at Tip, with the stiffness sent last. If p
-/// is the present position of the tip, the force is Kx (Tip - p) at any distance. SendPos by default
-/// uses the law of the report, which holds for small distances. If several joint solutions are within
-/// the joint limits, the call takes the one nearest to the present pose. The anchor moves to Tip along
-/// a straight line in joint angles, at a bounded speed.
+/// From the next cycle on the anchor of the fingertip's spring moves to Tip, along a straight line in
+/// joint angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at Tip
+/// and p is the position of the fingertip, the force is Kx (Tip - p) at any distance. SendPos by
+/// default uses the law of the report, which holds for small distances. If several joint solutions are
+/// within the joint limits, the call takes the one nearest to the present pose.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -116,9 +116,9 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
 ///
 /// The contact takes effect as a whole, without a jump in torque. It replaces the stiffness sent last,
 /// and a later SendKx replaces it. In directions outside the contact, the finger is limp but still
-/// damped. K must be symmetric and without a negative eigenvalue, as for SendKx. To compare it with the
-/// bound, a rotational stiffness of k N cm/rad is converted to k / (l2 l2) N/cm, where l2 is the length
-/// of the last link.
+/// damped. K must be symmetric and must have no negative eigenvalue, as for SendKx. To compare it with
+/// the bound, a rotational stiffness of k N cm/rad is converted to k / (l2 l2) N/cm, where l2 is the
+/// length of the last link.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -202,9 +202,9 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 ///   Keys   lines of TOML, in UTF-8, as under [finger.i] of the configuration file (chapter 8)
 ///
 /// All keys take effect together, within a cycle and without a jump in torque; other keys stay as they
-/// are. The change lasts until CloseHand: the file is not written. controller.law applies from the
-/// next SendPos on. These keys cannot change while the hand is open: port, baud, reconnect, address,
-/// thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
+/// are. The change lasts until CloseHand: the file is not written. A new controller.law applies from
+/// the next SendPos on. These keys cannot change while the hand is open: port, baud, reconnect,
+/// address, thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
 /// motor.torque_constant, stiffness.initial and simulation.
 ///
 /// A configured stiffness.bound is valid for one controller. If Keys changes controller.scheme, the
@@ -221,7 +221,7 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 ///            "clamp" clamps it instead)
 ///   EIO      the finger is faulted
 ///
-/// Threads: any. Never waits for a servo. Takes about 200 us, and allocates.
+/// Threads: any. Never waits for a servo. Takes about 200 us, and allocates memory.
 ///
 /// Example:
 ///

@@ -52,9 +52,9 @@ pub extern "C" fn StopHand() -> c_int {
 ///
 /// Queries the identity of the finger's board and configures the board again. If the port has failed
 /// and finger.reconnect is true, reopens the port first. Then brings the tendons under tension. The
-/// finger holds its present pose at the configured initial stiffness. Fingers on the same port recover
-/// with it. A finger that is not faulted continues unchanged. Remove the cause of the fault
-/// first: GetFault and FaultText name it.
+/// finger holds its present pose at the configured initial stiffness. Other faulted fingers on the
+/// same port recover with it. A finger that is not faulted continues unchanged. Remove the cause of
+/// the fault first: GetFault and FaultText name it.
 ///
 /// Waits until the finger holds its pose or faults again, up to some seconds. Other calls work
 /// meanwhile. CloseHand works too, and this call is then refused.

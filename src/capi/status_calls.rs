@@ -16,8 +16,8 @@ pub const FINGER_RUNNING: c_int = 1;
 /// refused with EIO until RecoverHand, or CloseHand and OpenHand.
 pub const FINGER_FAULTED: c_int = 2;
 
-/// The motors are off after a refused calibration. Set points have no effect. Another calibration, or CloseHand
-/// and OpenHand, make the finger a spring again.
+/// The motors are off after a refused calibration. Set points have no effect. The finger becomes a spring again after
+/// another calibration, or after CloseHand and OpenHand.
 pub const FINGER_LIMP: c_int = 3;
 
 /// ZeroFinger or IdentifyFinger moves the finger. Set points have no effect.
@@ -42,8 +42,8 @@ pub struct FingerStatus {
     pub Realtime: c_int,
     /// Configured servo rate, Hz.
     pub Rate: f64,
-    /// Measured servo rate since OpenHand, Hz. It falls while the servo does not run, because the periods that are
-    /// missing up to now count.
+    /// Measured servo rate since OpenHand, Hz. It falls while the servo does not run, because the time without cycles
+    /// counts too.
     pub MeasuredRate: f64,
     /// Jitter: median delay of the start of a cycle, since OpenHand or ResetTiming, us.
     pub WakeUpMedian: f64,

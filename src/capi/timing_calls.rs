@@ -125,7 +125,8 @@ pub unsafe extern "C" fn GetTiming(i: c_int, Stage: c_int, Timing: *mut FingerTi
 ///
 ///   i        finger, 1 to 3; 0: all
 ///
-/// The counts of GetStatus continue. Its wake-up times restart, because they are those of GetTiming.
+/// The counts of GetStatus continue. The wake-up times of GetStatus restart, because they are those of
+/// GetTiming.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child

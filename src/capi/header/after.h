@@ -19,9 +19,9 @@
 
 #elif defined(__cplusplus)
 
-/* Templates, because NULL and 0 would match two overloads for pointers. They match no template, so the plain function
-   is called, which refuses them. The block is extern "C++", because a planner may include this header inside its own
-   extern "C". */
+/* These are templates, because NULL and 0 would match two overloads for pointers. NULL and 0 match no template, so the
+   compiler calls the plain function, which refuses them. The block is extern "C++", because a planner may include this
+   header inside its own extern "C". */
 extern "C++" {
 
 inline int Sun2XpSendPos(int Sun2XpFinger, const float *Sun2XpArray) { return ::SendPos(Sun2XpFinger, Sun2XpArray); }
@@ -118,7 +118,7 @@ typedef struct Sun2XpNull Sun2XpNull;
         Sun2XpNull *: Single)((Finger), (Sun2XpVoid *)Array))
 #else
 /* float, float[3], float[9] have 4, 12, 36 bytes; double, double[3], double[9] have 8, 24, 72. If the size is not a
-   multiple of a float's, as that of void for some compilers, the type char[-1] does not compile. */
+   multiple of the size of a float (some compilers give void the size 1), the type char[-1] does not compile. */
 #define SUN2XP_IS_FLOAT(Array) \
     (sizeof *Array % sizeof(Sun2XpDouble) + 0 * sizeof(Sun2XpChar[sizeof *Array % sizeof(Sun2XpFloat) ? -1 : 1]))
 #define SUN2XP_SEND(Single, Double, Finger, Array) \
@@ -127,7 +127,7 @@ typedef struct Sun2XpNull Sun2XpNull;
     (SUN2XP_IS_FLOAT(Array) ? Single((Finger), (Sun2XpVoid *)Array) : Double((Finger), (Sun2XpVoid *)Array))
 #endif
 
-/* From C99 on the array may be a compound literal. Its commas separate arguments of the macro. */
+/* From C99 on the array may be a compound literal. Its commas separate macro arguments, so the macros are variadic. */
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
 #define SendPos(Finger, ...) SUN2XP_SEND(SendPos, SendPosD, Finger, (__VA_ARGS__))
 #define SendKx(Finger, ...) SUN2XP_SEND(SendKx, SendKxD, Finger, (__VA_ARGS__))
