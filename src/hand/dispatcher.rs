@@ -108,9 +108,11 @@ impl Dispatcher {
     /// Counts of cycles and errors.
     pub fn losses(&self, finger: FingerNumber) -> Result<Losses, HandError> {
         let place = self.place(finger)?;
-        // The report is read under the lock, so that a reset by another thread comes before both or after both. A servo
-        // publishes the report of a cycle before its timing. A caller that reads the timings before the losses
-        // therefore never gets a timing whose cycle is not counted.
+        // The report and `losses_before` are read under one lock, so that no reset by another thread comes between
+        // them.
+        //
+        // For each cycle, a servo publishes first the report and then the timing. A caller that reads the timings
+        // before the losses therefore never gets a timing whose cycle is not counted.
         let collected = self.collected(finger)?;
         Ok(self.members[place].mailbox.report().losses.since(&collected.losses_before))
     }
@@ -119,8 +121,9 @@ impl Dispatcher {
     pub fn reset_timing(&self, finger: FingerNumber) -> Result<(), HandError> {
         let place = self.place(finger)?;
         let mut collected = self.collected(finger)?;
-        // The report is read before the timings, for the same reason as in `losses`. The timings of the cycles up to
-        // this report are then discarded here, except the timing of a cycle that the servo is just publishing.
+        // The cycles up to this report are no longer counted, so their timings must be discarded. Therefore the report
+        // is read before the timings. If the servo has published this report but not yet the timing of the same cycle,
+        // that one timing is not discarded.
         collected.losses_before = self.members[place].mailbox.report().losses;
         collected.collect();
         collected.histograms.reset();

@@ -21,7 +21,8 @@ use nalgebra::Matrix3;
 use std::path::{Path, PathBuf};
 
 /// Highest SCHED_FIFO priority of a simulated board. A servo has priority 80 by default, so a board does not delay it.
-/// A board does not get a higher priority than its finger, and none if its finger has none.
+/// The priority of a board is never higher than that of its finger. If the finger has no such priority, neither has its
+/// board.
 const SIMULATED_BOARD_PRIORITY: u8 = 20;
 
 /// Capacity of the timing rings, s. If nothing is collected for longer than this, timings are lost.
@@ -122,7 +123,7 @@ pub(super) fn reach(
     simulated: &[Option<SimulatedPort>; FINGERS],
     limp: bool,
 ) -> Result<Connected, HandError> {
-    // Emergency stop calls from here on stop the hand.
+    // The hand reacts to every emergency stop call that is made after this line.
     let alarm = StopSignal::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
     let (mut lines, mut reached, mut repairs) = (Vec::new(), Vec::new(), Vec::new());
     let mut identities = Identities::default();
@@ -146,7 +147,8 @@ pub(super) fn reach(
             port: ServedPort::new(link, servos).with_handover(handover),
         });
         let baud = configuration.fingers[first.index()].baud;
-        // A simulated board's port is not reopened: after its loss, its path may name a pseudo-terminal of the planner.
+        // The port of a simulated board is not reopened. After the port is lost, the system may use its path for a
+        // pseudo-terminal that the planner opens.
         let reconnects = |&number: &FingerNumber| {
             configuration.fingers[number.index()].reconnect && simulated[number.index()].is_none()
         };

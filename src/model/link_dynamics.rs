@@ -34,7 +34,8 @@ pub struct LinkDynamics {
     tip_mass: f64,
     /// Gravity in the finger's frame, m/s^2.
     gravity: Vector3<f64>,
-    /// The four centres of mass, each as the tip of its own chain: mass, kg, and link lengths, m.
+    /// For each link and the tip: its mass, kg, and the link lengths, m, of a shorter finger whose tip is at its centre
+    /// of mass.
     centres: [(f64, Links); 4],
 }
 
@@ -66,7 +67,8 @@ impl LinkDynamics {
         Matrix3::new(self.about_joint_0(&pose), 0.0, 0.0, 0.0, h11, h12, 0.0, h12, distal)
     }
 
-    /// Returns c(theta, theta_dot), the Coriolis and centrifugal torques, N m, on the side of H theta_dd.
+    /// Returns c(theta, theta_dot), the Coriolis and centrifugal torques, N m. Their sign is such that the joint
+    /// torques equal H theta_dd + c.
     pub fn coriolis(&self, theta: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
         let pose = Pose::new(self, theta);
         let (by_1, by_2) = self.about_joint_0_derivatives(&pose);

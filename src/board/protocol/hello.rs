@@ -141,7 +141,8 @@ impl Identity {
 
     /// Converts a torque count to N cm.
     pub fn torque(&self, count: i16) -> f64 {
-        // The product is exact, so the quotient is the same number that a configuration with the same decimals gives.
+        // The product is exact, so only the division rounds. The result is therefore the same number that reading the
+        // same torque as decimal text from a configuration gives.
         f64::from(count) * f64::from(self.torque_unit) / NANO_PER_CENTI
     }
 }

@@ -115,7 +115,8 @@ impl Monitors {
         let silent = (0..4).find(|&gauge| flickers.silent(gauge)).filter(|_| disagrees.is_some());
         let stuck = stuck.or(silent.map(|gauge| gauge_stuck::alarm(&sample, gauge)));
         let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
-        // The motor of a drifting gauge also seems stalled: it stands still against a tension that does not exist.
+        // A gauge that drifts makes its motor seem stalled. The gauge reports a tension that does not exist, so the
+        // motor seems to stand still although pull and tension are not balanced.
         let doubtful = watch.agreement.doubtful();
         let stalled = stalled.map(|alarm| {
             if doubtful {

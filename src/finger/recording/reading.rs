@@ -20,7 +20,8 @@ const LONGEST_LINE: u64 = 1 << 16;
 /// Largest number of cycles. It is five times the number of cycles in two seconds at the highest rate.
 const MOST_CYCLES: usize = 50_000;
 
-/// Largest number of controllers. A planner needs more than half a millisecond for each.
+/// Largest number of controllers. A planner needs more than half a millisecond to change the controller, so fewer
+/// changes fit into the two seconds of a recording.
 const MOST_CONTROLLERS: usize = 4096;
 
 /// Longest reason that is shown, characters.
@@ -105,7 +106,8 @@ fn next_line(input: &mut impl BufRead, longest: u64) -> io::Result<Option<Vec<u8
     Ok(Some(line))
 }
 
-/// Returns what is wrong with a line. The parser sees only a single line, so only the column of its position is useful.
+/// Returns what is wrong with a line. The parser sees only a single line. The line number in its error is therefore
+/// always 1 and is removed, but the column is kept.
 fn describe(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let reason = text.rsplit_once(" at line ").map_or(text.as_str(), |(reason, _)| reason);

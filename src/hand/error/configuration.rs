@@ -109,7 +109,8 @@ impl ConfigurationError {
     #[must_use]
     pub fn errno(&self) -> i32 {
         match self {
-            // An error without an errno of the system means that the file was read but is not text.
+            // There is no errno of the system if the path leads to no regular file, or if the file is too large or not
+            // text.
             Self::Unreadable { source, .. } => source.raw_os_error().unwrap_or(libc::EINVAL),
             Self::UntrustedEnvironment { .. } => libc::EACCES,
             Self::Invalid { .. } | Self::Unusable { .. } => libc::EINVAL,
