@@ -16,8 +16,9 @@ static LIFECYCLE: Mutex<()> = Mutex::new(());
 /// Locked for writing only to insert or remove a hand.
 static HAND: RwLock<Option<Hand>> = RwLock::new(None);
 
-/// Set when the process exits, before the exit handler of the library closes the hand. From then on no call may open or
-/// move a hand, because nothing would close it.
+/// Set when the process exits, before the exit handler of the library closes the hand. From then on no call may open a
+/// hand, because nothing would close it. No call may move the open hand either, because the exit handler closes
+/// it.
 static EXITING: AtomicBool = AtomicBool::new(false);
 
 /// Longest time that exit waits for a call in progress. The wait is limited because that call may be in the exiting
@@ -37,8 +38,8 @@ pub(super) fn open() -> Result<(), Refusal> {
     let configured = hand::find_configuration().map_err(HandError::from)?;
     refusal::set_printing(configured.configuration.hand.print_refusals);
     let hand = Hand::open_as(configured)?;
-    // The exit handler waits only briefly for this call, and may have given up. In that case the return drops the hand,
-    // which closes it.
+    // If the process exits, this line returns an error, and the return drops the hand, which closes it. The exit
+    // handler waits only briefly for this call, so it cannot be relied on to close this hand.
     refuse_while_exiting()?;
     *HAND.write() = Some(hand);
     Ok(())
@@ -86,9 +87,9 @@ fn refuse_while_exiting() -> Result<(), Refusal> {
 /// other calls work meanwhile.
 pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
     let recovering = command(|hand| Recovering::begin(hand, finger))?;
-    // The hand is not locked here, because ports are slow. If it was closed meanwhile, the call reports that instead of
-    // `result`.
+    // The hand is not locked during this step, because ports are slow.
     let result = recovering.reconnect();
+    // If the hand was closed meanwhile, `command` returns that refusal instead of `result`.
     command(|_| result)?;
     while !command(|hand| recovering.poll(hand))? {
         sleep(POLLING_PERIOD);

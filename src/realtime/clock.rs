@@ -1,4 +1,4 @@
-//! The monotonic clock, and a trait for timing code that works with any clock.
+//! The monotonic clock, and a trait for clocks. Code that uses the trait works with any clock.
 #![allow(unsafe_code)]
 
 use std::io;

@@ -7,8 +7,8 @@ use nalgebra::Matrix3;
 use std::num::NonZero;
 use std::thread;
 
-/// Smallest eigenvalue of the springs, N/cm, unless the bound is smaller. A softer finger is nearly limp with any
-/// bound.
+/// Smallest eigenvalue of the tested springs, N/cm, unless the bound is smaller. With a softer spring the finger is
+/// nearly limp, whatever the bound is.
 const SOFTEST: f64 = 1.0;
 
 /// Tolerance for a modulus above 1. A joint without stiffness has an eigenvalue of 1.
@@ -25,7 +25,7 @@ pub(super) struct Trial {
 
 impl Trial {
     /// # Errors
-    /// Returns the value with which no controller can be constructed.
+    /// If no controller can be constructed, returns the key of the value that prevents it, and the reason.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         Ok(Self { map: OneCycleMap::new(finger, rate)?, admissible: AdmissibleDamping::new(finger, rate) })
     }
@@ -36,8 +36,8 @@ impl Trial {
         in_parallel(rests, |rest| UNSUPPORTED * self.map.scale(&isotropic(rest)))
     }
 
-    /// Returns whether a finger at rest is stable with a Kx between the softest and `stiffest`, N/cm. The relative
-    /// stiffness of `rest`, 0 to 1, determines the eigenvalues within this range.
+    /// Returns whether a finger at `rest` is stable. The stiffness of `rest` is relative: an eigenvalue of 0 stands for
+    /// the softest tested spring, and an eigenvalue of 1 stands for `stiffest`, N/cm.
     pub fn stable(&self, rest: &Rest, stiffest: f64) -> bool {
         let softest = SOFTEST.min(stiffest);
         let stiffness = Matrix3::identity() * softest + rest.stiffness * (stiffest - softest);

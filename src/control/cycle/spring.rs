@@ -1,4 +1,4 @@
-//! The fingertip as a spring, with the report's figures and with state feedback.
+//! The fingertip as a spring, with the tendon controllers of Figures 9, 10 and 11, or with state feedback.
 
 use super::{Controller, Doing, State};
 use crate::control::signals::{Report, SetPoint};
@@ -8,11 +8,13 @@ use crate::control::state_feedback::decision::Decision;
 use crate::control::tendons::tension_distribution::DistributedTensions;
 use nalgebra::Matrix3;
 
-/// Ratio of damping to stiffness of the soft limits with the report's figures, s.
+/// With Figures 9, 10 and 11 a damper acts at the soft limits. This is its damping divided by the stiffness of the
+/// limits, s.
 const LIMIT_DAMPING: f64 = 0.015;
 
 impl Controller {
-    /// Follows the set point with the report's figures. The spring begins without deflection.
+    /// Follows the set point with the tendon controller of Figure 9, 10 or 11. The anchor starts at the present joint
+    /// angles, so the spring starts without deflection.
     pub(super) fn follow(&self, state: &mut State, set_point: &SetPoint) {
         let spring = self.spring_transition.advance(&mut state.spring, set_point);
         let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
@@ -35,7 +37,8 @@ impl Controller {
         state.report.torque_scale = scale;
     }
 
-    /// Follows the set point with state feedback. The spring begins without deflection.
+    /// Follows the set point with state feedback. The anchor starts at the present joint angles, so the spring starts
+    /// without deflection.
     pub(super) fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
         let spring = self.spring_transition.advance(&mut state.spring, set_point);
         let k_theta = self.joint_stiffness.joint_stiffness(spring, &state.report.joints);
@@ -58,8 +61,8 @@ impl Controller {
         state.report.torque_scale = torque_scale;
     }
 
-    /// Computes and reports the fraction of a spring's K_theta, N cm/rad, that the pose supports in addition to the
-    /// springs of the soft limits.
+    /// Returns the factor, 0 to 1, by which K_theta must be scaled, and writes it to the report. The pose supports the
+    /// scaled K_theta together with the stiffness of the soft limits. `k_theta` is in N cm/rad.
     fn supported(&self, report: &mut Report, k_theta: &Matrix3<f64>, push: &Push) -> f64 {
         report.stiffness_scale = self.admissible.scale(k_theta, &push.stiffness);
         report.stiffness_scale

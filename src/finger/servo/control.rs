@@ -32,12 +32,13 @@ impl FingerServo {
         record
     }
 
-    /// Takes what planners have sent. Returns the data that the servo computed with until now, if other data replaces
-    /// it.
+    /// Takes what planners have sent. If the controller must continue with new data, returns the data of the last
+    /// cycle.
     fn take_commands(&mut self) -> Option<Adjustable> {
         let running = self.report.stage == Stage::Running;
         let order = self.mailbox.new_order();
-        // The data is read after the order, because it was written before the order.
+        // A planner writes the data before the order. The servo reads them in the opposite sequence, so that it never
+        // has an order without the data of this order.
         let new = self.mailbox.new_adjustable();
         let mut previous = new.map(|new| std::mem::replace(&mut self.adjustable, new.clone()));
         if self.calibration.is_some() {
@@ -52,8 +53,8 @@ impl FingerServo {
             }
             self.carry_out(order);
         }
-        // A set point that was sent before the order to calibrate takes effect. The finger moves to it, and the routine
-        // must detect the motion.
+        // `running` is the state before the order. If a set point and an order to calibrate arrive in the same cycle,
+        // the set point still takes effect. The finger moves to it, and the routine must detect the motion.
         if let Some(set_point) = self.mailbox.new_set_point(self.report.springs)
             && running
         {
