@@ -723,8 +723,8 @@ struct FingerStatus {
     int Realtime;                   /* 1: all servo threads of the hand run under SCHED_FIFO. 0: at least one does
                                        not. */
     double Rate;                    /* Configured servo rate, Hz. */
-    double MeasuredRate;            /* Measured servo rate since OpenHand, Hz. It falls while the servo does not run,
-                                       because the time without cycles counts too. */
+    double MeasuredRate;            /* Measured servo rate since OpenHand, Hz: cycles divided by the time up to this
+                                       call. It falls while the servo does not run. */
     double WakeUpMedian;            /* Jitter: median delay of the start of a cycle, since OpenHand or ResetTiming,
                                        us. */
     double WakeUp99;                /* Delay that 99 of 100 cycles did not exceed, over the same time, us. */
@@ -1018,10 +1018,9 @@ int SendContact(int, int, const double *, const double *);
    figures 9, 10, 11      1 to 2.50 - 0.22 k          1 to 2.00 - 0.20 k
 
  By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1.
- For a finger whose links or tendons differ from the default, k is first divided by the stiffness
- that locked tendons give its tip, and multiplied by the stiffness that they give the tip of the
- default finger. SendKx and SendContact refuse a stiffness whose range does not include the ratio
- sent last.
+ For a finger with other links or tendons, k is first multiplied by S0 / S. S is the stiffness that
+ the finger's locked tendons give its tip, and S0 the same for the default finger. SendKx and
+ SendContact refuse a stiffness whose range does not include the ratio sent last.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1048,8 +1047,9 @@ int SendDamping(int, double);
  address, thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
  motor.torque_constant, stiffness.initial and simulation.
 
- A configured stiffness.bound is valid for one controller. If Keys changes controller.scheme, the
- configured bound applies only if it is less than the default bound, or if Keys sets it too.
+ A configured stiffness.bound was chosen for the configured controller.scheme. If Keys changes
+ controller.scheme, the configured bound applies only if it is less than the default bound, or if
+ Keys sets it too.
 
  Returns 0, or -1 with
    EPERM    forked child

@@ -176,10 +176,9 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 ///   figures 9, 10, 11      1 to 2.50 - 0.22 k          1 to 2.00 - 0.20 k
 ///
 /// By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1.
-/// For a finger whose links or tendons differ from the default, k is first divided by the stiffness
-/// that locked tendons give its tip, and multiplied by the stiffness that they give the tip of the
-/// default finger. SendKx and SendContact refuse a stiffness whose range does not include the ratio
-/// sent last.
+/// For a finger with other links or tendons, k is first multiplied by S0 / S. S is the stiffness that
+/// the finger's locked tendons give its tip, and S0 the same for the default finger. SendKx and
+/// SendContact refuse a stiffness whose range does not include the ratio sent last.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
@@ -207,8 +206,9 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 /// address, thread, core, priority, base, turn_degrees, encoder, motor.sign, motor.torque_limit,
 /// motor.torque_constant, stiffness.initial and simulation.
 ///
-/// A configured stiffness.bound is valid for one controller. If Keys changes controller.scheme, the
-/// configured bound applies only if it is less than the default bound, or if Keys sets it too.
+/// A configured stiffness.bound was chosen for the configured controller.scheme. If Keys changes
+/// controller.scheme, the configured bound applies only if it is less than the default bound, or if
+/// Keys sets it too.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child

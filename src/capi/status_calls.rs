@@ -42,8 +42,8 @@ pub struct FingerStatus {
     pub Realtime: c_int,
     /// Configured servo rate, Hz.
     pub Rate: f64,
-    /// Measured servo rate since OpenHand, Hz. It falls while the servo does not run, because the time without cycles
-    /// counts too.
+    /// Measured servo rate since OpenHand, Hz: cycles divided by the time up to this call. It falls while the servo
+    /// does not run.
     pub MeasuredRate: f64,
     /// Jitter: median delay of the start of a cycle, since OpenHand or ResetTiming, us.
     pub WakeUpMedian: f64,

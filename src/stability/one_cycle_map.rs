@@ -67,7 +67,7 @@ impl OneCycleMap {
     /// number of plant steps, none longer than [`PLANT_STEP_SECONDS`].
     ///
     /// # Errors
-    /// Returns the value with which no controller can be constructed.
+    /// If no controller can be constructed, returns the key of the value that prevents it, and the reason.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
         let finger = matching_simulation(finger);
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
