@@ -12,8 +12,8 @@ use std::os::fd::{AsRawFd, FromRawFd, IntoRawFd, OwnedFd, RawFd};
 /// with a usual number of open files uses.
 const LOWEST: RawFd = 512;
 
-/// Numerator and denominator of the part of the permitted numbers that stays below ours, if the process may have only
-/// few descriptors.
+/// If the process may have only few descriptors, our numbers begin at this fraction (numerator, denominator) of the
+/// permitted ones.
 const BELOW: (libc::rlim_t, libc::rlim_t) = (3, 4);
 
 // These numbers are the same on every Linux architecture.

@@ -111,7 +111,8 @@ impl Terms {
         let strongest = board.torque(board.torque_limit.min(i16::MAX as u16) as i16);
         for (index, &wanted) in self.torque_limits.iter().enumerate() {
             let motor = index + 1;
-            // Torques are compared in N cm, because counts saturate. A remainder below one unit is rounded away.
+            // The first comparison is in N cm, because a count saturates. It accepts a torque that exceeds the board's
+            // limit by less than one unit, because `count` rounds such a torque down to the limit.
             if wanted >= strongest + unit || count(board, wanted) > board.torque_limit {
                 return Err(TermsError::TorqueLimit { strongest, motor, wanted });
             }

@@ -49,7 +49,8 @@ pub enum Malformed {
     /// This version has no type with this number.
     #[error("unknown frame type {0:#x}")]
     UnknownKind(u8),
-    /// The body has the wrong length for its type. The sender uses another version of the protocol, or another one.
+    /// The body has the wrong length for its type. The sender uses another version of the protocol, or another
+    /// protocol.
     #[error("a {kind:?} body has {expected} bytes, not {found}")]
     Length {
         /// The frame's type.

@@ -31,7 +31,7 @@ pub use tactile::{TactileChange, TactileEvent, TactileRequest};
 /// The protocol version that this library supports.
 pub const VERSION: u8 = 1;
 
-/// The address in a Hello that the finger with the lowest address on the board answers.
+/// The address in a Hello that means any finger. The finger with the lowest address on the board answers this Hello.
 pub const ANY_ADDRESS: u8 = 0;
 
 /// The highest finger address.
