@@ -22,7 +22,8 @@ pub(super) struct JointGuide {
     tensions: Vector4<f64>,
     /// Largest torque, N cm.
     limit: f64,
-    /// Common tension in addition to the tensions that the torques need, N in the tendon with the smallest pretension.
+    /// Common tension that is added to the tensions for the torques, N. This is its value in the tendon with the
+    /// smallest pretension.
     pub common: f64,
 }
 

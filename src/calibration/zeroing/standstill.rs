@@ -25,7 +25,8 @@ impl Standstill {
         self.samples += 1.0;
         self.sum += joints;
         let settled = SMOOTHING / period;
-        // Until the filter has settled, this is the mean of all samples, which then has as little noise as the filter.
+        // Until the filter has settled, this is the mean of all samples. At the time at which the filter has settled,
+        // the mean has as little noise as the filter.
         self.smoothed += (joints - self.smoothed) / self.samples.min(settled);
         if self.samples >= settled {
             let (lowest, highest) = self.extremes.unwrap_or((self.smoothed, self.smoothed));

@@ -19,8 +19,8 @@ const SLOW: f64 = 1000.0;
 /// admit no ratio below 1. A ratio of 1 is always admitted: it is the damping that the controller computes, and the
 /// bound of Kx covers its stability.
 ///
-/// For a finger with other links or tendons, the stiffness is first converted to the stiffness of the default finger
-/// that is the same fraction of what the tendons support.
+/// For a finger with other links or tendons, the stiffness is first converted to a stiffness of the default finger.
+/// Both stiffnesses are the same fraction of the stiffness that the tendons of their finger support.
 ///
 /// Because both limits are straight lines, every point between two admitted pairs of stiffness and damping is admitted
 /// too.

@@ -24,9 +24,9 @@ const LEAST_LEVER: f64 = 0.5;
 /// D directions, selected by a D x 6 matrix S, K is S^T K_c S with the D x D stiffness K_c. The D x 3 Jacobian of eq. 6
 /// is then S J, because K_theta = (S J)^T K_c (S J).
 ///
-/// B^2 is beta where K_theta has its reference value. It is proportional to 1/sqrt(K_theta), joint by joint, so that
-/// the damping ratio stays constant if Kx or the lever of a joint changes. A tip near the axis of joint 0 needs this,
-/// because that joint is then soft.
+/// B^2 contains beta of each joint. beta equals `rate_time` where K_theta has its reference value. It is proportional
+/// to 1/sqrt(K_theta), so that the damping ratio stays constant if Kx or the lever of a joint changes. A tip near the
+/// axis of joint 0 needs this, because that joint is then soft.
 ///
 /// If the lever r of joint 0 is less than the minimum lever rho, joint 0 has an additional spring to theta_d with the
 /// stiffness n^T K n (rho^2 - r^2). n is the direction in which the joint moves the tip. The stiffness starts from zero

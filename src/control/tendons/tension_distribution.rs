@@ -86,9 +86,10 @@ impl TensionDistribution {
 impl BoundedDistribution<'_> {
     /// Returns the smallest tensions, in the sense of eq. 20, for the joint torque tau, N cm.
     ///
-    /// With the tau_g of eq. 20 some tendon j is at t_min. Tendon i then has s (A_i - A_j q_i/q_j) + t_min q_i/q_j,
-    /// where A = Q tau and s is the scale. That tau_g is the largest over all j, so t_i <= t_max must hold for every
-    /// pair i, j. These 16 conditions bound s.
+    /// For each tendon j there is a tau_g that puts it at t_min. Tendon i then has s (A_i - A_j q_i/q_j) + t_min
+    /// q_i/q_j, where A = Q tau and s is the scale. Eq. 20 selects the largest of these tau_g. It gives tendon i the
+    /// largest of these tensions, so each of them must be at most t_max. These 16 conditions, one for each pair i, j,
+    /// bound s.
     pub fn distribute(&self, torques: &Vector3<f64>) -> DistributedTensions {
         let Self { of, maximum } = self;
         let wanted = of.from_torque * torques;
