@@ -89,7 +89,7 @@ impl BlackBox {
 
     /// Stores the source of the next controller. The caller must do this before it collects a record that names the
     /// controller. `taken` is [`FingerReport::controller`](crate::finger::FingerReport::controller), read before the
-    /// last [`BlackBox::collect`]. Older controllers that no record names are removed, because a newer controller
+    /// last [`BlackBox::collect`]. Controllers older than `taken` that no record names are removed. A newer controller
     /// replaced them before the servo used them.
     pub fn announce(&mut self, finger: ConfiguredFinger, gravity: Vector3<f64>, taken: u32) {
         let controls = self.records.iter().filter_map(|record| record.control.as_ref());

@@ -38,8 +38,8 @@ impl ControlInput {
         };
         // A skipped period is a period without a reply. The differentiators and predictors must take it into account.
         for _ in 0..self.skipped {
-            // If numbers are not finite, no further cycle can make them finite, and they cannot serve as limits of a
-            // clamp.
+            // Numbers that are not finite stay so in every further cycle. A further cycle could also panic, because
+            // `clamp` panics if a limit is NaN.
             if !command.is_finite() {
                 break;
             }

@@ -83,9 +83,9 @@ impl Recording {
     /// Runs the controller over every cycle.
     ///
     /// # Errors
-    /// Returns an error if no hand opens with the configuration, if no servo can have recorded a number, if a
-    /// controller is missing, or if a controller computes a torque that is not finite. The error names the first wrong
-    /// number, and nothing is computed from this number.
+    /// Returns an error if no hand opens with the configuration, if the recording contains a number that no servo can
+    /// have recorded, if a controller is missing, or if a controller computes a torque that is not finite. The error
+    /// names the first wrong number, and nothing is computed from this number.
     pub fn replay(&self) -> Result<Replayed, NotReplayable> {
         self.check()?;
         let mut controllers = Controllers { recording: self, made: HashMap::new() };

@@ -202,7 +202,8 @@ impl<T: Transport> ServedPort<T> {
             }
         } else if let Some(RepairedLink { link, configured, stop_calls }) = handover.repaired.pop() {
             self.failed = false;
-            // This may be the same link or a new one. Counting continues from the current totals.
+            // From now on, the counters of this link are added to the totals. They are subtracted here, so that the
+            // totals do not jump, whether this is the same link or a new one.
             self.earlier_counters = self.earlier_counters.saturating_sub(&link.counters());
             self.link = Some(link);
             for (finger, configured) in self.fingers.iter_mut().zip(configured) {

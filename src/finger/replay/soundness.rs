@@ -18,7 +18,8 @@ const MOST_COMPUTED: u64 = 1_000_000;
 /// its powers are finite.
 const LARGEST: f64 = 1e30;
 
-/// Range of each component of gravity, m/s^2. A configuration may have 100 in each of three components.
+/// Range of each component of gravity in the finger's frame, m/s^2. A configuration may have up to 100 in each of three
+/// components of the palm's frame. The rotation to the finger's frame can combine them into a larger component.
 const GRAVITY: RangeInclusive<f64> = -200.0..=200.0;
 
 impl Recording {

@@ -45,8 +45,8 @@ impl FingerServo {
     /// Returns to the stage before a calibration that has not moved the finger. Returns the data that the servo
     /// computed with until now, if planners have replaced it meanwhile.
     fn go_on_from(&mut self, before: Before) -> Option<Adjustable> {
-        // Set points that planners sent meanwhile had no effect. They must not take effect with the next set point
-        // either.
+        // Set points that planners sent meanwhile had no effect. The next change of a set point must not start from one
+        // of them. A new spring phase makes it start from the set point that the servo holds.
         self.report.springs += u32::from(before.stage == Stage::Running);
         self.enter(before.stage);
         (before.adjustable.number != self.adjustable.number).then_some(before.adjustable)
