@@ -34,8 +34,8 @@ pub struct LinkDynamics {
     tip_mass: f64,
     /// Gravity in the finger's frame, m/s^2.
     gravity: Vector3<f64>,
-    /// For each link and the tip: its mass, kg, and the link lengths, m, of a shorter finger whose tip is at its centre
-    /// of mass.
+    /// One entry for each link and one for the tip: the mass of this body, kg, and the link lengths, m, of a shorter
+    /// finger. The tip of the shorter finger is at the centre of mass of this body.
     centres: [(f64, Links); 4],
 }
 

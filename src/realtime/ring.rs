@@ -25,7 +25,8 @@ struct Ring<T> {
 #[repr(align(128))]
 struct Line<T>(T);
 
-// SAFETY: only the writer accesses a place until `left` has passed it, and only the reader until `taken` has passed it.
+// SAFETY: only the writer accesses a place until `left` has passed it. From then on, only the reader accesses the
+// place until `taken` has passed it.
 unsafe impl<T: Send> Sync for Ring<T> {}
 
 /// Returns both ends of a ring with room for `capacity` values, or for one value if `capacity` is 0.

@@ -118,9 +118,9 @@ impl Default for ConfiguredHand {
             hold_torque_limit: 1.0,
             release_ramp_ms: 200,
             // A finger must be in its end state 20 ms after the last good reply, or after the death of its planner. A
-            // board's timer may have a resolution of 1 ms and an error of 1 %. The servo sends a Stop this time after
-            // the last good reply, in whole periods. With 20 ms, a Stop that leaves late in its period would be too
-            // late.
+            // board's timer may have a resolution of 1 ms and an error of 1 %. The servo counts this time in whole
+            // periods from the last good reply, and then sends a Stop. With 20 ms, a Stop that leaves late in its
+            // period would be too late.
             watchdog_ms: 18,
             open_timeout_ms: 5000,
             on_fault: OnFault::Finger,
