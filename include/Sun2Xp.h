@@ -1012,10 +1012,11 @@ int SendContact(int, int, const double *, const double *);
  much less or much more damping does not come to rest. The range therefore depends on controller,
  rate and the largest eigenvalue k of the stiffness, N/cm:
 
-                          1000 Hz and above           below 1000 Hz
-   state feedback         0.40 + 0.09 k to            0.70 + 0.07 k to
-                          2.50 - 0.22 k               2.00 - 0.20 k
-   figures 9, 10, 11      1 to 2.50 - 0.22 k          1 to 2.00 - 0.20 k
+                                     1000 Hz and above    below 1000 Hz
+   state feedback         smallest   0.40 + 0.09 k        0.70 + 0.07 k
+                          largest    2.50 - 0.22 k        2.00 - 0.20 k
+   figures 9, 10, 11      smallest   1                    1
+                          largest    2.50 - 0.22 k        2.00 - 0.20 k
 
  By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1.
  For a finger with other links or tendons, k is first multiplied by S0 / S. S is the stiffness that
@@ -1048,8 +1049,8 @@ int SendDamping(int, double);
  motor.torque_constant, stiffness.initial and simulation.
 
  A configured stiffness.bound was chosen for the configured controller.scheme. If Keys changes
- controller.scheme, the configured bound applies only if it is less than the default bound, or if
- Keys sets it too.
+ controller.scheme but does not set stiffness.bound, the smaller of the configured bound and the
+ default bound applies.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1182,8 +1183,8 @@ int WriteBlackBox(int, const char *);
  free finger may have moved by up to some tenths of a radian while it was limp.
 
  The zeros take effect at once. If OpenHand has read a configuration file, they are written into
- that file; all other keys and comments stay as they are in the file at that time. So several
- processes may store their results: each waits for the others, at most 30 s.
+ that file. All its other keys and comments stay, including those that have changed since OpenHand.
+ Several processes may store their results in one file: each waits for the others, at most 30 s.
 
  Waits until all this is done: some seconds, or up to a minute with "stops". Meanwhile
  FingerStatus.Calibration gives the progress, other calls work, and set points for this finger have
@@ -1198,9 +1199,9 @@ int WriteBlackBox(int, const char *);
    EBUSY      the finger is being calibrated or recovered already
    ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is
               dead, a joint meets no stop or meets it too early ...). No zero has changed, and
-              HandError gives the remedy. The finger is limp, unless it was refused before the
-              calibration changed anything (it moved while it was read, or its counts were not
-              valid): then it is in its former state
+              HandError gives the remedy. The finger is then limp. Exception: if it moved while it
+              was read, or if its counts were not valid, the calibration had not changed anything
+              yet, and the finger is in its former state
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
    EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
               CloseHand

@@ -83,8 +83,8 @@ pub(super) fn delegated_or_done_here(name: &'static str, call: fn() -> Result<()
 }
 
 /// Runs a slow call. All signals are blocked except during the wait itself, so that no handler can jump out of any
-/// other part. During the wait the thread has the planner's floating-point environment, because a jump out of the wait
-/// does not restore it.
+/// other part. A jump out of the wait does not restore the floating-point environment. Therefore the thread has the
+/// planner's environment during the wait.
 fn slow(name: &str, _blocked: &SignalsBlocked, call: impl FnOnce() -> Result<(), Refusal>) -> c_int {
     let errno = process::errno();
     let outcome = unless_forked(call);

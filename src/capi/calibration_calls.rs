@@ -29,8 +29,8 @@ use std::ffi::c_int;
 /// free finger may have moved by up to some tenths of a radian while it was limp.
 ///
 /// The zeros take effect at once. If OpenHand has read a configuration file, they are written into
-/// that file; all other keys and comments stay as they are in the file at that time. So several
-/// processes may store their results: each waits for the others, at most 30 s.
+/// that file. All its other keys and comments stay, including those that have changed since OpenHand.
+/// Several processes may store their results in one file: each waits for the others, at most 30 s.
 ///
 /// Waits until all this is done: some seconds, or up to a minute with "stops". Meanwhile
 /// FingerStatus.Calibration gives the progress, other calls work, and set points for this finger have
@@ -45,9 +45,9 @@ use std::ffi::c_int;
 ///   EBUSY      the finger is being calibrated or recovered already
 ///   ECANCELED  the calibration failed (the finger moved in its pose, a tendon is slack, a gauge is
 ///              dead, a joint meets no stop or meets it too early ...). No zero has changed, and
-///              HandError gives the remedy. The finger is limp, unless it was refused before the
-///              calibration changed anything (it moved while it was read, or its counts were not
-///              valid): then it is in its former state
+///              HandError gives the remedy. The finger is then limp. Exception: if it moved while it
+///              was read, or if its counts were not valid, the calibration had not changed anything
+///              yet, and the finger is in its former state
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
 ///              CloseHand

@@ -89,7 +89,7 @@ pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
     let recovering = command(|hand| Recovering::begin(hand, finger))?;
     // The hand is not locked during this step, because ports are slow.
     let result = recovering.reconnect();
-    // If the hand was closed meanwhile, `command` returns that refusal instead of `result`.
+    // If the hand was closed meanwhile, `command` refuses because no hand is open, and `result` is ignored.
     command(|_| result)?;
     while !command(|hand| recovering.poll(hand))? {
         sleep(POLLING_PERIOD);

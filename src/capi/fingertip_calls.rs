@@ -170,10 +170,11 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 /// much less or much more damping does not come to rest. The range therefore depends on controller,
 /// rate and the largest eigenvalue k of the stiffness, N/cm:
 ///
-///                          1000 Hz and above           below 1000 Hz
-///   state feedback         0.40 + 0.09 k to            0.70 + 0.07 k to
-///                          2.50 - 0.22 k               2.00 - 0.20 k
-///   figures 9, 10, 11      1 to 2.50 - 0.22 k          1 to 2.00 - 0.20 k
+///                                     1000 Hz and above    below 1000 Hz
+///   state feedback         smallest   0.40 + 0.09 k        0.70 + 0.07 k
+///                          largest    2.50 - 0.22 k        2.00 - 0.20 k
+///   figures 9, 10, 11      smallest   1                    1
+///                          largest    2.50 - 0.22 k        2.00 - 0.20 k
 ///
 /// By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1.
 /// For a finger with other links or tendons, k is first multiplied by S0 / S. S is the stiffness that
@@ -207,8 +208,8 @@ pub extern "C" fn SendDamping(i: c_int, Ratio: f64) -> c_int {
 /// motor.torque_constant, stiffness.initial and simulation.
 ///
 /// A configured stiffness.bound was chosen for the configured controller.scheme. If Keys changes
-/// controller.scheme, the configured bound applies only if it is less than the default bound, or if
-/// Keys sets it too.
+/// controller.scheme but does not set stiffness.bound, the smaller of the configured bound and the
+/// default bound applies.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child

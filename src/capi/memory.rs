@@ -30,8 +30,8 @@ pub(super) unsafe fn load_rows<T>(matrix: *const T, name: &'static str) -> Resul
     Ok(unsafe { matrix.cast::<[[T; 3]; 3]>().read_unaligned() })
 }
 
-/// Size of a struct up to and including a member. If the member was the last one in the first version of the struct,
-/// this is the smallest size with which a program can have been compiled.
+/// Size of a struct up to and including a member. If the member is the last one of the struct's first version, this is
+/// the size of that version. No program was compiled with a smaller struct.
 macro_rules! size_up_to {
     ($Struct:ty, $Member:ident: $Type:ty) => {
         std::mem::offset_of!($Struct, $Member) + size_of::<$Type>()

@@ -1,6 +1,6 @@
 //! The C interface: the five calls of 1990 and later calls, on one default hand. It checks pointers, catches panics and
-//! converts refusals to errno; the hand makes all other checks. `include/Sun2Xp.h` is generated from the files named
-//! `calls`.
+//! converts refusals to errno; the hand makes all other checks. `tests/header.rs` lists the files from which
+//! `include/Sun2Xp.h` is generated.
 //!
 //! If several reasons apply to a call, it reports the first one in this order: forked child (EPERM), null pointer
 //! (EFAULT), no hand (ENODEV), a struct whose Size is too small (EINVAL), then the reasons that the hand finds: finger

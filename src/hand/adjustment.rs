@@ -39,8 +39,8 @@ impl Hand {
     /// `[finger.N]`, such as `tendon.minimum = 6`. All of them take effect together, within a cycle and without a jump
     /// in torque. Other keys keep their values. `controller.law` applies to later set points.
     ///
-    /// A configured `stiffness.bound` was found for one controller. Under another `controller.scheme` it is used only
-    /// if it is less than the default bound, or if `keys` contains `stiffness.bound` too.
+    /// A configured `stiffness.bound` was found for one controller. If `keys` changes `controller.scheme` but does not
+    /// contain `stiffness.bound`, the smaller of the configured bound and the default bound is used.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a key cannot be

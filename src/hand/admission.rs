@@ -121,9 +121,9 @@ impl Admission {
     }
 }
 
-/// The check that the damping of a finger's set point is within the range for its stiffness. Each change of a set point
-/// contains a copy of the check: two planners may change damping and stiffness at the same time, so the check must run
-/// in the step that sends both.
+/// The check that the damping of a finger's set point is within the range for its stiffness. Two planners may change
+/// damping and stiffness at the same time, so the check must run in the step that sends both. The closure that runs in
+/// this step owns a copy of the check.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampingAdmission {
     /// Number of the finger, 1 to 3.
