@@ -106,7 +106,8 @@ impl Calibrating {
         let finger = self.finger;
         let report = hand.dispatcher.report(finger)?;
         if report.orders != self.order {
-            // Orders are counted from open. A hand that was opened again does not reach the number of this order.
+            // Orders are counted from open. If the hand was opened again since, it has not received this order, and its
+            // count began again at 0.
             if self.asked.elapsed() > ANSWER {
                 return Err(HandError::NoAnswer(finger));
             }

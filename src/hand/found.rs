@@ -72,8 +72,8 @@ impl Found {
                 value("encoder", "zero", whole(zeros.encoder)),
                 value("gauge", "zero", Numbers::Real(zeros.gauge.into())),
             ],
-            // The gauge gains were found relative to the previous ones, and the tolerance is not measured. Both are
-            // taken from the configuration.
+            // The findings contain only the ratio of each new gauge gain to the previous one, and no tolerance. The
+            // configuration already contains the new gains and the tolerance, so both are taken from there.
             Findings::Identified(found) => vec![
                 value("gauge", "newton_per_count", Numbers::Real(of.gauge.newton_per_count.into())),
                 value("tendon", "stiffness", Numbers::Real(found.tendon_stiffness.as_slice().into())),

@@ -107,7 +107,7 @@ impl PortRepair {
     pub fn give_back(&mut self, configured: [Option<Configured>; FINGERS], stop_calls: u32) {
         if let Some(link) = self.link.take() {
             self.released = false;
-            // The ring has room: the servo has released a link since the last push, so it has taken the last one.
+            // The ring has room for one link. The servo has released `link`, so it has taken the link of the last push.
             let _ = self.handover.repaired.push(RepairedLink { link, configured, stop_calls });
         }
     }

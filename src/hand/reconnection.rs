@@ -18,8 +18,8 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 pub(super) struct RepairablePort {
     /// Numbers of the fingers, 1 to 3.
     pub fingers: Vec<FingerNumber>,
-    /// Number of repairs after which the link was given back to the servo. Each finger's number of recoveries reaches
-    /// this number when the servo takes the link.
+    /// Number of repairs that gave the link back to the servo. When the servo takes the link, each finger's number of
+    /// recoveries reaches this number.
     pub repairs: AtomicU32,
     /// Locked during a repair, which takes long. `None` after the hand is closed.
     pub repair: Mutex<Option<PortRepair>>,

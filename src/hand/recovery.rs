@@ -14,8 +14,8 @@ use std::sync::atomic::Ordering;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Time in which a servo releases its link after the last of its fingers has faulted. During this time, a finger of the
-/// port that still runs may be about to fault too.
+/// If another finger of the port was not faulted at the beginning, a recovery waits this long for the link before it
+/// returns an error. That finger may be about to fault too. The servo then releases the link within this time.
 const RELEASE_LIMIT: Duration = Duration::from_millis(500);
 
 /// Interval at which a recovery is polled.

@@ -63,7 +63,8 @@ pub(super) fn start(
     accept(missing, real_time)?;
     let first = now() + HEAD_START;
     for _ in &numbers {
-        // The channel has room for the message to a thread that has died.
+        // A thread that has died leaves its message in the channel. The channel has room for all messages, so this
+        // never waits.
         let _ = begin.send(first);
     }
     Ok(state)

@@ -97,8 +97,9 @@ impl Hand {
         })
     }
 
-    /// Sends the change that `admit` returns. The limits cannot change between the check and the sending. The change
-    /// may still refuse the set point to which it is applied.
+    /// Calls `admit`, which checks the arguments and returns a change of the set point. Then sends the change. The
+    /// limits cannot change between the check and the sending. The change may still return an error, for example if the
+    /// new stiffness does not suit the damping that was sent before.
     fn send<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,
         finger: FingerNumber,

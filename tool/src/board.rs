@@ -28,10 +28,10 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 ///     hold FINGER                            hold the finger in its current pose, like a jig
 ///     free FINGER                            remove force, wall, ball and jig
 ///     state FINGER                           answer with the true joint angles (rad), tip (cm), tensions (N), motor
-///                                            torques (N cm), three times by the board's clock (ms), and the status
-///                                            bits of a Reply. The times are: now, the last obeyed Command, and the
-///                                            end state that silence or a Stop caused. A time is NaN if the event
-///                                            has not occurred since the last Configure
+///                                            torques (N cm), three instants on the board's clock (ms), and the
+///                                            status bits of a Reply. The instants are: now, the last obeyed Command,
+///                                            and the end state that silence or a Stop caused. An instant is NaN if
+///                                            the event has not occurred since the last Configure
 ///     quit                                   end the program
 ///
 /// A defect lasts until `mend`. A line fault lasts until `good`, or for MS milliseconds if MS is given. Tendons,
@@ -115,8 +115,9 @@ pub struct Arguments {
     /// SCHED_FIFO priority of the board, where permitted. 0 means not real-time.
     #[arg(long, value_name = "P", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=99))]
     priority: u8,
-    /// Pause the simulation for up to two seconds while commands of a host with RATE cycles per second are missing, and
-    /// extend the watchdog by the same time. This is for a busy machine, which delays the bytes of a pseudo-terminal.
+    /// Expect a host with RATE cycles per second. While its commands are missing, pause the simulation for up to two
+    /// seconds, and extend the watchdog by the same time. This is for a busy machine, which delays the bytes of a
+    /// pseudo-terminal.
     #[arg(long, value_name = "RATE", value_parser = rate)]
     patient: Option<f64>,
 }

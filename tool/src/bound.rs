@@ -15,9 +15,9 @@ use sun2xp::stability::{Limit, Search, StiffnessBound};
 /// Finds the bound on the eigenvalues of Kx up to which a finger is stable in every pose.
 ///
 /// The search simulates the configured controller, links, tendons and motors, without friction, with exact measurements
-/// and one cycle of delay. Poses within the joint limits, axes of Kx and loads are random. In a pose that is stable
-/// only below the bound, the servo scales Kx down, and so does the search. The bound is low enough that no pose needs a
-/// scale below one half. The search takes up to a minute for each kind of finger.
+/// and one cycle of delay. Poses within the joint limits, axes of Kx and loads are random. Some poses are stable only
+/// with a Kx below the bound. In such a pose the servo scales Kx down, and so does the search. The bound is low enough
+/// that no pose needs a scale below one half. The search takes up to a minute for each kind of finger.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file. The default is the file that OpenHand would use.

@@ -81,7 +81,7 @@ fn describe(recording: &Recording, output: &mut impl Write) -> io::Result<()> {
 }
 
 fn show(first: &Difference, recording: &Recording, output: &mut impl Write) -> io::Result<()> {
-    // The first line of the file is the header, so cycle 0 is in line 2.
+    // The first line of the file is the header, so the cycle with index 0 is in line 2.
     writeln!(output, "first        cycle {}, line {}", recording.cycles[first.index].cycle, first.index + 2)?;
     let (recorded, replayed) = (&first.recorded, &first.replayed);
     let (was, is) = (recorded.command.motor_torques, replayed.command.motor_torques);

@@ -190,7 +190,8 @@ mod tests {
             ("[finger.1.geometry]\nghost_row = [-1, -1, -1, -1]\n", Some(2), "positive"),
             ("[finger.geometry]\nr = [[1, 1, 1, 1], [1, 0, 0, 0], [0, 1, 0, 0]]\n", Some(2), "positive"),
             ("[finger.3.tendon]\nmaximum = 8\n", Some(2), "for its pretension"),
-            // The key has its default value, so the error gives the line of the table that makes the default unusable.
+            // The refused key, tendon.maximum, is not in the file, so the error gives the line of its table. Another
+            // key of that table makes the default value of tendon.maximum unusable.
             ("[finger.tendon]\n\nminimum = 40\n", Some(1), "for its pretension"),
             ("[hand]\nrate = 500\n\n[finger.3.tendon]\nminimum = 40\n", Some(4), "for its pretension"),
             ("[hand]\nrate = nan\n", Some(2), "outside"),

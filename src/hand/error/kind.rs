@@ -10,7 +10,8 @@ pub(crate) struct ErrorKind {
     cause: Cause,
 }
 
-/// The variant of the inner error of a [`HandError`] that groups related errors. It is `None` for any other variant.
+/// Some variants of [`HandError`] contain an error with variants of its own. For these, this is the variant of the
+/// inner error. For all other variants, it is `None`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cause {
     None,

@@ -101,7 +101,7 @@ pub enum SetPointError {
     /// The damping ratio is outside its range.
     #[error(
         "the damping ratio {ratio} of finger {finger} is outside {least:.2} to {most:.2}, the stable range at a \
-         stiffness of {stiffness:.4} N/cm: send a ratio within the range or a softer Kx first, or set \
+         stiffness of {stiffness:.4} N/cm: send a ratio within the range, or a softer Kx, whose range is wider, or set \
          `hand.out_of_range = \"clamp\"`"
     )]
     Damping {

@@ -82,9 +82,9 @@ fn judge_slack(thread: u8, asked: bool, wake_up: &WakeUp) -> Finding {
     if asked && wake_up.refusals.scheduling.is_none() {
         return Finding::good(subject, format!("{slack} ns, which does not apply to a real-time thread"));
     }
-    let advice = "The kernel may wake this thread up late by this time, and the system refused to change it \
-                  (prctl, PR_SET_TIMERSLACK). Permit that call if a sandbox forbids it, or make the thread real-time \
-                  (finger.priority)";
+    let advice = "The kernel may delay each wake-up of this thread by up to this time, and the system refused to \
+                  shorten it (prctl, PR_SET_TIMERSLACK). Permit that call if a sandbox forbids it, or make the thread \
+                  real-time (finger.priority)";
     Finding::new(Rating::Warning, subject, format!("{slack} ns"), advice)
 }
 

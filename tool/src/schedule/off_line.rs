@@ -177,8 +177,9 @@ mod tests {
 
     const COSTS: Costs = Costs { wake_up: 100.0, write: 10.0, read: 5.0, compute: 15.0 };
 
-    /// Each finger is on its own core: 100 + 10 us until the commands are written, 550 us on the line (17 bytes, 100
-    /// us, 28 bytes), and 20 us after that.
+    /// Each finger is on its own core: 100 + 10 us until the commands are written, 550 us for the exchange, and 20 us
+    /// after that. The exchange takes 170 us for the 17 bytes of the command, 100 us in the board and 280 us for the 28
+    /// bytes of the reply.
     #[test]
     fn three_fingers_on_three_cores() {
         let mut hand = Configuration::default();
@@ -208,7 +209,7 @@ mod tests {
         assert_eq!(off_line_schedule(&hand, 1802.0, &COSTS, &sensor)[0].limit, Some(RateLimit::Cycle));
     }
 
-    /// On one core each thread may have to wait for two cycles of both others: 680 + 4 * 30.
+    /// On one core each thread may have to wait for two cycles of each other thread: 680 + 4 * 30.
     #[test]
     fn three_fingers_on_one_core() {
         let mut hand = Configuration::default();
