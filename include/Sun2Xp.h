@@ -170,9 +170,9 @@
    prints a line waits until the line is written. So a full pipe or a stopped terminal (Control-S)
    delays OpenHand and the first refusal of each kind, but no servo.
 
-   Stack: a call needs up to 16 KiB of its thread's stack. The library's threads also contain the
-   planner's thread-local data (__thread). These data enlarge their stacks, and with hand.real_time
-   the locked memory of each servo.
+   Stack: a call needs up to 16 KiB of its thread's stack. The stack of each thread of the library
+   contains a copy of the planner's thread-local data (__thread). So large thread-local data enlarge
+   these stacks and, unless hand.real_time is "ignore", the locked memory of each servo.
 
    Sandbox: install a sandbox (seccomp) before OpenHand. If it forbids a system call that threads,
    waits, ports or pseudo-terminals need, OpenHand is refused with the errno of the sandbox.
@@ -1019,8 +1019,9 @@ int SendContact(int, int, const double *, const double *);
                           largest    2.50 - 0.22 k        2.00 - 0.20 k
 
  By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1.
- For a finger with other links or tendons, k is first multiplied by S0 / S. S is the stiffness that
- the finger's locked tendons give its tip, and S0 the same for the default finger. SendKx and
+ For a finger with other links or tendons, k is first multiplied by 12.3 N/cm divided by S. S is
+ the smallest stiffness that the tendons give the tip in any direction, with locked motors and with
+ the joints in the middle of their ranges. For the default finger S is 12.3 N/cm. SendKx and
  SendContact refuse a stiffness whose range does not include the ratio sent last.
 
  Returns 0, or -1 with
@@ -1449,7 +1450,8 @@ typedef volatile double Sun2XpDoubleV;
 typedef const volatile double Sun2XpDoubleCV;
 
 #ifdef SUN2XP_GENERIC
-/* The type of NULL and 0 below, which are refused at run time. It is incomplete, so a planner has no object of it. */
+/* SUN2XP_TYPED converts NULL and 0 to this type. They compile, and are refused at run time. The type is incomplete, so
+   no variable of a planner can have it. */
 typedef struct Sun2XpNull Sun2XpNull;
 /* A conditional expression has this type only if its other branch is a null pointer constant. So void * pointers and
    integers other than 0 become void *, which matches no association of SUN2XP_SEND and SUN2XP_GET. */

@@ -177,8 +177,9 @@ pub unsafe extern "C" fn SendContact(i: c_int, D: c_int, K: *const f64, Normal: 
 ///                          largest    2.50 - 0.22 k        2.00 - 0.20 k
 ///
 /// By default the range is 0.67 to 1.84 at 3 N/cm and 0.94 to 1.18 at 6 N/cm. It always includes 1.
-/// For a finger with other links or tendons, k is first multiplied by S0 / S. S is the stiffness that
-/// the finger's locked tendons give its tip, and S0 the same for the default finger. SendKx and
+/// For a finger with other links or tendons, k is first multiplied by 12.3 N/cm divided by S. S is
+/// the smallest stiffness that the tendons give the tip in any direction, with locked motors and with
+/// the joints in the middle of their ranges. For the default finger S is 12.3 N/cm. SendKx and
 /// SendContact refuse a stiffness whose range does not include the ratio sent last.
 ///
 /// Returns 0, or -1 with

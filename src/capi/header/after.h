@@ -87,7 +87,8 @@ typedef volatile double Sun2XpDoubleV;
 typedef const volatile double Sun2XpDoubleCV;
 
 #ifdef SUN2XP_GENERIC
-/* The type of NULL and 0 below, which are refused at run time. It is incomplete, so a planner has no object of it. */
+/* SUN2XP_TYPED converts NULL and 0 to this type. They compile, and are refused at run time. The type is incomplete, so
+   no variable of a planner can have it. */
 typedef struct Sun2XpNull Sun2XpNull;
 /* A conditional expression has this type only if its other branch is a null pointer constant. So void * pointers and
    integers other than 0 become void *, which matches no association of SUN2XP_SEND and SUN2XP_GET. */
