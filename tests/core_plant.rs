@@ -15,7 +15,7 @@ fn frictionless() -> ConfiguredFinger {
     finger.simulation.joint_coulomb_friction = [0.0; 3];
     finger.simulation.motor_viscous_friction = [0.0; 4];
     finger.simulation.motor_coulomb_friction = [0.0; 4];
-    finger.simulation.conduit_friction = 0.0;
+    finger.simulation.shaft_friction = 0.0;
     finger
 }
 

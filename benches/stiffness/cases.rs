@@ -56,7 +56,7 @@ impl Case {
             Friction::None => {
                 finger.simulation.joint_coulomb_friction = [0.0; 3];
                 finger.simulation.motor_coulomb_friction = [0.0; 4];
-                finger.simulation.conduit_friction = 0.0;
+                finger.simulation.shaft_friction = 0.0;
                 finger.friction.motor_coulomb = [0.0; 4];
                 finger.friction.conduit = [0.0; 4];
                 finger.friction.joint_coulomb = [0.0; 3];

@@ -2,8 +2,8 @@
 
 mod ranges;
 mod sharing;
+mod simulation;
 
-use crate::model::configuration::Surface;
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, RATES, RealTime, Unusable};
 use crate::model::{FingerNumber, TendonsError};
 use ranges::{each, path, unusable, within};
@@ -242,41 +242,5 @@ impl ConfiguredFinger {
         within("zeroing.torque", zeroing.torque, 1e-3, 100.0, "N cm")?;
         within("zeroing.speed", zeroing.speed, 1e-2, 10.0, "rad/s")?;
         within("zeroing.time_limit_s", zeroing.time_limit_s, 1.0, 3600.0, "s")
-    }
-
-    fn check_simulation(&self) -> Result<(), Unusable> {
-        let simulation = &self.simulation;
-        each("simulation.masses", &simulation.masses, 1e-6, 10.0, "kg")?;
-        each("simulation.link_radii", &simulation.link_radii, 1e-4, 1.0, "m")?;
-        each("simulation.joint_viscous_friction", &simulation.joint_viscous_friction, 0.0, 1.0, "N m s/rad")?;
-        each("simulation.joint_coulomb_friction", &simulation.joint_coulomb_friction, 0.0, 1.0, "N m")?;
-        each("simulation.tendon_stiffness", &simulation.tendon_stiffness, 1.0, 3000.0, "N/cm")?;
-        each("simulation.rotor_inertia", &simulation.rotor_inertia, 1e-8, 1.0, "kg m^2")?;
-        each("simulation.motor_viscous_friction", &simulation.motor_viscous_friction, 0.0, 1.0, "N m s/rad")?;
-        each("simulation.motor_coulomb_friction", &simulation.motor_coulomb_friction, 0.0, 1.0, "N m")?;
-        within("simulation.conduit_friction", simulation.conduit_friction, 0.0, 1.0, "")?;
-        each("simulation.motor_constant_ratio", &simulation.motor_constant_ratio, 0.0, 10.0, "")?;
-        within("simulation.gauge_noise", simulation.gauge_noise, 0.0, 100.0, "N")?;
-        within("simulation.stop_margin_degrees", simulation.stop_margin_degrees, 0.0, 90.0, "degrees")?;
-        each("simulation.start_degrees", &simulation.start_degrees, -180.0, 180.0, "degrees")?;
-        match simulation.surface {
-            None => Ok(()),
-            Some(Surface::Wall { point, normal, stiffness }) => {
-                each("simulation.surface", &point, -1000.0, 1000.0, "cm")?;
-                if let Some(part) = normal.iter().find(|part| !part.is_finite()) {
-                    let reason = format!("the wall's normal has the component {part}: set finite numbers");
-                    return unusable("simulation.surface", reason);
-                }
-                if normal.iter().all(|&part| part == 0.0) {
-                    return unusable("simulation.surface", "the wall's normal is zero: set its direction".into());
-                }
-                within("simulation.surface", stiffness, 0.0, 1e4, "N/cm")
-            }
-            Some(Surface::Ball { centre, radius, stiffness }) => {
-                each("simulation.surface", &centre, -1000.0, 1000.0, "cm")?;
-                within("simulation.surface", radius, 1e-3, 1000.0, "cm")?;
-                within("simulation.surface", stiffness, 0.0, 1e4, "N/cm")
-            }
-        }
     }
 }

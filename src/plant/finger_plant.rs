@@ -1,11 +1,14 @@
 //! One finger as a physical system: joints, tendons, motors, and a surface that the tip can touch.
 
+use super::amplifier::Amplifier;
 use super::contact;
+use super::gauge_filter::GaugeFilter;
 use super::holding_hand::HoldingHand;
 use super::joint_friction::stop_by_friction;
 use super::joint_stops::JointStops;
 use super::motors::Motors;
-use super::tendon::ElasticTendons;
+use super::stribeck::Stribeck;
+use super::tendon::{ElasticTendons, TendonTensions};
 use crate::model::configuration::ConfiguredFinger;
 use crate::model::configuration::Surface;
 use crate::model::{LinkDynamics, Links, TendonsError};
@@ -13,6 +16,9 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// Default length of one [`Plant::step`] in simulated time, s.
 pub const PLANT_STEP_SECONDS: f64 = 1e-4;
+
+/// Joint rate at which the excess of the static friction has fallen to 1/e, rad/s.
+const STRIBECK_RATE: f64 = 0.05;
 
 /// One finger. Its state is theta, theta_dot, m and m_dot. The state is integrated by the semi-implicit Euler method.
 ///
@@ -25,9 +31,12 @@ pub struct Plant {
     stops: JointStops,
     tendons: ElasticTendons,
     motors: Motors,
+    amplifier: Amplifier,
+    gauge_filter: Option<GaugeFilter>,
     joint_viscous: Vector3<f64>,
     /// Coulomb friction of the joints, N m.
     joint_coulomb: Vector3<f64>,
+    joint_stribeck: Stribeck,
     /// Length of a step, s.
     step: f64,
 
@@ -46,25 +55,30 @@ impl Plant {
     /// Constructs a finger at its start pose: at rest, at homing pretension, and braked. The gravity is in m/s^2 in the
     /// finger's frame.
     pub fn new(finger: &ConfiguredFinger, gravity_in_finger_frame: Vector3<f64>) -> Result<Self, TendonsError> {
-        let tendons = ElasticTendons::new(finger)?;
         let simulation = &finger.simulation;
         let theta = Vector3::from(simulation.start_degrees.map(f64::to_radians));
+        let tendons = ElasticTendons::new(finger, &theta)?;
+        let motor = tendons.motor_angles_at(&theta);
+        let [link_0, link_1, link_2, tip] = simulation.masses;
         Ok(Self {
             links: finger.links(),
             dynamics: LinkDynamics::new(
                 finger.links(),
-                simulation.masses,
+                [link_0, link_1, link_2, tip + simulation.held_mass],
                 simulation.link_radii,
                 gravity_in_finger_frame,
             ),
             stops: JointStops::new(finger),
             motors: Motors::new(finger),
+            amplifier: Amplifier::new(finger, PLANT_STEP_SECONDS),
+            gauge_filter: GaugeFilter::new(simulation.gauge_bandwidth, tendons.tensions(&theta, &motor).gauge),
             joint_viscous: simulation.joint_viscous_friction.into(),
             joint_coulomb: simulation.joint_coulomb_friction.into(),
+            joint_stribeck: Stribeck::new(simulation.stiction_ratio, STRIBECK_RATE),
             step: PLANT_STEP_SECONDS,
             theta,
             theta_dot: Vector3::zeros(),
-            motor: tendons.motor_angles_at(&theta),
+            motor,
             motor_dot: Vector4::zeros(),
             braked: true,
             jammed: [false; 4],
@@ -86,12 +100,12 @@ impl Plant {
     /// `motor.sign` is +1. The torques are clamped to the limits of the motors.
     pub fn step(&mut self, motor_torques: [f64; 4]) {
         let h = self.step;
-        self.tendons.slip(&self.theta, &self.motor);
-        let tensions = self.tensions();
+        self.tendons.lengthen(&self.theta, &self.motor, h);
+        let TendonTensions { motor: at_motors, joint: at_joints, .. } = self.tendons.tensions(&self.theta, &self.motor);
 
         let force = self.external_force + self.contact_force();
         let jacobian = self.links.jacobian(&self.theta) * 0.01;
-        let torque = self.tendons.joint_torque(&tensions)
+        let torque = self.tendons.joint_torque(&at_joints)
             + jacobian.tr_mul(&force)
             + self.dynamics.gravity_torque(&self.theta)
             + self.stops.torque(&self.theta, &self.theta_dot)
@@ -100,16 +114,24 @@ impl Plant {
             - self.dynamics.coriolis(&self.theta, &self.theta_dot);
         let inverse_inertia = inverse(&self.dynamics.inertia(&self.theta));
         let rates = self.theta_dot + inverse_inertia * torque * h;
-        self.theta_dot = stop_by_friction(rates, &inverse_inertia, &(self.joint_coulomb * h));
+        let dry =
+            self.joint_coulomb.zip_map(&self.theta_dot, |friction, rate| friction * self.joint_stribeck.factor(rate));
+        self.theta_dot = stop_by_friction(rates, &inverse_inertia, &(dry * h));
         self.theta += self.theta_dot * h;
 
+        let torques = self.amplifier.torques(self.motors.limited(&motor_torques.into()), h);
         if !self.braked {
-            let pull = self.tendons.radius.component_mul(&tensions);
-            self.motor_dot = self.motors.next_speeds(&self.motor_dot, &motor_torques.into(), &pull, h);
+            let pull = self.tendons.radius.component_mul(&at_motors);
+            self.motor_dot = self.motors.next_speeds(&self.motor, &self.motor_dot, &torques, &pull, h);
             for motor in (0..4).filter(|&motor| self.jammed[motor]) {
                 self.motor_dot[motor] = 0.0;
             }
             self.motor += self.motor_dot * h;
+        }
+        self.tendons.slide(&self.theta, &self.motor);
+        let tensions = self.gauge_filter.as_ref().map(|_| self.tensions());
+        if let (Some(filter), Some(tensions)) = (&mut self.gauge_filter, tensions) {
+            filter.advance(&tensions, h);
         }
     }
 
@@ -142,6 +164,7 @@ impl Plant {
     /// Turns a motor by `angle`, rad, as a person could by hand. A negative angle unwinds its tendon.
     pub fn turn_motor(&mut self, motor: usize, angle: f64) {
         self.motor[motor] += angle;
+        self.tendons.slide(&self.theta, &self.motor);
     }
 
     /// Tears a tendon, 0 to 3.
@@ -165,9 +188,19 @@ impl Plant {
         self.jammed = [false; 4];
     }
 
-    /// Returns the tendon tensions, N.
+    /// Returns the tendon tensions at the gauges, N.
     pub fn tensions(&self) -> Vector4<f64> {
-        self.tendons.tensions(&self.theta, &self.motor)
+        self.tendons.tensions(&self.theta, &self.motor).gauge
+    }
+
+    /// Returns the tendon tensions at the joints, N. They differ from those at the gauges by the friction of pulleys.
+    pub fn joint_tensions(&self) -> Vector4<f64> {
+        self.tendons.tensions(&self.theta, &self.motor).joint
+    }
+
+    /// Returns the tensions that the gauge amplifiers pass on, N: those at the gauges, after the amplifiers' low-pass.
+    pub fn filtered_tensions(&self) -> Vector4<f64> {
+        self.gauge_filter.as_ref().map_or_else(|| self.tensions(), |filter| filter.shown)
     }
 
     /// Returns the position of the fingertip in the finger's frame, cm.

@@ -1,14 +1,19 @@
 //! The physics of a finger and its sensors, which the simulated board uses. The computation is in SI units. Every
 //! number of the configuration is converted once, at construction.
 
+mod amplifier;
+mod capstan;
 mod contact;
 mod finger_plant;
+mod gauge_filter;
 mod holding_hand;
 mod joint_friction;
 mod joint_stops;
 mod motors;
 mod sensors;
+mod stribeck;
 mod tendon;
+mod tendon_section;
 
 pub use finger_plant::{PLANT_STEP_SECONDS, Plant};
 pub use sensors::Sensors;

@@ -18,6 +18,10 @@ pub struct Sensors {
     encoder_zero: [i32; 4],
     newton_per_count: [f64; 4],
     gauge_zero: [f64; 4],
+    /// Shown tension divided by the true one.
+    gauge_gain: [f64; 4],
+    /// Error of each gauge that does not depend on the tension, N.
+    gauge_offset: [f64; 4],
     gauge_noise: f64,
     random: Pcg64,
     /// Constant count of each dead gauge.
@@ -43,6 +47,8 @@ impl Sensors {
             encoder_zero: encoder.zero,
             newton_per_count: finger.gauge.newton_per_count,
             gauge_zero: finger.gauge.zero,
+            gauge_gain: finger.simulation.gauge_gain_ratio,
+            gauge_offset: finger.simulation.gauge_offset,
             gauge_noise: finger.simulation.gauge_noise,
             random: Pcg64::seed_from_u64(finger.simulation.seed),
             dead: [None; 4],
@@ -83,7 +89,7 @@ impl Sensors {
     /// Reads all eight sensors: encoder counts (the inverse of eq. 28, rounded down) and gauge counts (0 to 4095, with
     /// noise).
     pub fn read(&mut self, plant: &Plant) -> ([i32; 4], [u16; 4]) {
-        let (angles, tensions) = (plant.motor_angles(), plant.tensions());
+        let (angles, tensions) = (plant.motor_angles(), plant.filtered_tensions());
         let motor_counts = std::array::from_fn(|motor| {
             let counts = (angles[motor] * self.counts_per_radian[motor]).floor();
             // The counter wraps around.
@@ -91,7 +97,8 @@ impl Sensors {
         });
         let gauge_counts = std::array::from_fn(|tendon| {
             let noise: f64 = StandardNormal.sample(&mut self.random);
-            let tension = tensions[tendon] + self.drift[tendon] + self.gauge_noise * noise;
+            let shown = self.gauge_gain[tendon] * tensions[tendon] + self.gauge_offset[tendon];
+            let tension = shown + self.drift[tendon] + self.gauge_noise * noise;
             let counts = tension / self.newton_per_count[tendon] + self.gauge_zero[tendon];
             let counts = counts.round().clamp(0.0, GAUGE_FULL_SCALE) as u16;
             self.dead[tendon].unwrap_or(counts)

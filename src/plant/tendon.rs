@@ -1,10 +1,13 @@
-//! The four tendons: one-sided springs between the pulleys of the motors and the joints.
+//! The four tendons: one-sided springs between the pulleys of the motors and the joints, which may rub, harden and
+//! creep.
 
+use super::capstan::{Capstans, Contacts, SectionTensions};
+use super::tendon_section::Elasticity;
 use crate::model::TendonsError;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
-/// Springs t = k max(0, r m - R^T theta + t_home / k). The motor angles are zero at theta = 0 with the homing
+/// Springs with the stretch r m - R^T theta + home stretch. The motor angles are zero at theta = 0 with the homing
 /// pretension.
 #[derive(Clone, Debug)]
 pub(super) struct ElasticTendons {
@@ -12,8 +15,11 @@ pub(super) struct ElasticTendons {
     r: Matrix3x4<f64>,
     /// Radii of the motor pulleys, m.
     pub radius: Vector4<f64>,
-    /// Stiffness, N/m.
-    stiffness: Vector4<f64>,
+    elasticity: [Elasticity; 4],
+    /// Friction in conduits and on pulleys, if there is any.
+    friction: Option<Capstans>,
+    /// Contacts of the tendons with conduits and pulleys, if there is friction.
+    contacts: [Contacts; 4],
     /// Stretch at motor angle zero and theta = 0, m.
     home_stretch: Vector4<f64>,
     /// Torn tendons, which have no tension.
@@ -22,26 +28,86 @@ pub(super) struct ElasticTendons {
     grip: Vector4<f64>,
     /// Length that slipping has added to each tendon, m.
     slipped: Vector4<f64>,
+    /// Part of the elastic stretch that creep adds in the long run.
+    creep: f64,
+    /// Time constant of the creep, s.
+    creep_time: f64,
+    /// Length that creep has added to each tendon, m.
+    crept: Vector4<f64>,
+}
+
+/// The tensions of the four tendons in their three sections, N.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TendonTensions {
+    /// At the motor, before the friction of the conduit.
+    pub motor: Vector4<f64>,
+    /// At the gauge.
+    pub gauge: Vector4<f64>,
+    /// At the joint, after the friction of the pulleys.
+    pub joint: Vector4<f64>,
 }
 
 impl ElasticTendons {
-    pub fn new(finger: &ConfiguredFinger) -> Result<Self, TendonsError> {
-        let tendons = finger.tendons()?;
-        let stiffness = Vector4::from(finger.simulation.tendon_stiffness) * 100.0;
-        Ok(Self {
+    /// Constructs tendons with the joints at `theta`, rad, and the homing pretension in every section.
+    pub fn new(finger: &ConfiguredFinger, theta: &Vector3<f64>) -> Result<Self, TendonsError> {
+        let tendons = finger.true_tendons()?;
+        let simulation = &finger.simulation;
+        let stiffness = Vector4::from(simulation.tendon_stiffness) * 100.0;
+        let elasticity: [Elasticity; 4] = std::array::from_fn(|tendon| {
+            Elasticity::new(stiffness[tendon], simulation.hardening, finger.tendon.maximum)
+        });
+        let home = tendons.pretension(finger.tendon.minimum);
+        let mut this = Self {
             r: tendons.r * 0.01,
             radius: tendons.radius * 0.01,
-            home_stretch: tendons.pretension(finger.tendon.minimum).component_div(&stiffness),
-            stiffness,
+            home_stretch: Vector4::from_fn(|tendon, _| elasticity[tendon].stretch(home[tendon])),
+            elasticity,
+            friction: Capstans::new(simulation.conduit_friction, simulation.pulley_friction),
+            contacts: Default::default(),
             cut: [false; 4],
             grip: Vector4::repeat(f64::INFINITY),
             slipped: Vector4::zeros(),
-        })
+            creep: simulation.creep,
+            creep_time: simulation.creep_time,
+            crept: Vector4::zeros(),
+        };
+        let motor = this.motor_angles_at(theta);
+        this.contacts = std::array::from_fn(|tendon| {
+            let (motor, joint) = this.ends(tendon, theta, &motor);
+            Capstans::relaxed(motor + this.rest_stretch(tendon), joint)
+        });
+        this.crept = this.lasting_creep(theta, &motor);
+        this.home_stretch += this.crept;
+        Ok(this)
     }
 
-    /// Returns the tensions, N, at joint angles and motor angles, rad. The tension of a slack tendon is zero.
-    pub fn tensions(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> Vector4<f64> {
-        self.stretch(theta, motor).component_mul(&self.stiffness)
+    /// Lets the tendons creep and slip for `seconds` at these joint and motor angles, rad.
+    pub fn lengthen(&mut self, theta: &Vector3<f64>, motor: &Vector4<f64>, seconds: f64) {
+        if self.creep > 0.0 {
+            self.crept += (self.lasting_creep(theta, motor) - self.crept) * (seconds / self.creep_time);
+        }
+        self.slip(theta, motor);
+    }
+
+    /// Lets the tendons slide in their conduits and on their pulleys, as far as these angles, rad, force them to.
+    pub fn slide(&mut self, theta: &Vector3<f64>, motor: &Vector4<f64>) {
+        let Some(friction) = self.friction else { return };
+        for tendon in 0..4 {
+            let (motor, joint) = self.ends(tendon, theta, motor);
+            let wound = motor + self.rest_stretch(tendon);
+            friction.slide(&mut self.contacts[tendon], &self.elasticity[tendon], wound, joint);
+        }
+    }
+
+    /// Returns the tensions at joint angles and motor angles, rad. The tension of a slack tendon is zero.
+    pub fn tensions(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> TendonTensions {
+        let sections: [SectionTensions; 4] = std::array::from_fn(|tendon| self.sections(tendon, theta, motor));
+        let of = |part: fn(&SectionTensions) -> f64| Vector4::from_fn(|tendon, _| part(&sections[tendon]));
+        TendonTensions {
+            motor: of(|tension| tension.motor),
+            gauge: of(|tension| tension.gauge),
+            joint: of(|tension| tension.joint),
+        }
     }
 
     /// Tears a tendon, 0 to 3.
@@ -54,23 +120,14 @@ impl ElasticTendons {
         self.grip[tendon] = grip;
     }
 
-    /// Restores all tendons to their initial state.
+    /// Repairs torn and slipping tendons.
     pub fn restore(&mut self) {
         self.cut = [false; 4];
         self.grip = Vector4::repeat(f64::INFINITY);
         self.slipped = Vector4::zeros();
     }
 
-    /// Makes each tendon slip if its tension exceeds its grip.
-    pub fn slip(&mut self, theta: &Vector3<f64>, motor: &Vector4<f64>) {
-        if self.grip.min() == f64::INFINITY {
-            return;
-        }
-        let beyond = (self.tensions(theta, motor) - self.grip).map(|beyond| beyond.max(0.0));
-        self.slipped += beyond.component_div(&self.stiffness);
-    }
-
-    /// Returns tau = R t, eq. 13, N m.
+    /// Returns tau = R t, eq. 13, N m, from the tensions at the joints, N.
     pub fn joint_torque(&self, tensions: &Vector4<f64>) -> Vector3<f64> {
         self.r * tensions
     }
@@ -82,12 +139,56 @@ impl ElasticTendons {
 
     /// Returns the elastic energy, J.
     pub fn energy(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> f64 {
-        let stretch = self.stretch(theta, motor);
-        0.5 * self.stiffness.dot(&stretch.component_mul(&stretch))
+        let of = |tendon: usize| {
+            let (motor, joint) = self.ends(tendon, theta, motor);
+            let elasticity = &self.elasticity[tendon];
+            match self.friction {
+                _ if self.cut[tendon] => 0.0,
+                Some(_) => self.contacts[tendon].energy(elasticity, motor + self.rest_stretch(tendon), joint),
+                None => elasticity.energy(motor - joint + self.rest_stretch(tendon)),
+            }
+        };
+        (0..4).map(of).sum()
     }
 
-    fn stretch(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> Vector4<f64> {
-        let stretch = self.radius.component_mul(motor) - self.r.tr_mul(theta) + self.home_stretch - self.slipped;
-        Vector4::from_fn(|tendon, _| if self.cut[tendon] { 0.0 } else { stretch[tendon].max(0.0) })
+    /// Makes each tendon slip if its tension exceeds its grip.
+    fn slip(&mut self, theta: &Vector3<f64>, motor: &Vector4<f64>) {
+        if self.grip.min() == f64::INFINITY {
+            return;
+        }
+        let tensions = self.tensions(theta, motor).gauge;
+        for tendon in 0..4 {
+            let beyond = (tensions[tendon] - self.grip[tendon]).max(0.0);
+            self.slipped[tendon] += beyond / self.elasticity[tendon].local_stiffness(tensions[tendon]);
+        }
+    }
+
+    /// Returns the length that creep adds in the long run at the present stretch, m.
+    fn lasting_creep(&self, theta: &Vector3<f64>, motor: &Vector4<f64>) -> Vector4<f64> {
+        let tensions = self.tensions(theta, motor).gauge;
+        Vector4::from_fn(|tendon, _| self.creep * self.elasticity[tendon].stretch(tensions[tendon]))
+    }
+
+    fn sections(&self, tendon: usize, theta: &Vector3<f64>, motor: &Vector4<f64>) -> SectionTensions {
+        let elasticity = &self.elasticity[tendon];
+        let (wound, joint) = self.ends(tendon, theta, motor);
+        match self.friction {
+            _ if self.cut[tendon] => SectionTensions { motor: 0.0, gauge: 0.0, joint: 0.0 },
+            Some(_) => self.contacts[tendon].tensions(elasticity, wound + self.rest_stretch(tendon), joint),
+            None => {
+                let tension = elasticity.tension(wound - joint + self.rest_stretch(tendon));
+                SectionTensions { motor: tension, gauge: tension, joint: tension }
+            }
+        }
+    }
+
+    /// Returns how far the motor has wound a tendon in and how far the joints have drawn it out, m.
+    fn ends(&self, tendon: usize, theta: &Vector3<f64>, motor: &Vector4<f64>) -> (f64, f64) {
+        (self.radius[tendon] * motor[tendon], self.r.column(tendon).dot(theta))
+    }
+
+    /// Returns the stretch of a tendon at motor angle zero and theta = 0, m.
+    fn rest_stretch(&self, tendon: usize) -> f64 {
+        self.home_stretch[tendon] - self.slipped[tendon] - self.crept[tendon]
     }
 }

@@ -4,7 +4,7 @@
 use super::growth;
 use crate::control::{Activity, Controller, Feedback, Law, Measured, Report, SetPoint, State, TensionDistribution};
 use crate::model::Tendons;
-use crate::model::configuration::{ConfiguredFinger, Unusable};
+use crate::model::configuration::{ConfiguredFinger, ConfiguredSimulation, Unusable};
 use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 use nalgebra::{DVector, Matrix3, Vector3, Vector4};
 
@@ -201,18 +201,19 @@ fn matching_simulation(finger: &ConfiguredFinger) -> ConfiguredFinger {
     finger.friction.motor_coulomb = [0.0; 4];
     finger.friction.conduit = [0.0; 4];
     finger.friction.joint_coulomb = [0.0; 3];
-    let simulation = &mut finger.simulation;
-    simulation.masses = finger.links.masses;
-    simulation.link_radii = finger.links.radii;
-    simulation.tendon_stiffness = finger.tendon.stiffness;
-    simulation.rotor_inertia = finger.motor.inertia;
-    simulation.motor_viscous_friction = finger.motor.viscous_friction;
-    simulation.joint_viscous_friction = finger.friction.joint_viscous.map(|friction| friction * 0.01);
-    simulation.joint_coulomb_friction = [0.0; 3];
-    simulation.motor_coulomb_friction = [0.0; 4];
-    simulation.conduit_friction = 0.0;
-    simulation.motor_constant_ratio = [1.0; 4];
-    simulation.gauge_noise = 0.0;
-    simulation.surface = None;
+    finger.simulation = ConfiguredSimulation {
+        masses: finger.links.masses,
+        link_radii: finger.links.radii,
+        tendon_stiffness: finger.tendon.stiffness,
+        rotor_inertia: finger.motor.inertia,
+        motor_viscous_friction: finger.motor.viscous_friction,
+        joint_viscous_friction: finger.friction.joint_viscous.map(|friction| friction * 0.01),
+        joint_coulomb_friction: [0.0; 3],
+        motor_coulomb_friction: [0.0; 4],
+        shaft_friction: 0.0,
+        gauge_noise: 0.0,
+        stop_margin_degrees: finger.simulation.stop_margin_degrees,
+        ..ConfiguredSimulation::default()
+    };
     finger
 }

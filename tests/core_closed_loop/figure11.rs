@@ -16,7 +16,7 @@ fn frictionless(ratio: [f64; 4]) -> ConfiguredFinger {
     let mut finger = finger();
     finger.simulation.joint_coulomb_friction = [0.0; 3];
     finger.simulation.motor_coulomb_friction = [0.0; 4];
-    finger.simulation.conduit_friction = 0.0;
+    finger.simulation.shaft_friction = 0.0;
     finger.simulation.motor_constant_ratio = ratio;
     finger
 }

@@ -212,6 +212,16 @@ impl ConfiguredFinger {
         Tendons::new(self.r(), Vector4::from(self.geometry.motor_radius), ghost)
     }
 
+    /// Returns the tendons of the simulated finger, with their true moment arms.
+    ///
+    /// # Errors
+    /// Returns an error if tendons with these moment arms cannot hold the finger.
+    pub fn true_tendons(&self) -> Result<Tendons, TendonsError> {
+        let ratios = &self.simulation.moment_arm_ratio;
+        let r = Matrix3x4::from_fn(|joint, tendon| self.geometry.r[joint][tendon] * ratios[joint][tendon]);
+        Tendons::new(r, Vector4::from(self.geometry.motor_radius), self.geometry.ghost_row.map(RowVector4::from))
+    }
+
     /// Returns the initial Kx, N/cm.
     #[must_use]
     pub fn initial_stiffness(&self) -> Matrix3<f64> {

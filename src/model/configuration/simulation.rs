@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct ConfiguredSimulation {
     /// Masses of links 0, 1, 2 and of the tip, kg.
     pub masses: [f64; 4],
+    /// Mass of an object that the tip holds, kg.
+    pub held_mass: f64,
     /// Radii of the links, m. The links are uniform cylinders.
     pub link_radii: [f64; 3],
     /// Viscous friction of each joint, N m s/rad.
@@ -25,11 +27,40 @@ pub struct ConfiguredSimulation {
     pub motor_viscous_friction: [f64; 4],
     /// Coulomb friction of each motor, N m.
     pub motor_coulomb_friction: [f64; 4],
-    /// Conduit friction: the fraction of the tension torque that is added to the motor's Coulomb friction.
+    /// Friction of each motor shaft: the fraction of the tension torque that is added to the motor's Coulomb friction.
+    pub shaft_friction: f64,
+    /// Friction of each conduit, between motor and gauge: the largest difference between the tensions on its two
+    /// sides, as a fraction of the smaller one.
     pub conduit_friction: f64,
+    /// Friction of the pulleys of each tendon, between gauge and joint, as a fraction of the tension.
+    pub pulley_friction: f64,
+    /// Static friction of motors and joints, divided by their Coulomb friction. It falls to the Coulomb friction as
+    /// the speed rises (Stribeck curve).
+    pub stiction_ratio: f64,
+    /// Hardening h of the tendons, 0 to 0.9. The local stiffness is (1 - h) `tendon_stiffness` without tension, and
+    /// rises in proportion to the tension to (1 + h) `tendon_stiffness` at `tendon.maximum`.
+    pub hardening: f64,
+    /// Creep of the tendons: the part of the elastic stretch that is added in the long run.
+    pub creep: f64,
+    /// Time constant of the creep, s.
+    pub creep_time: f64,
+    /// True moment arms divided by `geometry.r`, entry by entry.
+    pub moment_arm_ratio: [[f64; 4]; 3],
     /// True motor torque divided by the commanded torque. It is 1 for a motor with the torque constant of its data
     /// sheet.
     pub motor_constant_ratio: [f64; 4],
+    /// Ripple of the motor torque, as a fraction of the torque. It has seven periods in a revolution.
+    pub torque_ripple: f64,
+    /// Time constant of the amplifiers' first-order lag, ms.
+    pub amplifier_lag_ms: f64,
+    /// Dead time between a command and the torque, in addition to that of the board, ms.
+    pub command_delay_ms: f64,
+    /// Tension that each gauge shows, divided by the true one.
+    pub gauge_gain_ratio: [f64; 4],
+    /// Error of each gauge that does not depend on the tension, N.
+    pub gauge_offset: [f64; 4],
+    /// Cut-off frequency of the gauges' first-order low-pass, Hz. 0: no low-pass.
+    pub gauge_bandwidth: f64,
     /// Noise of the strain gauges, N rms.
     pub gauge_noise: f64,
     /// Distance of the mechanical stops beyond the soft limits, degrees.
@@ -71,6 +102,7 @@ impl Default for ConfiguredSimulation {
     fn default() -> Self {
         Self {
             masses: [0.060, 0.045, 0.025, 0.005],
+            held_mass: 0.0,
             link_radii: [0.009, 0.008, 0.007],
             joint_viscous_friction: [5e-4; 3],
             joint_coulomb_friction: [0.5e-3; 3],
@@ -78,8 +110,21 @@ impl Default for ConfiguredSimulation {
             rotor_inertia: [6e-7; 4],
             motor_viscous_friction: [2e-6; 4],
             motor_coulomb_friction: [0.7e-3; 4],
-            conduit_friction: 0.05,
+            shaft_friction: 0.05,
+            conduit_friction: 0.0,
+            pulley_friction: 0.0,
+            stiction_ratio: 1.0,
+            hardening: 0.0,
+            creep: 0.0,
+            creep_time: 30.0,
+            moment_arm_ratio: [[1.0; 4]; 3],
             motor_constant_ratio: [1.0; 4],
+            torque_ripple: 0.0,
+            amplifier_lag_ms: 0.0,
+            command_delay_ms: 0.0,
+            gauge_gain_ratio: [1.0; 4],
+            gauge_offset: [0.0; 4],
+            gauge_bandwidth: 0.0,
             gauge_noise: 0.03,
             stop_margin_degrees: 3.0,
             start_degrees: [0.0, 30.0, 60.0],
