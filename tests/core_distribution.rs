@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3x4, RowVector4, Vector3, Vector4};
 use proptest::prelude::*;
-use sun2xp::control::{Controller, JointStiffness, SetPoint, TensionDistribution};
+use sun2xp::control::{Controller, JointStiffness, Law, SetPoint, TensionDistribution};
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::model::{Links, Tendons, TendonsError};
 
@@ -122,7 +122,8 @@ proptest! {
         let links = Links([3.556, 5.080, 4.000]);
         let (theta, away, rates) = (Vector3::from(theta), Vector3::from(away), Vector3::from(rates));
         let root = nalgebra::Matrix3::from_row_slice(&root);
-        let set_point = SetPoint::hard_finger(theta + away, root * root.transpose());
+        let hard_finger = SetPoint::hard_finger(theta + away, root * root.transpose());
+        let set_point = SetPoint { law: Law::Report, ..hard_finger };
         let law = JointStiffness::new(links, 0.02);
         let jacobian = links.jacobian(&theta);
         let expected = jacobian.transpose() * (root * root.transpose() * (jacobian * away));

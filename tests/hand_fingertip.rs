@@ -36,7 +36,9 @@ fn taken_in(hand: &Hand, finger: i32) {
 
 #[test]
 fn a_tip_moves_to_its_set_point_and_reports_its_force() {
-    let hand = open(Configuration::default());
+    let mut configuration = Configuration::default();
+    configuration.fingers[1].controller.law = Law::Report;
+    let hand = open(configuration);
     let wanted = Vector3::new(1.0, -6.0, 8.0);
     hand.send_tip(2, wanted.into()).expect("sent");
     until("the tip arrives", || (Vector3::from(tip(&hand, 2).tip) - wanted).norm() < 0.1);
@@ -59,13 +61,13 @@ fn a_tip_moves_to_its_set_point_and_reports_its_force() {
 #[test]
 fn the_configured_law_is_that_of_joint_set_points() {
     let mut configuration = Configuration::default();
-    configuration.fingers[0].controller.law = Law::Exact;
+    configuration.fingers[0].controller.law = Law::Report;
     let hand = open(configuration);
-    assert_eq!([1, 2].map(|finger| hand.report(finger).expect("report").set_point.law), [Law::Exact, Law::Report]);
-    hand.adjust(2, "controller.law = 'exact'").expect("adjusted");
+    assert_eq!([1, 2].map(|finger| hand.report(finger).expect("report").set_point.law), [Law::Report, Law::Exact]);
+    hand.adjust(2, "controller.law = 'report'").expect("adjusted");
     hand.send_position(2, [0.2, 0.6, 1.1]).expect("sent");
     taken_in(&hand, 2);
-    assert_eq!(hand.report(2).expect("report").set_point.law, Law::Exact);
+    assert_eq!(hand.report(2).expect("report").set_point.law, Law::Report);
 }
 
 #[test]

@@ -16,7 +16,7 @@ use parameters::{Gains, Parameters};
 use recorded_run::{CYCLES, CYCLES_A_SET_POINT, RATE, Recording, lost};
 use std::error::Error;
 use std::hint::black_box;
-use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+use sun2xp::model::configuration::{ConfiguredFinger, Law, Scheme};
 
 /// Number of times that each side repeats the recorded run.
 const ROUNDS: usize = 301;
@@ -30,6 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let gains = Gains::new(scheme);
         let mut finger = ConfiguredFinger::default();
         finger.controller.scheme = Some(scheme);
+        finger.controller.law = Law::Report;
         gains.configure(&mut finger);
         let parameters = Parameters::new(&finger, &gains, RATE)?;
         let recording = Recording::new(finger)?;

@@ -60,7 +60,10 @@ impl Recording {
         plant.release_brake();
         let set_points: Vec<SetPoint> = SET_POINTS
             .iter()
-            .map(|&(joints, stiffness)| SetPoint::hard_finger(joints.into(), STIFFNESS * stiffness))
+            .map(|&(joints, stiffness)| SetPoint {
+                law: finger.controller.law,
+                ..SetPoint::hard_finger(joints.into(), STIFFNESS * stiffness)
+            })
             .collect();
         let activities: Vec<Activity> = set_points.iter().copied().map(Activity::Follow).collect();
         let (mut feedback, mut torques, mut reports) = (Vec::new(), Vec::new(), Vec::new());

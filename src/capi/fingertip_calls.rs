@@ -40,9 +40,9 @@ pub struct FingerTip {
 ///
 /// From the next cycle on the anchor of the fingertip's spring moves to Tip, along a straight line in
 /// joint angles and at a bounded speed. The stiffness is the one sent last. When the anchor is at Tip
-/// and p is the position of the fingertip, the force is Kx (Tip - p) at any distance. SendPos by
-/// default uses the law of the report, which holds for small distances. If several joint solutions are
-/// within the joint limits, the call takes the one nearest to the present pose.
+/// and p is the position of the fingertip, the force is Kx (Tip - p) at any distance, whatever the
+/// configured controller.law. If several joint solutions are within the joint limits, the call takes
+/// the one nearest to the present pose.
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child

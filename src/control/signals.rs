@@ -40,10 +40,10 @@ pub struct SetPoint {
 
 impl SetPoint {
     /// Returns the set point of a hard finger, which has a spring with three dimensions. `stiffness` is Kx, N/cm. The
-    /// law is that of the report, and the relative damping is 1.
+    /// law is the exact one, and the relative damping is 1.
     pub fn hard_finger(joints: Vector3<f64>, stiffness: Matrix3<f64>) -> Self {
         let stiffness = spatial(&stiffness);
-        Self { joints, law: Law::Report, stiffness, damping: 1.0 }
+        Self { joints, law: Law::Exact, stiffness, damping: 1.0 }
     }
 }
 

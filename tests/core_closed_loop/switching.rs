@@ -14,8 +14,8 @@ fn isotropic(stiffness: f64) -> SetPoint {
 
 /// Name, set point before and after, and whether the finger is moving.
 fn switches() -> Vec<(&'static str, SetPoint, SetPoint, bool)> {
-    let report = isotropic(3.0);
-    let exact = SetPoint { law: Law::Exact, ..report };
+    let exact = isotropic(3.0);
+    let report = SetPoint { law: Law::Report, ..exact };
     let stiff = |contact: Result<Contact, _>| SetPoint { stiffness: *contact.expect("a spring").stiffness(), ..exact };
     let soft_finger = stiff(Contact::soft_finger(
         Matrix4::from_diagonal(&Vector4::new(3.0, 2.0, 1.0, 20.0)),

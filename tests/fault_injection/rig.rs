@@ -5,7 +5,6 @@ use nalgebra::{Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::board::{Link, PortError, Terms, Transport};
-use sun2xp::control::Law;
 use sun2xp::finger::{Fault, FingerReport, ReleasedLink, RepairedLink, Stage, stop_calls};
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::realtime::Clock;
@@ -199,7 +198,7 @@ impl Bench {
         if self.now() >= self.next_target {
             let within = |bench: &mut Self, low: f64, high: f64| bench.random(low, high).to_radians();
             let joints = Vector3::new(within(self, -30.0, 30.0), within(self, -10.0, 70.0), within(self, 30.0, 100.0));
-            let sent = self.served.mailbox.send(|set_point| (set_point.joints, set_point.law) = (joints, Law::Report));
+            let sent = self.served.mailbox.send(|set_point| set_point.joints = joints);
             assert!(sent.is_ok() || self.fault().is_some());
             let pause = self.random(200.0, 800.0) as u64;
             self.next_target = self.now() + pause * MILLISECOND;

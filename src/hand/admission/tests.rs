@@ -21,7 +21,7 @@ fn admission(out_of_range: OutOfRange) -> Admission {
             lever: 4.0,
             out_of_range,
         },
-        law: Law::Report,
+        law: Law::default(),
         out_of_range,
     }
 }

@@ -26,10 +26,10 @@ pub enum Scheme {
 #[non_exhaustive]
 pub enum Law {
     /// tau = J^T Kx J (theta_d - theta), eqs. 3 and 6. It is a spring for small deflections.
-    #[default]
     Report,
     /// tau = J^T Kx (x_d - x). It is a spring at any deflection, but does not distinguish two joint solutions with the
     /// tip at x_d.
+    #[default]
     Exact,
 }
 
