@@ -83,8 +83,8 @@ fn a_limit_beyond_the_boards_is_refused() {
     assert_eq!(sent.expect("good terms").torque_limits, [23_750; 4]);
 }
 
-/// The page allows a shortest watchdog of up to 20 ms. Such a board works with the default, but no board gets more than
-/// the default unasked.
+/// The page allows a shortest watchdog time of up to 20 ms. A board that needs more than the configured time gets its
+/// shortest time, and every other board gets the configured time. Beyond 20 ms, the configuration must permit it.
 #[test]
 fn a_board_gets_the_shortest_watchdog_that_it_can_keep() {
     let terms = terms(4.75, 1.0, 2.34);

@@ -59,7 +59,7 @@ fn compile(folder: &Path) -> PathBuf {
     program
 }
 
-/// A running board. It is ended with the test, even with one that fails.
+/// A running board. Dropping it kills its process, so the process ends even if the test fails.
 struct Board {
     process: Child,
     output: BufReader<ChildStdout>,

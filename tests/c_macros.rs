@@ -111,8 +111,8 @@ fn every_word_of_c_may_be_a_macro() {
     );
 }
 
-/// Macros that stay defined during the planner's calls: those of planners for compilers that lack a word, and those
-/// that turn every `float` into `double`.
+/// Macros named like words of C that stay defined during the planner's calls. Planners use such macros to remove words
+/// that a compiler does not know, such as `const`, or to turn every `float` into `double`.
 #[test]
 fn calls_compile_where_words_of_c_are_macros() {
     let bench = Bench::new();

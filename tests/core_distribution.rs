@@ -40,7 +40,8 @@ proptest! {
         let torque = Vector3::from(direction) * size;
         let distribution = TensionDistribution::new(&tendons, MINIMUM, Vector4::repeat(MAXIMUM)).unwrap();
         let found = distribution.below(&limits.into()).distribute(&torque);
-        // A motor that is too weak for the pretension transmits no torque that needs more of it.
+        // The bound of a tendon is never below its pretension. So a motor that is too weak for the pretension permits
+        // only torques that need no more tension than the pretension from it.
         let bounds = Vector4::from(limits).inf(&Vector4::repeat(MAXIMUM)).sup(&tendons.pretension(MINIMUM));
         let within = |tensions: &Vector4<f64>, tolerance: f64| (tensions - bounds).max() <= tolerance;
         prop_assert!((tendons.r * found.tensions - torque * found.scale).amax() < 1e-9 * (1.0 + size));
@@ -60,9 +61,9 @@ proptest! {
             }
             low
         };
-        // A tension is a sum of four products of at most 300 N, each rounded by a relative 1e-16. Where a tension
-        // hardly changes with the scale, this rounding shifts the scale by much. The tolerance is therefore one of
-        // tension, and bounds the scale from both sides.
+        // A tension is a sum of four products of at most 300 N, each with a relative rounding error of 1e-16. If a
+        // tension hardly depends on the scale, these errors change the largest scale a lot. So the tolerance applies to
+        // the tensions: the search with lower and with higher bounds of the tensions gives a range of scales.
         let rounding = 1e-14 * (100.0 + size);
         let (lowest, highest) = (largest(-rounding), largest(rounding));
         // The bisection itself ends with an interval of 1e-18.

@@ -108,7 +108,7 @@ fn an_adjustment_takes_effect_completely_or_not_at_all() {
     taken_in(&hand, 1);
     assert_eq!(hand.report(1).expect("report").set_point, before.set_point);
     assert!(hand.report(1).expect("report").cycle.desired_tensions.min() > 9.0 - 1e-9);
-    // Softer tendons support the present stiffness with less damping only.
+    // Softer tendons reduce the largest damping ratio that the present stiffness admits.
     hand.adjust(1, "controller.scheme = 'state feedback'").expect("adjusted");
     hand.send_damping(1, 1.8).expect("sent");
     let damped = hand.adjust(1, "tendon.stiffness = [150, 150, 150, 150]");

@@ -24,8 +24,8 @@ fn a_test_that_needs_clang() {
     }
 }
 
-/// A program cannot be started while a process that was forked meanwhile still has it open for writing, so the tests
-/// take turns.
+/// Held by one test at a time. A child that one test forks while another test writes a program inherits the open file,
+/// and a program that is open for writing cannot be started.
 static TURN: Mutex<()> = Mutex::new(());
 
 /// Runs `a_test_that_needs_clang` in an environment without any program.

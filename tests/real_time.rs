@@ -14,8 +14,8 @@ use sun2xp::model::configuration::{Configuration, RealTime};
 
 #[test]
 fn real_time_that_is_ignored_gives_no_warning() {
-    // Takes the turn of a bench and a slow rate, because a thread without real time waits for all other threads of the
-    // machine.
+    // Keeps other tests from running by holding a bench, and uses a low rate, because a thread without real time waits
+    // for all other threads of the machine.
     let _turn = Bench::new();
     let mut configuration = Configuration::default();
     (configuration.hand.real_time, configuration.hand.rate) = (RealTime::Ignore, 500.0);

@@ -51,8 +51,8 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     let hand = Hand::open(Configuration::default()).expect("the simulated hand");
     assert!(BY_SERVOS.load(Relaxed) > 0, "starting a thread allocates: the counter must see it");
     let before = BY_SERVOS.load(Relaxed);
-    // Begins with empty black boxes and lasts until they are full: when memory has run out, an allocation would end the
-    // process.
+    // This part begins with empty black boxes and lasts until they are full. Storing a record must never allocate: when
+    // memory has run out, an allocation would end the process.
     let reports_before = BY_REPORTS.load(Relaxed);
     assert!(reports_before > 0, "the counter must see the thread that collects reports");
     let cycles = |finger| hand.report(finger).expect("a report").losses.cycles;

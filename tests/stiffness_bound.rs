@@ -31,8 +31,8 @@ fn the_default_finger_carries_its_documented_stiffness() {
 /// Rates from 500 to 5000 Hz. Most do not divide 10 kHz and are far from the rates for which gains were determined.
 const RATES: usize = 40;
 
-/// Poses at each rate, besides the pose that supports least. Their tips are at least 3 cm from the axis of joint 0,
-/// which supports nothing.
+/// Number of random poses at each rate. The pose that supports the least stiffness is tested in addition. The tips are
+/// at least 3 cm from the axis of joint 0, because no stiffness of a tip on this axis holds joint 0.
 const POSES: usize = 4;
 
 /// Tests the initial Kx of a finger and its default bound, each with the least damping, the controller's own and the
@@ -89,7 +89,8 @@ fn state_feedback_is_stable_at_every_rate() {
 
 #[test]
 fn the_map_is_that_of_the_requested_rate() {
-    // The map of a rate must not be that of the next lower rate that the usual plant step divides.
+    // The usual step of the plant, 100 us, does not divide the period of 740 Hz. The map must nevertheless not be that
+    // of a neighbouring rate whose period the step divides.
     let rest = Rest {
         joints: Vector3::new(0.1, 0.5, 1.0),
         deflection: Vector3::new(0.01, 0.01, 0.01),

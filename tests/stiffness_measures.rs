@@ -99,7 +99,8 @@ fn a_known_decay_shows_its_slowest_mode() {
     assert!(fits::growth(&vec![DVector::zeros(3); 100]).is_nan());
 }
 
-/// Two motions have no recurrence if only one of them meets an obstacle, and rounding errors satisfy any recurrence.
+/// The difference of two motions follows no linear recurrence if only one of them meets an obstacle. The mean change
+/// must then show whether the difference decays or grows.
 #[test]
 fn a_nonlinear_decay_is_not_taken_for_growth() {
     let mut bent = decay(&[(0.97, 0.2), (0.9, 0.7)], 200);

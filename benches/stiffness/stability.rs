@@ -125,7 +125,8 @@ pub fn growth(case: &Case, description: &ConfiguredFinger, sample: &Sample) -> O
             }
             let (a, b) = (&finger.plant, &displaced.plant);
             speeds.push(a.joint_rates().amax());
-            // Scales the differences to similar size, for a finger with a ratio of 1 to 20 and modes at 30 rad/s.
+            // Scales the three kinds of differences to similar size: a motor turns about 20 times as far as a joint,
+            // and the rate of a mode at 30 rad/s is 30 times its angle.
             let joints = (a.joints() - b.joints()) * 20.0;
             let rates = (a.joint_rates() - b.joint_rates()) * 0.7;
             let motors = a.motor_angles() - b.motor_angles();

@@ -17,7 +17,8 @@ void stuff(const uint8_t *bytes, size_t length, uint8_t *stuffed)
 
 size_t unstuff(const uint8_t *stuffed, size_t length, uint8_t *bytes, size_t room)
 {
-    /* Every stuffed byte except the first becomes one byte: the byte itself, or the zero to which its distance led. */
+    /* Every stuffed byte except the first gives one byte. A distance replaced a zero, so it becomes zero again. All
+       other bytes stay as they are. */
     if (length < 2 || length - 1 > room)
         return 0;
     size_t next_zero = stuffed[0];

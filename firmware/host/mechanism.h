@@ -1,5 +1,6 @@
-/* A finger for a board without one: four motors, each with an elastic tendon, and three joints whose inertias do not
-   couple. It builds up tension and settles, but it is no measure of how a real finger moves. */
+/* A simple simulated finger for a board that has no real one: four motors, each with an elastic tendon, and three
+   joints whose inertias do not couple. It builds up tension and settles, but it is no measure of how a real finger
+   moves. */
 
 #ifndef FIRMWARE_MECHANISM_H
 #define FIRMWARE_MECHANISM_H

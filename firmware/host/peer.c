@@ -130,7 +130,7 @@ static struct finger_traits traits_of(uint8_t address)
         made.torque_constants[i] = TORQUE_CONSTANT;
         made.largest_currents[i] = 2100000;
     }
-    /* Two peers may differ in nothing but their process. */
+    /* The process number makes the unique number different even for two peers with the same addresses. */
     pid_t process = getpid();
     memcpy(made.unique_number + 8, &process, 4);
     return made;

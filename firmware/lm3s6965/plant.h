@@ -5,8 +5,8 @@
    trap. A UART of the emulator transfers single bytes and took 1 ms for the same exchange.
 
    Request, in plant_to: u8 finger; u8 1 for a sample that a host requested, else 0; u16 0; u32 this timer, us; u32
-   arrival of the last frame, us; u32 when the currents were last set, us; 4 x i32 currents since the last request,
-   uA.
+   arrival of the last frame, us; u32 when the currents were last set, us; 4 x i32 present currents, uA. The plant
+   applies them to the whole time since the last request.
 
    Answer, in plant_from: 4 x i32 encoder counts; 4 x u16 gauge counts; u16 faults; u16 0. */
 

@@ -76,7 +76,7 @@ void wake_up_interrupt(void)
     *timer_interrupt_clear = 1;
 }
 
-/* Other interrupts may call this too: SysTick preempts the UART. */
+/* The UART's interrupt may call this too. SysTick has a higher priority and preempts it, so the rounds stay correct. */
 uint32_t timer_microseconds(void)
 {
     static volatile uint32_t latest;

@@ -26,7 +26,8 @@ fn succeed_while_the_board_dies(source: &str) {
     assert!(run.status.success(), "{}", said(&run));
 }
 
-/// With `release`, the tendons go slack however the planner ends, except for the friction of the motors.
+/// With `release`, the motors are without torque however the planner ends. Only the friction of the motors then keeps
+/// some tension in the tendons.
 #[test]
 fn a_planner_that_leaves_without_closing_lets_the_tendons_go() {
     let bench = Bench::new();

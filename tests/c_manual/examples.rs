@@ -8,8 +8,8 @@ use std::process::Command;
 /// The headers that chapter 9 names for examples that consist of statements.
 const INCLUDED: &[&str] = &["errno.h", "signal.h", "stdio.h", "stdlib.h", "unistd.h"];
 
-/// Statements before and after an example, which prepare it or check that it worked: the call that the example belongs
-/// to, and two statements.
+/// For some examples: the call that the example belongs to, statements that run before it to prepare it, and statements
+/// that run after it to check that it worked.
 const AROUND: &[(&str, &str, &str)] = &[
     (
         "StopHand",

@@ -31,8 +31,8 @@ fn the_calls_that_signal_handlers_may_make_are_named() {
     assert_eq!(sorted(between(&chapter, "A signal handler may call ", ", and no other")), sorted(safe));
 }
 
-/// The entries of the calls for double refer to the entries above them for the list. That of IdentifyFinger refers to
-/// ZeroFinger's.
+/// The entries of the calls for double and of IdentifyFinger have no list of errnos. The list of an earlier entry
+/// applies to them.
 #[test]
 fn the_calls_that_a_forked_child_may_make_are_named() {
     let manual = Manual::read();

@@ -121,7 +121,8 @@ fn the_model_keeps_its_estimate_while_tensions_carry_no_information() {
     assert!((stuck.estimate(2000, None) - before).abs() < 1e-3);
     assert!(stuck.estimate(100, Some(9.0)) < before - 0.05, "the model must learn again afterwards");
 
-    // A motor at its limit is commanded to the limit, so its estimate shows only when less is wanted.
+    // The command of a motor at its limit does not depend on the estimate. The command shows the estimate only when a
+    // smaller tension is wanted again.
     let mut weak = finger();
     weak.motor.torque_limit = [0.0475 * 30.0; 4];
     let (mut stuck, before) = learnt(&weak);

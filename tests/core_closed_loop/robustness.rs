@@ -57,7 +57,7 @@ fn a_jammed_motor_does_not_wind_up_the_integral() {
     let (command, report) = controller.cycle(&mut state, Some(&held), &there);
     let most = report.desired_tensions.imax();
     assert!((command.motor_torques[most] - limit).abs() < 1e-9);
-    // With more than the desired tension, the command leaves the limit in the very cycle that shows it.
+    // In the first cycle in which the gauge shows more than the desired tension, the command leaves the limit.
     let mut taut = held;
     taut.gauge_counts[most] = count(report.desired_tensions[most] + 20.0);
     let (command, _) = controller.cycle(&mut state, Some(&taut), &there);

@@ -91,7 +91,8 @@ fn no_switch_of_the_spring_jumps() {
     assert!(seen > 10.0, "an immediate switch must be visible: {seen} N");
 }
 
-/// A calibration takes over with a push that slackens the tendons, and tightens them after a rest.
+/// A calibration begins with a new controller whose first commands make the tendons slack. After a rest it tightens the
+/// tendons.
 #[test]
 fn a_push_in_the_cycle_of_a_take_over_is_not_repeated_later() {
     let finger = quiet(Scheme::StateFeedback);

@@ -30,7 +30,7 @@ pub fn build(folder: &Path) -> PathBuf {
     folder.join("lm3s6965.elf")
 }
 
-/// The running emulator. It is ended with the test, even with one that fails.
+/// The running emulator. Dropping it kills its process, so the process ends even if the test fails.
 pub struct Machine {
     process: Child,
     /// One port for all three fingers.
