@@ -1,5 +1,6 @@
 //! Finds the configuration file and converts it to a [`Configuration`]. Errors name the file, the line and the reason.
 
+mod named_hand;
 mod place;
 mod text;
 mod values;

@@ -2,6 +2,7 @@
 
 mod arrays;
 mod hostile;
+mod named_hands;
 mod reading;
 mod reference;
 mod sharing;

@@ -8,6 +8,7 @@ mod commands;
 mod finger_on_a_cable;
 mod floods;
 mod kinds;
+mod named_hands;
 mod opening;
 mod rig;
 mod set_points;

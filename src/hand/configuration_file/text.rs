@@ -1,5 +1,6 @@
 //! Conversion of the text of a configuration file to a [`Configuration`], or to an error with line and reason.
 
+use super::named_hand::add_named_values;
 use super::values::deserialize;
 use super::wrong::Wrong;
 use crate::hand::opening::check;
@@ -35,6 +36,7 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wron
         let mut merged = common.clone();
         overlay(&mut merged, &own);
         *port_named = merged.contains_key("port");
+        add_named_values(&mut merged).map_err(|wrong| wrong.in_key(&section))?;
         *finger = deserialize(&merged).map_err(|wrong| wrong.in_key(&section))?;
     }
 

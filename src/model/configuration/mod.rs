@@ -12,6 +12,8 @@ mod hand;
 mod joints;
 mod links;
 mod motor;
+mod named_hand;
+mod named_values;
 mod simulation;
 mod stiffness;
 mod tendon;
@@ -26,6 +28,7 @@ pub use hand::{ConfiguredHand, EndState, OnFault, OutOfRange, PeriodClock, RealT
 pub use joints::ConfiguredJoints;
 pub use links::ConfiguredLinks;
 pub use motor::ConfiguredMotor;
+pub use named_hand::NamedHand;
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use stiffness::ConfiguredStiffness;
 pub use tendon::ConfiguredTendon;

@@ -1,5 +1,6 @@
 //! Parameters for the physics of a simulated finger.
 
+use super::named_hand::NamedHand;
 use serde::{Deserialize, Serialize};
 
 /// The parameters of a simulated finger: `[finger.simulation]`. The defaults are plausible for a finger of this size
@@ -8,6 +9,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredSimulation {
+    /// The named hand whose values the keys have that a configuration file omits. In Rust, construct the values with
+    /// [`NamedHand::simulation`].
+    pub hand: NamedHand,
     /// Masses of links 0, 1, 2 and of the tip, kg.
     pub masses: [f64; 4],
     /// Mass of an object that the tip holds, kg.
@@ -101,6 +105,7 @@ pub enum Surface {
 impl Default for ConfiguredSimulation {
     fn default() -> Self {
         Self {
+            hand: NamedHand::Nominal,
             masses: [0.060, 0.045, 0.025, 0.005],
             held_mass: 0.0,
             link_radii: [0.009, 0.008, 0.007],
