@@ -211,6 +211,7 @@ impl ConfiguredFinger {
         each("links.radii", &self.links.radii, 1e-4, 1.0, "m")?;
         each("friction.motor_coulomb", &self.friction.motor_coulomb, 0.0, 1000.0, "N cm")?;
         each("friction.conduit", &self.friction.conduit, 0.0, 1.0, "")?;
+        each("friction.pulley", &self.friction.pulley, 0.0, 1.0, "")?;
         each("friction.joint_coulomb", &self.friction.joint_coulomb, 0.0, 1000.0, "N cm")?;
         each("friction.joint_viscous", &self.friction.joint_viscous, 0.0, 100.0, "N cm s/rad")
     }

@@ -12,6 +12,9 @@ pub struct ConfiguredFriction {
     pub motor_coulomb: [f64; 4],
     /// Conduit friction: the fraction of the tension torque that is added to `motor_coulomb`.
     pub conduit: [f64; 4],
+    /// Pulley friction of each tendon, between gauge and joint: the largest difference between the tensions on the two
+    /// sides, as a fraction of the smaller one. The gauges do not measure this friction.
+    pub pulley: [f64; 4],
     /// Coulomb friction of each joint, N cm.
     pub joint_coulomb: [f64; 3],
     /// Viscous friction of each joint, N cm s/rad.
@@ -20,6 +23,12 @@ pub struct ConfiguredFriction {
 
 impl Default for ConfiguredFriction {
     fn default() -> Self {
-        Self { motor_coulomb: [0.07; 4], conduit: [0.05; 4], joint_coulomb: [0.05; 3], joint_viscous: [0.05; 3] }
+        Self {
+            motor_coulomb: [0.07; 4],
+            conduit: [0.05; 4],
+            pulley: [0.0; 4],
+            joint_coulomb: [0.05; 3],
+            joint_viscous: [0.05; 3],
+        }
     }
 }
