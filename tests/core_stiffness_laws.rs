@@ -113,6 +113,41 @@ proptest! {
         prop_assert_eq!(law().spring(&point.into(), &desired), Vector3::zeros());
     }
 
+    /// Near the straight pose, where the spring that leads joint 2 through it begins and ends, the torque is continuous
+    /// in the angles of the anchor and of the finger.
+    #[test]
+    fn the_exact_law_has_no_jump_at_the_straight_pose(
+        theta in prop::array::uniform3(-0.3..0.3f64), desired in prop::array::uniform3(-0.3..0.3f64),
+        moves in prop::array::uniform6(-1e-7..1e-7f64),
+    ) {
+        let [mut theta, mut desired] = [theta, desired].map(Vector3::from);
+        let contact = Contact::hard_finger(Matrix3::identity() * 3.0).expect("a spring");
+        let torque = |theta: &Vector3<f64>, desired: Vector3<f64>| {
+            law().spring(&set_point(desired, &contact, Law::Exact).into(), theta)
+        };
+        // The straight pose is at zero.
+        for of_joint_2 in [(theta[2], desired[2]), (0.0, desired[2]), (theta[2], 0.0)] {
+            (theta[2], desired[2]) = of_joint_2;
+            let moved = [0, 3].map(|first| Vector3::from_row_slice(&moves[first..first + 3]));
+            let change = torque(&(theta + moved[0]), desired + moved[1]) - torque(&theta, desired);
+            prop_assert!(change.amax() < 1e-3, "{change}");
+        }
+    }
+
+    /// A joint 2 that is bent to the other side than the anchor is pushed toward the anchor, although the tip is there.
+    #[test]
+    fn the_other_joint_solution_is_not_at_rest(theta in theta()) {
+        prop_assume!(theta[2] > 0.2);
+        let [_, l1, l2] = LINKS.0;
+        // Mirrors joint 2 at the line from joint 1 to the tip.
+        let turned = 2.0 * (l2 * theta[2].sin()).atan2(l1 + l2 * theta[2].cos());
+        let other = Vector3::new(theta[0], theta[1] + turned, -theta[2]);
+        prop_assert!((LINKS.tip(&other) - LINKS.tip(&theta)).norm() < 1e-12);
+        let contact = Contact::hard_finger(Matrix3::identity() * 3.0).expect("a spring");
+        prop_assert!(law().spring(&set_point(other, &contact, Law::Exact).into(), &theta)[2] < -5.0);
+        prop_assert!(law().spring(&set_point(theta, &contact, Law::Exact).into(), &other)[2] > 5.0);
+    }
+
     /// Both laws agree for a small deflection, rotation included: their difference is of second order.
     #[test]
     fn both_laws_agree_to_first_order(

@@ -4,6 +4,7 @@ mod adjustment;
 mod behaviour;
 mod damping;
 mod figure11;
+mod joint_solutions;
 mod limits;
 mod rig;
 mod robustness;

@@ -2,7 +2,7 @@
 
 use crate::control::spring::spring_transition::Spring;
 use crate::model::Links;
-use nalgebra::{Matrix3, Matrix6, Matrix6x3, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Matrix6x3, Vector3};
 
 /// Stiffness Kx at which beta equals `rate_time`, N/cm.
 const REFERENCE_STIFFNESS: f64 = 3.0;
@@ -16,6 +16,15 @@ const LIMP_DAMPING: f64 = 0.2;
 /// axis reduces the joint's stiffness k r^2 by k d r. With a minimum lever of 5 mm, the joint is held at deflections of
 /// up to 5 mm.
 const LEAST_LEVER: f64 = 0.5;
+
+/// Angle of joint 2, rad, within which the finger counts as straight. It is below the lower limit of joint 2 of the
+/// default finger, 5 degrees.
+const STRAIGHT: f64 = 0.08;
+
+/// Stiffness of the joint spring that leads the finger through the straight pose, divided by the diagonal of K_theta.
+/// The joint spring has no coupling between the joints, so less than the whole diagonal keeps it within the stiffness
+/// that the pose supports.
+const LEADING: f64 = 0.5;
 
 /// tau = spring - z (B K_theta B + d) theta_dot, with K_theta = J^T K J, a diagonal B, a small d, and the relative
 /// damping z of the set point.
@@ -31,6 +40,10 @@ const LEAST_LEVER: f64 = 0.5;
 /// If the lever r of joint 0 is less than the minimum lever rho, joint 0 has an additional spring to theta_d with the
 /// stiffness n^T K n (rho^2 - r^2). n is the direction in which the joint moves the tip. The stiffness starts from zero
 /// at r = rho, and is zero if K has no stiffness along n.
+///
+/// The exact law does not distinguish the two joint solutions of a tip position, which bend joint 2 to opposite sides.
+/// While joint 2 is bent to the other side than in theta_d, a spring between the joint angles and theta_d therefore
+/// replaces the spring of the exact law. It has no singular pose, and leads the finger through the straight pose.
 #[derive(Clone, Debug)]
 pub struct JointStiffness {
     links: Links,
@@ -92,20 +105,13 @@ impl JointStiffness {
         PosedSpring { of: self, joints: *joints, exact, damping, stiffened, scale: 1.0, hold, k_theta }
     }
 
-    /// Returns the translation (cm) and the rotation vector (rad) from the tip's pose at `joints` to the pose at
-    /// `desired`.
+    /// Returns the rotation vector, rad, from the tip's pose at `joints` to the pose at `desired`.
     ///
     /// The rotation vector describes the complete rotation between the two poses. It is not J (theta_d - theta). Like
     /// x_d - x, it depends only on the two poses. So the deflection of the exact law is zero when the tip is at the
     /// desired pose, for any joint solution.
-    fn deflection(&self, desired: &Vector3<f64>, joints: &Vector3<f64>) -> Vector6<f64> {
-        let translation = self.links.tip(desired) - self.links.tip(joints);
-        let rotation = self.links.tip_rotation(desired) * self.links.tip_rotation(joints).inverse();
-        let rotation = rotation.scaled_axis();
-        let mut deflection = Vector6::zeros();
-        deflection.fixed_rows_mut::<3>(0).copy_from(&translation);
-        deflection.fixed_rows_mut::<3>(3).copy_from(&rotation);
-        deflection
+    fn rotation(&self, desired: &Vector3<f64>, joints: &Vector3<f64>) -> Vector3<f64> {
+        (self.links.tip_rotation(desired) * self.links.tip_rotation(joints).inverse()).scaled_axis()
     }
 }
 
@@ -123,6 +129,15 @@ fn hold(stiffness: &Matrix6<f64>, jacobian: &Matrix6x3<f64>) -> f64 {
     way.dot(&(stiffness.fixed_view::<3, 3>(0, 0) * way)) * lacking
 }
 
+/// Returns whether joint 2 is bent to the other side than `desired`: 0 if it is not, 1 if it is, and between them with
+/// either angle near the straight pose, so that the torque has no jump. Both angles are in rad.
+fn bent_to_the_other_side(desired: f64, joint: f64) -> f64 {
+    let bent = desired.abs().min(STRAIGHT);
+    // The finger has left the straight pose when it is halfway to `desired`, or to the limit of the straight pose.
+    let missing = 0.5 * bent - joint * desired.signum();
+    (missing / STRAIGHT).clamp(0.0, 1.0) * (bent / STRAIGHT)
+}
+
 impl PosedSpring<'_> {
     /// Scales the stiffness by `part`.
     pub fn soften(&mut self, part: f64) {
@@ -137,13 +152,29 @@ impl PosedSpring<'_> {
             torques += self.k_theta * (desired - self.joints) * (1.0 - self.exact);
         }
         if self.exact > 0.0 {
-            // K is symmetric: J^T K d = (K J)^T d.
-            let deflection = self.of.deflection(desired, &self.joints);
-            let mut exact = self.stiffened.tr_mul(&deflection);
+            let mut exact = self.force_torques(desired);
             exact[0] += self.hold * (desired[0] - self.joints[0]);
-            torques += exact * (self.scale * self.exact);
+            let other = bent_to_the_other_side(desired[2], self.joints[2]);
+            torques += exact * (self.scale * self.exact * (1.0 - other));
+            if other > 0.0 {
+                let leading = self.k_theta.diagonal().component_mul(&(desired - self.joints));
+                torques += leading * (LEADING * self.exact * other);
+            }
         }
         torques
+    }
+
+    /// Returns J^T K d, N cm, with the deflection d of the tip from its pose at `desired`, rad, before any scaling.
+    fn force_torques(&self, desired: &Vector3<f64>) -> Vector3<f64> {
+        // K is symmetric: J^T K d = (K J)^T d.
+        let translation = self.of.links.tip(desired) - self.of.links.tip(&self.joints);
+        let torques = self.stiffened.fixed_view::<3, 3>(0, 0).tr_mul(&translation);
+        let rotational = self.stiffened.fixed_view::<3, 3>(3, 0);
+        // Few contacts have a rotational stiffness, and the rotation is the most expensive part of the law.
+        if rotational.iter().all(|&entry| entry == 0.0) {
+            return torques;
+        }
+        torques + rotational.tr_mul(&self.of.rotation(desired, &self.joints))
     }
 
     /// Returns tau of the damper, N cm, at joint rates, rad/s. Its matrix is symmetric, positive definite, and

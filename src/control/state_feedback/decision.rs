@@ -114,14 +114,13 @@ impl StateFeedback {
         (limits, gravity): (&SoftLimits, &GravityCompensation),
     ) -> Vector3<f64> {
         let push = limits.push(&now.joints);
-        let k_theta =
-            self.joint_stiffness.joint_stiffness(spring, &now.joints) + Matrix3::from_diagonal(&push.stiffness);
-        let k_theta = k_theta * 0.01;
+        let posed = self.joint_stiffness.posed(spring, &now.joints);
+        let k_theta = (posed.k_theta + Matrix3::from_diagonal(&push.stiffness)) * 0.01;
         let apparent = self.apparent_motors + inertia;
         let damped = self.damped_motors + inertia;
         let damping = self.damping.damping(&damped, inertia, &k_theta, spring.damping);
         let joint_friction = self.joint_friction(state, &now.rates, &reference.rates, &damping);
-        let held = self.joint_stiffness.spring(spring, &now.joints) + push.torque + gravity.torques(&now.joints);
+        let held = posed.torques(&spring.joints) + push.torque + gravity.torques(&now.joints);
         held * 0.01 - damping * (now.rates - reference.rates)
             + apparent * reference.accelerations
             + self.dynamics.coriolis(&now.joints, &reference.rates)
