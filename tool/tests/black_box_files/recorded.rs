@@ -61,8 +61,10 @@ pub fn varied(recording: &Recording) -> Recording {
         Activity::Turn(pulls * 0.05),
         Activity::Release { ramp: 0.2 },
     ];
-    let followed = recording.cycles.last().and_then(|cycle| cycle.control).expect("a spring").input.activity;
-    // On a busy machine the servo sometimes waits for the simulated finger. Nothing is computed in such a cycle.
+    // On a busy machine the servo sometimes waits for the simulated finger. Nothing is computed in such a cycle, and it
+    // may be the last one.
+    let computed = recording.cycles.iter().rev().find_map(|cycle| cycle.control);
+    let followed = computed.expect("a spring").input.activity;
     varied.cycles.retain(|cycle| cycle.control.is_some());
     varied.cycles.truncate(activities.len() + 6);
     for (index, cycle) in varied.cycles.iter_mut().enumerate() {
