@@ -339,19 +339,20 @@ _Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"PushFinger\")") _Pragma
 _Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")") _Pragma("push_macro(\"ResetTiming\")")
 _Pragma("push_macro(\"SendContact\")") _Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendTip\")")
 _Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Stage\")")
-_Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"StiffnessScale\")")
-_Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")")
-_Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")") _Pragma("push_macro(\"Tip\")")
-_Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Value\")")
-_Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")") _Pragma("push_macro(\"WakeUpMedian\")")
-_Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")") _Pragma("push_macro(\"WarningValue\")")
-_Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pragma("push_macro(\"ZeroFinger\")")
-_Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")") _Pragma("push_macro(\"const\")")
-_Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")") _Pragma("push_macro(\"float\")")
-_Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")") _Pragma("push_macro(\"long\")")
-_Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")") _Pragma("push_macro(\"sizeof\")")
-_Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")") _Pragma("push_macro(\"typedef\")")
-_Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("push_macro(\"volatile\")")
+_Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"Stiffness\")")
+_Pragma("push_macro(\"StiffnessScale\")") _Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"Tension\")")
+_Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")")
+_Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")")
+_Pragma("push_macro(\"Value\")") _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")")
+_Pragma("push_macro(\"WakeUpMedian\")") _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")")
+_Pragma("push_macro(\"WarningValue\")") _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")")
+_Pragma("push_macro(\"ZeroFinger\")") _Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")")
+_Pragma("push_macro(\"const\")") _Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")")
+_Pragma("push_macro(\"float\")") _Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")")
+_Pragma("push_macro(\"long\")") _Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")")
+_Pragma("push_macro(\"sizeof\")") _Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")")
+_Pragma("push_macro(\"typedef\")") _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")")
+_Pragma("push_macro(\"volatile\")")
 #undef AdjustFinger
 #undef Answered
 #undef Calibration
@@ -411,6 +412,7 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Stage
 #undef State
 #undef StatusBits
+#undef Stiffness
 #undef StiffnessScale
 #undef StopHand
 #undef Tension
@@ -748,9 +750,11 @@ struct FingerStatus {
                                        stays 1. CloseHand and OpenHand lock the memory again. */
     int OnCore;                     /* 1: each servo thread with a configured core runs on that core. 0: at least one
                                        does not. */
-    double StiffnessScale;          /* Fraction of Kx in force in the last cycle, 0 to 1. It is below 1 in poses in
-                                       which the tendons cannot provide the whole Kx, for example near the straight
-                                       pose. */
+    double StiffnessScale;          /* Fraction of Kx in force in the last cycle, 0 to 1, with every controller and
+                                       law. It is below 1 in poses in which the tendons cannot provide the whole Kx,
+                                       for example near the straight pose, and for a joint beyond its limit, because
+                                       the spring of the limit needs a part of what the tendons provide. GetTip gives
+                                       the stiffness that results. */
 };
 
 /*
@@ -789,6 +793,10 @@ struct FingerTip {
                                        finger. It is never NaN, and is zero along directions that the joints cannot
                                        measure. */
     double Tensions[4];             /* Measured tendon tensions, N. */
+    double Stiffness[3][3];         /* Stiffness of the tip in its present pose, N/cm, row by row: the fraction of Kx
+                                       that is in force, plus what joint limits, nearness to the axis of joint 0 and
+                                       the rotational stiffness of a contact add. It is zero along directions that
+                                       the joints cannot measure, and while the finger is not running. */
 };
 
 /* Result of GetRecord: one cycle of a finger, from the black box. */
@@ -935,7 +943,7 @@ int ResetTiming(int);
 int SendTip(int, const double *);
 
 /*
- GetTip - read position and force of a fingertip, and the tendon tensions
+ GetTip - read position, force and stiffness of a fingertip, and the tendon tensions
 
      int GetTip(int i, struct FingerTip *Tip);
 
@@ -1357,7 +1365,7 @@ int RecoverHand(int);
 #ifdef __LP64__
 typedef char Sun2XpFingerStatusSize[sizeof(struct FingerStatus) == 120 ? 1 : -1];
 typedef char Sun2XpFingerTimingSize[sizeof(struct FingerTiming) == 120 ? 1 : -1];
-typedef char Sun2XpFingerTipSize[sizeof(struct FingerTip) == 88 ? 1 : -1];
+typedef char Sun2XpFingerTipSize[sizeof(struct FingerTip) == 160 ? 1 : -1];
 typedef char Sun2XpFingerRecordSize[sizeof(struct FingerRecord) == 200 ? 1 : -1];
 typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
 #endif
@@ -1527,19 +1535,20 @@ _Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"PushFinger\")") _Pragma("
 _Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")") _Pragma("pop_macro(\"ResetTiming\")")
 _Pragma("pop_macro(\"SendContact\")") _Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendTip\")")
 _Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Stage\")")
-_Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"StiffnessScale\")")
-_Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"Tension\")") _Pragma("pop_macro(\"TensionSent\")")
-_Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")") _Pragma("pop_macro(\"Tip\")")
-_Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Value\")")
-_Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")") _Pragma("pop_macro(\"WakeUpMedian\")")
-_Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")") _Pragma("pop_macro(\"WarningValue\")")
-_Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")") _Pragma("pop_macro(\"ZeroFinger\")")
-_Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")") _Pragma("pop_macro(\"const\")")
-_Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")") _Pragma("pop_macro(\"float\")")
-_Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")") _Pragma("pop_macro(\"long\")")
-_Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")") _Pragma("pop_macro(\"sizeof\")")
-_Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")") _Pragma("pop_macro(\"typedef\")")
-_Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")") _Pragma("pop_macro(\"volatile\")")
+_Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"Stiffness\")")
+_Pragma("pop_macro(\"StiffnessScale\")") _Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"Tension\")")
+_Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")")
+_Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")")
+_Pragma("pop_macro(\"Value\")") _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")")
+_Pragma("pop_macro(\"WakeUpMedian\")") _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")")
+_Pragma("pop_macro(\"WarningValue\")") _Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")")
+_Pragma("pop_macro(\"ZeroFinger\")") _Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")")
+_Pragma("pop_macro(\"const\")") _Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")")
+_Pragma("pop_macro(\"float\")") _Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")")
+_Pragma("pop_macro(\"long\")") _Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")")
+_Pragma("pop_macro(\"sizeof\")") _Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")")
+_Pragma("pop_macro(\"typedef\")") _Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")")
+_Pragma("pop_macro(\"volatile\")")
 #endif
 
 #endif

@@ -4,7 +4,7 @@
 #[path = "common/pauses.rs"]
 mod pauses;
 
-use nalgebra::{Matrix4, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 use std::time::{Duration, Instant};
 use sun2xp::control::Law;
 use sun2xp::hand::{FingerTip, Hand, HandError, SetPointError};
@@ -52,6 +52,7 @@ fn a_tip_moves_to_its_set_point_and_reports_its_force() {
     // Compares by the spring's own law, within the dead band of the joint friction.
     let given_way = || Vector3::from(tip(&hand, 2).tip) - wanted;
     until("the spring gives way", || (given_way() - Vector3::new(0.0, 1.0 / 3.0, 0.0)).amax() < 0.08);
+    assert!((Matrix3::from(tip(&hand, 2).stiffness) - Matrix3::identity() * 3.0).amax() < 1e-9);
     // Joint set points use the configured law again.
     hand.send_position(2, [0.2, 0.6, 1.1]).expect("sent");
     taken_in(&hand, 2);

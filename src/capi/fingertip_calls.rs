@@ -29,6 +29,10 @@ pub struct FingerTip {
     pub Force: [f64; 3],
     /// Measured tendon tensions, N.
     pub Tensions: [f64; 4],
+    /// Stiffness of the tip in its present pose, N/cm, row by row: the fraction of Kx that is in force, plus
+    /// what joint limits, nearness to the axis of joint 0 and the rotational stiffness of a contact add. It is zero
+    /// along directions that the joints cannot measure, and while the finger is not running.
+    pub Stiffness: [[f64; 3]; 3],
 }
 
 /// SendTip - send a desired fingertip position to a finger
@@ -67,7 +71,7 @@ pub unsafe extern "C" fn SendTip(i: c_int, Tip: *const f64) -> c_int {
     })
 }
 
-/// GetTip - read position and force of a fingertip, and the tendon tensions
+/// GetTip - read position, force and stiffness of a fingertip, and the tendon tensions
 ///
 ///     int GetTip(int i, struct FingerTip *Tip);
 ///
@@ -280,5 +284,6 @@ fn to_c(tip: &hand::FingerTip) -> FingerTip {
         Tip: tip.tip,
         Force: tip.force,
         Tensions: tip.tensions,
+        Stiffness: tip.stiffness,
     }
 }

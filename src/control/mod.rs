@@ -20,6 +20,7 @@ pub(crate) mod tendons;
 pub use cycle::{Controller, State};
 pub use signals::{Activity, Feedback, Law, Measured, MotorCommand, Report, SetPoint, spatial};
 pub use spring::admissible_damping::AdmissibleDamping;
+pub use spring::joint_springs::JointSprings;
 pub use spring::joint_stiffness::JointStiffness;
 pub use spring::spring_transition::Spring;
 pub use tendons::tension_distribution::{BoundedDistribution, DistributedTensions, TensionDistribution};

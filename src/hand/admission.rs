@@ -1,6 +1,6 @@
 //! The checks of a planner's commands. A command that fails a check does not reach the servo.
 
-use crate::control::{AdmissibleDamping, SetPoint, spatial};
+use crate::control::{AdmissibleDamping, JointSprings, SetPoint, spatial};
 use crate::hand::SetPointError;
 use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
@@ -22,6 +22,8 @@ pub(super) struct Admission {
     pub links: Links,
     /// R of eq. 14, cm.
     pub r: Matrix3x4<f64>,
+    /// The springs of the finger. There are none if the rank of R is below 3, and no hand opens with such an R.
+    pub springs: Option<JointSprings>,
     /// The check of damping against stiffness.
     pub damping: DampingAdmission,
     /// The stiffness law for set points in joint angles.

@@ -3,7 +3,7 @@
 
 use crate::board::protocol::Status;
 use crate::board::{Link, Port, Terms, capacity};
-use crate::control::AdmissibleDamping;
+use crate::control::{AdmissibleDamping, JointSprings};
 use crate::finger::{BlackBox, FingerServo, Mailbox, ServedPort, StopSignal, link_handover, stop_calls};
 use crate::hand::admission::{Admission, DampingAdmission};
 use crate::hand::fingers::Fingers;
@@ -238,6 +238,7 @@ pub(super) fn admission(configuration: &Configuration, number: FingerNumber) -> 
         inverse_kinematics: InverseKinematics::new(finger.links(), joint_limits),
         links: finger.links(),
         r: finger.r(),
+        springs: JointSprings::new(finger, rate),
         stiffness_bound: finger.stiffness_bound(rate),
         damping: DampingAdmission {
             finger: number,

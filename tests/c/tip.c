@@ -65,6 +65,7 @@ static void fingertip(void)
         CHECK(Larger.Later[byte] == 0x55);
     CHECK(Tip->Felt == 3);
     CHECK(Tip->Tensions[0] > 3.0 && Tip->Tensions[0] < 60.0);
+    CHECK(APART(Tip->Stiffness[0][0], 3.0) < 1e-6 && APART(Tip->Stiffness[2][0], 0.0) < 1e-6);
 
     Untouched = *Tip;
     REFUSED(SendTip(4, Wanted), EINVAL, "1, 2 and 3");

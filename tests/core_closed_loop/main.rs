@@ -12,3 +12,4 @@ mod settling;
 mod slack;
 mod state_feedback;
 mod switching;
+mod tip_stiffness;

@@ -14,6 +14,7 @@ fn admission(out_of_range: OutOfRange) -> Admission {
         inverse_kinematics: InverseKinematics::new(links, joint_limits),
         links,
         r: Matrix3x4::zeros(),
+        springs: None,
         stiffness_bound: 6.0,
         damping: DampingAdmission {
             finger: FingerNumber::TWO,
