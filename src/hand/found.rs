@@ -19,7 +19,18 @@ const HELD_BY_CALIBRATION: &[&str] = &[
 ];
 
 /// The keys that a bound of Kx depends on.
-const HELD_BY_BOUND: &[&str] = &[RATE, "geometry", "motor", "tendon", "joints", "links", "friction", "controller"];
+const HELD_BY_BOUND: &[&str] = &[
+    RATE,
+    "geometry",
+    "motor",
+    "tendon",
+    "joints",
+    "links",
+    "friction",
+    "controller",
+    "gauge.newton_per_count",
+    "encoder.counts_per_revolution",
+];
 
 /// The only key in these lists that is not in the finger's table.
 const RATE: &str = "hand.rate";

@@ -1,12 +1,14 @@
 //! The motion of a finger near a rest, as a linear map of one cycle: plant, controller, and the one cycle of delay
 //! between sample and torque.
 
-use super::growth;
-use crate::control::{Activity, Controller, Feedback, Law, Measured, Report, SetPoint, State, TensionDistribution};
-use crate::model::Tendons;
+use super::plant_set::Variant;
+use super::recurrence::{growth, growth_besides_drift};
+use super::rest::{Pull, Rest, Support};
+use crate::control::{Activity, Controller, Feedback, Measured, Report, State, TensionDistribution};
 use crate::model::configuration::{ConfiguredFinger, ConfiguredSimulation, Unusable};
+use crate::model::{Links, Tendons};
 use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
-use nalgebra::{DVector, Matrix3, Vector3, Vector4};
+use nalgebra::{DVector, Vector3, Vector4};
 
 /// Time in which the filters and integrals of the controller settle, s.
 const SETTLING: f64 = 0.3;
@@ -30,46 +32,54 @@ const DIVERGED: f64 = 1e3;
 /// rest to the last bit.
 const DECAYED: f64 = 1e-4;
 
-/// Motion of a joint beyond which the finger counts as having left its rest, rad.
+/// Displacements of the motors, rad. They are so small that the tip stays in contact with a wall.
+const DISPLACED: [f64; 4] = [3e-6, -2e-6, 1e-6, 4e-6];
+
+/// Motion of a joint after the finger has settled beyond which it counts as having left its rest, rad.
 const FAR: f64 = 0.1;
 
-/// A finger at rest at `joints`. A force on the tip holds it at `deflection` from the anchor of its spring.
-#[derive(Clone, Copy, Debug)]
-pub struct Rest {
-    /// Joint angles, rad.
-    pub joints: Vector3<f64>,
-    /// Anchor of the spring minus joint angles, rad. At zero deflection, tendons 1 and 4 both have the tension t_min,
-    /// and eq. 20 has a kink there.
-    pub deflection: Vector3<f64>,
-    /// Kx, N/cm.
-    pub stiffness: Matrix3<f64>,
-    /// Damping relative to the damping that the controller computes from the stiffness.
-    pub damping: f64,
-}
+/// Time constant of a motion in a direction without stiffness that counts as a drift and not as a mode of the loop, s.
+/// If the plant differs from the model, small torques remain in these directions.
+const DRIFT: f64 = 0.3;
+
+/// Time after which an amplifier has reached a constant command, in time constants of its lag.
+const AMPLIFIED: f64 = 20.0;
 
 /// A finger without Coulomb friction and with exact sensors. Its parameters are equal to those in the configuration of
-/// its controller.
+/// its controller, apart from what a [`Variant`] changes.
 ///
 /// Friction and quantisation are left out because they only add a small persistent motion, or end a motion.
 pub struct OneCycleMap {
     finger: ConfiguredFinger,
+    pub(super) links: Links,
     tendons: Tendons,
     controller: Controller,
     distribution: TensionDistribution,
     /// Number of plant steps in a cycle.
-    steps: usize,
+    pub(super) steps: usize,
     /// Length of a plant step, s.
-    step: f64,
+    pub(super) step: f64,
+    /// Number of cycles of which the last one loses its reply. With 0, no reply is lost.
+    loss_interval: usize,
 }
 
 impl OneCycleMap {
-    /// Constructs the map of a finger with its configured scheme, law and gains at `rate`, Hz. A period is a whole
-    /// number of plant steps, none longer than [`PLANT_STEP_SECONDS`].
+    /// Constructs the map of a finger with its configured scheme and gains at `rate`, Hz. A period is a whole number of
+    /// plant steps, none longer than [`PLANT_STEP_SECONDS`].
     ///
     /// # Errors
     /// If no controller can be constructed, returns the key of the value that prevents it, and the reason.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Result<Self, Unusable> {
-        let finger = matching_simulation(finger);
+        Self::of_variant(finger, rate, &Variant::NOMINAL)
+    }
+
+    /// Constructs the map of [`OneCycleMap::new`] for a plant that differs from the controller's model.
+    ///
+    /// # Errors
+    /// If no controller can be constructed, returns the key of the value that prevents it, and the reason.
+    pub fn of_variant(finger: &ConfiguredFinger, rate: f64, variant: &Variant) -> Result<Self, Unusable> {
+        let mut finger = matching_simulation(finger);
+        variant.apply(&mut finger.simulation, rate);
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
         let steps = (1.0 / (rate * PLANT_STEP_SECONDS) - 1e-6).ceil().max(1.0);
         let maximum = Vector4::repeat(finger.tendon.maximum);
@@ -78,6 +88,8 @@ impl OneCycleMap {
             distribution: TensionDistribution::new(&tendons, finger.tendon.minimum, maximum)?,
             steps: steps as usize,
             step: 1.0 / (rate * steps),
+            loss_interval: variant.loss_interval,
+            links: finger.links(),
             tendons,
             finger,
         })
@@ -85,45 +97,52 @@ impl OneCycleMap {
 
     /// Returns the factor by which the servo scales the stiffness of `rest`, 0 to 1.
     pub fn scale(&self, rest: &Rest) -> f64 {
-        let mut finger = self.start(rest, &self.tendons.pretension(self.finger.tendon.minimum));
+        let mut finger = self.start(rest, &self.tendons.pretension(self.finger.tendon.minimum), Support::default());
         self.cycle(&mut finger);
         finger.report.stiffness_scale
     }
 
+    /// Returns the force with which the spring of `rest` pulls the tip, N.
+    pub fn pull(&self, rest: &Rest) -> Vector3<f64> {
+        rest.pull(&self.links, self.scale(rest)).force
+    }
+
     /// Returns the largest modulus of an eigenvalue of the one-cycle map at `rest`. Returns None if the finger leaves
-    /// the rest or a tendon becomes slack.
+    /// the rest or a tendon becomes slack. If replies are lost, the result is the mean factor of a cycle. If the
+    /// contact leaves directions without stiffness, slow motions in these directions do not count.
     ///
     /// Two fingers run, one of them with a tiny displacement. Their difference evolves by the linear map alone.
     pub fn largest_eigenvalue(&self, rest: &Rest) -> Option<f64> {
-        let links = self.finger.links();
-        let jacobian = links.jacobian(&rest.joints);
-        let anchored = rest.joints + rest.deflection;
-        let away = match self.finger.controller.law {
-            Law::Report => jacobian * rest.deflection,
-            Law::Exact => links.tip(&anchored) - links.tip(&rest.joints),
-        };
-        let pull = rest.stiffness * away * self.scale(rest);
-        let tensions = self.distribution.distribute(&jacobian.tr_mul(&pull)).tensions;
-        let mut finger = self.start(rest, &tensions);
-        finger.plant.set_external_force(-pull);
-        self.run(&mut finger, SETTLING);
-
-        let modulus = self.watch(rest, &mut finger, OBSERVED)?;
+        let mut finger = self.settled(rest);
+        let limp = rest.dimensions() < 3;
+        let modulus = self.watch(&mut finger, OBSERVED, limp)?;
         // Only a longer observation distinguishes such a slow mode from one that grows.
-        if modulus < 1.0 - SLOW { Some(modulus) } else { self.watch(rest, &mut finger, OBSERVED_LONG) }
+        if modulus < 1.0 - SLOW { Some(modulus) } else { self.watch(&mut finger, OBSERVED_LONG, limp) }
     }
 
-    fn watch(&self, rest: &Rest, finger: &mut Moving, seconds: f64) -> Option<f64> {
+    /// Returns a finger at `rest` under its load, after the filters and integrals have settled.
+    pub(super) fn settled(&self, rest: &Rest) -> Moving {
+        let Pull { torques, force } = rest.pull(&self.links, self.scale(rest));
+        let tensions = self.distribution.distribute(&torques).tensions;
+        let mut finger = self.start(rest, &tensions, rest.support(&self.links, &force));
+        self.run(&mut finger, self.cycles(SETTLING));
+        finger
+    }
+
+    fn watch(&self, finger: &mut Moving, seconds: f64, limp: bool) -> Option<f64> {
         let mut displaced = finger.clone();
-        for (motor, angle) in [3e-5, -2e-5, 1e-5, 4e-5].into_iter().enumerate() {
+        for (motor, angle) in DISPLACED.into_iter().enumerate() {
             displaced.plant.turn_motor(motor, angle);
         }
+        // With lost replies, only the map of a whole interval is the same every time.
+        let stride = if self.loss_interval == 0 { self.cycles(STRIDE) } else { self.loss_interval };
+        let began = finger.plant.joints();
         let mut differences: Vec<DVector<f64>> = Vec::new();
-        for _ in 0..(seconds / STRIDE) as usize {
-            self.run(finger, STRIDE);
-            self.run(&mut displaced, STRIDE);
+        for _ in 0..self.cycles(seconds) / stride {
+            self.run(finger, stride);
+            self.run(&mut displaced, stride);
             let (a, b) = (&finger.plant, &displaced.plant);
-            if a.tensions().min() <= 0.0 || (a.joints() - rest.joints).amax() > FAR {
+            if a.tensions().min() <= 0.0 || (a.joints() - began).amax() > FAR {
                 return None;
             }
             // The factors make the channels comparable for a transmission ratio of 1 to 20 and modes at 30 rad/s.
@@ -137,59 +156,88 @@ impl OneCycleMap {
                 break;
             }
         }
-        Some(growth(&differences).powf(1.0 / self.cycles(STRIDE) as f64))
+        let elapsed = stride as f64 * self.period();
+        let factor = if limp { growth_besides_drift(&differences, elapsed / DRIFT) } else { growth(&differences) };
+        Some(factor.powf(1.0 / stride as f64))
     }
 
     /// Returns a finger at rest with these tensions, N, before its first cycle.
-    fn start(&self, rest: &Rest, tensions: &Vector4<f64>) -> Moving {
+    fn start(&self, rest: &Rest, tensions: &Vector4<f64>, support: Support) -> Moving {
         let mut finger = self.finger.clone();
         finger.simulation.start_degrees = rest.joints.map(f64::to_degrees).into();
         let mut plant = Plant::new(&finger, Vector3::zeros())
             .expect("the controller was constructed with these tendons")
             .with_step(self.step);
-        plant.release_brake();
+        plant.set_surface(support.wall);
+        plant.set_external_force(support.load);
         let stretch = (tensions - plant.tensions()).component_div(&Vector4::from(finger.simulation.tendon_stiffness));
         for motor in 0..4 {
             plant.turn_motor(motor, stretch[motor] / self.tendons.radius[motor]);
         }
+        let torques = tensions.component_mul(&self.tendons.radius);
+        // The amplifiers reach these torques before the rotors are free.
+        let lag = (finger.simulation.command_delay_ms + AMPLIFIED * finger.simulation.amplifier_lag_ms) * 1e-3;
+        (0..(lag / self.step).ceil() as usize).for_each(|_| plant.step((torques * 0.01).into()));
+        plant.release_brake();
         let (motor_counts, gauge_counts) = Sensors::new(&finger).read(&plant);
-        let hard_finger = SetPoint::hard_finger(rest.joints + rest.deflection, rest.stiffness);
         Moving {
-            torques: tensions.component_mul(&self.tendons.radius),
+            torques,
             plant,
             state: self.controller.start(&Feedback { motor_counts, gauge_counts }),
-            activity: Activity::Follow(SetPoint { law: finger.controller.law, damping: rest.damping, ..hard_finger }),
+            activity: Activity::Follow(rest.set_point()),
             report: Report::default(),
+            load: support.load,
+            cycles: 0,
         }
     }
 
-    fn cycles(&self, seconds: f64) -> usize {
-        (seconds / (self.steps as f64 * self.step)).round().max(1.0) as usize
+    /// Returns the number of cycles in a time.
+    pub(super) fn cycles(&self, seconds: f64) -> usize {
+        (seconds / self.period()).round().max(1.0) as usize
     }
 
-    fn run(&self, finger: &mut Moving, seconds: f64) {
-        (0..self.cycles(seconds)).for_each(|_| self.cycle(finger));
+    fn period(&self) -> f64 {
+        self.steps as f64 * self.step
+    }
+
+    pub(super) fn run(&self, finger: &mut Moving, cycles: usize) {
+        (0..cycles).for_each(|_| self.cycle(finger));
     }
 
     fn cycle(&self, finger: &mut Moving) {
+        self.cycle_with(finger, |_, plant, torques| plant.step(torques));
+    }
+
+    /// Runs one cycle. `step` makes each plant step. It receives the number of the step in the cycle, the plant, and
+    /// the motor torques, N m.
+    pub(super) fn cycle_with(&self, finger: &mut Moving, mut step: impl FnMut(usize, &mut Plant, [f64; 4])) {
         let plant = &mut finger.plant;
         let measured = Measured { motor_angles: plant.motor_angles(), tensions: plant.tensions() };
         // The command of the previous cycle acts during this one.
-        (0..self.steps).for_each(|_| plant.step((finger.torques * 0.01).into()));
-        let (command, report) = self.controller.cycle_measured(&mut finger.state, Some(&measured), &finger.activity);
+        let torques = (finger.torques * 0.01).into();
+        (0..self.steps).for_each(|number| step(number, plant, torques));
+        finger.cycles += 1;
+        let lost = finger.cycles.is_multiple_of(self.loss_interval);
+        let measured = (!lost).then_some(&measured);
+        let (command, report) = self.controller.cycle_measured(&mut finger.state, measured, &finger.activity);
         finger.torques = command.motor_torques;
         finger.report = report;
     }
 }
 
+/// A finger that runs.
 #[derive(Clone)]
-struct Moving {
-    plant: Plant,
+pub(super) struct Moving {
+    pub plant: Plant,
     state: State,
     activity: Activity,
     /// The command that acts next, N cm.
     torques: Vector4<f64>,
     report: Report,
+    /// The constant force at the tip, N.
+    pub load: Vector3<f64>,
+    /// Number of cycles since the start.
+    cycles: usize,
 }
 
 /// Returns a configuration whose simulated finger equals the controller's model, without Coulomb friction and noise.
@@ -200,6 +248,7 @@ fn matching_simulation(finger: &ConfiguredFinger) -> ConfiguredFinger {
     finger.controller.set_point_speed = Some(1e3);
     finger.friction.motor_coulomb = [0.0; 4];
     finger.friction.conduit = [0.0; 4];
+    finger.friction.pulley = [0.0; 4];
     finger.friction.joint_coulomb = [0.0; 3];
     finger.simulation = ConfiguredSimulation {
         masses: finger.links.masses,

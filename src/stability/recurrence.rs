@@ -23,6 +23,20 @@ const LEAST_SHARE: f64 = 0.01;
 /// returned. For example, this happens if the samples are the difference of two motions, and only one of them reaches a
 /// joint limit.
 pub fn growth(samples: &[DVector<f64>]) -> f64 {
+    slowest(samples, 0.0)
+}
+
+/// Returns [`growth`] for a system with directions in which nothing holds it. Displacements in these directions remain,
+/// or change so slowly that their eigenvalues are nearer to 1 than `drift`. They are ignored.
+///
+/// The changes from one sample to the next contain no constant displacement, so that it does not hide the other modes.
+pub(super) fn growth_besides_drift(samples: &[DVector<f64>], drift: f64) -> f64 {
+    let changes: Vec<_> = samples.windows(2).map(|pair| &pair[1] - &pair[0]).collect();
+    slowest(&changes, drift)
+}
+
+/// Returns [`growth`] without the modes whose eigenvalues are nearer to 1 than `drift`.
+fn slowest(samples: &[DVector<f64>], drift: f64) -> f64 {
     if samples.iter().any(|sample| !sample.norm().is_finite()) {
         return f64::NAN;
     }
@@ -33,7 +47,7 @@ pub fn growth(samples: &[DVector<f64>]) -> f64 {
     for order in 1..=LARGEST_ORDER.min(window.len().saturating_sub(2)) {
         let Some((coefficients, missed)) = recurrence(window, order) else { break };
         if missed < EXPLAINED {
-            let root = largest_root(window, &coefficients);
+            let root = largest_root(window, &coefficients, drift);
             return if has_decayed(&samples[end..], root, ROUNDING * largest) { mean_change(window) } else { root };
         }
     }
@@ -77,11 +91,12 @@ fn recurrence(window: &[DVector<f64>], order: usize) -> Option<(DVector<f64>, f6
     Some((coefficients, missed))
 }
 
-/// Returns the largest modulus among those roots of z^p - a1 z^(p-1) - ... - ap that contribute to the last sample.
+/// Returns the largest modulus among those roots of z^p - a1 z^(p-1) - ... - ap that contribute to the last sample and
+/// are not nearer to 1 than `drift`.
 ///
 /// The slowest mode contributes most to the last sample. A larger root without a contribution fits rounding errors, and
 /// does not belong to the motion.
-fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
+fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>, drift: f64) -> f64 {
     let order = coefficients.len();
     let companion = DMatrix::from_fn(order, order, |row, column| match (row, column) {
         (0, column) => coefficients[column],
@@ -100,8 +115,9 @@ fn largest_root(window: &[DVector<f64>], coefficients: &DVector<f64>) -> f64 {
         DMatrix::from_fn(window.len(), window[0].len(), |k, channel| Complex::from(window[k][channel] * weights[k]));
     let Ok(parts) = powers.clone().svd(true, true).solve(&samples, 1e-12) else { return f64::NAN };
     let last = window.len() - 1;
-    let has_part = |root: &usize| powers[(last, *root)].norm() * parts.row(*root).norm() >= LEAST_SHARE;
-    (0..order).filter(has_part).map(|root| roots[root].norm()).fold(0.0, f64::max)
+    let has_part = |root: usize| powers[(last, root)].norm() * parts.row(root).norm() >= LEAST_SHARE;
+    let counts = |root: &usize| has_part(*root) && (roots[*root] - 1.0).norm() >= drift;
+    (0..order).filter(counts).map(|root| roots[root].norm()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ fn the_tool_stores_the_bound_and_keeps_the_rest_of_the_file() {
     let run = |arguments: &[&str]| {
         let config = path.to_str().unwrap();
         let mut program = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
-        program.args(["bound", "--config", config, "--samples", "40"]).args(arguments).output().unwrap()
+        program.args(["bound", "--config", config, "--samples", "40", "--nominal"]).args(arguments).output().unwrap()
     };
     let looked = run(&[]);
     assert!(looked.status.success(), "{looked:?}");
@@ -33,4 +33,41 @@ fn the_tool_stores_the_bound_and_keeps_the_rest_of_the_file() {
     assert!(bound >= 6.0, "{bound}");
     assert!(String::from_utf8(written.stdout).unwrap().contains(&format!("finger 3: {bound:.1} N/cm")));
     assert!(!run(&["--write", "--rate", "500"]).status.success(), "a bound for another rate must not be stored");
+}
+
+/// Runs `sun2xp bound` for one finger with the default configuration, and returns its output.
+fn output(arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hand.toml");
+    std::fs::write(&path, "").unwrap();
+    let mut program = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+    let run = program.args(["bound", "--finger", "1", "--config", path.to_str().unwrap()]).args(arguments).output();
+    let run = run.unwrap();
+    assert!(run.status.success(), "{run:?}");
+    String::from_utf8(run.stdout).unwrap()
+}
+
+#[test]
+fn the_tool_prints_the_bound_of_every_plant_and_takes_the_least() {
+    let printed = output(&["--samples", "8"]);
+    let rows = printed.lines().skip(2).map_while(|line| {
+        let mut words = line.split_whitespace();
+        let bounds = (words.next()?.parse::<f64>().ok()?, words.next()?.parse::<f64>().ok()?);
+        Some((bounds, words.collect::<Vec<_>>().join(" ")))
+    });
+    let rows: Vec<_> = rows.collect();
+    let plants: Vec<&str> = rows.iter().map(|(_, plant)| plant.as_str()).collect();
+    assert_eq!(plants, sun2xp::stability::Variant::SET.map(|variant| variant.name));
+    let least = rows.iter().map(|((free, walls), _)| free.min(*walls)).fold(f64::INFINITY, f64::min);
+    assert!(printed.contains(&format!("finger 1: {least:.1} N/cm at 1000 Hz, limited by: ")), "{printed}");
+}
+
+#[test]
+fn the_tool_prints_the_passivity_of_the_tip() {
+    let least = |scheme: &str| {
+        let printed = output(&["--passivity", "--samples", "1", "--scheme", scheme]);
+        let line = printed.lines().find(|line| line.contains("of |Y|")).unwrap_or_else(|| panic!("{printed}"));
+        line.split_whitespace().skip_while(|word| *word != "least").nth(1).unwrap().parse::<f64>().unwrap()
+    };
+    assert!(least("state feedback") > -0.02 && least("figure 10") < -0.02);
 }
