@@ -991,6 +991,13 @@ int GetTip(int, struct FingerTip *);
  the bound, a rotational stiffness of k N cm/rad is converted to k / (l2 l2) N/cm, where l2 is the
  length of the last link.
 
+ D = 4 is not a spring in four independent directions, because three joints turn the tip only by
+ moving it. A tip that moves by v cm turns about Normal by c . v rad, and the vector c depends on the
+ pose. A rotational stiffness of k N cm/rad therefore stiffens the tip along c, by k |c| |c| N/cm, and
+ the tip exerts no moment that is independent of its force. In the pose 0, 0.5, 0.8 rad the example
+ below gives 3.24, 3 and 3 N/cm along x, y and z. With Normal along x it gives 3, 3.56 and 4.87 N/cm,
+ and -1.02 N/cm between y and z. Stiffness of GetTip is the stiffness that results.
+
  Returns 0, or -1 with
    EPERM    forked child
    EFAULT   K is null; Normal is null for D = 1 or 4

@@ -80,6 +80,26 @@ static void fingertip(void)
     Tip->Size = sizeof *Tip;
 }
 
+/* The tip at Wanted is 8.06 cm from the axis of joint 0, which alone turns it about y: 20 N cm/rad about y are
+   0.31 N/cm at this distance. */
+static void soft_finger(void)
+{
+    double Turned = 20.0 / 65.0;
+    int tries;
+
+    CHECK(SendContact(1, 4, &Soft[0][0], Normal) == 0);
+    for (tries = 0; tries < 250; tries++) {
+        CHECK(GetTip(1, Tip) == 0);
+        if (APART(Tip->Stiffness[0][0], 3.0 + Turned * 64 / 65) < 0.02)
+            break;
+        PAUSE_MS(20);
+    }
+    CHECK(tries < 250);
+    CHECK(APART(Tip->Stiffness[0][2], -Turned * 8 / 65) < 0.02);
+    CHECK(APART(Tip->Stiffness[0][2], Tip->Stiffness[2][0]) < 1e-9);
+    CHECK(APART(Tip->Stiffness[1][1], 3.0) < 1e-6 && APART(Tip->Stiffness[2][2], 3.0 + Turned / 65) < 0.02);
+}
+
 static void contact(void)
 {
     double Skewed[9] = {3, 0.5, 0, 0, 3, 0, 0, 0, 3}, Nothing[3] = {0, 0, 0};
@@ -165,6 +185,7 @@ int main(void)
     without_a_hand();
     CHECK(OpenHand() == 0);
     fingertip();
+    soft_finger();
     contact();
     damping();
     adjustment();
