@@ -752,9 +752,9 @@ struct FingerStatus {
                                        does not. */
     double StiffnessScale;          /* Fraction of Kx in force in the last cycle, 0 to 1, with every controller and
                                        law. It is below 1 in poses in which the tendons cannot provide the whole Kx,
-                                       for example near the straight pose, and for a joint beyond its limit, because
-                                       the spring of the limit needs a part of what the tendons provide. GetTip gives
-                                       the stiffness that results. */
+                                       for example near the straight pose. A joint beyond its limit can reduce it
+                                       too, because the spring of the limit needs a part of what the tendons provide.
+                                       GetTip gives the stiffness that results. */
 };
 
 /*

@@ -72,10 +72,10 @@ pub struct FingerStatus {
     pub MemoryLocked: c_int,
     /// 1: each servo thread with a configured core runs on that core. 0: at least one does not.
     pub OnCore: c_int,
-    /// Fraction of Kx in force in the last cycle, 0 to 1, with every controller and law. It is below 1 in poses in which
-    /// the tendons cannot provide the whole Kx, for example near the straight pose, and for a joint beyond its limit,
-    /// because the spring of the limit needs a part of what the tendons provide. GetTip gives the stiffness that
-    /// results.
+    /// Fraction of Kx in force in the last cycle, 0 to 1, with every controller and law. It is below 1 in poses in
+    /// which the tendons cannot provide the whole Kx, for example near the straight pose. A joint beyond its limit can
+    /// reduce it too, because the spring of the limit needs a part of what the tendons provide. GetTip gives the
+    /// stiffness that results.
     pub StiffnessScale: f64,
 }
 

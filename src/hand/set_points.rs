@@ -62,8 +62,8 @@ impl Hand {
 
     /// Sends a contact for finger 1, 2 or 3: the tip becomes the spring of that contact, without a jump in torque. It
     /// replaces the last Kx, and a later Kx replaces it. Three joints turn the tip only by moving it, so a rotational
-    /// stiffness acts as an additional stiffness of the tip, which [`FingerTip::stiffness`](super::FingerTip::stiffness)
-    /// includes.
+    /// stiffness acts as an additional stiffness of the tip.
+    /// [`FingerTip::stiffness`](super::FingerTip::stiffness) includes it.
     ///
     /// # Errors
     /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the stiffness is

@@ -63,9 +63,7 @@ impl Contact {
 
     /// Constructs a soft finger, which transmits three forces and a moment about `normal`, a vector of any length. Row
     /// and column 3 of `stiffness` belong to the rotation about `normal`: N cm/rad on the diagonal, otherwise N/rad.
-    ///
-    /// Three joints turn the tip only by moving it. So the rotational stiffness acts only as an additional stiffness of
-    /// the tip, in one direction.
+    /// Three joints turn the tip only by moving it, so the rotational stiffness stiffens the tip in one direction.
     ///
     /// # Errors
     /// Returns an error if K is not a spring, or if the normal is zero or not finite.

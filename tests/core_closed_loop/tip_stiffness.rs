@@ -81,8 +81,8 @@ fn off(measured: &Matrix3<f64>, reported: &Matrix3<f64>) -> f64 {
     (measured - reported).amax() / reported.amax()
 }
 
-/// Near the straight pose the tendons do not provide 12 N/cm. All controllers and both laws provide the same part, except
-/// for Figure 11, whose loop is stable at a smaller one.
+/// Near the straight pose the tendons do not provide 12 N/cm. All controllers and both laws provide the same part,
+/// except for Figure 11, whose loop is stable at a smaller one.
 #[test]
 fn a_stretched_finger_has_the_reported_part_of_its_stiffness() {
     for scheme in SCHEMES {

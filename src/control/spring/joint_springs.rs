@@ -17,8 +17,8 @@ pub struct JointSprings {
 }
 
 impl JointSprings {
-    /// Constructs the springs of `finger` at `rate`, Hz. Returns None if the rank of R is below 3. No controller accepts
-    /// such an R.
+    /// Constructs the springs of `finger` at `rate`, Hz. Returns None if the rank of R is below 3. No controller
+    /// accepts such an R.
     pub fn new(finger: &ConfiguredFinger, rate: f64) -> Option<Self> {
         let admissible = AdmissibleStiffness::new(finger, &finger.tendons().ok()?, rate)?;
         Some(Self {

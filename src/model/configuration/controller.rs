@@ -27,8 +27,8 @@ pub enum Scheme {
 pub enum Law {
     /// tau = J^T Kx J (theta_d - theta), eqs. 3 and 6. It is a spring for small deflections.
     Report,
-    /// tau = J^T Kx (x_d - x). It is a spring at any deflection. Because it does not distinguish two joint solutions with
-    /// the tip at x_d, a spring in joint space acts while joint 2 is bent to the other side than in theta_d.
+    /// tau = J^T Kx (x_d - x). It is a spring at any deflection. Because it does not distinguish two joint solutions
+    /// with the tip at x_d, a spring in joint space acts while joint 2 is bent to the other side than in theta_d.
     #[default]
     Exact,
 }
