@@ -76,9 +76,9 @@ pub use hand::{
 };
 pub use model::configuration::{
     Configuration, ConfiguredController, ConfiguredEncoder, ConfiguredFinger, ConfiguredFriction, ConfiguredGauge,
-    ConfiguredGeometry, ConfiguredHand, ConfiguredJoints, ConfiguredLinks, ConfiguredMotor, ConfiguredSimulation,
-    ConfiguredStiffness, ConfiguredTendon, ConfiguredZeroing, EndState, GaugeReference, Law, NamedHand, OnFault,
-    OutOfRange, PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
+    ConfiguredGeometry, ConfiguredHand, ConfiguredJoints, ConfiguredLinks, ConfiguredMonitors, ConfiguredMotor,
+    ConfiguredSimulation, ConfiguredStiffness, ConfiguredTendon, ConfiguredZeroing, EndState, GaugeReference, Law,
+    NamedHand, OnFault, OutOfRange, PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
 };
 pub use model::{Contact, ContactError, FingerNumber, Part};
 pub use realtime::Distribution;

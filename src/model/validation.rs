@@ -1,5 +1,6 @@
 //! Checks of a configuration before a motor may move.
 
+mod monitors;
 mod ranges;
 mod sharing;
 mod simulation;
@@ -98,6 +99,7 @@ impl ConfiguredFinger {
         self.check_limits()?;
         self.check_controller()?;
         self.check_mechanics()?;
+        self.monitors.check()?;
         self.check_calibration()?;
         self.check_simulation()
     }

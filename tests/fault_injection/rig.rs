@@ -72,8 +72,6 @@ pub struct Truth {
     pub time: f64,
     pub joints: Vector3<f64>,
     pub tensions: Vector4<f64>,
-    /// Mean tensions in the first cycles as a spring.
-    pub tensions_at_first: Vector4<f64>,
     /// Commanded pulls of the motors, N.
     pub pulls: Vector4<f64>,
     /// Heat of each motor as a fraction of what it withstands continuously, by I^2 t, and for how long it has been
@@ -92,10 +90,9 @@ pub struct Bench {
     terms: Terms,
     random: Pcg64,
     pub configuration: Configuration,
-    next_target: u64,
+    /// When the finger gets its next target, ns.
+    pub next_target: u64,
     pub truth: Truth,
-    /// Cycles so far as a spring.
-    cycles: u32,
     injected: u64,
     /// Lost replies in total.
     lost: u64,
@@ -120,7 +117,6 @@ impl Bench {
             configuration,
             next_target: 0,
             truth: Truth::default(),
-            cycles: 0,
             injected: 0,
             lost: 0,
             skipped: 0,
@@ -139,7 +135,6 @@ impl Bench {
             }
         }
         assert_eq!(self.report().stage, Stage::Running, "the finger comes under tension");
-        self.cycles = 0;
     }
 
     pub fn report(&self) -> FingerReport {
@@ -228,11 +223,6 @@ impl Bench {
         note(&mut truth.lost, report.losses.lost_replies > self.lost);
         note(&mut truth.skipping, report.losses.skipped_periods > self.skipped);
         (self.lost, self.skipped) = (report.losses.lost_replies, report.losses.skipped_periods);
-        // As many cycles as the library averages for its own zero.
-        self.cycles += 1;
-        if self.cycles <= 32 {
-            truth.tensions_at_first += (tensions - truth.tensions_at_first) / f64::from(self.cycles);
-        }
     }
 
     pub fn run(&mut self, milliseconds: u64) {

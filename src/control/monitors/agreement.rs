@@ -9,16 +9,28 @@
 //!
 //! The difference at the start of monitoring counts as zero, because encoders that were never zeroed are no reason to
 //! stop a finger.
+//!
+//! On a real finger the difference also changes without a fault. Wrong stiffnesses, gauge gains and moment arms change
+//! it in proportion to tensions and joint angles; `mismatch` learns by how much, and what it does not know yet is
+//! tolerated. Friction along a tendon makes the tension differ between the motor, the gauge and the joint, and thus
+//! the stretch. Its sign depends on the direction of the last motion, so it is tolerated in proportion to the tensions.
+//! A drift is not limited in this way.
 
 use super::alarm::{Alarm, Symptom};
+use super::mismatch::{DEVIATIONS, Mismatch, Terms};
 use super::sample::Sample;
 use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
-use nalgebra::Vector4;
+use nalgebra::{Matrix3x4, Vector3, Vector4};
 
-/// Disagreement that is always tolerated, N. In addition, a fraction of the change of the tensions is tolerated,
-/// because k is not known exactly.
-const TOLERANCE: f64 = 0.5;
+/// Part of the friction along a tendon by which its mean tension can differ from the tension at the gauge. It is a
+/// third if the friction acts at one point between the motor and a gauge in the middle. It is a half if the friction is
+/// distributed evenly and the gauge is at one end.
+const SHARE_OF_FRICTION: f64 = 0.4;
+
+/// Expected factor of a joint's term, as a part of the largest. The largest occurs only if the signs of the errors
+/// equal the signs of the moment arms.
+const TYPICAL: f64 = 0.75;
 
 /// Fraction of t_min below which a tendon may hang slack. The encoders then show a negative stretch, so the difference
 /// is negative too.
@@ -39,22 +51,35 @@ pub(super) struct Agreement {
     of_travel: Vector4<f64>,
     /// Weights of the tensions: n / k, scaled so that an error of 1 N in all tensions gives a difference of 1 N.
     of_tension: Vector4<f64>,
+    /// Compliances of the tendons, cm/N.
+    compliance: Vector4<f64>,
+    /// Joint angles from tendon travel, rad/cm.
+    joints: Matrix3x4<f64>,
     /// Tensions at which the encoders are zeroed, N.
     home: Vector4<f64>,
     /// Tension below which a tendon may hang slack, N.
     slack: f64,
-    /// `tendon.stiffness_tolerance`.
+    /// Difference that is always tolerated, N.
     tolerance: f64,
+    /// Difference that friction can cause, as a fraction of the mean tension.
+    friction: f64,
+    /// Expected relative error of the stretch that the tensions indicate.
+    stretch_error: f64,
+    /// Expected difference for a motion of each joint, N/rad.
+    joint_error: Vector3<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
-    /// Mean difference during zeroing, N.
+    /// Means during zeroing: the difference, N, the tensions, N, and the joint angles, rad.
     zero: f64,
-    /// Mean tensions above the homing pretension during zeroing, N.
-    above: Vector4<f64>,
+    tensions: Vector4<f64>,
+    joints: Vector3<f64>,
     samples: u32,
-    /// Difference after subtraction of the zero, N.
+    mismatch: Mismatch,
+    /// Difference of gauges and encoders, N.
+    disagreement: f64,
+    /// The part of it that the mismatch does not explain, N.
     difference: f64,
     /// Disagreement divided by the tolerated one.
     ratio: f64,
@@ -71,47 +96,76 @@ impl Memory {
     pub fn missing(&self) -> Vector4<f64> {
         self.missing
     }
-
-    /// Returns whether the disagreement exceeds half of the tolerated one.
-    pub fn doubtful(&self) -> bool {
-        self.ratio > 0.5
-    }
 }
 
 impl Agreement {
     pub fn new(finger: &ConfiguredFinger, tendons: &Tendons) -> Self {
         // R times the ghost column of Q is zero.
         let null: Vector4<f64> = tendons.q.column(3).into_owned();
-        let per_stiffness = null.component_div(&Vector4::from(finger.tendon.stiffness));
+        let compliance = Vector4::from(finger.tendon.stiffness).map(f64::recip);
+        let per_stiffness = null.component_mul(&compliance);
         let whole = per_stiffness.sum();
+        let of_travel = null / whole;
+        let monitors = &finger.monitors;
+        let friction = Vector4::from(finger.friction.conduit) + Vector4::from(finger.friction.pulley);
         Self {
-            of_travel: null / whole,
+            of_travel,
             of_tension: per_stiffness / whole,
+            compliance,
+            joints: tendons.joints_from_travel(),
             home: tendons.pretension(finger.tendon.minimum),
             slack: SLACK * finger.tendon.minimum,
-            tolerance: finger.tendon.stiffness_tolerance,
+            tolerance: monitors.disagreement,
+            friction: SHARE_OF_FRICTION * friction.max().max(monitors.friction_tolerance),
+            stretch_error: finger.tendon.stiffness_tolerance + monitors.gauge_tolerance,
+            joint_error: tendons.r.abs() * of_travel * (TYPICAL * monitors.moment_arm_tolerance),
         }
     }
 
     /// Computes the difference of one sample.
     pub fn compare(&self, memory: &mut Memory, sample: &Sample) {
-        memory.unbalanced += (sample.pulls - sample.tensions - memory.unbalanced) * AVERAGING;
-        let above = sample.tensions - self.home;
-        let difference = self.of_travel.dot(&sample.travel) - self.of_tension.dot(&above);
-        let hangs = sample.tensions.min() < self.slack;
+        let tensions = sample.tensions;
+        memory.unbalanced += (sample.pulls - tensions - memory.unbalanced) * AVERAGING;
+        let raw = self.of_travel.dot(&sample.travel) - self.of_tension.dot(&(tensions - self.home));
+        let joints = self.joints * (sample.travel - self.compliance.component_mul(&tensions));
+        let hangs = tensions.min() < self.slack;
         if memory.samples < ZEROING {
             if !hangs {
                 memory.samples += 1;
-                memory.zero += (difference - memory.zero) / f64::from(memory.samples);
-                memory.above += (above - memory.above) / f64::from(memory.samples);
+                let gain = f64::from(memory.samples).recip();
+                memory.zero += (raw - memory.zero) * gain;
+                memory.tensions += (tensions - memory.tensions) * gain;
+                memory.joints += (joints - memory.joints) * gain;
             }
             return;
         }
-        memory.difference = difference - memory.zero;
+        let disagreement = raw - memory.zero;
+        memory.disagreement = disagreement;
+        let stretched = self.of_tension.component_mul(&(tensions - memory.tensions)) * self.stretch_error;
+        let turned = (joints - memory.joints).component_mul(&self.joint_error);
+        let mut terms = Terms::zeros();
+        terms.fixed_rows_mut::<4>(0).copy_from(&stretched);
+        terms.fixed_rows_mut::<3>(4).copy_from(&turned);
+        let mismatch = &mut memory.mismatch;
+        // Friction may have acted in the opposite direction during zeroing.
+        let friction = mismatch.friction(self.friction * self.of_tension.dot(&(tensions + memory.tensions)));
+        let (explained, deviation) = mismatch.explained(&terms);
+        // What is learned may reduce a disagreement, but must not cause one.
+        let left = disagreement - explained;
+        memory.difference = if left > 0.0 { left.min(disagreement).max(0.0) } else { left.max(disagreement).min(0.0) };
+        let tolerated = self.tolerance + friction + DEVIATIONS * deviation;
+        let hanging = memory.difference < 0.0 && hangs;
+        memory.ratio = if hanging { 0.0 } else { memory.difference.abs() / tolerated };
         memory.missing = self.of_tension.map(|share| memory.difference / share);
-        let explained = memory.difference < 0.0 && hangs;
-        let tolerated = TOLERANCE + self.tolerance * self.of_tension.dot(&(above - memory.above).abs());
-        memory.ratio = if explained { 0.0 } else { memory.difference.abs() / tolerated };
+        if !hangs && memory.ratio <= 1.0 {
+            mismatch.learn(&terms, disagreement, memory.ratio, sample.elapsed);
+        }
+    }
+
+    /// Returns whether an error of this gauge, 0 to 3, that causes this imbalance of pull and shown tension, N, would
+    /// cause about the disagreement that there is.
+    pub fn explains(&self, memory: &Memory, gauge: usize, imbalance: f64) -> bool {
+        (0.6..1.6).contains(&(memory.disagreement / self.of_tension[gauge] / imbalance))
     }
 
     /// Returns an alarm if the disagreement has lasted too long. `explained` means that another fault causes the

@@ -11,6 +11,7 @@ mod gauge_range;
 mod gauge_stuck;
 mod joint_stop;
 mod line_quality;
+mod mismatch;
 mod motor_heat;
 mod sample;
 mod stalled_motor;

@@ -5,16 +5,11 @@ use super::sample::Sample;
 use crate::control::motors::motor_friction::MotorFriction;
 use crate::model::configuration::ConfiguredFinger;
 use crate::model::{Part, Tendons};
+use nalgebra::Vector4;
 
-/// Tolerated imbalance as a multiple of the configured friction. It is more than 1 because friction is known poorly.
-const FRICTION: f64 = 3.0;
-
-/// Additional tolerance as a fraction of the pull or of the tension, whichever is larger. It allows for the error of
-/// the torque constant.
-const TORQUE_CONSTANT: f64 = 0.3;
-
-/// Additional tolerance, N.
-const TOLERANCE: f64 = 1.0;
+/// Smallest tolerated imbalance as a multiple of the configured friction. It matters only for motors with more friction
+/// than the thresholds allow for: friction that is configured lower must not make the monitor more sensitive.
+const FRICTION: f64 = 1.5;
 
 /// Time for which the imbalance must last, s. In this time a free motor would turn by dozens of counts under the
 /// smallest imbalance that this monitor reports.
@@ -25,6 +20,10 @@ const AT_REST: f64 = 0.007;
 
 #[derive(Clone, Debug)]
 pub(super) struct StalledMotor {
+    /// `monitors.stall_torque` as a tension, N.
+    imbalance: Vector4<f64>,
+    /// `monitors.stall_fraction`.
+    fraction: f64,
     friction: MotorFriction,
 }
 
@@ -38,7 +37,11 @@ pub(super) struct Memory {
 
 impl StalledMotor {
     pub fn new(finger: &ConfiguredFinger, tendons: &Tendons) -> Self {
-        Self { friction: MotorFriction::new(finger, tendons) }
+        Self {
+            imbalance: Vector4::from(finger.monitors.stall_torque).component_div(&tendons.radius),
+            fraction: finger.monitors.stall_fraction,
+            friction: MotorFriction::new(finger, tendons),
+        }
     }
 
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
@@ -46,7 +49,7 @@ impl StalledMotor {
             let unbalanced = sample.pulls[motor] - sample.tensions[motor];
             let larger = sample.pulls[motor].abs().max(sample.tensions[motor]);
             let friction = FRICTION * self.friction.at(motor, larger);
-            let held = friction + TORQUE_CONSTANT * larger + TOLERANCE;
+            let held = friction.max(self.imbalance[motor] + self.fraction * larger);
             let turned = memory.turned[motor] + sample.turned[motor];
             let stalled = unbalanced.abs() > held && turned.abs() <= AT_REST;
             // An imbalance that changes its sign, such as that of a dither, restarts the time.

@@ -20,11 +20,11 @@ const LOW: f64 = 0.3;
 const GONE: f64 = 0.1;
 
 /// Fraction of t_min from which the tension of a low tendon counts as missing. The missing tension is the tension that
-/// the stretch indicates minus the tension that the gauge shows. If its mean before the tendon became low is positive,
-/// the mean is subtracted.
+/// the stretch indicates minus the tension that the gauge shows, less its mean before any tendon became low. On a
+/// finger that rubs or was measured badly, this mean is not zero.
 const MISSED: f64 = 0.3;
 
-/// Time constant of the mean of the missing tension before the tendon became low, s.
+/// Time constant of the mean of the missing tension before any tendon became low, s.
 const BEFORE: f64 = 0.02;
 
 /// Time for which a tendon with missing tension must be low, s.
@@ -59,7 +59,7 @@ pub(super) struct Memory {
     samples: [u32; 4],
     /// Integral of the tension over this time, N s.
     impulse: Vector4<f64>,
-    /// Mean of the missing tension before the tendon became low, N.
+    /// Mean of the missing tension before any tendon became low, N.
     before: Vector4<f64>,
     /// Time for which each tendon has been low with missing tension, s.
     missed: Vector4<f64>,
@@ -83,16 +83,17 @@ impl TensionLost {
     /// Returns the alarms. `missing` is the tension of each tendon minus the tension that its gauge shows, if the other
     /// three gauges are right, N.
     pub fn watch(&self, memory: &mut Memory, sample: &Sample, missing: &Vector4<f64>, flicker: &Flicker) -> Alarms {
+        let any_low = sample.tensions.min() < self.low;
         for tendon in 0..4 {
             let tension = sample.tensions[tendon];
             let low = tension < self.low;
             let counted = |so_far: f64, holds: bool| if holds { so_far + sample.elapsed } else { 0.0 };
             memory.low[tendon] = counted(memory.low[tendon], low);
             memory.samples[tendon] = if low { memory.samples[tendon].saturating_add(1) } else { 0 };
-            if !low {
+            if !any_low {
                 memory.before[tendon] += (missing[tendon] - memory.before[tendon]) * (sample.elapsed / BEFORE).min(1.0);
             }
-            let suddenly = missing[tendon] - memory.before[tendon].max(0.0);
+            let suddenly = missing[tendon] - memory.before[tendon];
             memory.missed[tendon] = counted(memory.missed[tendon], low && suddenly > self.missed);
             memory.gone[tendon] = counted(memory.gone[tendon], tension < self.gone);
             let impulse = memory.impulse[tendon] + tension * sample.elapsed;

@@ -117,10 +117,10 @@ impl Monitors {
         let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
         // A gauge that drifts makes its motor seem stalled. The gauge reports a tension that does not exist, so the
         // motor seems to stand still although pull and tension are not balanced.
-        let doubtful = watch.agreement.doubtful();
         let stalled = stalled.map(|alarm| {
-            if doubtful {
-                Alarm { symptom: Symptom::GaugeDisagrees, part: Part::Gauge(alarm.part.number()), ..alarm }
+            let number = alarm.part.number();
+            if self.agreement.explains(&watch.agreement, usize::from(number) - 1, alarm.value) {
+                Alarm { symptom: Symptom::GaugeDisagrees, part: Part::Gauge(number), ..alarm }
             } else {
                 alarm
             }

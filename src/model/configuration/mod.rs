@@ -11,6 +11,7 @@ mod geometry;
 mod hand;
 mod joints;
 mod links;
+mod monitors;
 mod motor;
 mod named_hand;
 mod named_values;
@@ -27,6 +28,7 @@ pub use geometry::ConfiguredGeometry;
 pub use hand::{ConfiguredHand, EndState, OnFault, OutOfRange, PeriodClock, RealTime};
 pub use joints::ConfiguredJoints;
 pub use links::ConfiguredLinks;
+pub use monitors::ConfiguredMonitors;
 pub use motor::ConfiguredMotor;
 pub use named_hand::NamedHand;
 pub use simulation::{ConfiguredSimulation, Surface};
@@ -99,6 +101,8 @@ pub struct ConfiguredFinger {
     pub links: ConfiguredLinks,
     /// `[finger.friction]`
     pub friction: ConfiguredFriction,
+    /// `[finger.monitors]`
+    pub monitors: ConfiguredMonitors,
     /// `[finger.zeroing]`
     pub zeroing: ConfiguredZeroing,
     /// `[finger.stiffness]`
@@ -178,6 +182,7 @@ impl Default for ConfiguredFinger {
             joints: Default::default(),
             links: Default::default(),
             friction: Default::default(),
+            monitors: Default::default(),
             zeroing: Default::default(),
             stiffness: Default::default(),
             controller: Default::default(),

@@ -20,6 +20,6 @@ pub struct ConfiguredTendon {
 
 impl Default for ConfiguredTendon {
     fn default() -> Self {
-        Self { minimum: 5.0, maximum: 60.0, stiffness: [300.0; 4], stiffness_tolerance: 0.2 }
+        Self { minimum: 5.0, maximum: 60.0, stiffness: [300.0; 4], stiffness_tolerance: 0.4 }
     }
 }

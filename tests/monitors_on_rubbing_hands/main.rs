@@ -1,0 +1,194 @@
+//! Hands that rub, harden and were measured badly have no fault, and the monitors must report none. Real faults of such
+//! a hand must still be reported in time.
+
+#[allow(dead_code)]
+#[path = "../common/finger_on_a_cable.rs"]
+mod finger_on_a_cable;
+#[allow(dead_code)]
+#[path = "../fault_injection/rig.rs"]
+mod rig;
+mod truths;
+
+use nalgebra::Vector3;
+use rig::{Bench, MILLISECOND};
+use std::collections::BTreeMap;
+use std::panic::catch_unwind;
+use sun2xp::finger::{Fault, FaultKind};
+use sun2xp::model::configuration::Configuration;
+use sun2xp::simulated::Defect;
+use truths::{RUBBING, Truth, truths};
+
+/// A finger of this hand. Every other seed has the stiffness of 6 N/cm instead of 3 N/cm.
+fn bench(truth: &Truth, seed: u64) -> Bench {
+    let mut configuration = Configuration::default();
+    let finger = &mut configuration.fingers[0];
+    (truth.make)(finger);
+    finger.simulation.seed = seed;
+    if seed % 2 == 1 {
+        finger.stiffness.initial = [[6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0]];
+    }
+    Bench::new(configuration, seed)
+}
+
+/// Runs without a new target.
+fn rest(bench: &mut Bench, milliseconds: u64) {
+    bench.next_target = bench.next_target.max(bench.now() + milliseconds * MILLISECOND);
+    bench.run(milliseconds);
+}
+
+/// Pushes the resting fingertip with this force, N, in a random direction.
+fn push(bench: &mut Bench, newton: f64, milliseconds: u64) {
+    let mut part = || bench.random(-1.0, 1.0);
+    let direction = Vector3::new(part(), part(), part());
+    let force = direction.normalize() * newton;
+    bench.with_finger(|finger| finger.plant().set_external_force(force));
+    rest(bench, milliseconds);
+    bench.with_finger(|finger| finger.plant().set_external_force(Vector3::zeros()));
+}
+
+/// Bumps the fingertip for 20 ms in several poses.
+fn bumps(bench: &mut Bench, newton: f64) {
+    for _ in 0..4 {
+        push(bench, newton, 20);
+        rest(bench, 250);
+        bench.run(400);
+    }
+}
+
+fn pushes(bench: &mut Bench) {
+    for _ in 0..6 {
+        push(bench, 0.8, 150);
+        rest(bench, 100);
+    }
+}
+
+/// Moves, rests, is pushed, and is bumped. Returns the first fault, and what the finger did.
+fn life(bench: &mut Bench) -> Option<(Fault, &'static str)> {
+    type Act = fn(&mut Bench);
+    let acts: [(&'static str, Act); 6] = [
+        ("moves", |bench| bench.run(3000)),
+        ("rests", |bench| rest(bench, 1500)),
+        ("pushed", pushes),
+        ("bump of 4 N", |bench| bumps(bench, 4.0)),
+        ("bump of 8 N", |bench| bumps(bench, 8.0)),
+        ("moves again", |bench| bench.run(2000)),
+    ];
+    acts.iter().find_map(|(what, act)| {
+        act(bench);
+        bench.fault().map(|fault| (fault, *what))
+    })
+}
+
+#[test]
+fn a_hand_that_only_rubs_or_was_measured_badly_has_no_fault() {
+    for truth in truths() {
+        for seed in 0..2 {
+            let alarm = life(&mut bench(&truth, seed));
+            assert!(alarm.is_none(), "{}, {seed}: {alarm:?}", truth.what);
+        }
+    }
+}
+
+/// Injects a defect into the rubbing hand, which then moves on. Returns the fault, and the time, ms, from the moment
+/// when `begins` is first true of the finger.
+fn report(seed: u64, defect: impl Fn(u8) -> Defect, begins: impl Fn(&Bench, u8) -> bool) -> (u8, Option<Fault>, f64) {
+    let mut bench = bench(&RUBBING, seed);
+    let before = 3000 + bench.random(0.0, 1000.0) as u64;
+    bench.run(before);
+    let part = bench.part();
+    bench.mark();
+    assert!(bench.with_finger(|finger| finger.inject(&defect(part))));
+    let injected = bench.now();
+    let mut began = None;
+    while bench.fault().is_none() && bench.now() < injected + 5000 * MILLISECOND {
+        bench.cycle();
+        if began.is_none() && begins(&bench, part) {
+            began = Some(bench.now());
+        }
+    }
+    (part, bench.fault(), (bench.now() - began.unwrap_or(bench.now())) as f64 * 1e-6)
+}
+
+fn at_once(_: &Bench, _: u8) -> bool {
+    true
+}
+
+/// Whether more is out of balance at a motor than friction may hold.
+fn out_of_balance(bench: &Bench, motor: u8) -> bool {
+    let (motor, finger) = (usize::from(motor) - 1, bench.finger());
+    let (pull, tension) = (bench.truth.pulls[motor], bench.truth.tensions[motor]);
+    let held = finger.monitors.stall_torque[motor] / finger.geometry.motor_radius[motor];
+    (pull - tension).abs() > held + finger.monitors.stall_fraction * pull.abs().max(tension)
+}
+
+/// Injects a defect with several seeds. Returns the median and the longest time until the report, ms.
+fn reports(
+    seeds: u64,
+    kinds: &[FaultKind],
+    defect: impl Fn(u8) -> Defect,
+    begins: impl Fn(&Bench, u8) -> bool,
+) -> (f64, f64) {
+    let mut times: Vec<f64> = (0..seeds)
+        .map(|seed| {
+            let (part, fault, time) = report(seed, &defect, &begins);
+            let right = fault.is_some_and(|fault| kinds.contains(&fault.kind));
+            assert!(right, "{kinds:?}, seed {seed}, part {part}: {fault:?} after {time} ms");
+            time
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    println!("{kinds:?}: {times:.0?}");
+    (times[times.len() / 2], times[times.len() - 1])
+}
+
+#[test]
+fn a_cut_tendon_of_a_rubbing_hand_is_reported() {
+    let (_, worst) = reports(8, &[FaultKind::BrokenTendon], Defect::CutTendon, at_once);
+    assert!(worst <= 20.0, "{worst} ms");
+}
+
+#[test]
+fn a_dead_gauge_of_a_rubbing_hand_is_reported() {
+    let zero = |gauge| Defect::DeadGauge { gauge, count: Some(0) };
+    let (_, worst) = reports(8, &[FaultKind::GaugeStuck], zero, at_once);
+    assert!(worst <= 20.0, "{worst} ms");
+    let last = |gauge| Defect::DeadGauge { gauge, count: None };
+    let (_, worst) = reports(8, &[FaultKind::GaugeStuck], last, at_once);
+    assert!(worst <= 40.0, "{worst} ms");
+}
+
+#[test]
+fn a_jammed_motor_of_a_rubbing_hand_is_reported() {
+    let (_, worst) = reports(8, &[FaultKind::StalledMotor], Defect::JammedMotor, out_of_balance);
+    assert!(worst <= 200.0, "{worst} ms");
+}
+
+#[test]
+fn a_drifting_gauge_of_a_rubbing_hand_is_reported() {
+    // A gauge that drifts to zero before its drift is certain looks like that of a broken tendon.
+    let kinds = [FaultKind::GaugeDisagrees, FaultKind::BrokenTendon, FaultKind::SlackTendon];
+    for speed in [20.0, -20.0] {
+        let drift = |gauge| Defect::DriftingGauge { gauge, speed };
+        let (median, worst) = reports(8, &kinds, drift, at_once);
+        assert!(median <= 1500.0 && worst <= 3000.0, "{median}, {worst} ms");
+    }
+}
+
+/// Prints how many fingers of each hand have a false alarm:
+/// `cargo test --test monitors_on_rubbing_hands -- --ignored --nocapture`.
+#[test]
+#[ignore = "takes minutes"]
+fn table_of_false_alarms() {
+    for truth in truths() {
+        let mut alarms: BTreeMap<String, u32> = BTreeMap::new();
+        for seed in 0..12 {
+            let alarm = match catch_unwind(|| life(&mut bench(&truth, seed))) {
+                Ok(None) => continue,
+                Ok(Some((fault, what))) => format!("{:?}, {what}", fault.kind),
+                Err(_) => "does not open".into(),
+            };
+            *alarms.entry(alarm).or_default() += 1;
+        }
+        println!("| {} | {alarms:?} |", truth.what);
+    }
+}
