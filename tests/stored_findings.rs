@@ -52,9 +52,11 @@ impl Worker {
             }),
             What::Friction => Findings::Identified(Identified {
                 tendon_stiffness: [100.0 + number; 4].into(),
+                stiffness_tolerance: 0.03,
                 travel_residual: 0.0,
                 motor_coulomb: [0.07; 4].into(),
                 conduit: [0.05; 4].into(),
+                pulley: [0.02; 4].into(),
                 gauge_gain: [1.0; 4].into(),
                 motor_ratio: [1.0; 4].into(),
                 joint_coulomb: Vector3::repeat(number),

@@ -3,10 +3,6 @@
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Vector3, Vector4};
 
-/// `tendon.stiffness_tolerance` after identification. On the simulated finger the identified stiffness is accurate to
-/// 0.2 %, but a real tendon is not a linear spring.
-const STIFFNESS_TOLERANCE: f64 = 0.03;
-
 /// Results of one routine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Findings {
@@ -48,12 +44,17 @@ pub struct Zeros {
 pub struct Identified {
     /// `tendon.stiffness`, N/cm.
     pub tendon_stiffness: Vector4<f64>,
-    /// Part of the motors' travel that the four stiffnesses do not explain: rms residual, cm.
+    /// `tendon.stiffness_tolerance`: the largest relative difference between the stretch per newton at any tension and
+    /// that of `tendon_stiffness`, with the uncertainty of the measurement.
+    pub stiffness_tolerance: f64,
+    /// Part of the motors' travel that the identified elasticity does not explain: rms residual, cm.
     pub travel_residual: f64,
     /// `friction.motor_coulomb`, N cm of commanded torque.
     pub motor_coulomb: Vector4<f64>,
     /// `friction.conduit`.
     pub conduit: Vector4<f64>,
+    /// `friction.pulley`.
+    pub pulley: Vector4<f64>,
     /// Factors for `gauge.newton_per_count`. The gains relative to each other are measured; their mean comes from
     /// `gauge.reference`.
     pub gauge_gain: Vector4<f64>,
@@ -101,9 +102,10 @@ impl Findings {
                     *scale *= gain;
                 }
                 finger.tendon.stiffness = found.tendon_stiffness.into();
-                finger.tendon.stiffness_tolerance = STIFFNESS_TOLERANCE;
+                finger.tendon.stiffness_tolerance = found.stiffness_tolerance;
                 finger.friction.motor_coulomb = found.motor_coulomb.into();
                 finger.friction.conduit = found.conduit.into();
+                finger.friction.pulley = found.pulley.into();
                 finger.friction.joint_coulomb = found.joint_coulomb.into();
             }
         }

@@ -1,12 +1,13 @@
 //! Identifies the gains of the gauges, the friction of joints and motors, and the stiffness of the tendons.
 
-mod balance;
 mod joint_friction;
 mod least_squares;
 mod motor_friction;
 mod phases;
 mod pressing;
+mod shaking;
 mod tendon_stiffness;
+mod winding;
 
 use super::findings::Identified;
 use super::instruments::Instruments;
@@ -15,11 +16,11 @@ use super::step::{Sample, Stepped};
 use super::stop_search::StopSearch;
 use super::take_up::TakeUp;
 use crate::model::configuration::{ConfiguredFinger, GaugeReference};
-use balance::Balance;
-use joint_friction::JointFriction;
-use motor_friction::MotorFriction;
-use nalgebra::Vector3;
+use joint_friction::FreeFinger;
+use motor_friction::MotorFrictionFound;
+use nalgebra::{Vector3, Vector4};
 use pressing::Pressing;
+use shaking::Shaking;
 use tendon_stiffness::TendonStiffness;
 
 #[derive(Clone, Debug)]
@@ -31,8 +32,8 @@ pub(super) struct Identification {
     /// Joint angles at the beginning, rad.
     start: Vector3<f64>,
     stop: Vector3<f64>,
-    joint_coulomb: Vector3<f64>,
-    joint_viscous: Vector3<f64>,
+    free: FreeFinger,
+    motors: MotorFrictionFound,
     phase: Phase,
 }
 
@@ -41,10 +42,9 @@ pub(super) struct Identification {
 #[derive(Clone, Copy, Debug)]
 enum Phase {
     Tighten(TakeUp),
-    Balance { guide: JointGuide, balance: Balance },
+    Shake { guide: JointGuide, shaking: Shaking },
     Seek { guide: JointGuide, joint: usize, search: StopSearch },
-    Swing { guide: JointGuide, friction: JointFriction, joint: usize },
-    Press { pressing: Pressing, stiffness: TendonStiffness, friction: MotorFriction },
+    Press { pressing: Pressing, stiffness: TendonStiffness },
     Return { guide: JointGuide, joint: usize, strained: f64, found: Identified },
 }
 
@@ -57,23 +57,29 @@ impl Identification {
             reference: finger.gauge.reference,
             start: Vector3::zeros(),
             stop: Vector3::zeros(),
-            joint_coulomb: Vector3::zeros(),
-            joint_viscous: Vector3::zeros(),
+            free: FreeFinger {
+                gains: Vector4::repeat(1.0),
+                coulomb: Vector3::zeros(),
+                viscous: Vector3::zeros(),
+                pulley: Vector4::zeros(),
+            },
+            motors: MotorFrictionFound {
+                coulomb: Vector4::zeros(),
+                conduit: Vector4::zeros(),
+                ratio: Vector4::repeat(1.0),
+            },
             phase: Phase::Tighten(TakeUp::new()),
         }
     }
 
-    /// Runs one cycle of the current phase. The phases follow each other in the order of the match arms. `Seek`,
-    /// `Swing` and `Return` process one joint after the other.
+    /// Runs one cycle of the current phase. The phases follow each other in the order of the match arms. `Seek`
+    /// and `Return` process one joint after the other.
     pub fn step(&mut self, instruments: &mut Instruments, sample: &Sample) -> Stepped {
         match self.phase {
             Phase::Tighten(take_up) => self.take_up_slack(take_up, instruments, sample),
-            Phase::Balance { guide, balance } => self.compare_gauges(guide, balance, instruments, sample),
+            Phase::Shake { guide, shaking } => self.shake_joints(guide, shaking, instruments, sample),
             Phase::Seek { guide, joint, search } => self.seek_stop(guide, joint, search, instruments, sample),
-            Phase::Swing { guide, friction, joint } => self.swing_joint(guide, friction, joint, instruments, sample),
-            Phase::Press { pressing, stiffness, friction } => {
-                self.press_against_stops(pressing, stiffness, friction, instruments, sample)
-            }
+            Phase::Press { pressing, stiffness } => self.press_against_stops(pressing, stiffness, instruments, sample),
             Phase::Return { guide, joint, strained, found } => {
                 self.return_to_start(guide, joint, strained, found, instruments, sample)
             }

@@ -18,7 +18,7 @@ pub(super) struct Instruments {
     /// Pretension of each tendon, N.
     pub pretension: Vector4<f64>,
     /// 1/k, cm/N.
-    compliance: Vector4<f64>,
+    pub compliance: Vector4<f64>,
     pub newton_per_count: Vector4<f64>,
     pub gauge_zero: Vector4<f64>,
     /// Radians per count, with sign.

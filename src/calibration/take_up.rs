@@ -41,6 +41,10 @@ impl TakeUp {
             return Ok(None);
         }
         if self.seconds > LIMIT {
+            // Motors with much static friction may never come to rest. Their tendons are tight nevertheless.
+            if tensions.min() >= TIGHT * instruments.minimum {
+                return Ok(None);
+            }
             let tendon = sample.report.slackest;
             return Err(Obstacle::Slack { tendon: tendon as u8 + 1, newton: tensions[tendon] });
         }

@@ -141,9 +141,11 @@ mod tests {
     fn identified(finger: FingerNumber, stiffness: [f64; 4], conduit: f64) -> Found {
         let findings = Findings::Identified(Identified {
             tendon_stiffness: stiffness.into(),
+            stiffness_tolerance: 0.03,
             travel_residual: 0.0,
             motor_coulomb: [0.07; 4].into(),
             conduit: [conduit; 4].into(),
+            pulley: [0.0; 4].into(),
             gauge_gain: [1.0; 4].into(),
             motor_ratio: [1.0; 4].into(),
             joint_coulomb: Vector3::repeat(0.05),

@@ -83,14 +83,15 @@ impl Found {
                 value("encoder", "zero", whole(zeros.encoder)),
                 value("gauge", "zero", Numbers::Real(zeros.gauge.into())),
             ],
-            // The findings contain only the ratio of each new gauge gain to the previous one, and no tolerance. The
-            // configuration already contains the new gains and the tolerance, so both are taken from there.
+            // The findings contain only the ratio of each new gauge gain to the previous one. The configuration
+            // already contains the new gains, so they are taken from there.
             Findings::Identified(found) => vec![
                 value("gauge", "newton_per_count", Numbers::Real(of.gauge.newton_per_count.into())),
                 value("tendon", "stiffness", Numbers::Real(found.tendon_stiffness.as_slice().into())),
-                value("tendon", "stiffness_tolerance", Numbers::One(of.tendon.stiffness_tolerance)),
+                value("tendon", "stiffness_tolerance", Numbers::One(found.stiffness_tolerance)),
                 value("friction", "motor_coulomb", Numbers::Real(found.motor_coulomb.as_slice().into())),
                 value("friction", "conduit", Numbers::Real(found.conduit.as_slice().into())),
+                value("friction", "pulley", Numbers::Real(found.pulley.as_slice().into())),
                 value("friction", "joint_coulomb", Numbers::Real(found.joint_coulomb.as_slice().into())),
             ],
         };

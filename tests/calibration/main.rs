@@ -4,5 +4,6 @@ mod bench;
 mod identifying;
 mod pose;
 mod refusing;
+mod rubbing;
 mod signs;
 mod zeroing;

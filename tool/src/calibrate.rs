@@ -203,6 +203,7 @@ fn compare(finger: i32, before: &ConfiguredFinger, after: &ConfiguredFinger) -> 
     let (old, new) = (&before.friction, &after.friction);
     row("friction.motor_coulomb, N cm", list(&old.motor_coulomb, 4), list(&new.motor_coulomb, 4))?;
     row("friction.conduit", list(&old.conduit, 4), list(&new.conduit, 4))?;
+    row("friction.pulley", list(&old.pulley, 4), list(&new.pulley, 4))?;
     row("friction.joint_coulomb, N cm", list(&old.joint_coulomb, 4), list(&new.joint_coulomb, 4))
 }
 

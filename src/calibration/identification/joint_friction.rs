@@ -1,86 +1,180 @@
-//! Determines the friction of the joints from the torque R t that moves a joint back and forth at two speeds.
+//! Determines the gains of the gauges relative to each other, the friction of the joints and the friction of the
+//! pulleys, from the tensions of a free finger whose joints move back and forth.
 //!
-//! (R t)_j = g + s (C + b |v|), with s the sign of the motion. The two speeds separate Coulomb friction C from viscous
-//! friction b. Gravity g does not change with direction, and is discarded.
+//! Let t be the tensions at the gauges, and f_i = (1 + mu_i)^-s_i the factor by which the friction of the pulleys
+//! reduces tension i at the joint; s_i is +1 while the tendon moves toward its motor and -1 otherwise. Then
+//!
+//! R f t = g + s (C + b |v|)
+//!
+//! with the gravity g, and the Coulomb friction C and the viscous friction b of the joints. The half difference of the
+//! two directions of a motion eliminates g. C is the same at both levels of tension and both speeds, so that C, b and
+//! the four mu can be separated. The mean of both directions eliminates the friction, and g is the same at both levels.
+//! So the rise of the mean of f t between the levels is along the null vector of R. This gives the gains of the gauges
+//! up to a common factor. The tensions of a free finger do not show this factor.
 
 use super::least_squares::LeastSquares;
+use crate::calibration::average::Average;
 use crate::calibration::instruments::Instruments;
-use crate::calibration::joint_guide::JointGuide;
 use crate::calibration::obstacle::Obstacle;
-use crate::calibration::step::Sample;
 use crate::model::Part;
-use nalgebra::Vector3;
+use nalgebra::{SVector, Vector3, Vector4};
 
-/// Speed, rad/s, and amplitude, rad, of each motion.
-const SWINGS: [(f64, f64); 2] = [(0.15, 0.4), (0.6, 0.8)];
-/// Distance of the back-and-forth motion from the stop, rad. The last leg aims this far beyond the stop, so that the
-/// finger presses against it.
-const CLEAR: f64 = 0.1;
-/// Samples are ignored for this time after every change of direction, s. An extended finger oscillates for this time,
-/// and meanwhile its inertia takes as much torque as its friction.
-const RUN_UP: f64 = 0.5;
-/// A joint is blocked if its torque stays at the limit for this time, s.
-const BLOCKED: f64 = 0.3;
-/// Speed of the motions away from the stop and back to the stop, rad/s.
-const IN_BETWEEN: f64 = 0.7;
+/// Number of motions back and forth.
+pub(super) const STROKES: usize = 5;
+/// Number of oblique directions.
+const DIRECTIONS: usize = 2;
+/// Number of Gauss-Newton steps. The equations are nearly linear.
+const ROUNDS: usize = 5;
+/// Weight of the assumption that all pulleys have the same friction, N cm. It decides only where the motions do not
+/// distinguish the tendons.
+const LIKENESS: f64 = 0.3;
+/// A tendon that moves more slowly than this part of the fastest one has no certain direction.
+const DIRECTED: f64 = 0.05;
+/// Largest plausible friction of the pulleys.
+const LARGEST: f64 = 0.6;
+/// Smallest and largest plausible factor of a gauge, relative to the mean factor.
+const GAINS: std::ops::Range<f64> = 0.5..2.0;
 
+/// A motion in one direction.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stroke {
+    /// Whether the common tension is at its higher level.
+    pub high: bool,
+    /// Joint rates, rad/s.
+    pub rates: Vector3<f64>,
+    /// Number of the oblique direction.
+    pub direction: usize,
+}
+
+/// Mean tensions of all motions, each in both directions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointFriction {
-    joint: usize,
-    /// The angle of the joint at its lower stop, rad, measured from the configured zero.
-    stop: f64,
-    /// 0: away from the stop. 1 and 2: back and forth slowly. 3 and 4: back and forth faster. 5: back to the stop.
-    leg: usize,
-    /// Anchor at the beginning of the leg, rad.
-    from: Option<f64>,
-    strained: f64,
-    fit: LeastSquares<3>,
+    strokes: [(Stroke, [Average; 2]); STROKES],
+}
+
+/// What the tensions of a free finger show.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FreeFinger {
+    /// Factors for the tensions of the gauges. Their mean is 1.
+    pub gains: Vector4<f64>,
+    /// C, N cm.
+    pub coulomb: Vector3<f64>,
+    /// b, N cm s/rad.
+    pub viscous: Vector3<f64>,
+    /// mu of the pulleys.
+    pub pulley: Vector4<f64>,
 }
 
 impl JointFriction {
-    pub fn new(joint: usize, stop: f64) -> Self {
-        Self { joint, stop, leg: 0, from: None, strained: 0.0, fit: LeastSquares::new() }
+    pub fn new() -> Self {
+        Self { strokes: [(Stroke::default(), [Average::default(); 2]); STROKES] }
     }
 
-    /// Runs one cycle of the motion. When the motion is complete, returns C, N cm, and b, N cm s/rad.
-    pub fn step(
-        &mut self,
-        instruments: &Instruments,
-        sample: &Sample,
-        guide: &mut JointGuide,
-    ) -> Result<Option<(f64, f64)>, Obstacle> {
-        let joint = self.joint;
-        let clear = self.stop + CLEAR;
-        let (speed, target) = match self.leg {
-            0 => (IN_BETWEEN, clear),
-            leg @ 1..=4 => {
-                let (speed, amplitude) = SWINGS[(leg - 1) / 2];
-                (speed, if leg % 2 == 1 { clear + amplitude } else { clear })
-            }
-            _ => (IN_BETWEEN, self.stop - CLEAR),
-        };
-        let from = *self.from.get_or_insert(guide.anchor[joint]);
-        guide.advance(joint, target, speed * instruments.period);
-        let anchor = guide.anchor[joint];
-        if (1..=4).contains(&self.leg) && (anchor - from).abs() > RUN_UP * speed && anchor != target {
-            let torque = instruments.tendons.r.row(joint).transpose().dot(&instruments.tensions(sample.feedback));
-            let sign = (target - from).signum();
-            self.fit.add(&Vector3::new(1.0, sign, sign * speed), torque);
-        }
-        let strained = guide.strained(joint);
-        self.strained = if strained { self.strained + instruments.period } else { 0.0 };
-        let last = self.leg == 5;
-        if self.strained > BLOCKED && !last {
-            return Err(Obstacle::JointBlocked { joint: joint as u8 });
-        }
-        if last && strained {
-            let implausible = |value| Obstacle::Implausible { part: Part::joint(joint), what: "the friction", value };
-            let (found, _) = self.fit.solve().ok_or(implausible(f64::NAN))?;
-            return Ok(Some((found[1].max(0.0), found[2])));
-        }
-        if anchor == target && !last {
-            (self.leg, self.from) = (self.leg + 1, None);
-        }
-        Ok(None)
+    /// Adds tensions, N, of a motion. `way` is 0 on the way back and 1 on the way forth.
+    pub fn add(&mut self, motion: usize, way: usize, stroke: Stroke, tensions: Vector4<f64>) {
+        let (known, averages) = &mut self.strokes[motion];
+        *known = Stroke { rates: stroke.rates * if way == 0 { -1.0 } else { 1.0 }, ..stroke };
+        averages[way].add(tensions);
     }
+
+    pub fn solve(&self, instruments: &Instruments) -> Result<FreeFinger, Obstacle> {
+        let mut found = FreeFinger {
+            gains: Vector4::repeat(1.0),
+            coulomb: Vector3::zeros(),
+            viscous: Vector3::zeros(),
+            pulley: Vector4::zeros(),
+        };
+        for _ in 0..ROUNDS {
+            found.gains = self.gains(instruments, &found.pulley)?;
+            self.refine(instruments, &mut found)?;
+        }
+        found.coulomb = found.coulomb.map(|friction| friction.max(0.0));
+        Ok(found)
+    }
+
+    /// Returns the gains of the gauges if the pulleys have the friction `pulley`.
+    fn gains(&self, instruments: &Instruments, pulley: &Vector4<f64>) -> Result<Vector4<f64>, Obstacle> {
+        let mut rise = Vector4::zeros();
+        for direction in 0..DIRECTIONS {
+            let level = |high: bool| {
+                let of = |stroke: &Stroke| stroke.direction == direction && stroke.high == high;
+                let strokes = self.strokes.iter().filter(|(stroke, _)| of(stroke));
+                // The last stroke of a level has the same speed as the one at the other level.
+                strokes.last().map_or_else(Vector4::zeros, |(stroke, averages)| {
+                    let ways = at_joint(instruments, stroke, averages, pulley);
+                    (ways[0] + ways[1]) * 0.5
+                })
+            };
+            rise += level(true) - level(false);
+        }
+        let gains = instruments.pretension.component_div(&rise);
+        let gains = gains / gains.mean();
+        match gains.iter().position(|gain| !GAINS.contains(gain)) {
+            Some(index) => {
+                let what = "the gain, relative to the other gauges,";
+                Err(Obstacle::Implausible { part: Part::gauge(index), what, value: 1.0 / gains[index] })
+            }
+            None => Ok(gains),
+        }
+    }
+
+    /// Improves the friction by a Gauss-Newton step.
+    fn refine(&self, instruments: &Instruments, found: &mut FreeFinger) -> Result<(), Obstacle> {
+        let mut fit = LeastSquares::<10>::new();
+        let r = &instruments.tendons.r;
+        for (stroke, averages) in &self.strokes {
+            let [back, forth] =
+                at_joint(instruments, stroke, averages, &found.pulley).map(|t| t.component_mul(&found.gains));
+            let signs = directions(instruments, stroke);
+            // The derivative of (1 + mu)^-s t with respect to mu.
+            let slope = (forth + back).component_mul(&signs).zip_map(&found.pulley, |t, mu| t / (1.0 + mu));
+            for joint in 0..3 {
+                let row = r.row(joint).transpose();
+                let sign = stroke.rates[joint].signum();
+                let mut x = SVector::<f64, 10>::zeros();
+                (x[joint], x[3 + joint]) = (sign, stroke.rates[joint]);
+                let mut torque = 0.5 * row.dot(&(forth - back));
+                for tendon in 0..4 {
+                    let by_friction = 0.5 * row[tendon] * slope[tendon];
+                    x[6 + tendon] = by_friction;
+                    torque += by_friction * found.pulley[tendon];
+                }
+                fit.add(&x, torque);
+            }
+        }
+        for tendon in 0..4 {
+            let mut x = SVector::<f64, 10>::zeros();
+            (x[6 + tendon], x[6 + (tendon + 1) % 4]) = (LIKENESS, -LIKENESS);
+            fit.add(&x, 0.0);
+        }
+        let implausible = |part, what, value| Obstacle::Implausible { part, what, value };
+        let (solution, _) =
+            fit.solve().ok_or(implausible(Part::Finger, "the friction of joints and pulleys", f64::NAN))?;
+        found.coulomb = solution.fixed_rows::<3>(0).into_owned();
+        found.viscous = solution.fixed_rows::<3>(3).into_owned();
+        let pulley = solution.fixed_rows::<4>(6).into_owned();
+        if let Some(tendon) = pulley.iter().position(|friction| friction.abs() > LARGEST) {
+            return Err(implausible(Part::tendon(tendon), "the friction of its pulleys", pulley[tendon]));
+        }
+        found.pulley = pulley.map(|friction| friction.max(0.0));
+        Ok(())
+    }
+}
+
+/// Returns the directions of the tendons in a motion forth: +1 toward the motor.
+fn directions(instruments: &Instruments, stroke: &Stroke) -> Vector4<f64> {
+    let speeds = instruments.tendons.r.tr_mul(&stroke.rates);
+    let least = DIRECTED * speeds.amax();
+    speeds.map(|speed| if speed.abs() > least { speed.signum() } else { 0.0 })
+}
+
+/// Returns the tensions at the joints, N, on the way back and forth, in the scale of the gauges.
+fn at_joint(
+    instruments: &Instruments,
+    stroke: &Stroke,
+    averages: &[Average; 2],
+    pulley: &Vector4<f64>,
+) -> [Vector4<f64>; 2] {
+    let forth = directions(instruments, stroke).zip_map(pulley, |sign, mu| (1.0 + mu).powf(-sign));
+    [averages[0].mean().component_div(&forth), averages[1].mean().component_mul(&forth)]
 }

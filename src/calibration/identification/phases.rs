@@ -1,10 +1,8 @@
 //! The phases of identification.
 
-use super::balance::{Balance, SWING};
-use super::joint_friction::JointFriction;
-use super::motor_friction::MotorFriction;
 use super::pressing::Pressing;
-use super::tendon_stiffness::TendonStiffness;
+use super::shaking::{SWING, Shaking};
+use super::tendon_stiffness::{StiffnessFound, TendonStiffness};
 use super::{Identification, Phase};
 use crate::calibration::findings::{Findings, Identified};
 use crate::calibration::instruments::Instruments;
@@ -21,10 +19,10 @@ use std::ops::ControlFlow::{Break, Continue};
 const BEYOND: f64 = 0.17;
 /// A joint has returned when it is this close to its start, rad.
 const NEAR: f64 = 0.05;
-/// Torque limit of every joint while gauges are compared, N cm. The guide must hold the joints against the torques that
-/// wrong gauge gains cause.
-const BALANCING: f64 = 10.0;
-/// Distance that a joint keeps from its stops while gauges are compared, in addition to its swing, rad.
+/// Torque limit of every joint that moves back and forth, N cm. The guide must hold the joints against the torques that
+/// wrong gauge gains and the friction of pulleys cause.
+const SHAKING: f64 = 12.0;
+/// Distance that a joint keeps from its stops while it moves back and forth, in addition to its swing, rad.
 const ROOM: f64 = 0.1;
 /// A joint that returns to its start is blocked if its torque stays at the limit for this time, s.
 const BLOCKED: f64 = 0.5;
@@ -40,30 +38,33 @@ impl Identification {
             self.phase = Phase::Tighten(take_up);
             return going(Step::TakingUpSlack, 0.0, activity);
         }
-        let guide = JointGuide::new(instruments, sample, BALANCING);
+        let guide = JointGuide::new(instruments, sample, SHAKING);
         self.start = guide.joints;
-        self.phase = Phase::Balance { guide, balance: self.balance_near(&guide) };
-        going(Step::ComparingGauges, 0.0, guide.activity(instruments, sample))
+        self.phase = Phase::Shake { guide, shaking: self.shaking_near(&guide) };
+        going(Step::MovingJoints, 0.0, guide.activity(instruments, sample))
     }
 
-    pub(super) fn compare_gauges(
+    pub(super) fn shake_joints(
         &mut self,
         mut guide: JointGuide,
-        mut balance: Balance,
+        mut shaking: Shaking,
         instruments: &mut Instruments,
         sample: &Sample,
     ) -> Stepped {
         guide.measure(instruments, sample);
-        let found = balance.step(instruments, sample, &mut guide)?;
-        let activity = guide.activity(instruments, sample);
-        self.phase = match found {
-            None => Phase::Balance { guide, balance },
-            Some(gain) => {
-                instruments.gain = gain;
-                self.search_of(0, JointGuide::new(instruments, sample, self.torque))
-            }
-        };
-        going(Step::ComparingGauges, 0.02, activity)
+        let done = shaking.step(instruments, sample, &mut guide)?;
+        let part = 0.02 + 0.4 * shaking.part();
+        if !done {
+            self.phase = Phase::Shake { guide, shaking };
+            return going(Step::MovingJoints, part, guide.activity(instruments, sample));
+        }
+        let free = shaking.joints.solve(instruments)?;
+        self.motors = shaking.motors.solve(&free.gains)?;
+        instruments.gain = free.gains;
+        self.free = free;
+        let guide = JointGuide::new(instruments, sample, self.torque + self.friction_torque(instruments));
+        self.phase = self.search_of(0, guide);
+        going(Step::SeekingStops, part, guide.activity(instruments, sample))
     }
 
     pub(super) fn seek_stop(
@@ -82,56 +83,28 @@ impl Identification {
         self.phase = match found {
             None => Phase::Seek { guide, joint, search },
             Some(_) if joint < 2 => self.search_of(joint + 1, guide),
-            Some(_) => self.swing_of(0, guide),
+            Some(_) => {
+                Phase::Press { pressing: Pressing::new(instruments), stiffness: TendonStiffness::new(instruments) }
+            }
         };
-        going(Step::SeekingStops, 0.05 + 0.05 * joint as f64, guide.activity(instruments, sample))
-    }
-
-    pub(super) fn swing_joint(
-        &mut self,
-        mut guide: JointGuide,
-        mut friction: JointFriction,
-        joint: usize,
-        instruments: &Instruments,
-        sample: &Sample,
-    ) -> Stepped {
-        guide.measure(instruments, sample);
-        let found = friction.step(instruments, sample, &mut guide)?;
-        if let Some((coulomb, viscous)) = found {
-            self.joint_coulomb[joint] = coulomb;
-            self.joint_viscous[joint] = viscous;
-        }
-        self.phase = match found {
-            None => Phase::Swing { guide, friction, joint },
-            Some(_) if joint < 2 => self.swing_of(joint + 1, guide),
-            Some(_) => Phase::Press {
-                pressing: Pressing::new(instruments),
-                stiffness: TendonStiffness::new(instruments),
-                friction: MotorFriction::new(),
-            },
-        };
-        going(Step::MovingJoints, 0.2 + 0.1 * joint as f64, guide.activity(instruments, sample))
+        going(Step::SeekingStops, 0.42 + 0.03 * joint as f64, guide.activity(instruments, sample))
     }
 
     pub(super) fn press_against_stops(
         &mut self,
         mut pressing: Pressing,
         mut stiffness: TendonStiffness,
-        mut friction: MotorFriction,
         instruments: &Instruments,
         sample: &Sample,
     ) -> Stepped {
-        if pressing.under_way() {
-            stiffness.add(instruments, sample);
-            friction.add(instruments, sample);
-        }
+        stiffness.add(instruments, sample, &self.motors.conduit, pressing.under_way());
         let part = 0.5 + 0.4 * pressing.part();
         if let Some(tensions) = pressing.step(instruments, &instruments.tensions(sample.feedback)) {
-            self.phase = Phase::Press { pressing, stiffness, friction };
+            self.phase = Phase::Press { pressing, stiffness };
             return going(Step::Pressing, part, Activity::Tense(instruments.for_controller(tensions)));
         }
-        let found = self.identified(&stiffness, &friction, instruments)?;
-        let mut guide = JointGuide::new(instruments, sample, self.torque);
+        let found = self.identified(&stiffness.solve(instruments)?, instruments);
+        let mut guide = JointGuide::new(instruments, sample, self.torque + self.friction_torque(instruments));
         // The finger still presses against its stops, so the return begins at its present pose.
         guide.anchor = guide.joints;
         self.phase = Phase::Return { guide, joint: 0, strained: 0.0, found };
@@ -163,12 +136,18 @@ impl Identification {
         going(Step::Returning, 0.95, guide.activity(instruments, sample))
     }
 
-    /// Creates a comparison of the gauges about the present pose, or about the nearest one that leaves room for the
-    /// swing.
-    fn balance_near(&self, guide: &JointGuide) -> Balance {
+    /// Creates a motion about the present pose, or about the nearest one that leaves room for the swing.
+    fn shaking_near(&self, guide: &JointGuide) -> Shaking {
         let room = SWING + ROOM;
         let (low, high) = (self.stops.0.add_scalar(room), self.stops.1.add_scalar(-room));
-        Balance::new(guide.joints.zip_zip_map(&low, &high, |joint, low, high| joint.min(high).max(low)))
+        Shaking::new(guide.joints.zip_zip_map(&low, &high, |joint, low, high| joint.min(high).max(low)))
+    }
+
+    /// Returns the largest torque with which the friction of joints and pulleys resists a motion at the pretension,
+    /// N cm.
+    fn friction_torque(&self, instruments: &Instruments) -> f64 {
+        let pulleys = instruments.tendons.r.abs() * self.free.pulley.component_mul(&instruments.pretension);
+        (self.free.coulomb + pulleys).max()
     }
 
     fn search_of(&self, joint: usize, guide: JointGuide) -> Phase {
@@ -176,32 +155,23 @@ impl Identification {
         Phase::Seek { guide, joint, search: StopSearch::new(joint, -(range + BEYOND)) }
     }
 
-    fn swing_of(&self, joint: usize, guide: JointGuide) -> Phase {
-        Phase::Swing { guide, friction: JointFriction::new(joint, self.stop[joint]), joint }
-    }
-
     /// Combines all results. The configured reference determines the mean of the gauge gains.
-    fn identified(
-        &self,
-        stiffness: &TendonStiffness,
-        friction: &MotorFriction,
-        instruments: &Instruments,
-    ) -> Result<Identified, Obstacle> {
-        let (tendon_stiffness, travel_residual) = stiffness.solve()?;
-        let [coulomb, conduit, ratio] = friction.solve()?;
+    fn identified(&self, elasticity: &StiffnessFound, instruments: &Instruments) -> Identified {
         let found = Identified {
-            tendon_stiffness,
-            travel_residual,
+            tendon_stiffness: elasticity.stiffness,
+            stiffness_tolerance: elasticity.tolerance,
+            travel_residual: elasticity.residual,
             gauge_gain: instruments.gain,
-            motor_coulomb: coulomb.component_mul(&instruments.radius),
-            conduit,
-            motor_ratio: ratio.map(f64::recip),
-            joint_coulomb: self.joint_coulomb,
-            joint_viscous: self.joint_viscous,
+            motor_coulomb: self.motors.coulomb.component_mul(&instruments.radius),
+            conduit: self.motors.conduit,
+            pulley: self.free.pulley,
+            motor_ratio: self.motors.ratio.map(f64::recip),
+            joint_coulomb: self.free.coulomb,
+            joint_viscous: self.free.viscous,
         };
-        Ok(match self.reference {
+        match self.reference {
             GaugeReference::Gauges => found,
-            GaugeReference::Motors => found.scaled(ratio.mean()),
-        })
+            GaugeReference::Motors => found.scaled(self.motors.ratio.mean()),
+        }
     }
 }
