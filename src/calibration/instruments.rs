@@ -19,6 +19,8 @@ pub(super) struct Instruments {
     pub pretension: Vector4<f64>,
     /// 1/k, cm/N.
     pub compliance: Vector4<f64>,
+    /// Configured viscous friction of the joints, N cm s/rad.
+    pub joint_viscous: Vector3<f64>,
     pub newton_per_count: Vector4<f64>,
     pub gauge_zero: Vector4<f64>,
     /// Radians per count, with sign.
@@ -59,6 +61,7 @@ impl Instruments {
             )?,
             pretension: tendons.pretension(finger.tendon.minimum),
             compliance: Vector4::from(finger.tendon.stiffness).map(f64::recip),
+            joint_viscous: finger.friction.joint_viscous.into(),
             newton_per_count: finger.gauge.newton_per_count.into(),
             gauge_zero: finger.gauge.zero.into(),
             radians_per_count: Vector4::from_fn(|motor, _| count(motor)),

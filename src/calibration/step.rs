@@ -34,8 +34,6 @@ pub enum Step {
     /// Motors turn one by one.
     TryingMotors,
     /// Joints move back and forth at two levels of tension.
-    ComparingGauges,
-    /// Joints move back and forth.
     MovingJoints,
     /// The finger presses against its stops.
     Pressing,
@@ -52,7 +50,6 @@ impl fmt::Display for Step {
             Step::ReadingEncoders => "reading the encoders",
             Step::SeekingStops => "moving the joints against their stops",
             Step::TryingMotors => "turning the motors one by one",
-            Step::ComparingGauges => "comparing the gauges",
             Step::MovingJoints => "moving the joints",
             Step::Pressing => "pressing against the stops",
             Step::Returning => "returning to the initial pose",

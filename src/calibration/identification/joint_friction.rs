@@ -28,6 +28,8 @@ const ROUNDS: usize = 5;
 /// Weight of the assumption that all pulleys have the same friction, N cm. It decides only where the motions do not
 /// distinguish the tendons.
 const LIKENESS: f64 = 0.3;
+/// Weight of the configured viscous friction, rad/s. The motions show C more closely than b.
+const KNOWN: f64 = 0.2;
 /// A tendon that moves more slowly than this part of the fastest one has no certain direction.
 const DIRECTED: f64 = 0.05;
 /// Largest plausible friction of the pulleys.
@@ -141,6 +143,11 @@ impl JointFriction {
                 }
                 fit.add(&x, torque);
             }
+        }
+        for joint in 0..3 {
+            let mut x = SVector::<f64, 10>::zeros();
+            x[3 + joint] = KNOWN;
+            fit.add(&x, KNOWN * instruments.joint_viscous[joint]);
         }
         for tendon in 0..4 {
             let mut x = SVector::<f64, 10>::zeros();

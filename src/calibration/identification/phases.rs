@@ -12,6 +12,7 @@ use crate::calibration::step::{Progress, Sample, Step, Stepped};
 use crate::calibration::stop_search::StopSearch;
 use crate::calibration::take_up::TakeUp;
 use crate::control::signals::Activity;
+use crate::control::spring::joint_hold::HOLDING_STIFFNESS;
 use crate::model::configuration::GaugeReference;
 use std::ops::ControlFlow::{Break, Continue};
 
@@ -126,7 +127,9 @@ impl Identification {
         if strained > BLOCKED {
             return Err(Obstacle::JointBlocked { joint: joint as u8 });
         }
-        if (guide.joints[joint] - self.start[joint]).abs() < NEAR {
+        // Within this angle of its anchor, friction holds a joint against the spring of the guide.
+        let held = self.friction_torque(instruments) / HOLDING_STIFFNESS;
+        if (guide.joints[joint] - self.start[joint]).abs() < NEAR + held {
             if joint == 2 {
                 return Ok(Break(Findings::Identified(found)));
             }

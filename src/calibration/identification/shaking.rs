@@ -14,7 +14,7 @@ use crate::calibration::step::Sample;
 use nalgebra::{Vector3, Vector4};
 
 /// Amplitude of the motion to either side, rad, of a joint that moves at full speed.
-pub(super) const SWING: f64 = 0.25;
+pub(super) const SWING: f64 = 0.3;
 /// Speed of the motions, rad/s.
 const FAST: f64 = 0.4;
 /// Speed of the motion that shows the viscous friction of the joints, rad/s.
@@ -35,7 +35,7 @@ const LOOSE: f64 = 0.02;
 const HASTE: f64 = 3.0;
 /// Distance after every change of direction in which samples are ignored, rad, for a joint at full speed. The finger
 /// oscillates there, and the tendons do not slide in every place yet.
-const RUN_UP: f64 = 0.15;
+const RUN_UP: f64 = 0.2;
 /// A joint is blocked if its torque stays at the limit for this time, s.
 const BLOCKED: f64 = 0.5;
 
