@@ -518,13 +518,13 @@ int CloseHand(void);
    i     finger, 1 to 3
    Pos   Pos[3]: desired angles of joints 0, 1, 2, rad (chapter 3)
 
- From the next cycle on the spring of the fingertip is anchored at this pose, with the stiffness
- sent last. If Tip is the position of the fingertip at Pos, and p its present position, the force is
- Kx (Tip - p) at any distance; controller.law = "report" selects the law of the report, which holds
- for small distances. All three angles take effect together. The anchor moves to Pos along a straight
- line in joint angles, at a bounded speed. The call does not wait until the finger arrives; GetPos
- reads where it is. The limits are the configured joint limits, by default -1.0472 to 1.0472
- for joint 0, -0.5236 to 1.7453 for joint 1 and 0.0873 to 2.0944 for joint 2.
+ All three angles take effect together. From the next cycle on the anchor of the fingertip's spring
+ moves to Pos, along a straight line in joint angles and at a bounded speed. The stiffness is the one
+ sent last. When the anchor is at Pos, Tip is the position that the fingertip has there, and p its
+ present position, the force is Kx (Tip - p) at any distance. With controller.law = "report" the
+ finger follows the law of the report, which holds for small distances. The call does not wait until
+ the finger arrives; GetPos reads where it is. The limits are the configured joint limits, by default
+ -1.0472 to 1.0472 for joint 0, -0.5236 to 1.7453 for joint 1 and 0.0873 to 2.0944 for joint 2.
 
  Returns 0, or -1 with
    EPERM    forked child

@@ -110,7 +110,7 @@ proptest! {
         let force = kx * (LINKS.tip(&desired) - LINKS.tip(&theta));
         let point = set_point(desired, &contact, Law::Exact);
         prop_assert!((law().spring(&point.into(), &theta) - LINKS.jacobian(&theta).transpose() * force).amax() < 1e-9);
-        prop_assert_eq!(law().spring(&point.into(), &desired), Vector3::zeros());
+        prop_assert!(law().spring(&point.into(), &desired).amax() < 1e-12);
     }
 
     /// Near the straight pose, where the spring that leads joint 2 through it begins and ends, the torque is continuous

@@ -59,6 +59,8 @@ pub(crate) struct PosedSpring<'a> {
     joints: Vector3<f64>,
     exact: f64,
     damping: f64,
+    /// Position of the tip, cm.
+    tip: Vector3<f64>,
     /// K J, before any scaling.
     stiffened: Matrix6x3<f64>,
     /// Factor on the stiffness of the spring. [`PosedSpring::soften`] reduces it.
@@ -102,7 +104,8 @@ impl JointStiffness {
         let hold = hold(&spring.stiffness, &jacobian);
         k_theta[(0, 0)] += hold;
         let Spring { exact, damping, .. } = *spring;
-        PosedSpring { of: self, joints: *joints, exact, damping, stiffened, scale: 1.0, hold, k_theta }
+        let tip = tip(&jacobian);
+        PosedSpring { of: self, joints: *joints, exact, damping, tip, stiffened, scale: 1.0, hold, k_theta }
     }
 
     /// Returns the rotation vector, rad, from the tip's pose at `joints` to the pose at `desired`.
@@ -113,6 +116,14 @@ impl JointStiffness {
     fn rotation(&self, desired: &Vector3<f64>, joints: &Vector3<f64>) -> Vector3<f64> {
         (self.links.tip_rotation(desired) * self.links.tip_rotation(joints).inverse()).scaled_axis()
     }
+}
+
+/// Returns the position of the tip, cm, from the Jacobian of its motion, which has the sines of the pose already. Joint
+/// 0 moves the tip by its reach, and joint 1 by its height, which is y.
+fn tip(jacobian: &Matrix6x3<f64>) -> Vector3<f64> {
+    let (cosine, sine) = (jacobian[(3, 1)], -jacobian[(5, 1)]);
+    let height = sine * jacobian[(0, 1)] + cosine * jacobian[(2, 1)];
+    Vector3::new(-jacobian[(2, 0)], height, jacobian[(0, 0)])
 }
 
 /// Returns the stiffness that holds joint 0 in addition to the spring of the tip, N cm/rad. K and J are those of
@@ -167,7 +178,7 @@ impl PosedSpring<'_> {
     /// Returns J^T K d, N cm, with the deflection d of the tip from its pose at `desired`, rad, before any scaling.
     fn force_torques(&self, desired: &Vector3<f64>) -> Vector3<f64> {
         // K is symmetric: J^T K d = (K J)^T d.
-        let translation = self.of.links.tip(desired) - self.of.links.tip(&self.joints);
+        let translation = self.of.links.tip(desired) - self.tip;
         let torques = self.stiffened.fixed_view::<3, 3>(0, 0).tr_mul(&translation);
         let rotational = self.stiffened.fixed_view::<3, 3>(3, 0);
         // Few contacts have a rotational stiffness, and the rotation is the most expensive part of the law.
