@@ -19,7 +19,9 @@ use crate::control::spring::slew::Slew;
 use crate::control::spring::soft_limits::SoftLimits;
 use crate::control::spring::spring_transition::{SpringStages, SpringTransition};
 use crate::control::state_feedback::{StateFeedback, StateFeedbackState};
-use crate::control::take_up::slack::{Slack, SlackTakeUp};
+use crate::control::take_up::progress::Slack;
+use crate::control::take_up::slack::SlackTakeUp;
+use crate::control::take_up::tightening::{Tightening, TighteningState};
 use crate::control::tendons::bumpless_transfer::BumplessTransfer;
 use crate::control::tendons::low_pass::LowPass;
 use crate::control::tendons::release::Release;
@@ -38,6 +40,7 @@ pub struct Controller {
     stretch_filter: LowPass,
     joint_positions: JointPositions,
     slack: SlackTakeUp,
+    tightening: Tightening,
     slew: Slew,
     joint_stiffness: JointStiffness,
     distribution: TensionDistribution,
@@ -90,9 +93,11 @@ pub struct State {
 
 /// The activity of the last cycle, with the state that belongs to it.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[expect(clippy::large_enum_variant, reason = "a box would be allocated and freed in the servo")]
 enum Doing {
     Nothing,
     TakingUpSlack(Slack),
+    Tightening(TighteningState),
     /// The field is the anchor of the spring, rad. It moves toward the set point at a limited speed.
     Following(Vector3<f64>),
     Releasing(Release),
@@ -191,11 +196,8 @@ impl Controller {
         match activity {
             &Activity::Release { ramp } => self.release(state, ramp),
             Activity::Follow(set_point) if observed => self.follow_by_state(state, set_point),
-            Activity::TakeUpSlack if measured.is_some() => {
-                let gravity = self.gravity.torques(&state.report.joints);
-                self.take_up_slack(state, &Vector4::zeros(), gravity);
-            }
-            Activity::Tighten(offset) if measured.is_some() => self.take_up_slack(state, offset, Vector3::zeros()),
+            Activity::TakeUpSlack if measured.is_some() => self.take_up_slack(state),
+            Activity::Tighten(offset) if measured.is_some() => self.tighten(state, offset),
             Activity::Follow(set_point) if measured.is_some() => self.follow(state, set_point),
             &Activity::Tense(desired) if measured.is_some() => self.tense(state, desired),
             &Activity::Pull(pulls) if measured.is_some() => self.pull_freely(state, pulls),

@@ -58,11 +58,12 @@ pub fn spatial(kx: &Matrix3<f64>) -> Matrix6<f64> {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[expect(clippy::large_enum_variant, reason = "a set point in a box would be allocated and freed in the servo")]
 pub enum Activity {
-    /// Brings every tendon to the pretension of eq. 20 at zero joint torque, from any amount of slack. The joints are
-    /// held where they are when the last tendon comes taut.
+    /// Brings every tendon to the pretension of eq. 20 at zero joint torque, from any amount of slack. The joints stay
+    /// where they are.
     TakeUpSlack,
-    /// The same as `TakeUpSlack`, but without gravity compensation. The given values, N, are the errors of the gauges
-    /// (shown minus true tension). For calibration.
+    /// Brings every tendon to that pretension, without gravity compensation. The joints are held where they are when
+    /// the last tendon comes taut. The given values, N, are the errors of the gauges (shown minus true tension). For
+    /// calibration.
     Tighten(Vector4<f64>),
     /// Makes the fingertip the spring of this set point.
     Follow(SetPoint),
@@ -113,7 +114,7 @@ pub struct Report {
     /// The fraction of the set point's stiffness that the pose supports, 0 to 1.
     pub stiffness_scale: f64,
     /// Whether every tendon has a tension of at least 0.8 t_min and the motors are at rest. While slack is taken up,
-    /// this is true only after the desired tensions have reached the pretension.
+    /// this is true only after the tensions have reached the pretension.
     pub under_tension: bool,
     /// The tendon that is farthest from being under tension, 0 to 3. This value is valid only while slack is taken up.
     pub slackest: usize,

@@ -10,6 +10,7 @@ mod rig;
 mod robustness;
 mod settling;
 mod slack;
+mod slack_hands;
 mod state_feedback;
 mod switching;
 mod tip_stiffness;

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::control::{Activity, SetPoint};
-use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
 /// How far the joints have moved, rad, when the finger is under tension and holds its pose, and how long that took, s.
 fn drift(finger: &ConfiguredFinger, slack: &Vector4<f64>, rate: f64, take_up: &Activity) -> (f64, f64) {
@@ -62,8 +62,17 @@ fn the_joints_stay_where_they_are() {
         for &case in cases {
             let [drift, mean, seconds] = worst(case, finger_with(scheme), rate, &Activity::TakeUpSlack);
             println!("{scheme:?}, {rate} Hz, {case:?}: worst {drift:.3} rad, mean {mean:.3} rad, {seconds:.2} s");
-            assert!(drift < 0.1 && mean < 0.03, "{scheme:?}, {rate} Hz, {case:?}: {drift} rad, mean {mean} rad");
+            assert!(drift < 0.02 && mean < 0.01, "{scheme:?}, {rate} Hz, {case:?}: {drift} rad, mean {mean} rad");
         }
+    }
+}
+
+#[test]
+fn they_stay_about_there_in_a_calibration() {
+    for case in CASES {
+        let tighten = Activity::Tighten(Vector4::zeros());
+        let [drift, mean, _] = worst(case, finger_with(Scheme::Figure10), 1000.0, &tighten);
+        assert!(drift < 0.1 && mean < 0.03, "{case:?}: {drift} rad, mean {mean} rad");
     }
 }
 

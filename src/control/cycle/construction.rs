@@ -15,6 +15,7 @@ use crate::control::spring::soft_limits::SoftLimits;
 use crate::control::spring::spring_transition::SpringTransition;
 use crate::control::state_feedback::StateFeedback;
 use crate::control::take_up::slack::SlackTakeUp;
+use crate::control::take_up::tightening::Tightening;
 use crate::control::tendons::gains::Gains;
 use crate::control::tendons::low_pass::LowPass;
 use crate::control::tendons::tendon_controller::TendonController;
@@ -68,7 +69,8 @@ impl Controller {
             speed_filter: LowPass::new(gains.speed_filter, rate),
             stretch_filter: LowPass::new(gains.stretch_filter, rate),
             joint_positions: JointPositions::new(finger, &tendons)?,
-            slack: SlackTakeUp::new(finger.links(), &tendons, finger.tendon.minimum, rate),
+            slack: SlackTakeUp::new(finger, &tendons, rate),
+            tightening: Tightening::new(finger.links(), &tendons, finger.tendon.minimum, rate),
             slew: Slew::new(gains.set_point_speed, rate),
             joint_stiffness: JointStiffness::new(finger.links(), gains.rate_time),
             distribution: TensionDistribution::new(

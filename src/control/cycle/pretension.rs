@@ -2,36 +2,59 @@
 
 use super::pulls::open_loop;
 use super::{Controller, Doing, State};
-use crate::control::take_up::slack::{Slackness, TakeUp};
+use crate::control::take_up::progress::Slackness;
+use crate::control::take_up::tightening::{Joints, Tightened};
 use crate::control::tendons::tension_distribution::DistributedTensions;
 use nalgebra::{Vector3, Vector4};
 
 impl Controller {
-    /// Runs one cycle of taking up slack. The joints are held where they are when the last tendon comes taut. `offset`
-    /// is the error of the gauges (shown minus true tension), N. `gravity` is the torque that holds the links, N cm.
-    pub(super) fn take_up_slack(&self, state: &mut State, offset: &Vector4<f64>, gravity: Vector3<f64>) {
-        let now = Slackness {
-            travel: state.motor_angles.component_mul(&self.radius),
-            speeds: state.motor_speeds.component_mul(&self.radius),
-            tensions: state.report.tensions - offset,
-            // The joints that state feedback observes are not used: Figures 9 and 10 control the tensions here, and
-            // they need the low-pass filtered stretch.
-            joints: self.joint_positions.joints(&state.motor_angles, &state.tensions),
-            joint_rates: self.joint_positions.joint_rates(&state.motor_speeds),
-        };
+    /// Runs one cycle of taking up slack. The motors hold the joints where they are.
+    pub(super) fn take_up_slack(&self, state: &mut State) {
+        let now = self.slackness(state, &Vector4::zeros());
+        let gravity = self.gravity.torques(&state.report.joints);
         let (mut slack, starts) = match state.doing {
             Doing::TakingUpSlack(slack) => (slack, false),
             _ => (self.slack.start(&now), true),
         };
         let limit = self.heating.limit(&state.heat);
-        state.report.slackest = self.slack.slackest(&slack, &now);
-        match self.slack.step(&mut slack, &now) {
-            TakeUp::Pull(pulls) => {
+        let pulls = self.slack.step(&mut slack, &now, gravity != Vector3::zeros());
+        self.command_pulls(state, &pulls, &limit, starts);
+        let DistributedTensions { tensions, scale } = self.reachable(&limit).distribute(&gravity);
+        open_loop(state, pulls);
+        if self.slack.tightens(&slack) {
+            // The tendon controller continues from these pulls when the finger becomes a spring.
+            state.tendons.integral = pulls - tensions;
+            state.report.desired_tensions = tensions;
+        }
+        state.report.joint_torques = gravity;
+        state.report.torque_scale = scale;
+        state.report.slackest = self.slack.slackest(&slack);
+        state.report.under_tension &= self.slack.is_complete(&slack);
+        state.doing = Doing::TakingUpSlack(slack);
+    }
+
+    /// Runs one cycle of tightening during a calibration. The joints are held where they are when the last tendon comes
+    /// taut. `offset` is the error of the gauges (shown minus true tension), N.
+    pub(super) fn tighten(&self, state: &mut State, offset: &Vector4<f64>) {
+        let now = self.slackness(state, offset);
+        let joints = Joints {
+            // The joints that state feedback observes are not used: Figures 9 and 10 control the tensions here, and
+            // they need the low-pass filtered stretch.
+            angles: self.joint_positions.joints(&state.motor_angles, &state.tensions),
+            rates: self.joint_positions.joint_rates(&state.motor_speeds),
+        };
+        let (mut tightening, starts) = match state.doing {
+            Doing::Tightening(tightening) => (tightening, false),
+            _ => (self.tightening.start(&now), true),
+        };
+        let limit = self.heating.limit(&state.heat);
+        state.report.slackest = self.tightening.slackest(&tightening, &now);
+        match self.tightening.step(&mut tightening, &now, &joints) {
+            Tightened::Pull(pulls) => {
                 self.command_pulls(state, &pulls, &limit, starts);
                 open_loop(state, pulls);
             }
-            TakeUp::Hold { torques, below, begins } => {
-                let torques = torques + gravity;
+            Tightened::Hold { torques, below, begins } => {
                 let DistributedTensions { tensions, scale } = self.reachable(&limit).distribute(&torques);
                 self.control_tensions(state, tensions - below + offset, &limit, begins);
                 state.report.joint_torques = torques;
@@ -39,6 +62,15 @@ impl Controller {
                 state.report.under_tension &= below == Vector4::zeros();
             }
         }
-        state.doing = Doing::TakingUpSlack(slack);
+        state.doing = Doing::Tightening(tightening);
+    }
+
+    /// Returns the measurements with gauges that show `offset` too much, N.
+    fn slackness(&self, state: &State, offset: &Vector4<f64>) -> Slackness {
+        Slackness {
+            travel: state.motor_angles.component_mul(&self.radius),
+            speeds: state.motor_speeds.component_mul(&self.radius),
+            tensions: state.report.tensions - offset,
+        }
     }
 }

@@ -122,7 +122,7 @@ impl Default for ConfiguredHand {
             // periods from the last good reply, and then sends a Stop. With 20 ms, a Stop that leaves late in its
             // period would be too late.
             watchdog_ms: 18,
-            open_timeout_ms: 5000,
+            open_timeout_ms: 10_000,
             on_fault: OnFault::Finger,
             out_of_range: OutOfRange::Refuse,
             print_refusals: true,

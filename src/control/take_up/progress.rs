@@ -1,0 +1,58 @@
+//! The progress of taking up slack, and the measurements that it needs.
+
+use crate::control::take_up::touch::Gauge;
+use crate::control::take_up::travel_servo::Targets;
+use nalgebra::Vector4;
+use serde::{Deserialize, Serialize};
+
+/// The progress of the take-up.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+pub(crate) struct Slack {
+    pub(super) phase: Phase,
+    pub(super) targets: Targets,
+    pub(super) gauges: [Gauge; 4],
+    /// Low-pass filtered tensions, N.
+    pub(super) tensions: Vector4<f64>,
+    /// Tensions with the longer time constant, N.
+    pub(super) smoothed: Vector4<f64>,
+    /// Time since the start of the phase, s.
+    pub(super) seconds: f64,
+    /// The length that every motor has wound in, m.
+    pub(super) wound: Vector4<f64>,
+    /// Whether each tendon was taut before its motor moved.
+    pub(super) holds: [bool; 4],
+    /// Whether each tendon has been taut.
+    pub(super) touched: [bool; 4],
+    /// Time for which each motor may still reverse, s.
+    pub(super) reversing: Vector4<f64>,
+    /// Travel of each motor at which its tendon comes taut, m.
+    pub(super) taut_at: Vector4<f64>,
+    /// Travel at which each motor waits for the other tendons, m.
+    pub(super) waits_at: Vector4<f64>,
+    /// Common stretch in multiples of the stretch at the pretension. A negative value is slack.
+    pub(super) common: f64,
+    /// Rise of the common stretch while some tendons pull and another one is slack.
+    pub(super) unopposed: f64,
+    /// Whether the common stretch is kept, because the tensions are at the pretension.
+    pub(super) steady: bool,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub(super) enum Phase {
+    /// The motors are at rest, and the gauges are read.
+    Taring,
+    /// Every motor winds in until its tendon has been taut, and waits for the others.
+    Touching,
+    /// All motors wind in together.
+    Tightening,
+}
+
+/// The measurements of a cycle.
+pub(crate) struct Slackness {
+    /// Travel of the tendons at the motors, m, positive inward.
+    pub travel: Vector4<f64>,
+    /// Speeds of the tendons at the motors, m/s, positive inward.
+    pub speeds: Vector4<f64>,
+    /// Tensions, N.
+    pub tensions: Vector4<f64>,
+}
