@@ -49,7 +49,8 @@ const GAIN: f64 = 20.0;
 const FASTEST: f64 = 3.0;
 /// Missing fraction of the pretension at which the motors stop.
 const REACHED: f64 = 0.03;
-/// Missing fraction of the pretension at which they move again. Their friction would otherwise cause a limit cycle. Up to this fraction the take-up is complete.
+/// Missing fraction of the pretension at which they move again. Their friction would otherwise cause a limit cycle. Up
+/// to this fraction the take-up is complete.
 const COMPLETE: f64 = 0.1;
 /// Fraction of t_min that no tendon may be below, even if the common tension is right.
 const LEAST: f64 = 0.9;
