@@ -1,7 +1,7 @@
 //! The results of the routines, and their place in a finger's configuration.
 
 use crate::model::configuration::ConfiguredFinger;
-use nalgebra::{Vector3, Vector4};
+use nalgebra::{Matrix3x4, Vector3, Vector4};
 
 /// Results of one routine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +65,17 @@ pub struct Identified {
     pub joint_coulomb: Vector3<f64>,
     /// Viscous friction of the joints, N cm s/rad.
     pub joint_viscous: Vector3<f64>,
+    /// The moment arms, if they differ from the configured ones.
+    pub moment_arms: Option<IdentifiedArms>,
+}
+
+/// Measured moment arms, and the encoder zeros that belong to them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IdentifiedArms {
+    /// `geometry.r`, cm.
+    pub r: Matrix3x4<f64>,
+    /// `encoder.zero`.
+    pub encoder_zero: [i32; 4],
 }
 
 impl Identified {
@@ -79,6 +90,13 @@ impl Identified {
             joint_viscous: self.joint_viscous * factor,
             ..self
         }
+    }
+}
+
+impl IdentifiedArms {
+    /// Returns the rows of R.
+    pub(crate) fn rows(&self) -> [[f64; 4]; 3] {
+        std::array::from_fn(|joint| std::array::from_fn(|tendon| self.r[(joint, tendon)]))
     }
 }
 
@@ -107,6 +125,10 @@ impl Findings {
                 finger.friction.conduit = found.conduit.into();
                 finger.friction.pulley = found.pulley.into();
                 finger.friction.joint_coulomb = found.joint_coulomb.into();
+                if let Some(arms) = &found.moment_arms {
+                    finger.geometry.r = arms.rows();
+                    finger.encoder.zero = arms.encoder_zero;
+                }
             }
         }
     }

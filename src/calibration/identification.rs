@@ -1,10 +1,14 @@
-//! Identifies the gains of the gauges, the friction of joints and motors, and the stiffness of the tendons.
+//! Identifies the gains of the gauges, the friction of joints, pulleys and motors, the stiffness of the
+//! tendons, and their moment arms.
 
 mod joint_friction;
 mod least_squares;
+mod moment_arms;
 mod motor_friction;
 mod phases;
 mod pressing;
+mod ranges;
+mod results;
 mod shaking;
 mod tendon_stiffness;
 mod winding;
@@ -16,10 +20,12 @@ use super::step::{Sample, Stepped};
 use super::stop_search::StopSearch;
 use super::take_up::TakeUp;
 use crate::model::configuration::{ConfiguredFinger, GaugeReference};
-use joint_friction::FreeFinger;
-use motor_friction::MotorFrictionFound;
-use nalgebra::{Vector3, Vector4};
+use joint_friction::{FreeFinger, JointFriction};
+use moment_arms::MomentArms;
+use motor_friction::{MotorFriction, MotorFrictionFound};
+use nalgebra::{RowVector4, Vector3, Vector4};
 use pressing::Pressing;
+use ranges::Ranges;
 use shaking::Shaking;
 use tendon_stiffness::TendonStiffness;
 
@@ -28,12 +34,24 @@ pub(super) struct Identification {
     torque: f64,
     speed: f64,
     stops: (Vector3<f64>, Vector3<f64>),
+    /// Whether the angles of the stops are known exactly.
+    stops_known: bool,
+    /// The pose in which the encoders are zeroed, rad, if the stops are not known.
+    pose: Vector3<f64>,
+    /// `encoder.zero`, counts.
+    zero: [i32; 4],
+    ghost: Option<RowVector4<f64>>,
     reference: GaugeReference,
     /// Joint angles at the beginning, rad.
     start: Vector3<f64>,
     stop: Vector3<f64>,
+    /// Tensions and motor torques of the free finger. They are evaluated again when the moment arms are known.
+    joint_friction: JointFriction,
+    motor_friction: MotorFriction,
+    /// What they show with the configured moment arms.
     free: FreeFinger,
     motors: MotorFrictionFound,
+    moment_arms: Option<MomentArms>,
     phase: Phase,
 }
 
@@ -44,6 +62,7 @@ enum Phase {
     Tighten(TakeUp),
     Shake { guide: JointGuide, shaking: Shaking },
     Seek { guide: JointGuide, joint: usize, search: StopSearch },
+    Range { guide: JointGuide, ranges: Ranges },
     Press { pressing: Pressing, stiffness: TendonStiffness },
     Return { guide: JointGuide, joint: usize, strained: f64, found: Identified },
 }
@@ -54,9 +73,15 @@ impl Identification {
             torque: finger.zeroing.torque,
             speed: finger.zeroing.speed,
             stops: finger.stops(),
+            stops_known: finger.stops_known(),
+            pose: Vector3::from(finger.zeroing.pose_degrees.map(f64::to_radians)),
+            zero: finger.encoder.zero,
+            ghost: finger.geometry.ghost_row.map(RowVector4::from),
             reference: finger.gauge.reference,
             start: Vector3::zeros(),
             stop: Vector3::zeros(),
+            joint_friction: JointFriction::new(),
+            motor_friction: MotorFriction::new(),
             free: FreeFinger {
                 gains: Vector4::repeat(1.0),
                 coulomb: Vector3::zeros(),
@@ -68,6 +93,7 @@ impl Identification {
                 conduit: Vector4::zeros(),
                 ratio: Vector4::repeat(1.0),
             },
+            moment_arms: None,
             phase: Phase::Tighten(TakeUp::new()),
         }
     }
@@ -79,6 +105,7 @@ impl Identification {
             Phase::Tighten(take_up) => self.take_up_slack(take_up, instruments, sample),
             Phase::Shake { guide, shaking } => self.shake_joints(guide, shaking, instruments, sample),
             Phase::Seek { guide, joint, search } => self.seek_stop(guide, joint, search, instruments, sample),
+            Phase::Range { guide, ranges } => self.move_between_stops(guide, ranges, instruments, sample),
             Phase::Press { pressing, stiffness } => self.press_against_stops(pressing, stiffness, instruments, sample),
             Phase::Return { guide, joint, strained, found } => {
                 self.return_to_start(guide, joint, strained, found, instruments, sample)

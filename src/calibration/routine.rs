@@ -26,6 +26,8 @@ pub enum Task {
 }
 
 /// The state of a routine after a cycle.
+// The servo does not use the heap, so every verdict has the size of the largest one.
+#[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// The routine continues.

@@ -28,6 +28,11 @@ impl StopSearch {
         Self { joint, range, start: None, still_at: f64::NAN, still: 0.0 }
     }
 
+    /// Returns how far the joint has moved, rad.
+    pub fn gone(&self, guide: &JointGuide) -> f64 {
+        self.start.map_or(0.0, |start| (guide.joints[self.joint] - start).abs())
+    }
+
     /// Runs one cycle of the motion. Returns the angle of the stop, rad with the configured zero, when the joint has
     /// reached it.
     pub fn step(

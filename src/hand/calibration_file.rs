@@ -150,6 +150,7 @@ mod tests {
             motor_ratio: [1.0; 4].into(),
             joint_coulomb: Vector3::repeat(0.05),
             joint_viscous: Vector3::repeat(0.05),
+            moment_arms: None,
         });
         let mut configuration = Configuration::default();
         findings.apply(&mut configuration.fingers[finger.index()]);

@@ -25,6 +25,8 @@ pub struct Bench {
     pub motor_at: [usize; 4],
     /// What the board reports about its counts: whether their zero is valid.
     pub zero_valid: bool,
+    /// Duration of the last routine, s.
+    pub seconds: f64,
     /// Largest true tension, N.
     pub largest_tension: f64,
 }
@@ -56,6 +58,7 @@ impl Bench {
             gauge_at: [0, 1, 2, 3],
             motor_at: [0, 1, 2, 3],
             zero_valid: true,
+            seconds: 0.0,
             largest_tension: 0.0,
         }
     }
@@ -123,7 +126,8 @@ impl Bench {
         self.largest_tension = 0.0;
         let mut last = 0.0;
         for cycle in 0.. {
-            happen(cycle as f64 / self.rate, &mut self.plant);
+            self.seconds = cycle as f64 / self.rate;
+            happen(self.seconds, &mut self.plant);
             let feedback = self.feedback();
             let report = self.report;
             let sample = Sample { feedback: &feedback, report: &report, zero_valid: self.zero_valid };

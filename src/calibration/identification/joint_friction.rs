@@ -100,9 +100,9 @@ impl JointFriction {
         for direction in 0..DIRECTIONS {
             let level = |high: bool| {
                 let of = |stroke: &Stroke| stroke.direction == direction && stroke.high == high;
-                let strokes = self.strokes.iter().filter(|(stroke, _)| of(stroke));
+                let mut strokes = self.strokes.iter().rev().filter(|(stroke, _)| of(stroke));
                 // The last stroke of a level has the same speed as the one at the other level.
-                strokes.last().map_or_else(Vector4::zeros, |(stroke, averages)| {
+                strokes.next().map_or_else(Vector4::zeros, |(stroke, averages)| {
                     let ways = at_joint(instruments, stroke, averages, pulley);
                     (ways[0] + ways[1]) * 0.5
                 })

@@ -1,8 +1,9 @@
 //! The phases of identification.
 
 use super::pressing::Pressing;
+use super::ranges::Ranges;
 use super::shaking::{SWING, Shaking};
-use super::tendon_stiffness::{StiffnessFound, TendonStiffness};
+use super::tendon_stiffness::TendonStiffness;
 use super::{Identification, Phase};
 use crate::calibration::findings::{Findings, Identified};
 use crate::calibration::instruments::Instruments;
@@ -13,7 +14,6 @@ use crate::calibration::stop_search::StopSearch;
 use crate::calibration::take_up::TakeUp;
 use crate::control::signals::Activity;
 use crate::control::spring::joint_hold::HOLDING_STIFFNESS;
-use crate::model::configuration::GaugeReference;
 use std::ops::ControlFlow::{Break, Continue};
 
 /// A joint in search of its lower stop moves at most this far beyond its range, rad.
@@ -59,10 +59,10 @@ impl Identification {
             self.phase = Phase::Shake { guide, shaking };
             return going(Step::MovingJoints, part, guide.activity(instruments, sample));
         }
-        let free = shaking.joints.solve(instruments)?;
-        self.motors = shaking.motors.solve(&free.gains)?;
-        instruments.gain = free.gains;
-        self.free = free;
+        self.free = shaking.joints.solve(instruments)?;
+        self.motors = shaking.motors.solve(&self.free.gains)?;
+        (self.joint_friction, self.motor_friction) = (shaking.joints, shaking.motors);
+        instruments.gain = self.free.gains;
         let guide = JointGuide::new(instruments, sample, self.torque + self.friction_torque(instruments));
         self.phase = self.search_of(0, guide);
         going(Step::SeekingStops, part, guide.activity(instruments, sample))
@@ -84,11 +84,28 @@ impl Identification {
         self.phase = match found {
             None => Phase::Seek { guide, joint, search },
             Some(_) if joint < 2 => self.search_of(joint + 1, guide),
-            Some(_) => {
+            Some(_) => Phase::Range { guide, ranges: Ranges::new(&self.stops, self.stops_known) },
+        };
+        going(Step::SeekingStops, 0.42 + 0.03 * joint as f64, guide.activity(instruments, sample))
+    }
+
+    pub(super) fn move_between_stops(
+        &mut self,
+        mut guide: JointGuide,
+        mut ranges: Ranges,
+        instruments: &Instruments,
+        sample: &Sample,
+    ) -> Stepped {
+        guide.measure(instruments, sample);
+        let part = 0.51 + 0.14 * ranges.part();
+        self.phase = match ranges.step(instruments, sample, &mut guide, self.speed, &self.motors.conduit)? {
+            None => Phase::Range { guide, ranges },
+            Some(arms) => {
+                self.moment_arms = arms;
                 Phase::Press { pressing: Pressing::new(instruments), stiffness: TendonStiffness::new(instruments) }
             }
         };
-        going(Step::SeekingStops, 0.42 + 0.03 * joint as f64, guide.activity(instruments, sample))
+        going(Step::SeekingStops, part, guide.activity(instruments, sample))
     }
 
     pub(super) fn press_against_stops(
@@ -99,12 +116,12 @@ impl Identification {
         sample: &Sample,
     ) -> Stepped {
         stiffness.add(instruments, sample, &self.motors.conduit, pressing.under_way());
-        let part = 0.5 + 0.4 * pressing.part();
+        let part = 0.65 + 0.25 * pressing.part();
         if let Some(tensions) = pressing.step(instruments, &instruments.tensions(sample.feedback)) {
             self.phase = Phase::Press { pressing, stiffness };
             return going(Step::Pressing, part, Activity::Tense(instruments.for_controller(tensions)));
         }
-        let found = self.identified(&stiffness.solve(instruments)?, instruments);
+        let found = self.identified(&stiffness.solve(instruments)?, instruments)?;
         let mut guide = JointGuide::new(instruments, sample, self.torque + self.friction_torque(instruments));
         // The finger still presses against its stops, so the return begins at its present pose.
         guide.anchor = guide.joints;
@@ -156,25 +173,5 @@ impl Identification {
     fn search_of(&self, joint: usize, guide: JointGuide) -> Phase {
         let range = self.stops.1[joint] - self.stops.0[joint];
         Phase::Seek { guide, joint, search: StopSearch::new(joint, -(range + BEYOND)) }
-    }
-
-    /// Combines all results. The configured reference determines the mean of the gauge gains.
-    fn identified(&self, elasticity: &StiffnessFound, instruments: &Instruments) -> Identified {
-        let found = Identified {
-            tendon_stiffness: elasticity.stiffness,
-            stiffness_tolerance: elasticity.tolerance,
-            travel_residual: elasticity.residual,
-            gauge_gain: instruments.gain,
-            motor_coulomb: self.motors.coulomb.component_mul(&instruments.radius),
-            conduit: self.motors.conduit,
-            pulley: self.free.pulley,
-            motor_ratio: self.motors.ratio.map(f64::recip),
-            joint_coulomb: self.free.coulomb,
-            joint_viscous: self.free.viscous,
-        };
-        match self.reference {
-            GaugeReference::Gauges => found,
-            GaugeReference::Motors => found.scaled(self.motors.ratio.mean()),
-        }
     }
 }

@@ -48,6 +48,18 @@ pub(super) struct StiffnessFound {
     pub tolerance: f64,
     /// Part of the travel that the model does not explain, cm rms.
     pub residual: f64,
+    /// c, cm/N, d, cm/N^2, and h, cm/N.
+    linear: Vector4<f64>,
+    curved: Vector4<f64>,
+    friction: Vector4<f64>,
+}
+
+impl StiffnessFound {
+    /// Returns the stretch, cm, at the tensions `tensions`, N. `winding` are the directions in which the tendons slid.
+    pub fn stretch(&self, tensions: &Vector4<f64>, winding: &Vector4<f64>) -> Vector4<f64> {
+        let per_newton = self.linear + self.curved.component_mul(tensions) + self.friction.component_mul(winding);
+        per_newton.component_mul(tensions)
+    }
 }
 
 impl TendonStiffness {
@@ -101,6 +113,7 @@ impl TendonStiffness {
         };
         let unexplained = residual / (compliance.min() * (most - least));
         let tolerance = UNCERTAIN + off(least).max(off(MEASURED * instruments.maximum)) + unexplained;
-        Ok(StiffnessFound { stiffness, tolerance: tolerance.min(1.0), residual })
+        let friction = found.fixed_rows::<4>(8) / SCALE;
+        Ok(StiffnessFound { stiffness, tolerance: tolerance.min(1.0), residual, linear, curved, friction })
     }
 }

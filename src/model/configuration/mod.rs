@@ -254,11 +254,16 @@ impl ConfiguredFinger {
     /// finger is simulated. Otherwise it is `Pose`.
     #[must_use]
     pub fn zeroing_method(&self) -> ZeroingMethod {
-        let stops = self.zeroing.lower_stop_degrees.is_some() && self.zeroing.upper_stop_degrees.is_some();
-        self.zeroing.method.unwrap_or(match stops || self.simulated() {
+        self.zeroing.method.unwrap_or(match self.stops_known() {
             true => ZeroingMethod::Stops,
             false => ZeroingMethod::Pose,
         })
+    }
+
+    /// Returns whether the angles of the mechanical stops are known: they are configured, or the finger is simulated.
+    pub fn stops_known(&self) -> bool {
+        let configured = self.zeroing.lower_stop_degrees.is_some() && self.zeroing.upper_stop_degrees.is_some();
+        configured || self.simulated()
     }
 
     /// Returns the angles of the mechanical stops, rad: lower, upper.

@@ -1,0 +1,83 @@
+//! Combines the results of all phases.
+
+use super::Identification;
+use super::moment_arms::MomentArmsFound;
+use super::tendon_stiffness::StiffnessFound;
+use crate::calibration::findings::{Identified, IdentifiedArms};
+use crate::calibration::instruments::Instruments;
+use crate::calibration::obstacle::Obstacle;
+use crate::model::configuration::GaugeReference;
+use crate::model::{Part, Tendons};
+use nalgebra::Vector4;
+
+impl Identification {
+    /// Returns all results. The configured reference determines the mean of the gauge gains.
+    pub(super) fn identified(
+        &self,
+        elasticity: &StiffnessFound,
+        instruments: &Instruments,
+    ) -> Result<Identified, Obstacle> {
+        let measured = self.moment_arms.map(|arms| arms.solve(instruments, elasticity, &self.stops, self.stops_known));
+        let (mut free, mut motors, mut moment_arms) = (self.free, self.motors, None);
+        if let Some(arms) = measured.transpose()?.flatten() {
+            let corrected = self.with_moment_arms(&arms, instruments)?;
+            free = self.joint_friction.solve(&corrected)?;
+            motors = self.motor_friction.solve(&free.gains)?;
+            let encoder_zero = self.encoder_zero(&arms, elasticity, instruments, &corrected.pretension);
+            moment_arms = Some(IdentifiedArms { r: arms.r, encoder_zero });
+        }
+        // The tendons were stretched with the tensions of the first evaluation.
+        let ratio = free.gains.component_div(&self.free.gains);
+        let found = Identified {
+            tendon_stiffness: elasticity.stiffness.component_mul(&ratio),
+            stiffness_tolerance: elasticity.tolerance,
+            travel_residual: elasticity.residual,
+            gauge_gain: free.gains,
+            motor_coulomb: motors.coulomb.component_mul(&instruments.radius),
+            conduit: motors.conduit,
+            pulley: free.pulley,
+            motor_ratio: motors.ratio.map(f64::recip),
+            joint_coulomb: free.coulomb,
+            joint_viscous: free.viscous,
+            moment_arms,
+        };
+        Ok(match self.reference {
+            GaugeReference::Gauges => found,
+            GaugeReference::Motors => found.scaled(motors.ratio.mean()),
+        })
+    }
+
+    /// Returns the instruments with other moment arms.
+    fn with_moment_arms(&self, arms: &MomentArmsFound, instruments: &Instruments) -> Result<Instruments, Obstacle> {
+        let what = "the moment arms of the tendons";
+        let impossible = |_| Obstacle::Implausible { part: Part::Finger, what, value: f64::NAN };
+        let tendons = Tendons::new(arms.r, instruments.radius, self.ghost).map_err(impossible)?;
+        let mut corrected = instruments.clone();
+        corrected.pretension = tendons.pretension(instruments.minimum);
+        corrected.tendons = tendons;
+        Ok(corrected)
+    }
+
+    /// Returns `encoder.zero` with which the joint angles are right with the moment arms `arms` and their pretension,
+    /// N: at the stops if their angles are known, and otherwise in the pose in which the encoders were zeroed.
+    fn encoder_zero(
+        &self,
+        arms: &MomentArmsFound,
+        elasticity: &StiffnessFound,
+        instruments: &Instruments,
+        pretension: &Vector4<f64>,
+    ) -> [i32; 4] {
+        let stretched = |tensions: &Vector4<f64>| elasticity.stretch(tensions, &Vector4::zeros());
+        let too_far = if self.stops_known {
+            // The travel at zero is from the configured zero. A finger at its zero has its pretension. A counter rounds
+            // down to whole counts, so its count is half a count too low on average.
+            let cm_per_count = instruments.radius.component_mul(&instruments.radians_per_count);
+            arms.at_zero + stretched(pretension) + cm_per_count * 0.5
+        } else {
+            let change = instruments.tendons.r - arms.r;
+            change.tr_mul(&self.pose) + stretched(pretension) - stretched(&instruments.pretension)
+        };
+        let counts = too_far.component_div(&instruments.radius.component_mul(&instruments.radians_per_count));
+        std::array::from_fn(|motor| self.zero[motor].wrapping_add(counts[motor].round() as i32))
+    }
+}
