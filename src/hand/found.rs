@@ -63,6 +63,8 @@ pub(super) enum Numbers {
     Whole(Vec<i64>),
     /// An array of real numbers.
     Real(Vec<f64>),
+    /// The rows of a matrix.
+    Rows(Vec<Vec<f64>>),
     /// A real number.
     One(f64),
     /// Signs for the real numbers in the file, whose magnitudes were not measured.
@@ -85,15 +87,23 @@ impl Found {
             ],
             // The findings contain only the ratio of each new gauge gain to the previous one. The configuration
             // already contains the new gains, so they are taken from there.
-            Findings::Identified(found) => vec![
-                value("gauge", "newton_per_count", Numbers::Real(of.gauge.newton_per_count.into())),
-                value("tendon", "stiffness", Numbers::Real(found.tendon_stiffness.as_slice().into())),
-                value("tendon", "stiffness_tolerance", Numbers::One(found.stiffness_tolerance)),
-                value("friction", "motor_coulomb", Numbers::Real(found.motor_coulomb.as_slice().into())),
-                value("friction", "conduit", Numbers::Real(found.conduit.as_slice().into())),
-                value("friction", "pulley", Numbers::Real(found.pulley.as_slice().into())),
-                value("friction", "joint_coulomb", Numbers::Real(found.joint_coulomb.as_slice().into())),
-            ],
+            Findings::Identified(found) => {
+                let mut values = vec![
+                    value("gauge", "newton_per_count", Numbers::Real(of.gauge.newton_per_count.into())),
+                    value("tendon", "stiffness", Numbers::Real(found.tendon_stiffness.as_slice().into())),
+                    value("tendon", "stiffness_tolerance", Numbers::One(found.stiffness_tolerance)),
+                    value("friction", "motor_coulomb", Numbers::Real(found.motor_coulomb.as_slice().into())),
+                    value("friction", "conduit", Numbers::Real(found.conduit.as_slice().into())),
+                    value("friction", "pulley", Numbers::Real(found.pulley.as_slice().into())),
+                    value("friction", "joint_coulomb", Numbers::Real(found.joint_coulomb.as_slice().into())),
+                ];
+                if let Some(arms) = &found.moment_arms {
+                    let rows = arms.rows().map(|row| row.to_vec());
+                    values.push(value("geometry", "r", Numbers::Rows(rows.into())));
+                    values.push(value("encoder", "zero", whole(arms.encoder_zero)));
+                }
+                values
+            }
         };
         Self::new(finger, values, HELD_BY_CALIBRATION, configuration)
     }
@@ -136,10 +146,12 @@ impl Found {
         &self.values
     }
 
-    /// The first key that the results depend on and that has another value in `configuration`; none if all are equal.
+    /// The first key that the results depend on and that has another value in `configuration`; none if all are equal. A
+    /// key that the results themselves write does not count.
     pub(super) fn misfit(&self, configuration: &Configuration) -> Option<Misfit> {
         let present = excerpt(configuration, self.finger, self.held_by);
-        let keys = self.holds_for.keys().chain(present.keys());
+        let own = |key: &str| self.values.iter().any(|value| key == format!("{}.{}", value.section, value.key));
+        let keys = self.holds_for.keys().chain(present.keys()).filter(|key| !own(key));
         keys.map(|key| (key, self.holds_for.get(key), present.get(key))).find(|(_, was, is)| was != is).map(
             |(key, was, is)| {
                 let text = |value: Option<&String>| value.map_or("not set".into(), String::clone);

@@ -204,7 +204,11 @@ fn compare(finger: i32, before: &ConfiguredFinger, after: &ConfiguredFinger) -> 
     row("friction.motor_coulomb, N cm", list(&old.motor_coulomb, 4), list(&new.motor_coulomb, 4))?;
     row("friction.conduit", list(&old.conduit, 4), list(&new.conduit, 4))?;
     row("friction.pulley", list(&old.pulley, 4), list(&new.pulley, 4))?;
-    row("friction.joint_coulomb, N cm", list(&old.joint_coulomb, 4), list(&new.joint_coulomb, 4))
+    row("friction.joint_coulomb, N cm", list(&old.joint_coulomb, 4), list(&new.joint_coulomb, 4))?;
+    for (joint, (old, new)) in before.geometry.r.iter().zip(&after.geometry.r).enumerate() {
+        row(&format!("geometry.r, row {}, cm", joint + 1), list(old, 4), list(new, 4))?;
+    }
+    Ok(())
 }
 
 fn list<T: Display>(values: &[T], digits: usize) -> String {

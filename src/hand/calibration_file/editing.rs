@@ -11,6 +11,10 @@ pub(super) fn written(numbers: &Numbers, present: &[f64]) -> (Vec<Value>, bool) 
     match numbers {
         Numbers::Whole(values) => (values.iter().map(|&value| value.into()).collect(), true),
         Numbers::Real(values) => (values.iter().map(|&value| rounded(value)).collect(), true),
+        Numbers::Rows(rows) => {
+            let row = |values: &Vec<f64>| Value::Array(values.iter().map(|&value| rounded(value)).collect());
+            (rows.iter().map(row).collect(), true)
+        }
         Numbers::One(value) => (vec![rounded(*value)], false),
         Numbers::SignsOf(signs) => (with_signs(present, *signs).into_iter().map(Value::from).collect(), true),
     }
@@ -28,8 +32,13 @@ pub(super) fn set(section: &mut dyn TableLike, key: &str, values: Vec<Value>, ar
                     }
                 }
             }
-            _ => {
-                section.insert(key, Item::Value(Value::Array(values.into_iter().collect::<Array>())));
+            before => {
+                let mut array = values.into_iter().collect::<Array>();
+                // A comment after the array stays.
+                if let Some(before) = before {
+                    *array.decor_mut() = before.decor().clone();
+                }
+                section.insert(key, Item::Value(Value::Array(array)));
             }
         }
         return;
@@ -56,7 +65,16 @@ fn rounded(value: f64) -> Value {
 
 /// Whether the values are present already.
 pub(super) fn same(values: &[Value], present: &[f64]) -> bool {
-    values.len() == present.len() && values.iter().zip(present).all(|(value, &number)| is(value, number))
+    let values: Vec<&Value> = values.iter().flat_map(flat).collect();
+    values.len() == present.len() && values.into_iter().zip(present).all(|(value, &number)| is(value, number))
+}
+
+/// Returns the numbers of a value, row by row.
+fn flat(value: &Value) -> Vec<&Value> {
+    match value {
+        Value::Array(row) => row.iter().collect(),
+        number => vec![number],
+    }
 }
 
 /// Whether a value equals this number, or equals it after rounding to [`DIGITS`] significant digits.

@@ -1,0 +1,201 @@
+//! Tests of storing results in a file.
+
+use super::*;
+use crate::calibration::{Findings, Identified, IdentifiedArms, Signs, Zeros};
+use crate::model::FingerNumber;
+use nalgebra::Vector3;
+use std::fs;
+
+/// Stores `found` in a file that contains `text`, and returns the text of the file afterwards.
+fn try_to_store(text: &str, found: &[Found]) -> Result<String, ConfigurationError> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.toml");
+    fs::write(&path, text).expect("written");
+    let stored = store_findings(&path, found);
+    let files = fs::read_dir(folder.path()).expect("a folder").count();
+    assert_eq!(files, 1, "no temporary file is left");
+    let after = fs::read_to_string(&path).expect("there");
+    assert!(stored.is_ok() || after == text, "refused and changed");
+    stored.map(|()| after)
+}
+
+fn stored(text: &str, found: &[Found]) -> String {
+    let after = try_to_store(text, found).unwrap_or_else(|error| panic!("{error}"));
+    parse(&after).expect("still usable");
+    // Storing again changes nothing.
+    assert_eq!(try_to_store(&after, found).expect("stored"), after);
+    after
+}
+
+fn zeros(finger: FingerNumber, encoder: [i32; 4], gauge: f64) -> Found {
+    let findings =
+        Findings::Zeros(Zeros { encoder, gauge: [gauge; 4], joint_error: Vector3::zeros(), range_error: None });
+    Found::by_calibration(&findings, finger, &Configuration::default())
+}
+
+fn signs(finger: FingerNumber, motor: [i8; 4], gauge: [i8; 4]) -> Found {
+    let findings = Findings::Signs(Signs { motor, encoder: [1; 4], gauge });
+    Found::by_calibration(&findings, finger, &Configuration::default())
+}
+
+fn friction(stiffness: [f64; 4], conduit: f64) -> Identified {
+    Identified {
+        tendon_stiffness: stiffness.into(),
+        stiffness_tolerance: 0.03,
+        travel_residual: 0.0,
+        motor_coulomb: [0.07; 4].into(),
+        conduit: [conduit; 4].into(),
+        pulley: [0.0; 4].into(),
+        gauge_gain: [1.0; 4].into(),
+        motor_ratio: [1.0; 4].into(),
+        joint_coulomb: Vector3::repeat(0.05),
+        joint_viscous: Vector3::repeat(0.05),
+        moment_arms: None,
+    }
+}
+
+fn identified(finger: FingerNumber, stiffness: [f64; 4], conduit: f64) -> Found {
+    by_identification(finger, friction(stiffness, conduit))
+}
+
+fn by_identification(finger: FingerNumber, found: Identified) -> Found {
+    let findings = Findings::Identified(found);
+    let mut configuration = Configuration::default();
+    findings.apply(&mut configuration.fingers[finger.index()]);
+    Found::by_calibration(&findings, finger, &configuration)
+}
+
+#[test]
+fn moment_arms_are_stored_with_the_zeros_that_belong_to_them() {
+    let r = ConfiguredFinger::default().r() * 1.02;
+    let zero = [5, 6, 7, 8];
+    let moment_arms = Some(IdentifiedArms { r, encoder_zero: zero });
+    let friction = by_identification(FingerNumber::TWO, Identified { moment_arms, ..friction([300.0; 4], 0.05) });
+    let file = "[finger.2.geometry]\n\
+                r = [[-1.09, 0.62, 0.62, -1.09], [1.09, 0.62, -0.62, -1.09], [0.0, 0.62, -0.62, 0.0]] # report\n";
+    // Zeros that were found with the new moment arms, before they were stored.
+    let mut later = Configuration::default();
+    later.fingers[1].geometry.r = std::array::from_fn(|row| std::array::from_fn(|column| r[(row, column)]));
+    let zeros = Zeros { encoder: zero, gauge: [0.0; 4], joint_error: Vector3::zeros(), range_error: None };
+    let mut both = friction.clone();
+    both.add(Found::by_calibration(&Findings::Zeros(zeros), FingerNumber::TWO, &later));
+    for found in [friction, both] {
+        let text = stored(file, &[found]);
+        let rows = "[[-1.1118, 0.6324, 0.6324, -1.1118], [1.1118, 0.6324, -0.6324, -1.1118], \
+                    [0.0, 0.6324, -0.6324, 0.0]] # report";
+        assert!(text.contains(rows) && text.contains("zero = [5, 6, 7, 8]"), "{text}");
+    }
+}
+
+fn bound(finger: FingerNumber, bound: f64) -> Found {
+    Found::bound(bound, finger, &Configuration::default())
+}
+
+const FILE: &str = "# The hand in the corner.\n\n[hand]\nrate = 500 # slow cable\n\n[finger.encoder]\n\
+     zero = [1, 2, 3, 4]\n\n[finger.2]\nport = \"simulated\"   # for now\n[finger.2.tendon]\n\
+     # As measured in May:\nstiffness = [ 300.0, 300, # new\n  310.0, 300.0 ] # N/cm\n";
+
+#[test]
+fn values_that_are_present_change_nothing() {
+    assert_eq!(stored(FILE, &[]), FILE);
+    assert_eq!(
+        stored(FILE, &[zeros(FingerNumber::ONE, [1, 2, 3, 4], 0.0), signs(FingerNumber::THREE, [1; 4], [1; 4])]),
+        FILE
+    );
+}
+
+#[test]
+fn results_replace_their_numbers_and_nothing_else() {
+    let text = stored(FILE, &[identified(FingerNumber::TWO, [330.0, 301.123_456_789, 310.0, 300.0], 0.05)]);
+    let expected = FILE.replace("[ 300.0, 300,", "[ 330.0, 301.123,");
+    assert_eq!(text, expected + "stiffness_tolerance = 0.03\n");
+}
+
+#[test]
+fn shared_values_are_overridden_for_one_finger() {
+    let text =
+        stored(FILE, &[zeros(FingerNumber::ONE, [5, 6, 7, -8], 0.0), signs(FingerNumber::ONE, [1, -1, 1, 1], [1; 4])]);
+    assert!(text.starts_with(FILE), "{text}");
+    assert!(text.contains("[finger.1.encoder]\nzero = [5, 6, 7, -8]"), "{text}");
+    assert!(text.contains("[finger.1.motor]\nsign = [1, -1, 1, 1]"), "{text}");
+}
+
+#[test]
+fn inline_tables_take_it_too() {
+    let text = "finger.3 = { encoder = { zero = [0, 0, 0, 0] } }\n";
+    let text = stored(
+        text,
+        &[zeros(FingerNumber::THREE, [9, 0, 0, 0], 0.0), identified(FingerNumber::THREE, [300.0; 4], 0.07)],
+    );
+    assert!(text.contains("zero = [9, 0, 0, 0]"), "{text}");
+    assert!(text.contains("conduit = [0.07, 0.07, 0.07, 0.07]"), "{text}");
+}
+
+#[test]
+fn a_single_number_keeps_its_comment_or_is_added() {
+    let file = "[finger.1.stiffness]\nbound = 4.0 # N/cm, by hand\n";
+    let text = stored(file, &[bound(FingerNumber::ONE, 8.300000001), bound(FingerNumber::THREE, 7.0)]);
+    let expected = "[finger.1.stiffness]\nbound = 8.3 # N/cm, by hand\n\n[finger.3.stiffness]\nbound = 7.0\n";
+    assert_eq!(text, expected);
+}
+
+#[test]
+fn others_findings_stay() {
+    // All results were found before any of them was stored.
+    let (first, second) =
+        (zeros(FingerNumber::ONE, [5, 6, 7, 8], 200.0), zeros(FingerNumber::TWO, [9, 9, 9, 9], 190.0));
+    let bound = Found::bound(7.5, FingerNumber::ONE, &parse(FILE).expect("usable"));
+    let text = stored(&stored(FILE, &[first]), &[second, bound]);
+    let hand = parse(&text).expect("usable");
+    assert_eq!(hand.fingers.each_ref().map(|finger| finger.encoder.zero[0]), [5, 9, 1]);
+    assert_eq!(hand.fingers.each_ref().map(|finger| finger.gauge.zero[0]), [200.0, 190.0, 0.0]);
+    assert_eq!(hand.fingers.each_ref().map(|finger| finger.stiffness.bound), [Some(7.5), None, None]);
+}
+
+#[test]
+fn signs_are_given_to_the_sizes_that_are_there() {
+    let file = "[finger.1.gauge]\nnewton_per_count = [0.0312345678, 0.02, -0.03, 0.04] # measured\n";
+    let text = stored(file, &[signs(FingerNumber::ONE, [1; 4], [1, -1, -1, 1])]);
+    assert_eq!(text, file.replace("0.02,", "-0.02,"));
+}
+
+#[test]
+fn byte_order_marks_and_line_ends_are_kept() {
+    for file in [FILE.replace('\n', "\r\n"), format!("\u{feff}{FILE}")] {
+        let text = stored(&file, &[zeros(FingerNumber::ONE, [5, 6, 7, 8], 0.0)]);
+        assert!(text.starts_with(&file), "{text:?}");
+        assert_eq!(text.contains("\nzero = [5, 6, 7, 8]\n"), !file.contains('\r'), "{text:?}");
+    }
+    let text = stored("[hand]\nrate = 1000 # no line end", &[zeros(FingerNumber::ONE, [5, 6, 7, 8], 0.0)]);
+    assert_eq!(text, "[hand]\nrate = 1000 # no line end\n\n[finger.1.encoder]\nzero = [5, 6, 7, 8]\n");
+}
+
+#[test]
+fn a_file_that_no_longer_fits_is_unchanged_and_the_reason_is_reported() {
+    let radius = "[finger.1.geometry]\nmotor_radius = [0.05, 0.05, 0.05, 0.05]\n";
+    let error = try_to_store(radius, &[zeros(FingerNumber::ONE, [5; 4], 0.0)]).expect_err("other motors").to_string();
+    assert!(error.contains("finger.1.geometry.motor_radius is [0.05, 0.05, 0.05, 0.05] there"), "{error}");
+    // The change does not affect finger 2.
+    stored(radius, &[zeros(FingerNumber::TWO, [5; 4], 0.0)]);
+    let error =
+        try_to_store("[hand]\nrate = 500\n", &[bound(FingerNumber::TWO, 7.0)]).expect_err("another rate").to_string();
+    assert!(error.contains("hand.rate is 500 there, and was 1000 during the calibration"), "{error}");
+    for (text, line, reason) in
+        [("[hand]\nrate = \n", Some(2), ""), ("\n[finger.3.tendon]\nmaximum = 8\n", Some(3), "for its pretension")]
+    {
+        match try_to_store(text, &[zeros(FingerNumber::ONE, [5; 4], 0.0)]).expect_err("unusable") {
+            ConfigurationError::Invalid { line: found, reason: told, .. } => {
+                assert!(found == line && told.contains(reason), "{found:?} {told}");
+            }
+            other => panic!("{other}"),
+        }
+    }
+    let error = try_to_store("", &[bound(FingerNumber::ONE, 1e9)]).expect_err("beyond its range").to_string();
+    assert!(error.contains("with the new calibration, finger.1.stiffness.bound"), "{error}");
+}
+
+#[test]
+fn a_failed_write_is_named() {
+    let error = store_findings(Path::new("/proc/version"), &[]).expect_err("no text of a configuration");
+    assert!(error.to_string().contains("/proc/version"), "{error}");
+}
