@@ -7,9 +7,7 @@ use sun2xp::control::AdmissibleDamping;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 use sun2xp::stability::{Limit, OneCycleMap, Rest, Search, StiffnessBound, Variant};
 
-const SEARCH: Search = Search { samples: 58, seed: 5, walls: false };
-
-const AGAINST_WALLS: Search = Search { samples: 40, walls: true, ..SEARCH };
+const SEARCH: Search = Search { samples: 60, seed: 5, walls: false };
 
 const SCHEMES: [Scheme; 4] = [Scheme::Figure9, Scheme::Figure10, Scheme::Figure11, Scheme::StateFeedback];
 
@@ -29,7 +27,7 @@ fn the_default_finger_carries_its_documented_stiffness() {
         for (rate, least) in [(500.0, 5.0), (1000.0, 6.0)] {
             let found = nominal(&finger(scheme), rate);
             assert!(found.stiffness >= least, "{scheme:?} at {rate} Hz: {found:?}");
-            assert!(found.least_scale >= 0.5 && found.samples > 40);
+            assert!(found.least_scale >= 0.5 && found.samples > 35 && found.uncovered.is_empty());
         }
     }
 }
@@ -111,11 +109,12 @@ fn a_loop_with_too_much_gain_or_no_damper_is_detected() {
     let mut less_damped = finger(Scheme::Figure10);
     less_damped.controller.rate_time = Some(0.002);
     let found = nominal(&less_damped, 1000.0);
-    assert!(found.stiffness < whole && matches!(found.limit, Limit::Unstable(_)), "{found:?}");
+    let limited = found.stiffness < whole && matches!(found.limit, Limit::Unstable(_));
+    assert!(limited || !found.uncovered.is_empty(), "{found:?}");
     let mut undamped = finger(Scheme::Figure10);
     undamped.controller.motor_damping = Some(0.0);
     undamped.controller.rate_time = Some(0.0);
-    assert_eq!(nominal(&undamped, 1000.0).stiffness, 0.0);
+    assert!(!nominal(&undamped, 1000.0).uncovered.is_empty());
 }
 
 /// Fingers of another build: masses, motors, tendons and lengths are those of the default finger times these factors.
@@ -146,17 +145,25 @@ fn other_fingers(scheme: Scheme) -> Vec<(&'static str, ConfiguredFinger)> {
 fn state_feedback_is_made_for_the_finger_that_is_configured() {
     for (name, finger) in other_fingers(Scheme::StateFeedback) {
         let found = nominal(&finger, 1000.0);
-        assert!(matches!(found.limit, Limit::Scaled(_)), "{name}: {found:?}");
+        assert!(matches!(found.limit, Limit::Scaled(_)) && found.uncovered.is_empty(), "{name}: {found:?}");
     }
     let figure = other_fingers(Scheme::Figure10).into_iter().map(|(_, finger)| nominal(&finger, 1000.0));
-    assert!(figure.filter(|found| found.stiffness == 0.0).count() >= 4);
+    assert!(figure.filter(|found| !found.uncovered.is_empty()).count() >= 4);
 }
 
 #[test]
-fn state_feedback_carries_its_stiffness_against_walls_and_figure_10_does_not() {
-    let bound = |scheme| AGAINST_WALLS.bound(&finger(scheme), 1000.0, &Variant::NOMINAL).unwrap();
-    let state_feedback = bound(Scheme::StateFeedback);
-    assert!(state_feedback.stiffness >= 6.0, "{state_feedback:?}");
-    let figure_10 = bound(Scheme::Figure10);
-    assert!(figure_10.stiffness < 6.0 && matches!(&figure_10.limit, Limit::Unstable(rest) if rest.wall.is_some()));
+fn state_feedback_carries_its_stiffness_against_walls() {
+    let against_walls = Search { samples: 30, walls: true, ..SEARCH };
+    let found = against_walls.bound(&finger(Scheme::StateFeedback), 1000.0, &Variant::NOMINAL).unwrap();
+    assert!(found.stiffness >= 6.0 && found.uncovered.is_empty(), "{found:?}");
+}
+
+/// Figure 10 is stable on the plant of its model. With another cycle of delay it is unstable with every spring.
+#[test]
+fn a_plant_of_the_set_is_unstable_although_the_nominal_plant_is_stable() {
+    let few = Search { samples: 16, ..SEARCH };
+    let delayed = Variant::SET.into_iter().find(|variant| variant.name == "extra cycle of delay").unwrap();
+    let uncovered = |variant| few.bound(&finger(Scheme::Figure10), 1000.0, variant).unwrap().uncovered.len();
+    assert_eq!(uncovered(&Variant::NOMINAL), 0);
+    assert!(uncovered(&delayed) > 0);
 }

@@ -10,9 +10,9 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::f64::consts::PI;
 
-/// Smallest eigenvalue of the springs, N/cm, unless the bound is smaller. With a softer spring the finger is nearly
-/// limp, whatever the bound is.
-const SOFTEST: f64 = 1.0;
+/// Smallest eigenvalue of the springs and smallest bound, N/cm. With a softer spring the finger is nearly limp,
+/// whatever the bound is.
+pub(super) const SOFTEST: f64 = 1.0;
 
 /// Smallest and largest deflection of the tip by its load, cm. It is not zero, because eq. 20 has a kink at zero load.
 const DEFLECTIONS: [f64; 2] = [0.01, 0.2];

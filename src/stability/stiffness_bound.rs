@@ -2,7 +2,7 @@
 
 use super::Rest;
 use super::plant_set::Variant;
-use super::samples::{Sample, samples};
+use super::samples::{SOFTEST, Sample, samples};
 use super::trial::Trial;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use nalgebra::Vector3;
@@ -31,7 +31,7 @@ pub struct Search {
 /// The largest eigenvalue that Kx may have, and what limits it.
 #[derive(Clone, Debug)]
 pub struct StiffnessBound {
-    /// The bound, N/cm. With 0, the finger is unstable at any stiffness.
+    /// The bound, N/cm.
     pub stiffness: f64,
     /// What prevents a larger bound.
     pub limit: Limit,
@@ -40,8 +40,10 @@ pub struct StiffnessBound {
     pub scaled: f64,
     /// The smallest factor by which the servo scales Kx down.
     pub least_scale: f64,
-    /// Number of samples tried at the bound. All are stable.
+    /// Number of samples tried at the bound. All but those in `uncovered` are stable.
     pub samples: usize,
+    /// The samples that are unstable at 1 N/cm too. A lower bound would not help them, so they do not limit the bound.
+    pub uncovered: Vec<Rest>,
 }
 
 /// The samples with the tip within 3 cm of the axis of joint 0, where the finger is nearly singular. The bound does not
@@ -67,8 +69,8 @@ pub enum Limit {
 
 impl Search {
     /// Returns the bound of `finger` with its scheme and gains at `rate`, Hz, for a plant that differs from the
-    /// controller's model as `variant` says. Every sample is stable at the bound: every motion decays to 1/e within
-    /// 10 s.
+    /// controller's model as `variant` says. A sample is stable if every motion decays to 1/e within 10 s. Every sample
+    /// is stable at the bound, except those that are unstable with the softest spring too.
     ///
     /// The samples are poses within the joint limits, with hard and soft fingers, stiffnesses with random axes and
     /// eigenvalues from 1 N/cm to the bound, either law, and loads that deflect the tip by up to 2 mm. If walls of 30
@@ -93,18 +95,16 @@ impl Search {
             return Err(Unusable { key: "joints.minimum_degrees", reason });
         };
         let most = (supported[softest] / LEAST_SCALE / GRID).floor();
-        let (grid_steps, limit) = match lower_until_stable(&trial, &clear, most) {
-            None => (most, Limit::Scaled(clear[softest].joints())),
-            Some((bound, rest)) => (bound, Limit::Unstable(Box::new(rest))),
-        };
-        let stiffness = grid_steps * GRID;
+        let Lowered { bound, limit, uncovered } = lower_until_stable(&trial, &clear, most);
+        let stiffness = bound * GRID;
         let scaled = supported.iter().filter(|&&supported| supported < stiffness).count();
         Ok(StiffnessBound {
             stiffness,
-            limit,
+            limit: limit.map_or(Limit::Scaled(clear[softest].joints()), |rest| Limit::Unstable(Box::new(rest))),
             scaled: scaled as f64 / supported.len() as f64,
             least_scale: (supported[softest] / stiffness).min(1.0),
             samples: clear.len(),
+            uncovered,
         })
     }
 
@@ -135,30 +135,44 @@ impl Search {
     }
 }
 
-/// Returns the largest bound up to `most` at which every sample is stable, and a sample that prevents a larger bound.
-/// Bounds are in units of [`GRID`]. Returns None if every sample is stable at `most`.
-fn lower_until_stable(trial: &Trial, samples: &[Sample], most: f64) -> Option<(f64, Rest)> {
-    let all: Vec<&Sample> = samples.iter().collect();
-    let mut bound = most;
-    let mut limit = None;
+/// The result of [`lower_until_stable`].
+struct Lowered {
+    /// The bound, in units of [`GRID`].
+    bound: f64,
+    /// A sample that prevents a larger bound, if one does.
+    limit: Option<Rest>,
+    /// The samples that are unstable at the smallest bound too.
+    uncovered: Vec<Rest>,
+}
+
+/// Returns the largest bound up to `most` at which every sample is stable that is stable at the smallest bound.
+fn lower_until_stable(trial: &Trial, samples: &[Sample], most: f64) -> Lowered {
+    let least = (SOFTEST / GRID).min(most);
+    let mut covered: Vec<&Sample> = samples.iter().collect();
+    let mut lowered = Lowered { bound: most, limit: None, uncovered: Vec::new() };
     loop {
         // A sample may be stable at one bound and unstable at a lower one, so all samples are tried again.
-        let mut unstable = if bound > 0.0 { trial.unstable(&all, bound * GRID) } else { Vec::new() };
+        let mut unstable = trial.unstable(&covered, lowered.bound * GRID);
+        let hopeless = trial.unstable(&unstable, least * GRID);
+        lowered.uncovered.extend(hopeless.iter().map(|sample| trial.rest(sample, least * GRID)));
+        let lasting = |sample: &&Sample| !hopeless.iter().any(|hopeless| std::ptr::eq(*hopeless, *sample));
+        covered.retain(lasting);
+        unstable.retain(lasting);
         if unstable.is_empty() {
-            return limit.map(|rest| (bound, rest));
+            return lowered;
         }
-        while let (Some(&sample), true) = (unstable.first(), bound > 0.0) {
-            bound = largest_stable(trial, sample, bound);
-            limit = Some(trial.rest(sample, (bound + 1.0) * GRID));
-            unstable = trial.unstable(&unstable[1..], bound * GRID);
+        while let Some(&sample) = unstable.first() {
+            lowered.bound = largest_stable(trial, sample, (least, lowered.bound));
+            lowered.limit = Some(trial.rest(sample, (lowered.bound + 1.0) * GRID));
+            unstable = trial.unstable(&unstable[1..], lowered.bound * GRID);
         }
     }
 }
 
-/// Returns the largest bound below `unstable` at which a sample is stable, by bisection. Bounds are in units of
-/// [`GRID`].
-fn largest_stable(trial: &Trial, sample: &Sample, unstable: f64) -> f64 {
-    let (mut low, mut high) = (0.0, unstable);
+/// Returns the largest bound at which a sample is stable, by bisection between a bound at which it is stable and one at
+/// which it is unstable. Bounds are in units of [`GRID`].
+fn largest_stable(trial: &Trial, sample: &Sample, (stable, unstable): (f64, f64)) -> f64 {
+    let (mut low, mut high) = (stable, unstable);
     while high - low > 1.0 {
         let middle = ((low + high) / 2.0).floor();
         if trial.stable(sample, middle * GRID) { low = middle } else { high = middle }

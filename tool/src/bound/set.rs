@@ -21,7 +21,11 @@ struct Member {
     bound: StiffnessBound,
 }
 
-/// Searches the bounds of all plants, prints them, and returns the least one, N/cm.
+/// Searches the bounds of all plants, prints them, and returns the least one, N/cm. A plant with samples that are
+/// unstable at any stiffness does not count: no bound makes it stable.
+///
+/// # Errors
+/// If the nominal plant is unstable at any stiffness without a wall, there is no bound.
 pub fn report(
     arguments: &Arguments,
     number: FingerNumber,
@@ -32,29 +36,69 @@ pub fn report(
     let usual = if arguments.nominal { SAMPLES_OF_NOMINAL } else { SAMPLES_OF_SET };
     let samples = arguments.samples.unwrap_or(usual);
     let walls: &[bool] = if arguments.free { &[false] } else { &[false, true] };
-    writeln!(io::stdout(), "finger {number}, bounds in N/cm:\n    {}", heading(walls))?;
-    let mut least: Option<Member> = None;
+    let columns: String = walls.iter().map(|&walls| format!("{:>22}", place(walls))).collect();
+    writeln!(io::stdout(), "finger {number}, bounds in N/cm (samples that are unstable at any stiffness):")?;
+    writeln!(io::stdout(), "{columns}  plant")?;
+    let mut members: Vec<Member> = Vec::new();
     for variant in variants {
-        write!(io::stdout(), "    ")?;
         for &walls in walls {
             let search = Search { samples, seed: arguments.seed, walls };
             let bound = search
                 .bound(finger, rate, variant)
                 .map_err(|unusable| format!("finger {number}: {} {}", unusable.key, unusable.reason))?;
-            write!(io::stdout(), "{:>13.1}  ", bound.stiffness)?;
+            let uncovered = match bound.uncovered.len() {
+                0 => String::new(),
+                uncovered => format!("({uncovered} of {})", bound.samples),
+            };
+            write!(io::stdout(), "{:>8.1} {uncovered:<13}", bound.stiffness)?;
             io::stdout().flush()?;
-            if least.as_ref().is_none_or(|least| bound.stiffness < least.bound.stiffness) {
-                least = Some(Member { variant: *variant, search, bound });
-            }
+            members.push(Member { variant: *variant, search, bound });
         }
-        writeln!(io::stdout(), "{}", variant.name)?;
+        writeln!(io::stdout(), "  {}", variant.name)?;
     }
+    if let Some(rest) = members.first().and_then(|nominal| nominal.bound.uncovered.first()) {
+        return Err(format!(
+            "finger {number}: controller leaves the finger unstable at any stiffness at {}: remove the gains from this \
+             table, or choose another scheme",
+            degrees(&rest.joints)
+        )
+        .into());
+    }
+    // The nominal plant without walls is covered, so there is a least bound.
+    let covered = members.iter().filter(|member| member.bound.uncovered.is_empty());
+    let least = covered.min_by(|one, other| one.bound.stiffness.total_cmp(&other.bound.stiffness));
     let least = least.ok_or("the set of plants is empty")?;
     least.report(number, rate)?;
-    let near = least
-        .search
-        .near_axis(finger, rate, &least.variant, least.bound.stiffness)
-        .map_err(|unusable| format!("finger {number}: {} {}", unusable.key, unusable.reason))?;
+    report_uncovered(&members)?;
+    report_near_axis(&least.search, finger, rate, least.bound.stiffness)?;
+    Ok(least.bound.stiffness)
+}
+
+/// Prints which plants have samples that the bound does not cover.
+fn report_uncovered(members: &[Member]) -> io::Result<()> {
+    for Member { variant, search, bound } in members {
+        let stiffnesses = bound.uncovered.iter().filter_map(|rest| rest.wall).map(|wall| wall.stiffness);
+        let walls = match search.walls {
+            true => format!(" of {:.0} N/cm and more", stiffnesses.fold(f64::INFINITY, f64::min)),
+            false => String::new(),
+        };
+        if let Some(first) = bound.uncovered.first() {
+            let (number, samples, place) = (bound.uncovered.len(), bound.samples, place(search.walls));
+            let name = variant.name;
+            writeln!(
+                io::stdout(),
+                "    not covered: {name}, {place}{walls}: {number} of {samples}, for example {}",
+                sample(first)
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn report_near_axis(search: &Search, finger: &ConfiguredFinger, rate: f64, stiffness: f64) -> Result<(), Failure> {
+    let near = search
+        .near_axis(finger, rate, &Variant::NOMINAL, stiffness)
+        .map_err(|unusable| format!("{} {}", unusable.key, unusable.reason))?;
     let found = match near.unstable {
         0 => "all stable".to_owned(),
         unstable => format!("{unstable} unstable, up to {:.1} cm from the axis", near.distance),
@@ -64,19 +108,18 @@ pub fn report(
         io::stdout(),
         "    not covered: {samples} samples with the tip within 3 cm of the axis of joint 0, {found}"
     )?;
-    Ok(least.bound.stiffness)
+    Ok(())
 }
 
-fn heading(walls: &[bool]) -> String {
-    let columns = walls.iter().map(|&walls| if walls { "against walls" } else { "free" });
-    columns.map(|column| format!("{column:>13}  ")).collect::<String>() + "plant"
+fn place(walls: bool) -> &'static str {
+    if walls { "against walls" } else { "free" }
 }
 
 impl Member {
     fn report(&self, number: FingerNumber, rate: f64) -> io::Result<()> {
         let mut output = io::stdout().lock();
         let Self { variant, bound, search } = self;
-        let place = if search.walls { "against walls" } else { "free" };
+        let place = place(search.walls);
         writeln!(
             output,
             "finger {number}: {:.1} N/cm at {rate} Hz, limited by: {}, {place}",
@@ -90,13 +133,10 @@ impl Member {
                 degrees(pose)
             )?,
         }
-        if bound.stiffness == 0.0 {
-            return Ok(());
-        }
         writeln!(
             output,
-            "    {} samples stable for each plant; in {:.1} % of the poses the servo scales Kx down, at worst by a \
-             factor of {:.2}",
+            "    {} samples for each plant; in {:.1} % of the poses the servo scales Kx down, at worst by a factor of \
+             {:.2}",
             bound.samples,
             100.0 * bound.scaled,
             bound.least_scale
