@@ -150,13 +150,15 @@ impl Agreement {
         // Friction may have acted in the opposite direction during zeroing.
         let friction = mismatch.friction(self.friction * self.of_tension.dot(&(tensions + memory.tensions)));
         let (explained, deviation) = mismatch.explained(&terms);
-        // What is learned may reduce a disagreement, but must not cause one.
-        let left = disagreement - explained;
-        memory.difference = if left > 0.0 { left.min(disagreement).max(0.0) } else { left.max(disagreement).min(0.0) };
+        memory.difference = left(disagreement, explained);
         let tolerated = self.tolerance + friction + DEVIATIONS * deviation;
         let hanging = memory.difference < 0.0 && hangs;
         memory.ratio = if hanging { 0.0 } else { memory.difference.abs() / tolerated };
-        memory.missing = self.of_tension.map(|share| memory.difference / share);
+        // The mismatch was not learned at the tension of a tendon that is suddenly low.
+        memory.missing = Vector4::from_fn(|tendon, _| {
+            let by_others = explained - mismatch.explained_by(tendon, &terms);
+            left(disagreement, by_others) / self.of_tension[tendon]
+        });
         if !hangs && memory.ratio <= 1.0 {
             mismatch.learn(&terms, disagreement, memory.ratio, sample.elapsed);
         }
@@ -178,4 +180,10 @@ impl Agreement {
         let alarm = Alarm { symptom: Symptom::GaugeDisagrees, part: suspect, value: memory.difference };
         (memory.duration >= DURATION).then_some(alarm)
     }
+}
+
+/// Returns the part of a disagreement that is not explained. What is learned may reduce a disagreement, but must not
+/// cause one.
+fn left(disagreement: f64, explained: f64) -> f64 {
+    (disagreement - explained).clamp(disagreement.min(0.0), disagreement.max(0.0))
 }

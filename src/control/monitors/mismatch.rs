@@ -80,6 +80,11 @@ impl Mismatch {
         self.old.explained(terms)
     }
 
+    /// Returns the part of [`Mismatch::explained`] that the term of a tendon, 0 to 3, explains, N.
+    pub fn explained_by(&self, tendon: usize, terms: &Terms) -> f64 {
+        self.old.estimate[tendon] * terms[tendon]
+    }
+
     /// Returns the disagreement that friction can cause, N. `expected` is the one to expect of an unknown hand.
     pub fn friction(&self, expected: f64) -> f64 {
         self.old.friction(expected)
