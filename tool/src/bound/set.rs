@@ -25,8 +25,8 @@ struct Member {
     bound: StiffnessBound,
 }
 
-/// Searches the bounds of all plants, prints them, and returns the least one, N/cm. Except for the nominal plant without
-/// walls, a plant with samples that are unstable at any stiffness does not count: no bound makes it stable.
+/// Searches the bounds of all plants, prints them, and returns the least one, N/cm. Except for the nominal plant
+/// without walls, a plant with samples that are unstable at any stiffness does not count: no bound makes it stable.
 ///
 /// # Errors
 /// If the nominal plant without walls is often unstable at any stiffness, there is no bound.
