@@ -4,6 +4,8 @@ use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 
 /// Results of one routine.
+// The servo does not use the heap, so all results have the size of the largest ones.
+#[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Findings {
     /// Results of [`Task::Signs`](super::Task::Signs).

@@ -104,8 +104,8 @@ pub enum Obstacle {
     /// The range of a joint between its stops is smaller than configured.
     #[error(
         "joint {joint} moves {degrees:.1} degrees between its stops, but {expected:.1} are configured: something \
-         blocks it, zeroing.torque is too small for its friction, or zeroing.lower_stop_degrees or upper_stop_degrees \
-         is wrong. Check them"
+         blocks it, zeroing.torque is too small for its friction, or zeroing.lower_stop_degrees, upper_stop_degrees or \
+         geometry.r is wrong. Check them"
     )]
     EarlyStop {
         /// The joint, 0 to 2.

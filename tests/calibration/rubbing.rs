@@ -2,7 +2,7 @@
 
 use crate::bench::Bench;
 use sun2xp::calibration::{Findings, Identified, Obstacle, Task};
-use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::model::configuration::{ConfiguredFinger, NamedHand};
 
 const SEEDS: u64 = 3;
 
@@ -20,6 +20,8 @@ struct Run {
     truth: ConfiguredFinger,
     found: Identified,
     belief: ConfiguredFinger,
+    /// Largest error of a joint angle afterwards, rad.
+    joint_error: f64,
 }
 
 fn run(name: &str, seed: u64, change: impl Fn(&mut ConfiguredFinger, u64)) -> Result<Run, Obstacle> {
@@ -34,8 +36,11 @@ fn run(name: &str, seed: u64, change: impl Fn(&mut ConfiguredFinger, u64)) -> Re
     let belief = bench.belief.clone();
     match result {
         Ok(Findings::Identified(found)) => {
-            let run = Run { name, truth, found, belief };
-            run.print(bench.largest_tension, bench.seconds);
+            let (largest, seconds) = (bench.largest_tension, bench.seconds);
+            let bench = bench.adopt();
+            let joint_error = (bench.report.joints - bench.plant.joints()).amax();
+            let run = Run { name, truth, found, belief, joint_error };
+            run.print(largest, seconds);
             Ok(run)
         }
         Ok(other) => panic!("{name}: {other:?}"),
@@ -57,7 +62,7 @@ impl Run {
         let friction = &self.belief.friction;
         eprintln!(
             "{}: {seconds:.0} s, largest {largest:.1} N\n    k {:.1?} tolerance {:.3} residual {:.2} um\n    motor {:.4?} conduit {:.4?} \
-             pulley {:.4?}\n    joint {:.4?} gain {:.4?} motor ratio {:.4?}",
+             pulley {:.4?}\n    joint {:.4?} gain {:.4?} motor ratio {:.4?}\n    joint error {:.4} rad, moment arms {}",
             self.name,
             self.belief.tendon.stiffness,
             self.belief.tendon.stiffness_tolerance,
@@ -68,6 +73,8 @@ impl Run {
             friction.joint_coulomb,
             self.found.gauge_gain.as_slice(),
             self.found.motor_ratio.as_slice(),
+            self.joint_error,
+            self.found.moment_arms.map_or("as configured".into(), |arms| format!("{:.4}", arms.r)),
         );
     }
 
@@ -85,6 +92,7 @@ impl Run {
         self.near("pulley friction", &self.belief.friction.pulley, pulley, 0.005 + 0.1 * pulley);
         let mean = self.belief.friction.pulley.iter().sum::<f64>() / 4.0;
         self.near("mean pulley friction", &[mean], pulley, 0.003 + 0.05 * pulley);
+        assert!(self.joint_error < 0.01 + 0.02 * self.truth.simulation.conduit_friction, "{}", self.name);
         // The friction of conduit and shaft in both directions: half of the difference of the pulls.
         let (conduit, shaft) = (1.0 + self.truth.simulation.conduit_friction, self.truth.simulation.shaft_friction);
         let expected = 0.5 * (conduit * (1.0 + shaft) - (1.0 - shaft) / conduit);
@@ -97,6 +105,7 @@ fn pulley_friction() {
     for friction in [0.0, 0.02, 0.05, 0.1] {
         for run in runs(&format!("pulley {friction}"), |truth, _| truth.simulation.pulley_friction = friction) {
             run.check(300.0, 0.015, 0.01 + 0.2 * friction);
+            assert!(run.found.moment_arms.is_none(), "{}: {:?}", run.name, run.found.moment_arms);
             run.near("joint friction", &run.belief.friction.joint_coulomb, 0.05, 0.015 + 0.5 * friction);
             assert!(
                 run.belief.tendon.stiffness_tolerance <= 0.04 + 0.4 * friction,
@@ -222,6 +231,22 @@ fn everything_slightly_off() {
             // The gauges' common error stays, and hardening changes the secant by a few per cent.
             let ratio = run.belief.tendon.stiffness[tendon] / run.truth.simulation.tendon_stiffness[tendon];
             assert!((ratio - 0.98).abs() < 0.05, "{}: tendon {tendon}: {ratio}", run.name);
+        }
+    }
+}
+
+#[test]
+fn named_hands() {
+    for hand in NamedHand::ALL {
+        for run in runs(hand.name(), |truth, seed| {
+            truth.simulation = hand.simulation();
+            // Zeroing comes before identification, and removes the offsets.
+            truth.simulation.gauge_offset = [0.0; 4];
+            truth.simulation.seed = seed;
+        }) {
+            let pulley = run.truth.simulation.pulley_friction;
+            run.near("pulley friction", &run.belief.friction.pulley, pulley, 0.005 + 0.1 * pulley);
+            assert!(run.joint_error < 0.02, "{}: {}", run.name, run.joint_error);
         }
     }
 }
