@@ -25,8 +25,9 @@ pub enum Task {
     Signs,
     /// Zeros the gauges, and the encoders by the configured method.
     Zero,
-    /// Identifies the gains of the gauges, the friction of motors and joints, and the stiffness of the tendons. The
-    /// finger moves to its lower stops and presses against them.
+    /// Identifies the gains of the gauges, the friction of motors, conduits, pulleys and joints, the moment arms, and
+    /// the stiffness of the tendons. Every joint moves between its stops, and the finger presses against its lower
+    /// stops.
     Identify,
 }
 
@@ -85,9 +86,9 @@ impl Calibration {
 
     /// Returns the configuration of the finger's controller while a routine runs at `rate`, Hz. The scheme is Figure
     /// 10, and configured gains of Figure 10 stay in force. The other gains are those tuned for 500 Hz, also at higher
-    /// rates: routines move slowly, and these gains are stable with gauges and amplifiers that lag by 1 ms. State feedback is not used, because it relies on the
-    /// stiffness, friction and zeros that a routine has yet to find. Figure 11 is not used, because it would adapt to
-    /// uncalibrated gauges.
+    /// rates: routines move slowly, and these gains are stable with gauges and amplifiers that lag by 1 ms. State
+    /// feedback is not used, because it relies on the stiffness, friction and zeros that a routine has yet to find.
+    /// Figure 11 is not used, because it would adapt to uncalibrated gauges.
     pub fn controlled(finger: &ConfiguredFinger, rate: f64) -> ConfiguredFinger {
         let configured = &finger.controller;
         let controller = match configured.scheme(rate) {

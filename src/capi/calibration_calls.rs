@@ -69,11 +69,11 @@ pub extern "C" fn ZeroFinger(i: c_int) -> c_int {
 ///
 ///   i        finger, 1 to 3; it must have been zeroed
 ///
-/// Moves the joints a little back and forth around their present angles, moves the finger to its lower
-/// stops, moves each joint back and forth, presses against the stops with up to 0.6 of the largest
-/// tension, and returns to the start. Measures the gains of the gauges, the stiffness of each tendon
-/// and the friction of motors, conduits and joints. The results take effect and are stored like those
-/// of ZeroFinger. Takes about a minute, and needs free space over the whole range of the joints.
+/// Moves the joints back and forth around their present angles, moves each joint between its two stops,
+/// presses against the lower stops with up to 0.6 of the largest tension, and returns to the start.
+/// Measures the gains of the gauges, the stiffness of each tendon, its moment arms, and the friction of
+/// motors, conduits, pulleys and joints. The results take effect and are stored like those of ZeroFinger.
+/// Takes about 80 s, and needs free space over the whole range of the joints.
 ///
 /// Returns and waits as ZeroFinger does.
 ///

@@ -64,7 +64,7 @@ impl Drop for Claim {
 }
 
 impl Calibrating {
-    /// Begins a calibration. With [`Task::Identify`] the finger moves to its lower stops and presses. With
+    /// Begins a calibration. With [`Task::Identify`] the joints move between their stops, and the finger presses. With
     /// [`Task::Zero`] its tendons are slack for a second. The whole range of its joints must be free. Set points are
     /// ignored until the calibration is done.
     ///

@@ -61,7 +61,8 @@ impl Run {
     fn print(&self, largest: f64, seconds: f64) {
         let friction = &self.belief.friction;
         eprintln!(
-            "{}: {seconds:.0} s, largest {largest:.1} N\n    k {:.1?} tolerance {:.3} residual {:.2} um\n    motor {:.4?} conduit {:.4?} \
+            "{}: {seconds:.0} s, largest {largest:.1} N\n    k {:.1?} tolerance {:.3} residual {:.2} um\n    \
+             motor {:.4?} conduit {:.4?} \
              pulley {:.4?}\n    joint {:.4?} gain {:.4?} motor ratio {:.4?}\n    joint error {:.4} rad, moment arms {}",
             self.name,
             self.belief.tendon.stiffness,

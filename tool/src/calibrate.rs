@@ -23,8 +23,8 @@ use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 /// `finger.zeroing.method`. Without that key, they are zeroed against the stops of the finger if `finger.zeroing` gives
 /// their angles, or else at a pose in which you hold the finger. A finger that is not held in the pose is refused.
 ///
-/// Identify: the finger goes to its lower stops, moves its joints in both directions and presses against its stops. The
-/// whole range of its joints must be free of objects.
+/// Identify: the finger moves its joints in both directions and between their stops, and presses against its lower
+/// stops. The whole range of its joints must be free of objects.
 ///
 /// Only the results are written; the rest of the file stays unchanged.
 #[derive(clap::Args)]

@@ -1,11 +1,12 @@
 //! Determines the stiffness of every tendon from motor travel against tension.
 //!
 //! The motor travel of every tendon is x_i = R_i^T theta + c_i t_i + d_i t_i^2 + h_i s_i t_i + const. c_i is the
-//! compliance, d_i its change with the tension, and h_i the additional stretch on the motor's side of the conduit, whose
-//! friction makes the tension there larger or smaller than at the gauge. s_i is the direction in which the tendon slid,
-//! -1 to 1. Multiplication by the null vector n of R eliminates any motion of the joints. This is one equation per
-//! sample. The coefficients can be separated if the four tensions vary independently. The tensions vary independently
-//! only with joint torques, so something must hold the finger. A term in proportion to the time absorbs creep.
+//! compliance, d_i its change with the tension, and h_i the additional stretch on the motor's side of the conduit,
+//! whose friction makes the tension there larger or smaller than at the gauge. s_i is the direction in which the tendon
+//! slid, -1 to 1. Multiplication by the null vector n of R eliminates any motion of the joints. This is one equation
+//! per sample. The coefficients can be separated if the four tensions vary independently. The tensions vary
+//! independently only with joint torques, so something must hold the finger. A term in proportion to the time absorbs
+//! creep.
 
 use super::least_squares::LeastSquares;
 use super::winding::Winding;
