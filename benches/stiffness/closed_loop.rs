@@ -4,6 +4,7 @@ use crate::cases::{Case, Friction};
 use nalgebra::{Matrix3, Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
+use sun2xp::control::monitors::{Alarm, Watch};
 use sun2xp::control::{Activity, Controller, Feedback, Law, Measured, MotorCommand, Report, SetPoint, State};
 use sun2xp::model::InverseKinematics;
 use sun2xp::model::configuration::ConfiguredFinger;
@@ -20,6 +21,9 @@ pub struct ClosedLoop {
     pub most_true: f64,
     pub finger: ConfiguredFinger,
     pub rate: f64,
+    /// The first fault that a monitor reported.
+    pub fault: Option<Alarm>,
+    watch: Watch,
     sensors: Sensors,
     senses: Senses,
     controller: Controller,
@@ -79,6 +83,8 @@ impl ClosedLoop {
             inverse: InverseKinematics::new(finger.links(), finger.joint_limits()),
             finger: finger.clone(),
             rate: case.rate,
+            fault: None,
+            watch: Watch::default(),
             sensors,
             senses,
             controller,
@@ -135,6 +141,10 @@ impl ClosedLoop {
             Senses::Counts => self.controller.cycle(&mut self.state, arrived.then_some(&counts), &activity),
             Senses::Exact => self.controller.cycle_measured(&mut self.state, arrived.then_some(&values), &activity),
         };
+        if arrived {
+            let alarms = self.controller.watch(&mut self.watch, &self.state, &counts, 1.0, 4095);
+            self.fault = self.fault.or(alarms.fault);
+        }
         self.least_commanded = self.least_commanded.min(self.report.desired_tensions.min());
     }
 

@@ -11,11 +11,16 @@ use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 /// configured by the factors `ratio`. With the default friction and measurements in counts.
 pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obstacle> {
     let pose = Vector3::from(ConfiguredFinger::default().simulation.start_degrees.map(f64::to_radians));
-    let mut belief = case.finger(&pose, Friction::Default);
-    let mut truth = belief.clone();
+    let mut truth = case.finger(&pose, Friction::Default);
     stiffen(&mut truth, ratio);
-    let mut plant = Plant::new(&truth, Vector3::zeros()).expect("the default finger");
-    let mut sensors = Sensors::new(&truth);
+    identified(case, &truth).map(|found| found.tendon.stiffness)
+}
+
+/// Identifies a finger. Returns its configuration with the findings.
+pub fn identified(case: &Case, truth: &ConfiguredFinger) -> Result<ConfiguredFinger, Obstacle> {
+    let mut belief = truth.clone();
+    let mut plant = Plant::new(truth, Vector3::zeros()).expect("the default finger");
+    let mut sensors = Sensors::new(truth);
     let mut read = move |plant: &Plant| {
         let (motor_counts, gauge_counts) = sensors.read(plant);
         Feedback { motor_counts, gauge_counts }
@@ -49,7 +54,7 @@ pub fn tendon_stiffness(case: &Case, ratio: &[f64; 4]) -> Result<[f64; 4], Obsta
             }
             Verdict::Found(findings) => {
                 findings.apply(&mut belief);
-                return Ok(belief.tendon.stiffness);
+                return Ok(belief);
             }
             Verdict::Refused(obstacle) => return Err(obstacle),
         }

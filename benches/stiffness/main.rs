@@ -19,6 +19,9 @@ mod robustness;
 mod stability;
 mod statics;
 mod table;
+mod trials;
+mod truths;
+mod truths_table;
 
 use cases::Case;
 use clap::Parser;
@@ -51,6 +54,22 @@ struct Arguments {
     /// Only rows whose names contain this text, or one of several texts separated by semicolons.
     #[arg(long, default_value = "")]
     only: String,
+    /// Measures fingers that differ from their configuration, instead of the table of the default finger. Only those
+    /// whose names contain one of several texts separated by semicolons; all, if the text is empty.
+    #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "")]
+    truths: Option<String>,
+    /// With --truths: after identification.
+    #[arg(long)]
+    identified: bool,
+    /// With --truths: number of seeds.
+    #[arg(long, default_value_t = 8)]
+    seeds: u64,
+    /// With --truths: no walls and no bumps.
+    #[arg(long)]
+    short: bool,
+    /// With --truths: keys of the finger that differ, as TOML.
+    #[arg(long, default_value = "")]
+    keys: String,
     /// Folder for the plots of step responses and ellipsoids.
     #[arg(long, default_value = concat!(env!("CARGO_TARGET_TMPDIR"), "/stiffness"))]
     out: PathBuf,
@@ -75,6 +94,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     arguments.controllers.retain(|&scheme| scheme != Scheme::Figure10);
     arguments.controllers.insert(0, Scheme::Figure10);
     let begun = Instant::now();
+    if let Some(only) = &arguments.truths {
+        return truths_table::run(&arguments, only, begun);
+    }
     let mut columns = Vec::new();
     for &rate in &rates {
         for &scheme in &arguments.controllers {

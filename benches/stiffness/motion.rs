@@ -26,9 +26,12 @@ const ROOM: f64 = 1.2 * STEP;
 /// Duration of a step, s. A step that has not settled by then counts with this time.
 const WATCHED: f64 = 1.5;
 
-struct Step {
-    time: f64,
-    overshoot: f64,
+/// The result of one step.
+pub struct Step {
+    /// Time until the tip stays within 5 % of the step, s.
+    pub time: f64,
+    /// Overshoot, as a part of the step.
+    pub overshoot: f64,
     least_true: f64,
     least_commanded: f64,
 }
@@ -61,7 +64,8 @@ pub fn steps_of(case: &Case, stiffness: f64, loss: f64, differ: impl Fn(&mut Con
     }
 }
 
-fn step(finger: &mut ClosedLoop, direction: &Vector3<f64>) -> Step {
+/// Steps the anchor by 5 mm in a direction that has room.
+pub fn step(finger: &mut ClosedLoop, direction: &Vector3<f64>) -> Step {
     let target = finger.anchor() + direction * STEP;
     assert!(finger.move_anchor(&target), "a direction with room");
     let (mut time, mut overshoot) = (0.0, f64::NEG_INFINITY);

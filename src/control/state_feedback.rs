@@ -12,6 +12,7 @@ mod friction_feed_forward;
 mod numbers;
 mod observer;
 mod reference;
+mod tension_dither;
 
 use crate::control::signals::Measured;
 use crate::control::spring::joint_stiffness::JointStiffness;
@@ -21,6 +22,7 @@ use crate::control::state_feedback::dither::{Dither, DitherState};
 use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
 use crate::control::state_feedback::observer::{TendonEstimate, TendonMotion, TendonObserver};
 use crate::control::state_feedback::reference::{Reference, ReferenceState};
+use crate::control::state_feedback::tension_dither::{TensionDither, TensionDitherState};
 use crate::control::tendons::bumpless_transfer::BumplessTransfer;
 use crate::model::LinkDynamics;
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
@@ -43,6 +45,7 @@ pub(super) struct StateFeedback {
     reference: Reference,
     slew: Slew,
     dither: Dither,
+    tension_dither: TensionDither,
     friction: FrictionFeedForward,
     /// R, m.
     r: Matrix3x4<f64>,
@@ -107,6 +110,7 @@ pub(super) struct StateFeedbackState {
     /// Joint rates minus the rates of the reference, low-pass filtered, rad/s.
     drift: Vector3<f64>,
     dither: DitherState,
+    tension_dither: TensionDitherState,
     /// Estimated joint angles at the newest sample, rad.
     pub joints: Vector3<f64>,
     /// Estimated joint rates, predicted for the next sample, rad/s.
@@ -129,6 +133,7 @@ impl StateFeedback {
             reference: self.reference.start(&joints),
             drift: Vector3::zeros(),
             dither: self.dither.start(),
+            tension_dither: self.tension_dither.start(),
             joints,
             joint_rates: Vector3::zeros(),
         }

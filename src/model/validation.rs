@@ -201,7 +201,9 @@ impl ConfiguredFinger {
         optional("controller.inertia_gain", controller.inertia_gain, 0.1, 20.0, "")?;
         optional("controller.damping_ratio", controller.damping_ratio, 0.05, 3.0, "")?;
         optional("controller.set_point_time", controller.set_point_time, 1e-3, 1.0, "s")?;
-        optional("controller.dither", controller.dither, 0.0, 10.0, "")
+        optional("controller.dither", controller.dither, 0.0, 10.0, "")?;
+        optional("controller.tension_dither", controller.tension_dither, 0.0, 0.4, "")?;
+        optional("controller.friction_share", controller.friction_share, 0.0, 1.0, "")
     }
 
     fn check_mechanics(&self) -> Result<(), Unusable> {

@@ -68,7 +68,8 @@ fn the_optional_keys_name_their_defaults() {
         let given = [gains.tension_gain, gains.tension_integral, gains.motor_damping, gains.rate_time];
         let filters = [gains.speed_filter, gains.stretch_filter, gains.set_point_speed];
         let of_states = [gains.inertia_gain, gains.damping_ratio, gains.set_point_time, gains.dither];
-        assert!(given.iter().chain(&filters).chain(&of_states).all(Option::is_some), "{gains:?}");
+        let of_friction = [gains.tension_dither, gains.friction_share];
+        assert!(given.iter().chain(&filters).chain(&of_states).chain(&of_friction).all(Option::is_some), "{gains:?}");
         assert!(gains.scheme.is_some());
         let controller = |finger| format!("{:?}", Controller::new(finger, default.hand.rate).expect("a controller"));
         assert_eq!(controller(&unshown), controller(reference));

@@ -41,6 +41,15 @@ const MOST_REPEATS: f64 = 0.7;
 /// taken for a dead one.
 const LEAST_REVERSALS: f64 = 0.15;
 
+/// Lowest fraction of samples in which a gauge that is known to flicker bends to the other side. While the dither of
+/// the tensions changes a tension by several counts in a sample, noise reverses the direction hardly ever. It still
+/// changes the sign of the second difference of the counts, which a smooth tension does not.
+const LEAST_BENDS: f64 = 0.05;
+
+/// Smallest second difference that counts as a bend, counts. The second difference of a quantised smooth tension is
+/// smaller, or keeps its sign.
+const BEND: i32 = 2;
+
 /// Gain per sample of the mean of the reversals. It is small, because noise is not visible during fast motion.
 const LEARNING_REVERSALS: f64 = 1.0 / 512.0;
 
@@ -79,11 +88,24 @@ pub(super) struct Memory {
     /// Whether the last change of each gauge was upward.
     rose: [bool; 4],
     samples: u32,
+    /// Fraction of samples that bend to the other side, 0 to 1.
+    bends: [f64; 4],
+    /// The last first and second difference of each gauge, counts.
+    differences: [[i32; 2]; 4],
 }
 
 impl Default for Memory {
     fn default() -> Self {
-        Self { last: [0; 4], same: [0; 4], repeats: [1.0; 4], reversals: [0.0; 4], rose: [false; 4], samples: 0 }
+        Self {
+            last: [0; 4],
+            same: [0; 4],
+            repeats: [1.0; 4],
+            reversals: [0.0; 4],
+            rose: [false; 4],
+            samples: 0,
+            bends: [0.0; 4],
+            differences: [[0; 2]; 4],
+        }
     }
 }
 
@@ -106,7 +128,8 @@ impl Flicker {
 impl Memory {
     pub fn flickers(&self) -> Flicker {
         let known = std::array::from_fn(|gauge| {
-            let noisy = self.repeats[gauge] < MOST_REPEATS && self.reversals[gauge] > LEAST_REVERSALS;
+            let reverses = self.reversals[gauge] > LEAST_REVERSALS || self.bends[gauge] > LEAST_BENDS;
+            let noisy = self.repeats[gauge] < MOST_REPEATS && reverses;
             self.samples >= KNOWN && noisy
         });
         Flicker { known, same: self.same }
@@ -128,6 +151,12 @@ impl GaugeStuck {
         let rises = |gauge: usize| counts[gauge] > last[gauge];
         memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge] + 1 } else { 0 });
         let same_for = memory.same;
+        let bent: [bool; 4] = std::array::from_fn(|gauge| {
+            let [first, second] = memory.differences[gauge];
+            let change = i32::from(counts[gauge]) - i32::from(last[gauge]);
+            memory.differences[gauge] = [change, change - first];
+            second.abs().min((change - first).abs()) >= BEND && (second > 0) != (change > first)
+        });
         // Whether at least two other gauges, of tendons that are not slack, have changed recently.
         let others_flicker = |gauge: usize| {
             let flickers =
@@ -140,6 +169,7 @@ impl GaugeStuck {
                 let learn = |mean: &mut f64, is: bool, gain: f64| *mean += (f64::from(u8::from(is)) - *mean) * gain;
                 let same = memory.same[gauge] > 0;
                 learn(&mut memory.repeats[gauge], same, fast);
+                learn(&mut memory.bends[gauge], bent[gauge], slow);
                 learn(&mut memory.reversals[gauge], !same && rises(gauge) != memory.rose[gauge], slow);
             }
             if memory.same[gauge] == 0 {

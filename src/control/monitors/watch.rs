@@ -112,7 +112,9 @@ impl Monitors {
         let lost = self.tension_lost.watch(&mut watch.tension_lost, &sample, &missing, &flickers);
         let suspects = watch.tension_lost.suspects();
         let disagrees = self.agreement.watch(&mut watch.agreement, &sample, suspects);
-        let silent = (0..4).find(|&gauge| flickers.silent(gauge)).filter(|_| disagrees.is_some());
+        // The count of a tension beyond the range of a gauge is constant too.
+        let silent = |&gauge: &usize| flickers.silent(gauge) && feedback.gauge_counts[gauge] < full_scale;
+        let silent = (0..4).find(silent).filter(|_| disagrees.is_some());
         let stuck = stuck.or(silent.map(|gauge| gauge_stuck::alarm(&sample, gauge)));
         let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
         // A gauge that drifts makes its motor seem stalled. The gauge reports a tension that does not exist, so the

@@ -11,6 +11,7 @@ use crate::control::state_feedback::dither::Dither;
 use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
 use crate::control::state_feedback::observer::{ElasticTendon, ObserverDesign, TendonObserver};
 use crate::control::state_feedback::reference::Reference;
+use crate::control::state_feedback::tension_dither::TensionDither;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::model::{LinkDynamics, Tendons};
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
@@ -118,6 +119,28 @@ fn right_inverse(r: &Matrix3x4<f64>) -> Result<Matrix4x3<f64>, Unusable> {
     Ok(r.transpose() * (r * r.transpose()).try_inverse().ok_or_else(singular)?)
 }
 
+/// Returns the design of the spring's damping. `stiffness` is that of a tendon, N/m.
+fn damping_design(numbers: &Numbers, relative_damping: f64, stiffness: f64) -> DampingDesign {
+    DampingDesign {
+        ratio: numbers.damping_ratio,
+        least_frequency: numbers.least_frequency,
+        lag: numbers.lag * relative_damping / (numbers.inertia_gain * stiffness),
+    }
+}
+
+/// Returns the dither of the tensions. `common` is the unit vector of the tensions without joint torque, and `highest`
+/// the largest tension of each tendon, N.
+fn tension_dither(
+    finger: &ConfiguredFinger,
+    numbers: &Numbers,
+    common: Vector4<f64>,
+    highest: Vector4<f64>,
+    rate: f64,
+) -> TensionDither {
+    let pulley = Vector4::from(finger.friction.pulley);
+    TensionDither::new(common, numbers.tension_dither, &pulley, highest, finger.tendon.minimum, rate)
+}
+
 impl StateFeedback {
     /// Constructs the controller. `maximum` is the largest permitted tension of each tendon, N. `set_point_speed` is in
     /// rad/s, and `rate` is in Hz.
@@ -142,26 +165,27 @@ impl StateFeedback {
         let apparent_motors = drives.apparent_inertia(&numbers, &r);
         let friction = MotorFriction::new(finger, tendons);
         let lower_reserve = (pseudo_inverse.abs() * shaken).max() + NOISE_RESERVE * GAUGE_NOISE;
-        let upper_reserve = |motor| lower_reserve + FRICTION_RESERVE * friction.at(motor, maximum[motor]);
+        let upper_reserve =
+            Vector4::from_fn(|motor, _| lower_reserve + FRICTION_RESERVE * friction.at(motor, maximum[motor]));
+        let common = tendons.pretension(1.0).normalize();
+        let highest = maximum - upper_reserve;
+        let tension_dither = tension_dither(finger, &numbers, common, highest, rate);
         Ok(Self {
             period: 1.0 / rate,
             observers: [observer(0)?, observer(1)?, observer(2)?, observer(3)?],
             joint_stiffness: JointStiffness::new(finger.links(), 0.0),
             dynamics,
-            damping: DampingDesign {
-                ratio: numbers.damping_ratio,
-                least_frequency: numbers.least_frequency,
-                lag: numbers.lag * relative_damping / (numbers.inertia_gain * drives.stiffness.mean()),
-            },
+            damping: damping_design(&numbers, relative_damping, drives.stiffness.mean()),
             reference: Reference::new(numbers.reference_time, rate),
             slew: Slew::new(set_point_speed, rate),
             dither: Dither::new(shaken, numbers.dither_frequency, rate),
-            lower_reserve,
-            upper_reserve: Vector4::from_fn(|motor, _| upper_reserve(motor)),
-            friction: FrictionFeedForward(friction),
+            lower_reserve: lower_reserve + tension_dither.reserve(finger.tendon.minimum + lower_reserve, &highest),
+            upper_reserve,
+            tension_dither,
+            friction: FrictionFeedForward { friction, share: numbers.friction_share },
             r,
             pseudo_inverse,
-            common: tendons.pretension(1.0).normalize(),
+            common,
             apparent_motors,
             damped_motors: apparent_motors * numbers.damped_inertia,
             mass: drives.mass,

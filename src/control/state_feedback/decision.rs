@@ -65,7 +65,7 @@ impl StateFeedback {
         if begins {
             state.transition.begin(&now.tensions, &distributed);
         }
-        let shake = self.shake(state);
+        let shake = self.shake(state, &distributed, &now.tensions);
         let desired_tensions = distributed + shake.tensions;
         let error = desired_tensions + state.transition.advance(self.period) - now.tensions;
         let against_friction = self.friction.pulls(&now.motor_speeds, &now.tensions);
@@ -78,6 +78,7 @@ impl StateFeedback {
         state.reference = self.reference.start(&state.joints);
         state.drift = Vector3::zeros();
         state.dither = self.dither.start();
+        state.tension_dither = self.tension_dither.start();
     }
 
     fn motion_at_next_sample(&self, state: &StateFeedbackState) -> Motion {
@@ -145,9 +146,16 @@ impl StateFeedback {
         })
     }
 
-    fn shake(&self, state: &mut StateFeedbackState) -> Shake {
+    /// Returns the dither of the joints and of the tensions. `desired` are the tensions without it, `now` the present
+    /// ones, N.
+    fn shake(&self, state: &mut StateFeedbackState, desired: &Vector4<f64>, now: &Vector4<f64>) -> Shake {
         let (shake, leading) = self.dither.advance(&mut state.dither);
-        Shake { tensions: self.pseudo_inverse * shake, rates: self.pseudo_inverse * leading * self.dither.frequency }
+        let phase = self.dither.phase(&state.dither);
+        let amplitude = self.tension_dither.advance(&mut state.tension_dither, desired, now, &phase);
+        Shake {
+            tensions: self.pseudo_inverse * shake + amplitude * phase.x,
+            rates: (self.pseudo_inverse * leading + amplitude * phase.y) * self.dither.frequency,
+        }
     }
 
     /// Returns the pulls, N, that make the tendons force sources, without the friction feed-forward. The motor motion

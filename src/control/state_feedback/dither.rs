@@ -32,6 +32,11 @@ impl Dither {
         DitherState(Vector2::x())
     }
 
+    /// Returns sin omega t and cos omega t.
+    pub fn phase(&self, state: &DitherState) -> Vector2<f64> {
+        Vector2::new(state.0.y, state.0.x)
+    }
+
     /// Returns the torques, N m, and their rates divided by omega, N m, which lead by 90 degrees.
     pub fn advance(&self, state: &mut DitherState) -> (Vector3<f64>, Vector3<f64>) {
         let turned = Vector2::new(

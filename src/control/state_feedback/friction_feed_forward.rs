@@ -3,24 +3,29 @@
 use crate::control::motors::motor_friction::MotorFriction;
 use nalgebra::Vector4;
 
-/// Speed of the motor side of a tendon from which the full friction is fed forward, m/s. A step at zero speed would
+/// Speed of the motor side of a tendon from which the full share is fed forward, m/s. A step at zero speed would
 /// cause chatter.
 const CREEP: f64 = 0.001;
 
-/// sat(v / creep) (coulomb + conduit t), N at the tendon.
+/// share sat(v / creep) (coulomb + conduit t), N at the tendon.
 ///
 /// v is the observed speed. If v were the speed of the reference, a limit cycle would remain at high stiffness because
 /// of friction. The observer must receive the pull without this feed-forward. Otherwise its disturbance would
 /// compensate the same friction a second time.
 #[derive(Clone, Debug)]
-pub(crate) struct FrictionFeedForward(pub MotorFriction);
+pub(crate) struct FrictionFeedForward {
+    pub friction: MotorFriction,
+    /// The part of the friction that is fed forward. A finger hunts if the whole friction is fed forward and is
+    /// smaller than configured.
+    pub share: f64,
+}
 
 impl FrictionFeedForward {
     /// Returns the pulls, N, from motor speeds, m/s at the tendon, and tensions, N.
     pub fn pulls(&self, speeds: &Vector4<f64>, tensions: &Vector4<f64>) -> Vector4<f64> {
         Vector4::from_fn(|tendon, _| {
-            let friction = self.0.at(tendon, tensions[tendon].max(0.0));
-            (speeds[tendon] / CREEP).clamp(-1.0, 1.0) * friction
+            let friction = self.friction.at(tendon, tensions[tendon].max(0.0));
+            (speeds[tendon] / CREEP).clamp(-1.0, 1.0) * self.share * friction
         })
     }
 }

@@ -48,6 +48,10 @@ pub(super) struct Numbers {
     pub reference_time: f64,
     /// Amplitude of the dither, divided by the joints' Coulomb friction.
     pub dither: f64,
+    /// Smallest amplitude of the dither of the tensions as a fraction of the tension. 0: no dither of the tensions.
+    pub tension_dither: f64,
+    /// The part of the motors' friction that is fed forward.
+    pub friction_share: f64,
     /// Frequency of the dither, Hz. With a lower frequency the motors need less torque for the dither, and the tip
     /// moves more.
     pub dither_frequency: f64,
@@ -59,6 +63,14 @@ const LEAST_FREQUENCY: f64 = 4.0;
 
 /// Frequency of the dither, Hz.
 const DITHER_FREQUENCY: f64 = 40.0;
+
+/// See [`Numbers::tension_dither`]. With 0.06 fingers rest whose motors have no friction, or static friction of twice
+/// the Coulomb friction. With 0.1, the tensions of a finger with rotors of half the inertia oscillate.
+const TENSION_DITHER: f64 = 0.06;
+
+/// See [`Numbers::friction_share`]. With half of the configured friction, no finger hunted whose friction was 0 to 3
+/// times the configured one.
+const FRICTION_SHARE: f64 = 0.5;
 
 /// See [`Numbers::friction_slope`].
 const FRICTION_SLOPE: f64 = 0.4;
@@ -171,12 +183,16 @@ impl Numbers {
             least_frequency: LEAST_FREQUENCY,
             reference_time: configured.set_point_time.unwrap_or(tuned.reference_time / (rate / TABLE[0].0).min(1.0)),
             dither: configured.dither.unwrap_or(2.0),
+            tension_dither: configured.tension_dither.unwrap_or(TENSION_DITHER),
+            friction_share: configured.friction_share.unwrap_or(FRICTION_SHARE),
             dither_frequency: DITHER_FREQUENCY.min(rate / 12.0),
         };
         positive("controller.inertia_gain", &[numbers.inertia_gain])?;
         positive("controller.damping_ratio", &[numbers.damping_ratio])?;
         positive("controller.set_point_time", &[numbers.reference_time])?;
         not_negative("controller.dither", numbers.dither)?;
+        not_negative("controller.tension_dither", numbers.tension_dither)?;
+        not_negative("controller.friction_share", numbers.friction_share)?;
         Ok(numbers)
     }
 }

@@ -70,6 +70,11 @@ pub struct ConfiguredController {
     /// State feedback: amplitude of the dither divided by the Coulomb friction of the joints. With 0 there is no
     /// dither.
     pub dither: Option<f64>,
+    /// State feedback: smallest amplitude of the dither of the tensions, as a fraction of each tension. The dither
+    /// causes no joint torque. Its amplitude rises with `friction.pulley`. With 0 there is no such dither.
+    pub tension_dither: Option<f64>,
+    /// State feedback: the part of the motors' friction that is fed forward, 0 to 1.
+    pub friction_share: Option<f64>,
 }
 
 impl Default for ConfiguredController {
@@ -90,6 +95,8 @@ impl Default for ConfiguredController {
             damping_ratio: None,
             set_point_time: None,
             dither: None,
+            tension_dither: None,
+            friction_share: None,
         }
     }
 }

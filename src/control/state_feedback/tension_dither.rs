@@ -1,0 +1,202 @@
+//! Dither of the tensions that causes no joint torque. It keeps the tendons sliding in their conduits and on their
+//! pulleys.
+//!
+//! A pulley with the friction p transmits any tension between t / (1 + p) and t (1 + p), depending on the direction in
+//! which the tendon slid last. The gauges do not measure this difference. If the tension at the gauge oscillates by
+//! more than p t, the tendon slides in both directions in every period, and the mean tension at the joint is that at
+//! the gauge. The oscillation is along the null vector n of R, so that it does not move the joints.
+
+use nalgebra::{Vector2, Vector4};
+use serde::{Deserialize, Serialize};
+
+/// Amplitude divided by the pulley friction p t. An amplitude of p t would suffice at rest. More of it lets the tendons
+/// slide so fast that a push or a step has settled after some periods.
+const EXCESS: f64 = 5.0;
+
+/// Largest amplitude as a fraction of each tension, so that no tendon becomes slack.
+const LARGEST: f64 = 0.4;
+
+/// Tension below which an overestimated amplitude falls quickly, as a fraction of t_min.
+const LOW: f64 = 0.4;
+/// Factor per cycle of an amplitude that falls quickly.
+const FALLING: f64 = 0.97;
+
+/// Time constant of the filter that measures the amplitude, s.
+const MEASURING: f64 = 0.05;
+/// Time constant with which the amplitude is adjusted, s.
+const ADJUSTING: f64 = 0.25;
+/// Range of the adjustment.
+const SCALES: [f64; 2] = [0.2, 3.0];
+
+/// Distance of the tensions from t_min that makes room for the dither, per amplitude, as a fraction of t_min. With more
+/// pretension the tensions also differ less from each other, relative to the null vector.
+const RESERVE: f64 = 16.0 / 3.0;
+/// Largest reserve, as a fraction of t_min.
+const MOST_RESERVE: f64 = 1.5;
+/// Largest fraction of t_max that a tendon may have at zero joint torque because of the reserve.
+const RESERVED: f64 = 0.4;
+
+/// The tensions b n sin(omega t). b is the smallest amplitude that reaches the wanted fraction of the tension in every
+/// tendon.
+///
+/// Friction, inertia and delay of the motors change the amplitude that a command causes. So the amplitude is measured,
+/// and the command is adjusted until the measured amplitude is the wanted one.
+#[derive(Clone, Debug)]
+pub(crate) struct TensionDither {
+    /// n: unit vector of the tensions that cause no joint torque.
+    common: Vector4<f64>,
+    /// 1 / n.
+    inverse_common: Vector4<f64>,
+    /// Wanted amplitude of each tendon as a fraction of its tension, divided by n.
+    part: Vector4<f64>,
+    /// Largest tension of each tendon, N.
+    most: Vector4<f64>,
+    /// Tension below which the amplitude falls quickly, N.
+    low: f64,
+    measuring: f64,
+    adjusting: f64,
+}
+
+/// The measured amplitude and its adjustment.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+pub(crate) struct TensionDitherState {
+    /// Components of the measured oscillation along n, in phase with the command and a quarter period ahead, N.
+    measured: Vector2<f64>,
+    /// Commanded amplitude divided by the wanted one.
+    scale: f64,
+}
+
+impl TensionDither {
+    /// Constructs the dither. `common` is n. `least` is the smallest amplitude as a fraction of the tension; 0 means no
+    /// dither. `pulley` is the friction of the pulleys. `most` is the largest tension of each tendon, and `minimum` is
+    /// t_min, N.
+    pub fn new(
+        common: Vector4<f64>,
+        least: f64,
+        pulley: &Vector4<f64>,
+        most: Vector4<f64>,
+        minimum: f64,
+        rate: f64,
+    ) -> Self {
+        let inverse_common = common.map(f64::recip);
+        let wanted = |friction: f64| if least > 0.0 { (EXCESS * friction).clamp(least, LARGEST) } else { 0.0 };
+        Self {
+            common,
+            inverse_common,
+            part: pulley.map(wanted).component_mul(&inverse_common),
+            most,
+            low: LOW * minimum,
+            measuring: 1.0 / (MEASURING * rate),
+            adjusting: 1.0 / (ADJUSTING * rate),
+        }
+    }
+
+    /// Returns the distance of the tensions from t_min that makes room for the dither, N. `minimum` is t_min, and
+    /// `maximum` is the largest permitted tension of each tendon, N.
+    pub fn reserve(&self, minimum: f64, maximum: &Vector4<f64>) -> f64 {
+        let amplitude = self.part.component_mul(&self.common).max();
+        // Tensions without joint torque are proportional to n.
+        let fits = RESERVED * maximum.component_div(&self.common).min() * self.common.min() - minimum;
+        ((RESERVE * amplitude).min(MOST_RESERVE) * minimum).min(fits).max(0.0)
+    }
+
+    pub fn start(&self) -> TensionDitherState {
+        TensionDitherState { measured: Vector2::zeros(), scale: 1.0 }
+    }
+
+    /// Returns the amplitude of each tendon, N. `desired` are the tensions without dither, `now` the present ones, N.
+    /// `phase` contains the sine and the cosine of omega t.
+    pub fn advance(
+        &self,
+        state: &mut TensionDitherState,
+        desired: &Vector4<f64>,
+        now: &Vector4<f64>,
+        phase: &Vector2<f64>,
+    ) -> Vector4<f64> {
+        let wanted = self.part.component_mul(desired).max();
+        let room = (desired * LARGEST).inf(&(self.most - desired)).component_mul(&self.inverse_common).min();
+        let wanted = wanted.min(room);
+        if wanted <= 0.0 {
+            return Vector4::zeros();
+        }
+        // The mean of 2 a sin^2 is a.
+        let deviation = 2.0 * self.common.dot(&(now - desired));
+        state.measured += (phase * deviation - state.measured) * self.measuring;
+        let missing = 1.0 - state.measured.norm() / wanted;
+        let scale = state.scale + missing.max(-1.0) * self.adjusting;
+        let scale = if now.min() < self.low { scale * FALLING } else { scale };
+        state.scale = scale.clamp(SCALES[0], SCALES[1]);
+        self.common * (wanted * state.scale)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::state_feedback::dither::Dither;
+    use crate::model::configuration::ConfiguredFinger;
+    use nalgebra::Vector3;
+
+    const RATE: f64 = 1000.0;
+
+    fn home() -> Vector4<f64> {
+        ConfiguredFinger::default().tendons().expect("the default tendons").pretension(5.0)
+    }
+
+    fn dither(least: f64, pulley: f64) -> TensionDither {
+        TensionDither::new(home().normalize(), least, &Vector4::repeat(pulley), Vector4::repeat(60.0), 5.0, RATE)
+    }
+
+    /// Runs the dither for two seconds on tensions that follow it by `response`. Returns the largest amplitude of the
+    /// followed oscillation in the last half second, N.
+    fn followed(dither: &TensionDither, desired: &Vector4<f64>, response: f64) -> Vector4<f64> {
+        let phasor = Dither::new(Vector3::zeros(), 40.0, RATE);
+        let (mut phase, mut state) = (phasor.start(), dither.start());
+        let (mut now, mut largest) = (*desired, Vector4::zeros());
+        for cycle in 0..2000 {
+            phasor.advance(&mut phase);
+            let phase = phasor.phase(&phase);
+            let amplitude = dither.advance(&mut state, desired, &now, &phase);
+            now = desired + amplitude * (response * phase.x);
+            if cycle >= 1500 {
+                largest = largest.sup(&(now - desired));
+            }
+        }
+        largest
+    }
+
+    #[test]
+    fn the_measured_amplitude_becomes_the_wanted_one() {
+        let desired = home() * 1.5;
+        for response in [0.5, 1.0, 2.0] {
+            let found = followed(&dither(0.06, 0.0), &desired, response).component_div(&desired);
+            assert!(found.iter().all(|part| (part - 0.06).abs() < 0.004), "{response}: {found}");
+            let found = followed(&dither(0.06, 0.02), &desired, response).component_div(&desired);
+            assert!(found.iter().all(|part| (part - 0.1).abs() < 0.006), "{response}: {found}");
+        }
+        assert_eq!(followed(&dither(0.0, 0.1), &desired, 1.0), Vector4::zeros());
+    }
+
+    #[test]
+    fn the_oscillation_causes_no_joint_torque_and_leaves_room_to_both_bounds() {
+        let finger = ConfiguredFinger::default();
+        let r = finger.tendons().expect("the default tendons").r;
+        for (extra, pulley) in [([0.0; 4], 0.1), ([30.0, 0.0, 0.0, 10.0], 0.1), ([50.0, 0.0, 0.0, 0.0], 0.05)] {
+            let desired = home() + Vector4::from(extra);
+            let found = followed(&dither(0.06, pulley), &desired, 1.0);
+            assert!((r * found).amax() < 1e-9 * (1.0 + found.amax()), "{found}");
+            assert!((desired - found).min() >= 0.55 * 5.0, "{found}");
+            assert!((desired + found).max() <= 60.0 + 1e-9, "{found}");
+        }
+    }
+
+    #[test]
+    fn the_reserve_makes_room_and_fits_below_the_largest_tension() {
+        let reserve = |least, pulley, most| dither(least, pulley).reserve(5.0, &Vector4::repeat(most));
+        assert!((reserve(0.06, 0.0, 60.0) - 1.6).abs() < 1e-9);
+        assert!((reserve(0.06, 0.1, 60.0) - 7.5).abs() < 1e-9);
+        assert_eq!((reserve(0.0, 0.1, 60.0), reserve(0.06, 0.1, 20.0)), (0.0, 0.0));
+        let pretension = home() * ((5.0 + reserve(0.06, 0.1, 40.0)) / 5.0);
+        assert!(pretension.max() <= RESERVED * 40.0 + 1e-9);
+    }
+}
