@@ -185,7 +185,9 @@ impl GaugeStuck {
             let off = (sample.tensions[gauge] - sample.report.desired_tensions[gauge]).abs() > self.offset;
             let died = known[gauge] && unlikely && others_flicker(gauge);
             let was_dead = memory.same[gauge] >= DEAD_FROM_START && alone(gauge) && sample.tensions[gauge] > self.slack;
-            (off && (died || was_dead)).then_some(f64::from(counts[gauge]))
+            // The count of a tension beyond the range of the gauge is constant too.
+            let in_range = counts[gauge] < sample.full_scale;
+            (off && in_range && (died || was_dead)).then_some(f64::from(counts[gauge]))
         })
     }
 }
