@@ -164,10 +164,9 @@ fn excess_after_a_stop(finger: &ConfiguredFinger, rate: f64) -> f64 {
     let mut finger = finger.clone();
     finger.controller.set_point_speed = Some(1e3);
     let mut servo = Loop::new(&finger, rate);
-    // A tension above 100 N saturates the simulated gauges. This loop does not give their full scale to the monitors.
-    servo.right_alarms = &[Symptom::GaugeStuck];
-    // The finger hits a stop, where tendons become slack, and stays warm for a long time.
-    servo.right_alarms = &[Symptom::OverTension, Symptom::OverheatedMotor, Symptom::BrokenTendon];
+    // The finger hits a stop, where tendons become slack, and stays warm for a long time. A tension above 100 N
+    // saturates the simulated gauges, and this loop does not give their full scale to the monitors.
+    servo.right_alarms = &[Symptom::OverTension, Symptom::OverheatedMotor, Symptom::BrokenTendon, Symptom::GaugeStuck];
     servo.run(3.0, &spring(Vector3::new(0.0, 3.5, 1.0), 5.0));
     let back = spring(servo.plant.joints() - Vector3::new(0.0, 0.05, 0.0), 5.0);
     servo.run(0.03, &back);
