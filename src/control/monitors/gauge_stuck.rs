@@ -134,6 +134,14 @@ impl Memory {
         });
         Flicker { known, same: self.same }
     }
+
+    /// Notes the change of a gauge since the last sample, counts. Returns whether the second difference has changed its
+    /// sign.
+    fn bends_to_the_other_side(&mut self, gauge: usize, change: i32) -> bool {
+        let [first, second] = self.differences[gauge];
+        self.differences[gauge] = [change, change - first];
+        second.abs().min((change - first).abs()) >= BEND && (second > 0) != (change > first)
+    }
 }
 
 impl GaugeStuck {
@@ -151,12 +159,6 @@ impl GaugeStuck {
         let rises = |gauge: usize| counts[gauge] > last[gauge];
         memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge] + 1 } else { 0 });
         let same_for = memory.same;
-        let bent: [bool; 4] = std::array::from_fn(|gauge| {
-            let [first, second] = memory.differences[gauge];
-            let change = i32::from(counts[gauge]) - i32::from(last[gauge]);
-            memory.differences[gauge] = [change, change - first];
-            second.abs().min((change - first).abs()) >= BEND && (second > 0) != (change > first)
-        });
         // Whether at least two other gauges, of tendons that are not slack, have changed recently.
         let others_flicker = |gauge: usize| {
             let flickers =
@@ -164,12 +166,13 @@ impl GaugeStuck {
             (0..4).filter(flickers).count() >= 2
         };
         for gauge in 0..4 {
+            let bent = memory.bends_to_the_other_side(gauge, i32::from(counts[gauge]) - i32::from(last[gauge]));
             // Samples of a gauge that is being judged must not change the learned flicker.
             if memory.same[gauge] < LEAST_ROW || !others_flicker(gauge) {
                 let learn = |mean: &mut f64, is: bool, gain: f64| *mean += (f64::from(u8::from(is)) - *mean) * gain;
                 let same = memory.same[gauge] > 0;
                 learn(&mut memory.repeats[gauge], same, fast);
-                learn(&mut memory.bends[gauge], bent[gauge], slow);
+                learn(&mut memory.bends[gauge], bent, slow);
                 learn(&mut memory.reversals[gauge], !same && rises(gauge) != memory.rose[gauge], slow);
             }
             if memory.same[gauge] == 0 {
