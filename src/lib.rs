@@ -78,7 +78,7 @@ pub use model::configuration::{
     Configuration, ConfiguredController, ConfiguredEncoder, ConfiguredFinger, ConfiguredFriction, ConfiguredGauge,
     ConfiguredGeometry, ConfiguredHand, ConfiguredJoints, ConfiguredLinks, ConfiguredMonitors, ConfiguredMotor,
     ConfiguredSimulation, ConfiguredStiffness, ConfiguredTendon, ConfiguredZeroing, EndState, GaugeReference, Law,
-    NamedHand, OnFault, OutOfRange, PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
+    OnFault, OutOfRange, PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
 };
 pub use model::{Contact, ContactError, FingerNumber, Part};
 pub use realtime::Distribution;

@@ -21,7 +21,9 @@ fn a_name_stands_for_the_values_of_its_hand() {
             assert_eq!(simulations(&text), [(); 3].map(|()| hand.simulation()), "{text}");
         }
         assert_eq!(hand.simulation().hand, hand);
+        assert_eq!(ConfiguredSimulation::named(name), Some(hand.simulation()));
     }
+    assert_eq!(ConfiguredSimulation::named("Worn"), None);
     assert_eq!(NamedHand::default().simulation(), ConfiguredSimulation::default());
 }
 

@@ -1,7 +1,7 @@
 //! The key `simulation.hand`: a name that stands for the values of other keys.
 
 use super::wrong::Wrong;
-use crate::model::configuration::NamedHand;
+use crate::model::configuration::ConfiguredSimulation;
 use toml_edit::{Item, Table};
 
 /// Adds the values for which `simulation.hand` stands to the table of a finger. Keys that the table contains keep their
@@ -9,8 +9,8 @@ use toml_edit::{Item, Table};
 pub(super) fn add_named_values(finger: &mut Table) -> Result<(), Wrong> {
     let Some(simulation) = finger.get_mut("simulation").and_then(Item::as_table_like_mut) else { return Ok(()) };
     let name = simulation.get("hand").and_then(Item::as_str);
-    let Some(hand) = NamedHand::ALL.into_iter().find(|hand| name == Some(hand.name())) else { return Ok(()) };
-    let values = toml_edit::ser::to_document(&hand.simulation()).map_err(|error| Wrong::at(None, error.to_string()))?;
+    let Some(values) = name.and_then(ConfiguredSimulation::named) else { return Ok(()) };
+    let values = toml_edit::ser::to_document(&values).map_err(|error| Wrong::at(None, error.to_string()))?;
     for (key, value) in values.iter() {
         if !simulation.contains_key(key) {
             simulation.insert(key, value.clone());

@@ -4,6 +4,15 @@
 use super::named_hand::NamedHand;
 use super::simulation::ConfiguredSimulation;
 
+impl ConfiguredSimulation {
+    /// Returns the parameters of a finger of the hand with this name: `"nominal"`, `"worn"`, `"sheathed"` or
+    /// `"cheap"`. Returns None for any other name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        NamedHand::ALL.into_iter().find(|hand| hand.name() == name).map(NamedHand::simulation)
+    }
+}
+
 impl NamedHand {
     /// Returns the parameters of a finger of this hand.
     #[must_use]
