@@ -12,10 +12,10 @@ use crate::model::configuration::{ConfiguredController, ConfiguredFinger, Scheme
 use nalgebra::Vector4;
 use std::ops::ControlFlow::{Break, Continue};
 
-/// Gains of Figure 10 while a routine runs at a rate above [`GENTLE_RATE`], Hz: `controller.tension_gain`,
-/// `controller.tension_integral`, 1/s, and `controller.motor_damping`, N s/m. They are the gains tuned for that rate.
-const GENTLE: (f64, f64, f64) = (0.1, 55.0, 265.0);
-const GENTLE_RATE: f64 = 500.0;
+/// Gains of Figure 10 while a routine runs at [`GENTLE_RATE`], Hz, or more: `controller.tension_gain`, and
+/// `controller.tension_integral`, 1/s.
+const GENTLE: (f64, f64) = (0.5, 100.0);
+const GENTLE_RATE: f64 = 750.0;
 
 /// The routines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,10 +85,10 @@ impl Calibration {
     }
 
     /// Returns the configuration of the finger's controller while a routine runs at `rate`, Hz. The scheme is Figure
-    /// 10, and configured gains of Figure 10 stay in force. The other gains are those tuned for 500 Hz, also at higher
-    /// rates: routines move slowly, and these gains are stable with gauges and amplifiers that lag by 1 ms. State
-    /// feedback is not used, because it relies on the stiffness, friction and zeros that a routine has yet to find.
-    /// Figure 11 is not used, because it would adapt to uncalibrated gauges.
+    /// 10, and configured gains of Figure 10 stay in force. From 750 Hz up the gains on the tension error are lower
+    /// than otherwise: routines move slowly, and these gains are stable with gauges and amplifiers that lag by 1 ms.
+    /// State feedback is not used, because it relies on the stiffness, friction and zeros that a routine has yet to
+    /// find. Figure 11 is not used, because it would adapt to uncalibrated gauges.
     pub fn controlled(finger: &ConfiguredFinger, rate: f64) -> ConfiguredFinger {
         let configured = &finger.controller;
         let controller = match configured.scheme(rate) {
@@ -97,12 +97,11 @@ impl Calibration {
                 ConfiguredController { gravity_compensation: configured.gravity_compensation, ..Default::default() }
             }
         };
-        let gentle = |configured: Option<f64>, gain: f64| configured.or((rate > GENTLE_RATE).then_some(gain));
+        let gentle = |configured: Option<f64>, gain: f64| configured.or((rate >= GENTLE_RATE).then_some(gain));
         let controller = ConfiguredController {
             scheme: Some(Scheme::Figure10),
             tension_gain: gentle(controller.tension_gain, GENTLE.0),
             tension_integral: gentle(controller.tension_integral, GENTLE.1),
-            motor_damping: gentle(controller.motor_damping, GENTLE.2),
             ..controller
         };
         ConfiguredFinger { controller, ..finger.clone() }
