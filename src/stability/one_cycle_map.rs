@@ -266,6 +266,8 @@ fn matching_simulation(finger: &ConfiguredFinger) -> ConfiguredFinger {
     finger.controller.set_point_speed = Some(1e3);
     finger.friction.motor_coulomb = [0.0; 4];
     finger.friction.conduit = [0.0; 4];
+    // The dither of the tensions depends on the time, and its amplitude on the measured one. A linear map has neither.
+    finger.controller.tension_dither = Some(0.0);
     finger.friction.pulley = [0.0; 4];
     finger.friction.joint_coulomb = [0.0; 3];
     finger.simulation = ConfiguredSimulation {

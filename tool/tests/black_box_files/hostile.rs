@@ -109,7 +109,7 @@ fn files_that_no_black_box_writes_are_refused() {
     let controller = "{\"number\":0,\"gravity\":[0,0,0],\"finger\":{}},".repeat(5000);
     let crowded = text.replacen("\"controllers\":[", &format!("\"controllers\":[{controller}"), 1);
     assert!(refusal_of(crowded.as_bytes()).contains("line 1: more than 4096 controllers"));
-    let rude = text.replacen("\"report\"", &format!("\"{}\\u001b[31m\\n\"", "x".repeat(1000)), 1);
+    let rude = text.replacen("\"exact\"", &format!("\"{}\\u001b[31m\\n\"", "x".repeat(1000)), 1);
     let told = refusal_of(rude.as_bytes());
     assert!(told.contains("line 1: unknown variant `xxx"), "{told}");
     let library = text.replacen("\"library\":\"", "\"library\":\"\\n\\n", 1).replacen("\"rate\"", "\"rat\"", 1);
