@@ -28,7 +28,7 @@ impl Controller {
         }
         state.report.joint_torques = gravity;
         state.report.torque_scale = scale;
-        state.report.slackest = self.slack.slackest(&slack);
+        state.report.slackest = self.slack.slackest(&slack, &now);
         state.report.under_tension &= self.slack.is_complete(&slack);
         state.doing = Doing::TakingUpSlack(slack);
     }

@@ -34,9 +34,8 @@ const ALL_TAUT: f64 = 0.2;
 
 /// Pull with which a motor reverses at a taut tendon, in multiples of t_min, outward.
 const REVERSAL: f64 = 16.0;
-/// Longest time of this pull, s.
+/// Longest time of this pull, s, and distance from the taut tendon at which it ends, m.
 const LONGEST_REVERSAL: f64 = 0.004;
-/// Distance from the taut tendon at which this pull ends, m.
 const REVERSED: f64 = 1e-5;
 /// Length that a motor pays out after its tendon has been taut, m.
 const GAP: f64 = 0.0004;
@@ -49,9 +48,10 @@ const GAIN: f64 = 20.0;
 const FASTEST: f64 = 3.0;
 /// Missing fraction of the pretension at which the motors stop.
 const REACHED: f64 = 0.03;
-/// Missing fraction of the pretension at which they move again. Their friction would otherwise cause a limit cycle. Up
-/// to this fraction the take-up is complete.
+/// Missing fraction at which they move again, so that friction causes no limit cycle. Up to it the take-up is complete.
 const COMPLETE: f64 = 0.1;
+/// Excess fraction with which the take-up is complete too: at its stops a finger has other tensions.
+const TOO_HIGH: f64 = 0.5;
 /// Fraction of t_min that no tendon may be below, even if the common tension is right.
 const LEAST: f64 = 0.9;
 
@@ -66,6 +66,9 @@ const LARGEST_COMMON: f64 = 4.0;
 const STRONGEST_SLACK: f64 = 2.0;
 /// Largest pull later, in multiples of the pretension, and in addition `STRONGEST_SLACK`.
 const STRONGEST: f64 = 1.5;
+
+/// Distance from its target of a motor that does not follow, m.
+const ASTRAY: f64 = 0.003;
 
 /// Time constant of the low-pass filter on the tensions, s.
 const SMOOTHING: f64 = 0.003;
@@ -136,7 +139,12 @@ impl SlackTakeUp {
     }
 
     /// Returns the tendon that is farthest from being under tension, 0 to 3.
-    pub fn slackest(&self, slack: &Slack) -> usize {
+    pub fn slackest(&self, slack: &Slack, now: &Slackness) -> usize {
+        // A motor with a wrong sign does not follow its target, and makes other tendons slack too.
+        let astray = (slack.targets.travel - now.travel).abs();
+        if astray.max() > ASTRAY {
+            return astray.imax();
+        }
         let untouched = (0..4).filter(|&motor| slack.phase == Phase::Touching && !slack.touched[motor]);
         untouched
             .max_by(|&one, &other| slack.wound[one].total_cmp(&slack.wound[other]))
@@ -233,7 +241,7 @@ impl SlackTakeUp {
     fn tighten(&self, slack: &mut Slack, travel: &Vector4<f64>) {
         let missing = self.missing(&slack.tensions);
         let was_steady = slack.steady;
-        slack.steady = missing.abs() <= if was_steady { COMPLETE } else { REACHED };
+        slack.steady = (-TOO_HIGH..=if was_steady { COMPLETE } else { REACHED }).contains(&missing);
         if slack.steady {
             if !was_steady {
                 self.servo.stop(&mut slack.targets, travel);
