@@ -6,6 +6,7 @@
 
 mod cycle;
 mod eigenvalues;
+pub mod events;
 pub mod monitors;
 mod motors;
 mod number_checks;

@@ -4,6 +4,7 @@ mod adjustable;
 mod black_box;
 mod control_input;
 mod cycle_record;
+pub mod events;
 mod faults;
 mod link_handover;
 mod link_watch;

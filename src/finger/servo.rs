@@ -13,6 +13,7 @@ use crate::board::protocol::{Identity, Status};
 use crate::calibration::Verdict;
 use crate::control::{Activity, Feedback, MotorCommand, SetPoint, State};
 use crate::finger::Adjustable;
+use crate::finger::events::{EventLog, EventWriter, Occurrence};
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::ServoEnd;
 use crate::finger::supervision::Supervision;
@@ -41,6 +42,8 @@ pub struct FingerServo {
     timing: CycleTiming,
     timings: Producer<CycleTiming>,
     black_box: Recorder,
+    events: EventWriter,
+    event_log: EventLog,
     /// The black box record of this cycle; none if the finger was already faulted or closed.
     record: Option<CycleRecord>,
     /// Whether the last cycle was recorded.
@@ -94,6 +97,11 @@ impl FingerServo {
         self
     }
 
+    /// Returns the log of the finger's events.
+    pub fn event_log(&self) -> &EventLog {
+        &self.event_log
+    }
+
     /// Returns the memory that the servo accesses outside this value.
     pub fn memory(&self) -> &LockedMemory {
         &self.memory
@@ -106,9 +114,10 @@ impl FingerServo {
         self
     }
 
-    /// Faults the finger after an emergency stop call, or after the fault of a finger that stops together with this
-    /// one. It is called in every period.
-    pub fn check_stop_signal(&mut self) {
+    /// Begins a period. `began` is the time at which it began, ns. Faults the finger after an emergency stop call, or
+    /// after the fault of a finger that stops together with this one.
+    pub fn begin_period(&mut self, began: u64) {
+        self.events.begin_cycle(self.report.losses.cycles + 1, began);
         if let Some(kind) = self.alarm.pending() {
             self.fault(Fault::new(kind));
         }
@@ -192,6 +201,8 @@ impl FingerServo {
             self.black_box.record(CycleRecord { timing, ..record });
         }
         self.mailbox.publish(self.report);
+        // A planner that has read an event of a cycle therefore finds the report and the record of this cycle.
+        self.events.publish(self.report.next);
         // The timing comes after the report, so that a reader never counts more timings than cycles. The ring is full
         // only if no thread collects the timings. Then the timing is dropped, because the cycle is more important.
         let _ = self.timings.push(timing);
@@ -201,6 +212,7 @@ impl FingerServo {
     pub fn fault(&mut self, fault: Fault) {
         if self.under_control() {
             self.alarm.raise(fault.kind);
+            self.events.write(Occurrence::fault(&fault));
             self.enter(Stage::Faulted(fault));
         }
     }
@@ -230,7 +242,12 @@ impl FingerServo {
             }
             _ => None,
         };
-        self.report.warnings.note(failed.or(self.supervision.warning()), self.limits.warning);
+        let given = self.report.warnings.given();
+        let warning = failed.or(self.supervision.warning());
+        self.report.warnings.note(warning, self.limits.warning);
+        if let Some(warning) = warning.filter(|_| self.report.warnings.given() != given) {
+            self.events.write(Occurrence::warning(&warning));
+        }
     }
 
     fn count_replies(&mut self) {

@@ -111,7 +111,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         let began = self.clock.now();
         for port in self.ports.iter_mut() {
             port.exchange();
-            port.fingers.iter_mut().for_each(FingerServo::check_stop_signal);
+            port.fingers.iter_mut().for_each(|finger| finger.begin_period(began));
         }
         self.send_stops();
         let mut sending = began;
@@ -154,6 +154,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         for port in self.ports.iter_mut() {
             let counters = port.counters();
             for finger in port.fingers.iter_mut() {
+                finger.begin_period(now);
                 finger.fault(Fault::new(FaultKind::ServoPanic));
                 finger.end(now, self.schedule.next(), None, &counters);
                 finger.publish();

@@ -4,6 +4,7 @@ use super::{FingerServo, Limits, STOPS_AFTER_FAULT};
 use crate::board::protocol::{Configured, Identity};
 use crate::control::{Activity, Controller, Feedback, MotorCommand, SetPoint};
 use crate::finger::Adjustable;
+use crate::finger::events::event_log;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Mailbox, mailbox};
 use crate::finger::supervision::Supervision;
@@ -81,6 +82,8 @@ impl FingerServo {
         let (planners, servo, mut memory) = mailbox(report, &adjustable);
         memory.append(&black_box.memory());
         timings.add_to(&mut memory);
+        let (events, event_log) = event_log(number);
+        events.add_to(&mut memory);
         let this = Self {
             adjustable,
             state,
@@ -94,6 +97,8 @@ impl FingerServo {
             timing: CycleTiming::default(),
             timings,
             black_box,
+            events,
+            event_log,
             record: None,
             recording: false,
             report,
