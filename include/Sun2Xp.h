@@ -690,7 +690,7 @@ const char *HandError(void);
 #define FAULT_TORQUE_NOT_ADMITTED    43 /* torque not admitted */
 #define FAULT_CALIBRATION_FAILED     44 /* calibration failed */
 #define FAULT_WARM_MOTOR             45 /* warm motor */
-#define FAULT_COMPANION              46 /* stopped with another */
+#define FAULT_COMPANION              46 /* fault of another finger */
 #define FAULT_PORT_CLOSED            47 /* port closed */
 #define FAULT_OPENING_TIMED_OUT      48 /* opening timed out */
 #define FAULT_SAME_NUMBER            49 /* same number */

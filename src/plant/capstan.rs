@@ -9,7 +9,7 @@
 //! computation is stable for any step. A regularised friction force (a steep function of the speed) would creep at
 //! rest.
 
-use super::tendon_section::Elasticity;
+use super::elasticity::Elasticity;
 
 /// Shares of the compliance of a tendon in its three sections. Most of a tendon lies in its conduit, so half of the
 /// compliance is on the motor's side of the conduit friction. The sections in the finger are short.

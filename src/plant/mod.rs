@@ -4,6 +4,7 @@
 mod amplifier;
 mod capstan;
 mod contact;
+mod elasticity;
 mod finger_plant;
 mod gauge_filter;
 mod holding_hand;
@@ -13,7 +14,6 @@ mod motors;
 mod sensors;
 mod stribeck;
 mod tendon;
-mod tendon_section;
 
 pub use finger_plant::{PLANT_STEP_SECONDS, Plant};
 pub use sensors::Sensors;

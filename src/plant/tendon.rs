@@ -2,7 +2,7 @@
 //! creep.
 
 use super::capstan::{Capstans, Contacts, SectionTensions};
-use super::tendon_section::Elasticity;
+use super::elasticity::Elasticity;
 use crate::model::TendonsError;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::{Matrix3x4, Vector3, Vector4};

@@ -116,23 +116,26 @@ pub(super) struct Flicker {
     pub known: [bool; 4],
     /// Number of consecutive samples with the same count.
     pub same: [u32; 4],
+    /// Whether the gauge is at the end of its range. It then shows a constant count although it is not dead.
+    saturated: [bool; 4],
 }
 
 impl Flicker {
     /// Returns whether a gauge that flickered has repeated the same count for at least [`SILENT`] samples.
     pub fn silent(&self, gauge: usize) -> bool {
-        self.known[gauge] && self.same[gauge] >= SILENT
+        self.known[gauge] && self.same[gauge] >= SILENT && !self.saturated[gauge]
     }
 }
 
 impl Memory {
-    pub fn flickers(&self) -> Flicker {
+    /// Returns the flicker. `full_scale` is the largest count of the gauges.
+    pub fn flickers(&self, full_scale: u16) -> Flicker {
         let known = std::array::from_fn(|gauge| {
             let reverses = self.reversals[gauge] > LEAST_REVERSALS || self.bends[gauge] > LEAST_BENDS;
             let noisy = self.repeats[gauge] < MOST_REPEATS && reverses;
             self.samples >= KNOWN && noisy
         });
-        Flicker { known, same: self.same }
+        Flicker { known, same: self.same, saturated: self.last.map(|count| count >= full_scale) }
     }
 
     /// Notes the change of a gauge since the last sample, counts. Returns whether the second difference has changed its
@@ -179,7 +182,7 @@ impl GaugeStuck {
                 memory.rose[gauge] = rises(gauge);
             }
         }
-        let known = memory.flickers().known;
+        let Flicker { known, saturated, .. } = memory.flickers(sample.full_scale);
         let alone = |gauge: usize| (0..4).all(|other| other == gauge || known[other]);
         first_of(Symptom::GaugeStuck, Part::gauge, |gauge| {
             // The gauge of a slack tendon may be at the end of its range, and then shows only half of its noise.
@@ -188,9 +191,7 @@ impl GaugeStuck {
             let off = (sample.tensions[gauge] - sample.report.desired_tensions[gauge]).abs() > self.offset;
             let died = known[gauge] && unlikely && others_flicker(gauge);
             let was_dead = memory.same[gauge] >= DEAD_FROM_START && alone(gauge) && sample.tensions[gauge] > self.slack;
-            // The count of a tension beyond the range of the gauge is constant too.
-            let in_range = counts[gauge] < sample.full_scale;
-            (off && in_range && (died || was_dead)).then_some(f64::from(counts[gauge]))
+            (off && !saturated[gauge] && (died || was_dead)).then_some(f64::from(counts[gauge]))
         })
     }
 }

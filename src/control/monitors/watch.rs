@@ -106,15 +106,13 @@ impl Monitors {
         let stuck = self.gauge_stuck.watch(&mut watch.gauge_stuck, &sample);
         let jumped = self.encoder_jump.watch(&mut watch.encoder_jump, &sample);
         let range = self.gauge_range.watch(&mut watch.gauge_range, &sample);
-        let flickers = watch.gauge_stuck.flickers();
+        let flickers = watch.gauge_stuck.flickers(full_scale);
         self.agreement.compare(&mut watch.agreement, &sample);
         let missing = watch.agreement.missing();
         let lost = self.tension_lost.watch(&mut watch.tension_lost, &sample, &missing, &flickers);
         let suspects = watch.tension_lost.suspects();
         let disagrees = self.agreement.watch(&mut watch.agreement, &sample, suspects);
-        // The count of a tension beyond the range of a gauge is constant too.
-        let silent = |&gauge: &usize| flickers.silent(gauge) && feedback.gauge_counts[gauge] < full_scale;
-        let silent = (0..4).find(silent).filter(|_| disagrees.is_some());
+        let silent = (0..4).find(|&gauge| flickers.silent(gauge)).filter(|_| disagrees.is_some());
         let stuck = stuck.or(silent.map(|gauge| gauge_stuck::alarm(&sample, gauge)));
         let stalled = self.stalled_motor.watch(&mut watch.stalled_motor, &sample);
         // A gauge that drifts makes its motor seem stalled. The gauge reports a tension that does not exist, so the

@@ -4,8 +4,7 @@ use crate::model::LinkDynamics;
 use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 
-/// tau = - sum of J_i^T m_i g over the centres of mass. Without this torque, the error of a finger at
-/// 3 N/cm is 61 %.
+/// tau = - sum of J_i^T m_i g over the centres of mass.
 #[derive(Clone, Debug)]
 pub(crate) struct GravityCompensation(Option<LinkDynamics>);
 

@@ -6,6 +6,8 @@
 //! moments determine the joint angles. All motors then wind in together to these travels, and further by a common
 //! stretch until the tensions reach the pretension. The motors are under position control, so they hold the joints.
 
+mod together;
+
 use crate::control::take_up::progress::{Phase, Slack, Slackness};
 use crate::control::take_up::touch::Gauge;
 use crate::control::take_up::travel_servo::{Targets, TravelServo};
@@ -40,28 +42,8 @@ const REVERSED: f64 = 1e-5;
 /// Length that a motor pays out after its tendon has been taut, m.
 const GAP: f64 = 0.0004;
 
-/// Speed of the motors while they wind in together, m/s.
-const TOGETHER: f64 = 0.001;
 /// Gain from the missing fraction of the pretension to the speed of the common stretch, 1/s, from 1000 Hz up.
 const GAIN: f64 = 20.0;
-/// Largest speed of the common stretch, in multiples of the stretch at the pretension, 1/s.
-const FASTEST: f64 = 3.0;
-/// Missing fraction of the pretension at which the motors stop.
-const REACHED: f64 = 0.03;
-/// Missing fraction at which they move again, so that friction causes no limit cycle. Up to it the take-up is complete.
-const COMPLETE: f64 = 0.1;
-/// Excess fraction with which the take-up is complete too: at its stops a finger has other tensions.
-const TOO_HIGH: f64 = 0.5;
-/// Fraction of t_min that no tendon may be below, even if the common tension is right.
-const LEAST: f64 = 0.9;
-
-/// Fraction of the pretension by which a tendon must exceed its tare, so that it is not slack.
-const SLACK: f64 = 0.08;
-/// Largest stretch of tendons that pull while another tendon is slack, in multiples of the stretch at the pretension.
-const LARGEST_UNOPPOSED: f64 = 2.0;
-/// Largest common stretch while a tendon is slack, in the same multiples.
-const LARGEST_COMMON: f64 = 4.0;
-
 /// Largest pull while the tendons are slack, in multiples of t_min. It must exceed the friction of a motor.
 const STRONGEST_SLACK: f64 = 2.0;
 /// Largest pull later, in multiples of the pretension, and in addition `STRONGEST_SLACK`.
@@ -235,66 +217,5 @@ impl SlackTakeUp {
             slack.common = -GAP / self.stretch.max();
             slack.unopposed = 0.0;
         }
-    }
-
-    /// Changes the common stretch, and moves the targets to it.
-    fn tighten(&self, slack: &mut Slack, travel: &Vector4<f64>) {
-        let missing = self.missing(&slack.tensions);
-        let was_steady = slack.steady;
-        slack.steady = (-TOO_HIGH..=if was_steady { COMPLETE } else { REACHED }).contains(&missing);
-        if slack.steady {
-            if !was_steady {
-                self.servo.stop(&mut slack.targets, travel);
-            }
-            return;
-        }
-        slack.common += (missing * self.gain).clamp(-FASTEST, FASTEST) * self.period;
-        let reach = TOGETHER * self.period;
-        let together = slack.taut_at + self.stretch * slack.common;
-        let steps = Vector4::from_fn(|motor, _| {
-            // A tendon that was taut before its motor moved is not let out.
-            let waits = slack.tensions[motor] < self.pretension[motor];
-            let wanted = if waits { together[motor].max(slack.waits_at[motor]) } else { together[motor] };
-            (wanted - slack.targets.travel[motor]).clamp(-reach, reach)
-        });
-        slack.targets.travel += steps;
-        slack.targets.speed = steps / self.period;
-
-        let taut = std::array::from_fn(|tendon| self.is_taut(slack, tendon));
-        // A tendon that holds the finger against gravity does not pull it.
-        let pulls = (0..4).any(|tendon| {
-            taut[tendon] || !slack.holds[tendon] && slack.gauges[tendon].is_above_noise(slack.smoothed[tendon])
-        });
-        let slack_remains = taut != [true; 4];
-        let rise = steps.component_div(&self.stretch).max();
-        slack.unopposed = if slack_remains && pulls { slack.unopposed + rise } else { 0.0 };
-        if slack_remains && (slack.unopposed > LARGEST_UNOPPOSED || slack.common > LARGEST_COMMON) {
-            self.touch_again(slack, taut);
-        }
-    }
-
-    /// Winds the tendons in again that are slack although they seemed to have been taut.
-    fn touch_again(&self, slack: &mut Slack, taut: [bool; 4]) {
-        slack.touched = taut;
-        slack.holds = [false; 4];
-        slack.gauges.iter_mut().for_each(Gauge::restart);
-        slack.targets.integral = Vector4::zeros();
-        slack.targets.travel = slack.waits_at;
-        (slack.phase, slack.seconds) = (Phase::Touching, 0.0);
-    }
-
-    fn is_taut(&self, slack: &Slack, tendon: usize) -> bool {
-        let tare = slack.gauges[tendon].tare.min(ALL_TAUT * self.minimum);
-        slack.tensions[tendon] - tare > SLACK * self.pretension[tendon]
-    }
-
-    /// Returns the common part of the tensions as a fraction of the pretension.
-    fn common_part(&self, tensions: &Vector4<f64>) -> f64 {
-        self.pretension.dot(tensions) / self.pretension.norm_squared()
-    }
-
-    /// Returns the fraction of the pretension that is missing. It is negative if the tensions are too high.
-    fn missing(&self, tensions: &Vector4<f64>) -> f64 {
-        (1.0 - self.common_part(tensions)).max(LEAST - tensions.min() / self.minimum)
     }
 }

@@ -194,13 +194,13 @@ faults! {
         "Send set points that are nearer, or a softer Kx", [];
     44 CalibrationFailed "CALIBRATION_FAILED" Warning Finger Nothing "calibration failed",
         "the last calibration failed; the finger is limp, and its previous calibration is in force",
-        "the text of the refused call names it",
-        "Follow the text of the refused call, then calibrate again", [];
+        "an obstacle, which the error text of the calibration call names",
+        "Remove the obstacle as that error text says, then calibrate again", [];
     45 WarmMotor "WARM_MOTOR" Warning Motor Share "warm motor",
         "a motor is near its thermal limit, and its torque is being limited",
         "the finger presses or holds more than the motor can carry continuously",
         "Command less force, or let the motor rest", [];
-    46 Companion "COMPANION" Fault Finger Nothing "stopped with another",
+    46 Companion "COMPANION" Fault Finger Nothing "fault of another finger",
         "another finger of the hand has faulted, and hand.on_fault is \"hand\"",
         "the fault of that finger",
         "Remove the cause of that fault, then recover every finger", [Recover];
