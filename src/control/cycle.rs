@@ -5,6 +5,7 @@ mod pretension;
 mod pulls;
 mod spring;
 
+use crate::control::contact::{ContactObserver, ContactState};
 use crate::control::monitors::{Alarms, Monitors, Watch};
 use crate::control::motors::motor_heating::{Heat, MotorHeating};
 use crate::control::motors::motor_torque::MotorTorque;
@@ -54,6 +55,7 @@ pub struct Controller {
     soft_limits: SoftLimits,
     gravity: GravityCompensation,
     heating: MotorHeating,
+    contact: ContactObserver,
     monitors: Monitors,
     /// Motor radii, m.
     radius: Vector4<f64>,
@@ -88,6 +90,7 @@ pub struct State {
     against_friction: Vector4<f64>,
     state_feedback: Option<StateFeedbackState>,
     heat: Heat,
+    contact: ContactState,
     report: Report,
 }
 
@@ -136,6 +139,7 @@ impl Controller {
             against_friction: Vector4::zeros(),
             state_feedback: self.state_feedback.as_ref().map(|law| law.start(&measured)),
             heat: Heat::default(),
+            contact: ContactState::default(),
             report,
         }
     }
@@ -182,11 +186,17 @@ impl Controller {
     ) -> (MotorCommand, Report) {
         state.age = state.age.saturating_add(1);
         let acting = state.pulls;
+        let elapsed = self.period * f64::from(state.age);
         if let Some(measured) = measured {
-            self.measure(state, measured);
+            self.measure(state, measured, elapsed);
         }
         let observed = self.observe(state, measured);
-        if !matches!(activity, Activity::Follow(_)) {
+        if matches!(activity, Activity::Follow(_)) {
+            if measured.is_some() {
+                self.contact.follow(&mut state.contact, &mut state.report, elapsed);
+            }
+        } else {
+            self.contact.end(&mut state.contact, &mut state.report);
             state.against_friction = Vector4::zeros();
             state.spring = None;
             if let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) {
@@ -245,10 +255,10 @@ impl Controller {
         !law.blind(elastic)
     }
 
-    /// Converts motor angles and tensions to joint angles and rates.
-    fn measure(&self, state: &mut State, measured: &Measured) {
+    /// Converts motor angles and tensions to joint angles and rates. `elapsed` is the time since the previous sample,
+    /// s.
+    fn measure(&self, state: &mut State, measured: &Measured, elapsed: f64) {
         let Measured { motor_angles, tensions } = *measured;
-        let elapsed = self.period * f64::from(state.age);
         let speeds = (motor_angles - state.motor_angles) / elapsed;
         self.speed_filter.advance(&mut state.motor_speeds, &speeds);
         self.stretch_filter.advance(&mut state.tensions, &tensions);

@@ -4,6 +4,7 @@
 //! Each file is one box of Figure 9, 10 or 11, or one part of the state feedback that can replace those boxes.
 //! [`Controller::cycle`] connects the boxes.
 
+mod contact;
 mod cycle;
 mod eigenvalues;
 pub mod events;
@@ -18,6 +19,7 @@ mod state_feedback;
 mod take_up;
 pub(crate) mod tendons;
 
+pub use contact::ContactEstimate;
 pub use cycle::{Controller, State};
 pub use signals::{Activity, Feedback, Law, Measured, MotorCommand, Report, SetPoint, spatial};
 pub use spring::admissible_damping::AdmissibleDamping;

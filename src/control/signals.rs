@@ -2,6 +2,7 @@
 
 pub use crate::model::configuration::Law;
 
+use crate::control::contact::ContactEstimate;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
@@ -120,4 +121,6 @@ pub struct Report {
     pub slackest: usize,
     /// Commanded motor torques, N cm.
     pub motor_torques: Vector4<f64>,
+    /// What the surroundings exert on the finger.
+    pub contact: ContactEstimate,
 }

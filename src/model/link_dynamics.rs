@@ -5,7 +5,7 @@
 //! finger's plane. The normal is a principal axis of every link, and the centres of mass are in the plane, so the
 //! inertia matrix does not couple joint 0 with the other joints.
 
-use crate::model::Links;
+use crate::model::{LinkMomentum, Links};
 use nalgebra::{Matrix3, Vector3};
 
 /// A link as a rigid body.
@@ -57,14 +57,17 @@ impl LinkDynamics {
 
     /// Returns H(theta), kg m^2.
     pub fn inertia(&self, theta: &Vector3<f64>) -> Matrix3<f64> {
-        let pose = Pose::new(self, theta);
+        self.inertia_at(&Pose::new(self, theta), self.coupling() * theta[2].cos())
+    }
+
+    /// Returns H(theta), kg m^2. `coupled` is the part of it that varies with theta_2.
+    fn inertia_at(&self, pose: &Pose, coupled: f64) -> Matrix3<f64> {
         let [_, l1, l2] = self.length;
         let [_, link1, link2] = self.link;
         let proximal = link1.transverse + link1.mass * l1 * l1 / 4.0 + (link2.mass + self.tip_mass) * l1 * l1;
         let distal = link2.transverse + link2.mass * l2 * l2 / 4.0 + self.tip_mass * l2 * l2;
-        let coupled = self.coupling() * theta[2].cos();
         let (h11, h12) = (proximal + distal + 2.0 * coupled, distal + coupled);
-        Matrix3::new(self.about_joint_0(&pose), 0.0, 0.0, 0.0, h11, h12, 0.0, h12, distal)
+        Matrix3::new(self.about_joint_0(pose), 0.0, 0.0, 0.0, h11, h12, 0.0, h12, distal)
     }
 
     /// Returns c(theta, theta_dot), the Coriolis and centrifugal torques, N m. Their sign is such that the joint
@@ -78,6 +81,20 @@ impl LinkDynamics {
             -bend * rate[2] * (2.0 * rate[1] + rate[2]) - 0.5 * by_1 * rate[0] * rate[0],
             bend * rate[1] * rate[1] - 0.5 * by_2 * rate[0] * rate[0],
         )
+    }
+
+    /// Returns the momentum of the links at a pose.
+    pub fn momentum(&self, theta: &Vector3<f64>) -> LinkMomentum {
+        let pose = Pose::new(self, theta);
+        let (sin, cos) = (pose.s12 * pose.c1 - pose.c12 * pose.s1, pose.c12 * pose.c1 + pose.s12 * pose.s1);
+        let (by_1, by_2) = self.about_joint_0_derivatives(&pose);
+        let coupling = self.coupling();
+        LinkMomentum {
+            inertia: self.inertia_at(&pose, coupling * cos),
+            by_1: 0.5 * by_1,
+            by_2: 0.5 * by_2,
+            bend: coupling * sin,
+        }
     }
 
     /// Returns the joint torques that gravity exerts, N m.

@@ -1,6 +1,7 @@
 //! Construction of a finger's controller from its configuration.
 
 use super::Controller;
+use crate::control::contact::ContactObserver;
 use crate::control::monitors::Monitors;
 use crate::control::motors::motor_heating::MotorHeating;
 use crate::control::motors::motor_torque::MotorTorque;
@@ -63,6 +64,7 @@ impl Controller {
             admissible,
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
+            contact: ContactObserver::new(finger, &tendons, gravity),
             monitors: Monitors::new(finger, &tendons, rate),
             period: 1.0 / rate,
             sensors: SensorScales::new(finger)?,

@@ -1,0 +1,17 @@
+//! The result of the contact estimate.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// What the surroundings exert on a finger that follows a set point, without touch sensors. Otherwise it is zero.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct ContactEstimate {
+    /// Torques of the surroundings on the joints, N cm, relative to the slowly varying error of the model.
+    pub torques: Vector3<f64>,
+    /// The force of the surroundings on the fingertip with these torques, N, in the finger's frame. The component in a
+    /// direction that the joints do not feel, near a singular pose, is reduced toward zero.
+    pub force: Vector3<f64>,
+    /// Whether the finger touches something. The force has exceeded the threshold, and has not fallen below the lower
+    /// threshold since.
+    pub touching: bool,
+}
