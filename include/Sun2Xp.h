@@ -323,36 +323,37 @@
 _Pragma("push_macro(\"AdjustFinger\")") _Pragma("push_macro(\"Answered\")") _Pragma("push_macro(\"Calibration\")")
 _Pragma("push_macro(\"CloseHand\")") _Pragma("push_macro(\"Computed\")") _Pragma("push_macro(\"CorruptReplies\")")
 _Pragma("push_macro(\"Count\")") _Pragma("push_macro(\"Cycle\")") _Pragma("push_macro(\"Cycles\")")
-_Pragma("push_macro(\"DamagedFrames\")") _Pragma("push_macro(\"DuplicateReplies\")") _Pragma("push_macro(\"Fault\")")
-_Pragma("push_macro(\"FaultText\")") _Pragma("push_macro(\"Felt\")") _Pragma("push_macro(\"FingerRecord\")")
+_Pragma("push_macro(\"DamagedFrames\")") _Pragma("push_macro(\"Damping\")") _Pragma("push_macro(\"DuplicateReplies\")")
+_Pragma("push_macro(\"Fault\")") _Pragma("push_macro(\"FaultText\")") _Pragma("push_macro(\"Felt\")")
+_Pragma("push_macro(\"Finger\")") _Pragma("push_macro(\"FingerCommand\")") _Pragma("push_macro(\"FingerRecord\")")
 _Pragma("push_macro(\"FingerStatus\")") _Pragma("push_macro(\"FingerTiming\")") _Pragma("push_macro(\"FingerTip\")")
 _Pragma("push_macro(\"Follows\")") _Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")")
 _Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetRecord\")") _Pragma("push_macro(\"GetStatus\")")
 _Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")") _Pragma("push_macro(\"HandError\")")
-_Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"LateReplies\")") _Pragma("push_macro(\"LostReplies\")")
-_Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")")
-_Pragma("push_macro(\"MemoryLocked\")") _Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")")
-_Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"Oldest\")") _Pragma("push_macro(\"OnCore\")")
-_Pragma("push_macro(\"OpenHand\")") _Pragma("push_macro(\"Overruns\")") _Pragma("push_macro(\"P99\")")
-_Pragma("push_macro(\"P999\")") _Pragma("push_macro(\"Part\")") _Pragma("push_macro(\"Pos\")")
-_Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"PushFinger\")") _Pragma("push_macro(\"Rate\")")
-_Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")") _Pragma("push_macro(\"ResetTiming\")")
-_Pragma("push_macro(\"SendContact\")") _Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendTip\")")
-_Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Stage\")")
-_Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"Stiffness\")")
-_Pragma("push_macro(\"StiffnessScale\")") _Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"Tension\")")
-_Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")")
-_Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")")
-_Pragma("push_macro(\"Value\")") _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")")
-_Pragma("push_macro(\"WakeUpMedian\")") _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")")
-_Pragma("push_macro(\"WarningValue\")") _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")")
-_Pragma("push_macro(\"ZeroFinger\")") _Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")")
-_Pragma("push_macro(\"const\")") _Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")")
-_Pragma("push_macro(\"float\")") _Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")")
-_Pragma("push_macro(\"long\")") _Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")")
-_Pragma("push_macro(\"sizeof\")") _Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")")
-_Pragma("push_macro(\"typedef\")") _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")")
-_Pragma("push_macro(\"volatile\")")
+_Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"Kx\")") _Pragma("push_macro(\"LateReplies\")")
+_Pragma("push_macro(\"LostReplies\")") _Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"MeasuredRate\")")
+_Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")") _Pragma("push_macro(\"Minimum\")")
+_Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"Oldest\")")
+_Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OpenHand\")") _Pragma("push_macro(\"Overruns\")")
+_Pragma("push_macro(\"P99\")") _Pragma("push_macro(\"P999\")") _Pragma("push_macro(\"Part\")")
+_Pragma("push_macro(\"Pos\")") _Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"PushFinger\")")
+_Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")")
+_Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"SendContact\")") _Pragma("push_macro(\"SendDamping\")")
+_Pragma("push_macro(\"SendGroup\")") _Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"Size\")")
+_Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")")
+_Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")")
+_Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")")
+_Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")") _Pragma("push_macro(\"Tip\")")
+_Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Value\")")
+_Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")") _Pragma("push_macro(\"WakeUpMedian\")")
+_Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")") _Pragma("push_macro(\"WarningValue\")")
+_Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pragma("push_macro(\"ZeroFinger\")")
+_Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")") _Pragma("push_macro(\"const\")")
+_Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")") _Pragma("push_macro(\"float\")")
+_Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")") _Pragma("push_macro(\"long\")")
+_Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")") _Pragma("push_macro(\"sizeof\")")
+_Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")") _Pragma("push_macro(\"typedef\")")
+_Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("push_macro(\"volatile\")")
 #undef AdjustFinger
 #undef Answered
 #undef Calibration
@@ -363,10 +364,13 @@ _Pragma("push_macro(\"volatile\")")
 #undef Cycle
 #undef Cycles
 #undef DamagedFrames
+#undef Damping
 #undef DuplicateReplies
 #undef Fault
 #undef FaultText
 #undef Felt
+#undef Finger
+#undef FingerCommand
 #undef FingerRecord
 #undef FingerStatus
 #undef FingerTiming
@@ -381,6 +385,7 @@ _Pragma("push_macro(\"volatile\")")
 #undef GetTip
 #undef HandError
 #undef IdentifyFinger
+#undef Kx
 #undef LateReplies
 #undef LostReplies
 #undef Maximum
@@ -406,6 +411,7 @@ _Pragma("push_macro(\"volatile\")")
 #undef ResetTiming
 #undef SendContact
 #undef SendDamping
+#undef SendGroup
 #undef SendTip
 #undef Size
 #undef SkippedPeriods
@@ -799,6 +805,16 @@ struct FingerTip {
                                        the joints cannot measure, and while the finger is not running. */
 };
 
+/* Command to one finger of a group (SendGroup). */
+struct FingerCommand {
+    unsigned int Size;              /* sizeof (struct FingerCommand), the same in every command of the group. */
+    int Finger;                     /* Finger, 1 to 3. */
+    const double *Pos;              /* Pos[3] of SendPos, always double. Null: the pose stays, or is that of Tip. */
+    const double *Tip;              /* Tip[3] of SendTip. Null: the pose stays, or is that of Pos. */
+    const double *Kx;               /* Kx[9] of SendKx, row by row, always double. Null: the stiffness stays. */
+    double Damping;                 /* Ratio of SendDamping. 0: the damping stays. */
+};
+
 /* Result of GetRecord: one cycle of a finger, from the black box. */
 struct FingerRecord {
     unsigned int Size;              /* In: sizeof (struct FingerRecord). Out: bytes written, at most that. */
@@ -1112,6 +1128,51 @@ int AdjustFinger(int, const char *);
 int PushFinger(int, const double *);
 
 /*
+ SendGroup - command several fingers in the same cycle
+
+     int SendGroup(int Count, const struct FingerCommand *Commands);
+
+   Count      number of commands, 0 to 3
+   Commands   Commands[Count]: one command for each finger of the group, in any order; set Size of
+              every command, and set members that are not used to 0
+
+ Each command has the effect of SendPos or SendTip, SendKx and SendDamping. All fingers of the group
+ follow their commands from the same cycle on, also if different threads serve them: the periods of
+ the servos are numbered for the whole hand, and the group takes effect in the same period for every
+ finger, within two periods. If the call is refused, no finger gets its command.
+
+ If a servo is so late that it skips this period, its finger follows in its next cycle. With
+ hand.clock = "board" the periods of the threads follow different clocks. Then a finger may follow
+ one period later, about once in the time in which two of the clocks differ by a period.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Commands is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small; Count is not 0 to 3; no such finger; two commands for one finger, or
+            Pos and Tip for one finger; an entry is NaN or infinite
+   EDOM, ERANGE  as SendPos, SendTip, SendKx and SendDamping
+   EIO      a finger of the group is faulted
+   EBUSY    16 groups of a finger have not taken effect yet, because they are sent faster than one in
+            a period, or the servo does not run
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example, two fingers close together:
+
+     double Pos1[3] = {0.0, 0.5, 0.8}, Pos2[3] = {0.0, 0.6, 0.9};
+     static struct FingerCommand Commands[2];
+
+     Commands[0].Size = Commands[1].Size = sizeof Commands[0];
+     Commands[0].Finger = 1;
+     Commands[0].Pos = Pos1;
+     Commands[1].Finger = 2;
+     Commands[1].Pos = Pos2;
+     SendGroup(2, Commands);
+ */
+int SendGroup(int, const struct FingerCommand *);
+
+/*
  GetRecord - one cycle of the last two seconds of a finger
 
      int GetRecord(int i, unsigned long Cycle, struct FingerRecord *Record);
@@ -1373,6 +1434,7 @@ int RecoverHand(int);
 typedef char Sun2XpFingerStatusSize[sizeof(struct FingerStatus) == 120 ? 1 : -1];
 typedef char Sun2XpFingerTimingSize[sizeof(struct FingerTiming) == 120 ? 1 : -1];
 typedef char Sun2XpFingerTipSize[sizeof(struct FingerTip) == 160 ? 1 : -1];
+typedef char Sun2XpFingerCommandSize[sizeof(struct FingerCommand) == 40 ? 1 : -1];
 typedef char Sun2XpFingerRecordSize[sizeof(struct FingerRecord) == 200 ? 1 : -1];
 typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
 #endif
@@ -1526,36 +1588,37 @@ typedef struct Sun2XpNull Sun2XpNull;
 _Pragma("pop_macro(\"AdjustFinger\")") _Pragma("pop_macro(\"Answered\")") _Pragma("pop_macro(\"Calibration\")")
 _Pragma("pop_macro(\"CloseHand\")") _Pragma("pop_macro(\"Computed\")") _Pragma("pop_macro(\"CorruptReplies\")")
 _Pragma("pop_macro(\"Count\")") _Pragma("pop_macro(\"Cycle\")") _Pragma("pop_macro(\"Cycles\")")
-_Pragma("pop_macro(\"DamagedFrames\")") _Pragma("pop_macro(\"DuplicateReplies\")") _Pragma("pop_macro(\"Fault\")")
-_Pragma("pop_macro(\"FaultText\")") _Pragma("pop_macro(\"Felt\")") _Pragma("pop_macro(\"FingerRecord\")")
+_Pragma("pop_macro(\"DamagedFrames\")") _Pragma("pop_macro(\"Damping\")") _Pragma("pop_macro(\"DuplicateReplies\")")
+_Pragma("pop_macro(\"Fault\")") _Pragma("pop_macro(\"FaultText\")") _Pragma("pop_macro(\"Felt\")")
+_Pragma("pop_macro(\"Finger\")") _Pragma("pop_macro(\"FingerCommand\")") _Pragma("pop_macro(\"FingerRecord\")")
 _Pragma("pop_macro(\"FingerStatus\")") _Pragma("pop_macro(\"FingerTiming\")") _Pragma("pop_macro(\"FingerTip\")")
 _Pragma("pop_macro(\"Follows\")") _Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")")
 _Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetRecord\")") _Pragma("pop_macro(\"GetStatus\")")
 _Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")") _Pragma("pop_macro(\"HandError\")")
-_Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"LateReplies\")") _Pragma("pop_macro(\"LostReplies\")")
-_Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")")
-_Pragma("pop_macro(\"MemoryLocked\")") _Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")")
-_Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"Oldest\")") _Pragma("pop_macro(\"OnCore\")")
-_Pragma("pop_macro(\"OpenHand\")") _Pragma("pop_macro(\"Overruns\")") _Pragma("pop_macro(\"P99\")")
-_Pragma("pop_macro(\"P999\")") _Pragma("pop_macro(\"Part\")") _Pragma("pop_macro(\"Pos\")")
-_Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"PushFinger\")") _Pragma("pop_macro(\"Rate\")")
-_Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")") _Pragma("pop_macro(\"ResetTiming\")")
-_Pragma("pop_macro(\"SendContact\")") _Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendTip\")")
-_Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Stage\")")
-_Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"Stiffness\")")
-_Pragma("pop_macro(\"StiffnessScale\")") _Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"Tension\")")
-_Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")")
-_Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")")
-_Pragma("pop_macro(\"Value\")") _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")")
-_Pragma("pop_macro(\"WakeUpMedian\")") _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")")
-_Pragma("pop_macro(\"WarningValue\")") _Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")")
-_Pragma("pop_macro(\"ZeroFinger\")") _Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")")
-_Pragma("pop_macro(\"const\")") _Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")")
-_Pragma("pop_macro(\"float\")") _Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")")
-_Pragma("pop_macro(\"long\")") _Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")")
-_Pragma("pop_macro(\"sizeof\")") _Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")")
-_Pragma("pop_macro(\"typedef\")") _Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")")
-_Pragma("pop_macro(\"volatile\")")
+_Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"Kx\")") _Pragma("pop_macro(\"LateReplies\")")
+_Pragma("pop_macro(\"LostReplies\")") _Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"MeasuredRate\")")
+_Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")") _Pragma("pop_macro(\"Minimum\")")
+_Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"Oldest\")")
+_Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OpenHand\")") _Pragma("pop_macro(\"Overruns\")")
+_Pragma("pop_macro(\"P99\")") _Pragma("pop_macro(\"P999\")") _Pragma("pop_macro(\"Part\")")
+_Pragma("pop_macro(\"Pos\")") _Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"PushFinger\")")
+_Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")")
+_Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"SendContact\")") _Pragma("pop_macro(\"SendDamping\")")
+_Pragma("pop_macro(\"SendGroup\")") _Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"Size\")")
+_Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")")
+_Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")")
+_Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"Tension\")") _Pragma("pop_macro(\"TensionSent\")")
+_Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")") _Pragma("pop_macro(\"Tip\")")
+_Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Value\")")
+_Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")") _Pragma("pop_macro(\"WakeUpMedian\")")
+_Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")") _Pragma("pop_macro(\"WarningValue\")")
+_Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")") _Pragma("pop_macro(\"ZeroFinger\")")
+_Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")") _Pragma("pop_macro(\"const\")")
+_Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")") _Pragma("pop_macro(\"float\")")
+_Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")") _Pragma("pop_macro(\"long\")")
+_Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")") _Pragma("pop_macro(\"sizeof\")")
+_Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")") _Pragma("pop_macro(\"typedef\")")
+_Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")") _Pragma("pop_macro(\"volatile\")")
 #endif
 
 #endif

@@ -83,5 +83,10 @@ pub use model::configuration::{
 pub use model::{Contact, ContactError, FingerNumber, Part};
 pub use realtime::Distribution;
 
+/// Commands to several fingers that take effect in the same cycle.
+pub mod groups {
+    pub use crate::hand::{FingerCommand, Pose};
+}
+
 /// The matrix library of the public signatures.
 pub use nalgebra;

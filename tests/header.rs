@@ -15,6 +15,7 @@ const OTHER_CALLS: &[&str] = &[
     "status_calls.rs",
     "timing_calls.rs",
     "fingertip_calls.rs",
+    "group_calls.rs",
     "black_box_calls.rs",
     "calibration_calls.rs",
     "fault_calls.rs",
@@ -156,6 +157,8 @@ fn sizes(code: &str) -> String {
             let part = match kind {
                 "int" | "unsigned int" => 4,
                 "double" | "unsigned long" => 8,
+                // With LP64 a pointer has 64 bits.
+                _ if rest.starts_with('*') => 8,
                 _ => panic!("the size of {kind} is not known here"),
             };
             let parts: usize = rest.split(['[', ']']).filter_map(|part| part.parse::<usize>().ok()).product();

@@ -3,6 +3,7 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use sun2xp::groups::FingerCommand;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
 
@@ -73,6 +74,18 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     assert_eq!(BY_REPORTS.load(Relaxed), reports_before, "allocations in the thread that collects reports");
     others = BY_OTHERS.load(Relaxed) - others;
     assert!(others < 100, "the planner's calls allocate: {others}");
+    // Groups wait in the servo until their period begins.
+    let end = cycles(1) + 200;
+    for step in 0u32.. {
+        let commands = [1, 2, 3].map(|finger| FingerCommand::new(finger).joints([0.0, 0.5, f64::from(step % 7) * 0.1]));
+        // A refusal means that groups are sent faster than they take effect.
+        let _ = hand.send_group(&commands);
+        if cycles(1) >= end {
+            break;
+        }
+        std::thread::yield_now();
+    }
+    assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads while groups are sent");
     // The planner makes a new controller, and the servo only copies it.
     let end = cycles(1) + 200;
     for step in 0u32.. {

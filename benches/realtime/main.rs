@@ -3,6 +3,7 @@
 //!     cargo bench --bench realtime -- wake-up [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- throughput [--seconds 5] [--priority 0]
 //!     cargo bench --bench realtime -- planner [--repeats 5] [--seconds 5]
+//!     cargo bench --bench realtime -- groups [--groups 10000]
 //!     cargo bench --bench realtime -- long-run [--minutes 30]
 //!
 //! wake-up and long-run need cyclictest (Debian: rt-tests), and wake-up also needs stress-ng. The sides of a comparison
@@ -11,6 +12,7 @@
 mod cyclictest;
 mod explain;
 mod fingers;
+mod groups;
 mod long_run;
 mod percentiles;
 mod planner;
@@ -42,6 +44,7 @@ enum Figure {
     /// Measures the wake-up latency of the servos with and without two threads that call SendPos and GetPos as fast as
     /// they can.
     Planner(Turns),
+    Groups(groups::Arguments),
     LongRun(long_run::Arguments),
 }
 
@@ -50,6 +53,7 @@ fn main() -> Result<(), Failure> {
         Some(Figure::WakeUp(turns)) => wake_up::run(&turns),
         Some(Figure::Throughput(arguments)) => throughput::run(&arguments),
         Some(Figure::Planner(turns)) => planner::run(&turns),
+        Some(Figure::Groups(arguments)) => groups::run(&arguments),
         Some(Figure::LongRun(arguments)) => long_run::run(&arguments),
         None => {
             // A measurement that fails does not prevent the others.
@@ -57,6 +61,7 @@ fn main() -> Result<(), Failure> {
                 wake_up::run(&Turns::default()),
                 throughput::run(&throughput::Arguments::default()),
                 planner::run(&Turns::default()),
+                groups::run(&groups::Arguments::default()),
             ];
             measured.into_iter().collect()
         }

@@ -19,6 +19,7 @@ mod fault_calls;
 mod fault_texts;
 mod fingertip_calls;
 mod forked;
+mod group_calls;
 mod memory;
 mod process;
 mod recovery_calls;

@@ -3,11 +3,15 @@
 //!
 //! Both directions use wait-free triple buffers of whole values. A lock without priority inheritance would let a
 //! planner stop a servo. A channel is not lock-free when a real-time thread shares a core with a preempted sender. A
-//! lock exists only among the planners.
+//! lock exists only among the planners. The set points of groups are in a ring instead, because each of them must take
+//! effect in all of its fingers, even if a newer set point follows.
+
+pub(super) mod groups;
 
 use crate::control::SetPoint;
+use crate::finger::group_gate::GroupGate;
 use crate::finger::{Adjustable, Fault, FingerReport, Order, Stage};
-use crate::realtime::{Input, LockedMemory, Output, Pages, SharedPages, triple_buffer};
+use crate::realtime::{Consumer, Input, LockedMemory, Output, Pages, Producer, SharedPages, ring, triple_buffer};
 use parking_lot::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -20,6 +24,7 @@ pub struct Mailbox {
 struct PlannersEnd {
     sent: SentSetPoint,
     set_points: Input<SentSetPoint>,
+    grouped: Producer<SentSetPoint>,
     adjustments: Input<Adjustable>,
     orders: Input<Order>,
     ordered: u32,
@@ -34,12 +39,26 @@ struct PlannersEnd {
 struct SentSetPoint {
     /// Number of the spring phase, [`FingerReport::springs`].
     spring: u32,
+    /// Number of the finger's newest group, 0 if there is none. The set point includes the values of that group, so it
+    /// must not take effect before the group does.
+    group: u64,
     set_point: SetPoint,
 }
+
+/// Number of groups that can wait in a finger. Each of them takes effect within two periods.
+const WAITING_GROUPS: usize = 16;
 
 /// The servo's end. It never waits or allocates.
 pub(super) struct ServoEnd {
     set_points: Output<SentSetPoint>,
+    /// Whether the newest value of `set_points` must wait for a group.
+    held: bool,
+    grouped: Consumer<SentSetPoint>,
+    /// The set point of the oldest group that has not taken effect yet, if the servo has taken it from `grouped`.
+    next_group: Option<SentSetPoint>,
+    /// Number of the newest group that has taken effect.
+    in_effect: u64,
+    gate: GroupGate,
     adjustments: Output<Adjustable>,
     orders: Output<Order>,
     reports: Input<FingerReport>,
@@ -50,8 +69,10 @@ pub(super) struct ServoEnd {
 /// share.
 pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd, LockedMemory) {
     let mut memory = LockedMemory::default();
-    let sent = SentSetPoint { spring: report.springs, set_point: report.set_point };
+    let sent = SentSetPoint { spring: report.springs, group: 0, set_point: report.set_point };
     let (set_points_in, set_points_out) = shared(&sent, &mut memory);
+    let (grouped_in, grouped_out) = ring(WAITING_GROUPS);
+    grouped_in.add_to(&mut memory);
     let (adjustments_in, adjustments_out) = shared(adjustable, &mut memory);
     let (reports_in, reports_out) = shared(&report, &mut memory);
     let (orders_in, orders_out) = shared(&Order::Nothing, &mut memory);
@@ -60,6 +81,7 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
     let planners = PlannersEnd {
         sent,
         set_points: set_points_in,
+        grouped: grouped_in,
         adjustments: adjustments_in,
         orders: orders_in,
         ordered: 0,
@@ -67,6 +89,11 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
     };
     let servo = ServoEnd {
         set_points: set_points_out,
+        held: false,
+        grouped: grouped_out,
+        next_group: None,
+        in_effect: 0,
+        gate: GroupGate::new(),
         adjustments: adjustments_out,
         orders: orders_out,
         reports: reports_in,
@@ -185,7 +212,7 @@ impl SentSetPoint {
     /// the set point that the servo holds.
     fn begin_with(&mut self, report: &FingerReport) {
         if report.springs != self.spring {
-            *self = Self { spring: report.springs, set_point: report.set_point };
+            *self = Self { spring: report.springs, set_point: report.set_point, ..*self };
         }
     }
 }
@@ -220,10 +247,17 @@ impl PlannersEnd {
 }
 
 impl ServoEnd {
-    /// Returns the set point, if a planner has sent one for this spring phase since the last call.
+    /// Returns the set point, if a planner has sent one for this spring phase since the last call. A set point that was
+    /// sent after a group waits until the group is in effect.
     pub fn new_set_point(&mut self, spring: u32) -> Option<SetPoint> {
-        let sent = self.set_points.update().then(|| *self.set_points.output_buffer());
-        sent.filter(|sent| sent.spring == spring).map(|sent| sent.set_point)
+        self.held |= self.set_points.update();
+        if !self.held {
+            return None;
+        }
+        let sent = self.set_points.output_buffer();
+        self.held = sent.group > self.in_effect;
+        // A group that was sent later and is in effect already includes this set point.
+        (sent.group == self.in_effect && sent.spring == spring).then_some(sent.set_point)
     }
 
     /// Returns the data to compute with, if a planner has replaced it since the last call.

@@ -11,6 +11,11 @@ pub struct FingerReport {
     pub stage: Stage,
     /// The set point in force.
     pub set_point: SetPoint,
+    /// Number of the period in which the set point in force took effect. Periods are numbered for the whole hand, from
+    /// the start that its servo threads have in common.
+    pub set_point_period: u64,
+    /// Number of the period of the last cycle.
+    pub period: u64,
     /// Number of times that the finger has become a spring: at open, after a fault, or after a calibration. The spring
     /// first holds the pose that the finger then has. Set points that were sent earlier are discarded.
     pub springs: u32,

@@ -6,6 +6,7 @@ mod calibration;
 mod construction;
 mod control;
 mod exchange;
+mod groups;
 mod life;
 
 use crate::board::LinkCounters;

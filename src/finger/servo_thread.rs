@@ -62,7 +62,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
 
     /// Delays the schedule by `by` ns.
     pub fn later(mut self, by: u64) -> Self {
-        self.schedule.shift(by.cast_signed());
+        self.schedule.delay(by);
         self
     }
 
@@ -125,6 +125,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         for port in self.ports.iter_mut() {
             port.receive(began + self.reply_window, sending, &self.clock);
         }
+        let period = self.schedule.number(beginning);
         let mut computing = self.clock.now();
         let skipped = self.schedule.advance(computing);
         let overrun = (computing > self.schedule.next()).then_some(skipped);
@@ -136,6 +137,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         for port in self.ports.iter_mut() {
             let counters = port.counters();
             for finger in port.fingers.iter_mut() {
+                finger.take_groups(period, || self.schedule.number(self.clock.now()));
                 finger.end(began, self.schedule.next(), overrun, &counters);
                 let computed = self.clock.now();
                 finger.note(CycleStage::Compute, computing, computed);

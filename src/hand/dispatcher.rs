@@ -4,7 +4,7 @@
 mod collected;
 mod collecting;
 
-use crate::finger::{self, Adjustable, BlackBox, FingerReport, KeptRecord, Losses, Mailbox, Recording};
+use crate::finger::{self, Adjustable, BlackBox, FingerReport, GroupGate, KeptRecord, Losses, Mailbox, Recording};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::dispatcher::collected::Collected;
@@ -35,13 +35,15 @@ pub(super) struct Member {
 /// Passes commands to the fingers, and collects their timings and black boxes.
 pub(super) struct Dispatcher {
     members: Vec<Member>,
+    /// Lets the fingers of a group change in the same period.
+    pub gate: GroupGate,
     collected: Arc<Vec<Mutex<Collected>>>,
     collector: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Dispatcher {
-    /// `fingers` are all opened fingers, in the order of their numbers.
-    pub fn new(fingers: Vec<Reached>) -> Self {
+    /// `fingers` are all opened fingers, in the order of their numbers. Their servos have this gate.
+    pub fn new(fingers: Vec<Reached>, gate: GroupGate) -> Self {
         let (mut members, mut collected) = (Vec::new(), Vec::new());
         for finger in fingers {
             members.push(Member {
@@ -57,7 +59,7 @@ impl Dispatcher {
                 black_box: finger.black_box,
             }));
         }
-        Self { members, collected: Arc::new(collected), collector: None }
+        Self { members, gate, collected: Arc::new(collected), collector: None }
     }
 
     /// Starts the thread that collects timings and black boxes, so that none is lost while no planner calls. The thread

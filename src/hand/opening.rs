@@ -4,7 +4,7 @@
 use crate::board::protocol::Status;
 use crate::board::{Link, Port, Terms, capacity};
 use crate::control::{AdmissibleDamping, JointSprings};
-use crate::finger::{BlackBox, FingerServo, Mailbox, ServedPort, StopSignal, link_handover, stop_calls};
+use crate::finger::{BlackBox, FingerServo, GroupGate, Mailbox, ServedPort, StopSignal, link_handover, stop_calls};
 use crate::hand::admission::{Admission, DampingAdmission};
 use crate::hand::fingers::Fingers;
 use crate::hand::identities::Identities;
@@ -47,6 +47,8 @@ pub(super) struct Connected {
     pub lines: Vec<Line>,
     /// The planners' side, in the order of the fingers.
     pub reached: Vec<Reached>,
+    /// The gate of the servos.
+    pub gate: GroupGate,
     /// The data for repairing the ports.
     pub repairs: Vec<PortRepair>,
 }
@@ -125,6 +127,7 @@ pub(super) fn reach(
 ) -> Result<Connected, HandError> {
     // The hand reacts to every emergency stop call that is made after this line.
     let alarm = StopSignal::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
+    let gate = GroupGate::new();
     let (mut lines, mut reached, mut repairs) = (Vec::new(), Vec::new(), Vec::new());
     let mut identities = Identities::default();
     for (path, sharing) in ports(configuration, fingers, simulated) {
@@ -136,7 +139,7 @@ pub(super) fn reach(
         for &number in &sharing {
             let (servo, finger, board) = shake_hands(configuration, number, &mut link)?;
             identities.add(board.finger, &path, &board.identity)?;
-            let servo = servo.with(alarm.clone());
+            let servo = servo.with(alarm.clone()).in_groups(gate.clone());
             servos.push(if limp { servo.limp() } else { servo });
             reached.push(finger);
             boards.push(board);
@@ -156,7 +159,7 @@ pub(super) fn reach(
         repairs.push(PortRepair::new(path, baud, reconnect, boards, repair_end));
     }
     reached.sort_by_key(|finger| finger.number);
-    Ok(Connected { lines, reached, repairs })
+    Ok(Connected { lines, reached, gate, repairs })
 }
 
 /// Returns the ports of these fingers, each with its fingers.

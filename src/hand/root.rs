@@ -102,9 +102,9 @@ impl Hand {
         waiting.map_err(|source| HandError::System { doing: "sleep until a given time (clock_nanosleep)", source })?;
         let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
         let simulated = simulate(&configuration, fingers)?;
-        let Connected { lines, reached, repairs } = reach(&configuration, fingers, &simulated, limp)?;
+        let Connected { lines, reached, gate, repairs } = reach(&configuration, fingers, &simulated, limp)?;
         let recovery = Recovery::new(repairs);
-        let dispatcher = Dispatcher::new(reached);
+        let dispatcher = Dispatcher::new(reached, gate);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOP_CONFIRMATION;
         let configuration = RwLock::new(configuration);
         let servos = Vec::new();

@@ -6,19 +6,38 @@
 pub struct Schedule {
     next: u64,
     period: u64,
+    /// Beginning of period 0, which the schedules of all threads have in common, ns.
+    origin: u64,
+    /// Added to a time before it is rounded down to the number of its period, ns. It is half the stagger between two
+    /// threads, so that a shift of the schedule by less than that does not change the number of a cycle's period.
+    margin: u64,
 }
 
 impl Schedule {
     /// Creates the schedule of cycles that begin at `first`, `first + period` and so on, ns.
     pub fn new(first: u64, period: u64) -> Self {
-        Self { next: first, period }
+        Self { next: first, period, origin: first, margin: period / 2 }
     }
 
     /// Creates the schedule of one of several threads. `of` is the number of threads, and `place` is the thread's place
     /// among them, 0 to `of` - 1. The beginnings of the threads' cycles are spread evenly over the period, because the
     /// threads share cores and other resources.
     pub fn staggered(first: u64, period: u64, place: usize, of: usize) -> Self {
-        Self::new(first + period * place as u64 / of as u64, period)
+        let next = first + period * place as u64 / of as u64;
+        Self { next, period, origin: first, margin: period / (2 * of as u64) }
+    }
+
+    /// Delays the whole schedule by `by` ns, with its period 0.
+    pub fn delay(&mut self, by: u64) {
+        self.next += by;
+        self.origin += by;
+    }
+
+    /// Returns the number of the period that contains `time`, ns. The threads of a hand count the same periods, from
+    /// the start that their schedules have in common. [`Schedule::shift`] does not change the numbers, so a schedule
+    /// that follows another clock skips or repeats a number now and then.
+    pub fn number(&self, time: u64) -> u64 {
+        (time + self.margin).saturating_sub(self.origin) / self.period
     }
 
     /// Returns the time at which the next cycle begins, ns.
@@ -67,6 +86,24 @@ mod tests {
         assert_eq!(beginnings(1), [5000]);
         assert_eq!(beginnings(2), [5000, 5450]);
         assert_eq!(beginnings(3), [5000, 5300, 5600]);
+    }
+
+    #[test]
+    fn all_threads_count_the_same_periods() {
+        for place in 0..3 {
+            let mut schedule = Schedule::staggered(0, 900, place, 3);
+            schedule.delay(10_000);
+            for period in 0..5 {
+                assert_eq!(schedule.number(schedule.next()), period, "place {place}");
+                // A shift by less than half the stagger does not change the number.
+                assert_eq!(schedule.number(schedule.next() - 149), period);
+                assert_eq!(schedule.number(schedule.next() + 149), period);
+                schedule.advance(schedule.next() + 100);
+            }
+            // A late cycle skips numbers.
+            schedule.advance(schedule.next() + 2000);
+            assert_eq!(schedule.number(schedule.next()), 7);
+        }
     }
 
     proptest! {

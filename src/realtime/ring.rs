@@ -75,6 +75,13 @@ impl<T> Producer<T> {
         Ok(())
     }
 
+    /// Whether the next push succeeds.
+    pub fn has_room(&self) -> bool {
+        let ring = &*self.0;
+        let left = ring.left.0.load(Ordering::Relaxed);
+        ring.count(ring.taken.0.load(Ordering::Acquire), left) < ring.places.len()
+    }
+
     /// Adds the ring's pages to `memory`.
     pub fn add_to(&self, memory: &mut LockedMemory) {
         memory.add_shared(&self.0);

@@ -39,6 +39,7 @@ static struct FingerStatus Status;
 static struct FingerTiming Timing;
 static struct FingerTip Fingertip;
 static struct FingerRecord Record;
+static struct FingerCommand Command[2];
 static struct Fault Fault;
 
 static void make_arguments(void)
@@ -75,6 +76,7 @@ static void null_pointers(void)
     REFUSED("GetTip", GetTip(9, NULL), "Tip");
     REFUSED("SendContact", SendContact(9, 99, NULL, NULL), "K is");
     REFUSED("SendContact", SendContact(9, 4, Nan[0], NULL), "Normal");
+    REFUSED("SendGroup", SendGroup(9, NULL), "Commands");
     REFUSED("AdjustFinger", AdjustFinger(9, NULL), "Keys");
     REFUSED("PushFinger", PushFinger(9, NULL), "Force");
     REFUSED("GetRecord", GetRecord(9, 99, NULL), "Record");
@@ -94,6 +96,7 @@ static void without_hand(void)
     REFUSED("GetTip", GetTip(9, &Fingertip), "OpenHand");
     REFUSED("SendContact", SendContact(9, 99, Nan[0], NoNormal), "OpenHand");
     REFUSED("SendDamping", SendDamping(9, NAN), "OpenHand");
+    REFUSED("SendGroup", SendGroup(9, Command), "OpenHand");
     REFUSED("AdjustFinger", AdjustFinger(9, "="), "OpenHand");
     REFUSED("PushFinger", PushFinger(9, NanForce), "OpenHand");
     REFUSED("GetRecord", GetRecord(9, 99, &Record), "OpenHand");
@@ -110,6 +113,8 @@ static void small_structs(void)
     REFUSED("GetTip", GetTip(9, &Fingertip), "Size");
     REFUSED("GetRecord", GetRecord(9, 99, &Record), "Size");
     REFUSED("GetFault", GetFault(9, &Fault), "Size");
+    REFUSED("SendGroup", SendGroup(1, Command), "Size");
+    Command[0].Size = Command[1].Size = sizeof Command[0];
     Status.Size = sizeof Status;
     Timing.Size = sizeof Timing;
     Fingertip.Size = sizeof Fingertip;
@@ -131,6 +136,10 @@ static void no_such_finger(void)
     REFUSED("GetTip", GetTip(9, &Fingertip), NO_FINGER);
     REFUSED("SendContact", SendContact(9, 99, Nan[0], NoNormal), NO_FINGER);
     REFUSED("SendDamping", SendDamping(9, NAN), NO_FINGER);
+    Command[0].Finger = Command[1].Finger = 9;
+    Command[0].Kx = three(Nan);
+    REFUSED("SendGroup", SendGroup(9, Command), "and not 9");
+    REFUSED("SendGroup", SendGroup(2, Command), NO_FINGER);
     REFUSED("AdjustFinger", AdjustFinger(9, "="), NO_FINGER);
     REFUSED("PushFinger", PushFinger(9, NanForce), NO_FINGER);
     REFUSED("GetRecord", GetRecord(9, 99999999, &Record), NO_FINGER);
@@ -138,6 +147,26 @@ static void no_such_finger(void)
     REFUSED("ZeroFinger", ZeroFinger(9), NO_FINGER);
     REFUSED("GetFault", GetFault(9, &Fault), NO_FINGER);
     REFUSED("RecoverHand", RecoverHand(9), NO_FINGER);
+}
+
+static void wrong_groups(void)
+{
+    Command[0].Finger = Command[1].Finger = 1;
+    REFUSED("SendGroup", SendGroup(2, Command), "two commands");
+    Command[1].Finger = 2;
+    Command[0].Pos = FarPos;
+    Command[0].Tip = FarTip;
+    REFUSED("SendGroup", SendGroup(2, Command), "Pos and Tip");
+    Command[0].Tip = NULL;
+    Command[0].Pos = NanPos;
+    REFUSED("SendGroup", SendGroup(2, Command), "NaN");
+    Command[0].Pos = Pos;
+    Command[0].Kx = three(Skew);
+    REFUSED("SendGroup", SendGroup(2, Command), "symmetric");
+    Command[0].Kx = three(Stiff);
+    REFUSED("SendGroup", SendGroup(2, Command), "bound");
+    Command[0].Kx = three(Soft);
+    REFUSED("SendGroup", SendGroup(2, Command), "stop");
 }
 
 static void wrong_values_on_a_faulted_finger(void)
@@ -164,6 +193,7 @@ static void wrong_values_on_a_faulted_finger(void)
     REFUSED("SendContact", SendContact(1, 4, Soft[0], Normal), "stop");
     REFUSED("SendDamping", SendDamping(1, NAN), "NaN");
     REFUSED("SendDamping", SendDamping(1, 99), "stop");
+    wrong_groups();
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\"\n="), "line 3");
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\""), "`port`");
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]"), "minimum_degrees");
@@ -223,6 +253,7 @@ int main(void)
     CHECK(RecoverHand(1) == 0);
     CHECK(SendPos(1, Pos) == 0 && SendKx(1, three(Soft)) == 0 && GetPos(1, Pos) == 0 && SendTip(1, Tip) == 0);
     CHECK(SendContact(1, 4, Soft[0], Normal) == 0 && SendDamping(1, 0.7) == 0 && PushFinger(2, Force) == 0);
+    CHECK(SendGroup(1, Command) == 0);
     REFUSED("SendDamping", SendDamping(1, 99), "99");
     Soft[0][0] = 5.5;
     REFUSED("SendKx", SendKx(1, three(Soft)), "damping");

@@ -152,6 +152,11 @@ fn the_timing_shows_every_stage_of_a_cycle() {
 }
 
 #[test]
+fn a_group_of_fingers_is_commanded_as_a_whole_or_not_at_all() {
+    succeed(&strict(&["-ansi"]), &["group.c"]);
+}
+
+#[test]
 fn a_fingertip_is_sent_read_and_made_a_contact() {
     succeed(&strict(&["-ansi"]), &["tip.c"]);
 }

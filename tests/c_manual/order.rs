@@ -10,6 +10,7 @@ use std::process::Command;
 /// recoveries in progress, and some of the system's.
 const NOT_TRIED: &[(&str, &[&str])] = &[
     ("OpenHand", &["EACCES", "EIO", "ETIMEDOUT", "EPERM", "ENOMEM"]),
+    ("SendGroup", &["EBUSY"]),
     ("ZeroFinger", &["EBUSY", "ECANCELED", "ETIMEDOUT", "EACCES", "ENOSPC"]),
     ("RecoverHand", &["EIO", "EBUSY", "ENOENT", "EACCES", "ETIMEDOUT"]),
     ("WriteBlackBox", &["EACCES", "ENOSPC"]),

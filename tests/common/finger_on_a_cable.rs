@@ -114,8 +114,21 @@ impl<W: Transport + Clock + Clone> ServedFinger<W> {
     /// Does the same as [`ServedFinger::new`], but gives the servo the configuration `belief`, which may differ from
     /// that of the board.
     pub fn believing(world: &W, configuration: &Configuration, belief: &Configuration) -> Self {
+        let period = (1e9 / configuration.hand.rate) as u64;
+        let schedule = Schedule::new(Clock::now(world) + period, period);
+        Self::in_thread(world, configuration, belief, schedule, |finger| finger)
+    }
+
+    /// Does the same as [`ServedFinger::believing`], with the schedule of one of several servo threads. `change`
+    /// changes the finger before its first cycle.
+    pub fn in_thread(
+        world: &W,
+        configuration: &Configuration,
+        belief: &Configuration,
+        schedule: Schedule,
+        change: impl FnOnce(FingerServo) -> FingerServo,
+    ) -> Self {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[0]);
-        let period = (1e9 / hand.rate) as u64;
         let mut link = Link::new(world.clone());
         let deadline = Clock::now(world) + 1_000_000_000;
         let (identity, configured) =
@@ -127,8 +140,7 @@ impl<W: Transport + Clock + Clone> ServedFinger<W> {
             FingerServo::new(belief, FingerNumber::ONE, stiffness, &identity, &configured, producer, recorder)
                 .expect("a finger");
         let (handover, repair_end) = link_handover();
-        let ports = vec![ServedPort::new(link, vec![finger]).with_handover(handover)];
-        let schedule = Schedule::new(Clock::now(world) + period, period);
+        let ports = vec![ServedPort::new(link, vec![change(finger)]).with_handover(handover)];
         let servo = Servo::new(world.clone(), schedule, ports);
         Self { servo, mailbox, repair_end, timings, black_box, identity }
     }

@@ -131,6 +131,8 @@ fn opening_report(set_point: SetPoint) -> FingerReport {
     FingerReport {
         stage: Stage::Opening,
         set_point,
+        set_point_period: 0,
+        period: 0,
         springs: 0,
         controller: 0,
         cycle: Default::default(),

@@ -58,8 +58,7 @@ impl FingerServo {
         if let Some(set_point) = self.mailbox.new_set_point(self.report.springs)
             && running
         {
-            self.report.set_point = set_point;
-            self.activity = Activity::Follow(set_point);
+            self.follow(set_point);
         }
         if self.mailbox.closing() && self.report.stage != Stage::Closing {
             self.enter(Stage::Closing);

@@ -52,9 +52,8 @@ impl FingerServo {
                         return;
                     }
                     let joints = self.report.cycle.joints;
-                    self.report.set_point = SetPoint { joints, ..self.initial };
                     self.report.springs += 1;
-                    self.activity = Activity::Follow(self.report.set_point);
+                    self.follow(SetPoint { joints, ..self.initial });
                     self.supervision.begin();
                     self.enter(Stage::Running);
                 }
@@ -86,6 +85,13 @@ impl FingerServo {
         } else {
             Fault::of(FaultKind::OpeningTimedOut, waited_ms)
         });
+    }
+
+    /// Makes the finger follow a set point from this cycle on.
+    pub(super) fn follow(&mut self, set_point: SetPoint) {
+        self.report.set_point = set_point;
+        self.report.set_point_period = self.report.period;
+        self.activity = Activity::Follow(set_point);
     }
 
     pub(super) fn enter(&mut self, stage: Stage) {

@@ -98,6 +98,21 @@ pub enum SetPointError {
          soft finger 4"
     )]
     NoSuchContact(i32),
+    /// The number of commands of a group is not possible.
+    #[error("a group has 0 to 3 commands, and not {0}")]
+    GroupSize(i32),
+    /// A command of a group has joint angles and a position of the tip.
+    #[error("the command for finger {0} has Pos and Tip: set one of them to null")]
+    TwoPoses(i32),
+    /// A group has two commands for a finger.
+    #[error("the group has two commands for finger {0}: put them into one")]
+    TwiceInGroup(FingerNumber),
+    /// Many groups have not taken effect yet.
+    #[error(
+        "finger {0} has 16 groups that have not taken effect yet: send at most one group in each period of the servo, \
+         and check that the servo runs"
+    )]
+    GroupsWaiting(FingerNumber),
     /// The damping ratio is outside its range.
     #[error(
         "the damping ratio {ratio} of finger {finger} is outside {least:.2} to {most:.2}, the stable range at a \
@@ -123,7 +138,9 @@ impl SetPointError {
     #[must_use]
     pub fn errno(&self) -> i32 {
         match self {
-            Self::NotFinite { .. } | Self::NoSuchContact(_) => libc::EINVAL,
+            Self::NotFinite { .. } | Self::NoSuchContact(_) | Self::TwiceInGroup(_) => libc::EINVAL,
+            Self::GroupSize(_) | Self::TwoPoses(_) => libc::EINVAL,
+            Self::GroupsWaiting(_) => libc::EBUSY,
             Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
             Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
             Self::OutOfReach { .. } | Self::Damping { .. } => libc::ERANGE,

@@ -1,0 +1,141 @@
+//! The exported function for groups of fingers. Its doc comment is the C manual, as in `calls.rs`.
+
+// The exported names are those of the header.
+#![allow(non_snake_case)]
+
+use crate::capi::boundary::guarded;
+use crate::capi::default_hand;
+use crate::capi::memory::{load, load_rows, non_null, size_up_to};
+use crate::capi::refusal::{Refusal, Wanted};
+use crate::hand::{self, SetPointError};
+use crate::model::configuration::FINGERS;
+use std::ffi::{c_int, c_uint};
+
+/// Command to one finger of a group (SendGroup).
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct FingerCommand {
+    /// sizeof (struct FingerCommand), the same in every command of the group.
+    pub Size: c_uint,
+    /// Finger, 1 to 3.
+    pub Finger: c_int,
+    /// Pos[3] of SendPos, always double. Null: the pose stays, or is that of Tip.
+    pub Pos: *const f64,
+    /// Tip[3] of SendTip. Null: the pose stays, or is that of Pos.
+    pub Tip: *const f64,
+    /// Kx[9] of SendKx, row by row, always double. Null: the stiffness stays.
+    pub Kx: *const f64,
+    /// Ratio of SendDamping. 0: the damping stays.
+    pub Damping: f64,
+}
+
+/// SendGroup - command several fingers in the same cycle
+///
+///     int SendGroup(int Count, const struct FingerCommand *Commands);
+///
+///   Count      number of commands, 0 to 3
+///   Commands   Commands[Count]: one command for each finger of the group, in any order; set Size of
+///              every command, and set members that are not used to 0
+///
+/// Each command has the effect of SendPos or SendTip, SendKx and SendDamping. All fingers of the group
+/// follow their commands from the same cycle on, also if different threads serve them: the periods of
+/// the servos are numbered for the whole hand, and the group takes effect in the same period for every
+/// finger, within two periods. If the call is refused, no finger gets its command.
+///
+/// If a servo is so late that it skips this period, its finger follows in its next cycle. With
+/// hand.clock = "board" the periods of the threads follow different clocks. Then a finger may follow
+/// one period later, about once in the time in which two of the clocks differ by a period.
+///
+/// Returns 0, or -1 with
+///   EPERM    forked child
+///   EFAULT   Commands is null
+///   ENODEV   no hand is open
+///   EINVAL   Size is too small; Count is not 0 to 3; no such finger; two commands for one finger, or
+///            Pos and Tip for one finger; an entry is NaN or infinite
+///   EDOM, ERANGE  as SendPos, SendTip, SendKx and SendDamping
+///   EIO      a finger of the group is faulted
+///   EBUSY    16 groups of a finger have not taken effect yet, because they are sent faster than one in
+///            a period, or the servo does not run
+///
+/// Threads: any. Never waits for a servo. Takes a few us.
+///
+/// Example, two fingers close together:
+///
+///     double Pos1[3] = {0.0, 0.5, 0.8}, Pos2[3] = {0.0, 0.6, 0.9};
+///     static struct FingerCommand Commands[2];
+///
+///     Commands[0].Size = Commands[1].Size = sizeof Commands[0];
+///     Commands[0].Finger = 1;
+///     Commands[0].Pos = Pos1;
+///     Commands[1].Finger = 2;
+///     Commands[1].Pos = Pos2;
+///     SendGroup(2, Commands);
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn SendGroup(Count: c_int, Commands: *const FingerCommand) -> c_int {
+    guarded("SendGroup", || {
+        non_null(Commands, "Commands", Wanted::Struct("FingerCommand"))?;
+        // SAFETY: by the contract in the manual, `Commands` points to `Count` commands.
+        let commands = unsafe { load_commands(Count, Commands) };
+        default_hand::command(|hand| -> Result<(), Refusal> {
+            let (commands, count) = commands?;
+            Ok(hand.send_group(&commands[..count])?)
+        })
+    })
+}
+
+/// Copies the commands of a group, and returns them with their number.
+///
+/// # Safety
+/// `commands` points to `count` commands, and at least to a Size. Every command has as many bytes as the Size of the
+/// first one, and its pointers are null or point to their arrays.
+unsafe fn load_commands(
+    count: c_int,
+    commands: *const FingerCommand,
+) -> Result<([hand::FingerCommand; FINGERS], usize), Refusal> {
+    let mut loaded = [hand::FingerCommand::default(); FINGERS];
+    let number = usize::try_from(count).ok().filter(|&number| number <= FINGERS);
+    let number = number.ok_or(hand::HandError::from(SetPointError::GroupSize(count)))?;
+    if number == 0 {
+        return Ok((loaded, 0));
+    }
+    // SAFETY: there is a command, so its first member exists.
+    let size = unsafe { commands.cast::<c_uint>().read_unaligned() } as usize;
+    let least = size_up_to!(FingerCommand, Damping: f64);
+    if size < least {
+        return Err(Refusal::SmallStruct { name: "Commands", size, least });
+    }
+    for (place, loaded) in loaded[..number].iter_mut().enumerate() {
+        // SAFETY: by the contract of this function there are `number` commands of `size` bytes, and `size` is not
+        // smaller than a `FingerCommand`.
+        let command = unsafe { commands.byte_add(place * size).read_unaligned() };
+        // SAFETY: by the contract of this function the pointers are null or point to their arrays.
+        *loaded = unsafe { from_c(&command) }?;
+    }
+    Ok((loaded, number))
+}
+
+/// Converts a command.
+///
+/// # Safety
+/// Every pointer is null or points to its array.
+unsafe fn from_c(command: &FingerCommand) -> Result<hand::FingerCommand, Refusal> {
+    let FingerCommand { Finger, Pos, Tip, Kx, Damping, .. } = *command;
+    let mut converted = hand::FingerCommand::new(Finger);
+    if !Pos.is_null() && !Tip.is_null() {
+        return Err(hand::HandError::from(SetPointError::TwoPoses(Finger)).into());
+    }
+    // SAFETY: here and below, the pointer is not null, and points to its array by the contract of this function.
+    if !Pos.is_null() {
+        converted = converted.joints(unsafe { load::<f64, 3>(Pos, "Pos") }?);
+    }
+    if !Tip.is_null() {
+        converted = converted.tip(unsafe { load::<f64, 3>(Tip, "Tip") }?);
+    }
+    if !Kx.is_null() {
+        converted = converted.stiffness(unsafe { load_rows(Kx, "Kx") }?);
+    }
+    if Damping != 0.0 {
+        converted = converted.damping(Damping);
+    }
+    Ok(converted)
+}

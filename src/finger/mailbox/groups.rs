@@ -1,0 +1,80 @@
+//! Set points of several fingers that take effect in the same period.
+
+use super::{Mailbox, PlannersEnd, SentSetPoint, ServoEnd};
+use crate::control::SetPoint;
+use crate::finger::{Fault, GroupGate};
+use crate::model::configuration::FINGERS;
+use crate::realtime::LockedMemory;
+use parking_lot::MutexGuard;
+
+/// The set point of one finger of a group, before the group is sent. No other planner can change the finger's set point
+/// meanwhile. Dropping this value changes nothing.
+pub struct PreparedSetPoint<'a> {
+    planners: MutexGuard<'a, PlannersEnd>,
+    set_point: SetPoint,
+}
+
+impl Mailbox {
+    /// Prepares a change of the last set point, as [`Mailbox::try_send`] makes it, for a group. A caller that prepares
+    /// several fingers must do this in the order of their numbers, so that two callers cannot wait for each other.
+    ///
+    /// # Errors
+    /// Returns the fault if the finger is faulted. The inner result is the refusal of `change`.
+    pub fn prepare<E>(
+        &self,
+        change: impl FnOnce(&mut SetPoint) -> Result<(), E>,
+    ) -> Result<Result<PreparedSetPoint<'_>, E>, Fault> {
+        let mut planners = self.planners.lock();
+        planners.begin()?;
+        let mut set_point = planners.sent.set_point;
+        Ok(change(&mut set_point).map(|()| PreparedSetPoint { planners, set_point }))
+    }
+}
+
+impl PreparedSetPoint<'_> {
+    /// Returns whether the finger has room for another group.
+    pub fn has_room(&self) -> bool {
+        self.planners.grouped.has_room()
+    }
+}
+
+impl GroupGate {
+    /// Sends the set points of a group. All of them take effect in the same period. Every finger must have room. The
+    /// servos of the fingers must have this gate.
+    pub fn send(&self, mut group: [Option<PreparedSetPoint<'_>>; FINGERS]) {
+        let number = self.number();
+        for PreparedSetPoint { planners, set_point } in group.iter_mut().flatten() {
+            let sent = SentSetPoint { group: number, set_point: *set_point, ..planners.sent };
+            // The push succeeds, because the finger has room, and only its servo has made more room since.
+            if planners.grouped.push(sent).is_ok() {
+                planners.sent = sent;
+            }
+        }
+        self.post(number);
+    }
+}
+
+impl ServoEnd {
+    /// Replaces the gate, before the first cycle. Adds its pages to `memory`.
+    pub fn set_gate(&mut self, gate: GroupGate, memory: &mut LockedMemory) {
+        gate.add_to(memory);
+        self.gate = gate;
+    }
+
+    /// Returns the set point of the newest group that takes effect in this period, if one does. `spring` is the number
+    /// of the spring phase; a set point of another phase is discarded. `now` returns the number of the present period,
+    /// which is later than `period` if the servo is late.
+    pub fn new_group(&mut self, spring: u32, period: u64, now: impl Fn() -> u64) -> Option<SetPoint> {
+        let mut newest = None;
+        while let Some(next) = self.next_group.or_else(|| self.grouped.pop()) {
+            if self.gate.period(next.group, &now).is_none_or(|from| from > period) {
+                self.next_group = Some(next);
+                break;
+            }
+            self.next_group = None;
+            self.in_effect = next.group;
+            newest = (next.spring == spring).then_some(next.set_point);
+        }
+        newest
+    }
+}

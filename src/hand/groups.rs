@@ -1,0 +1,129 @@
+//! Groups: one call sends set points to several fingers, and all of them take effect in the same period.
+
+use crate::control::{Law, SetPoint};
+use crate::finger::PreparedSetPoint;
+use crate::hand::admission::Admission;
+use crate::hand::{Hand, HandError, SetPointError};
+use crate::model::FingerNumber;
+use crate::model::configuration::FINGERS;
+use nalgebra::Vector3;
+
+/// A desired pose of a finger.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pose {
+    /// Angles of joints 0, 1 and 2, rad, as in [`Hand::send_position`].
+    Joints([f64; 3]),
+    /// Position of the tip in the finger's frame, cm, as in [`Hand::send_tip`].
+    Tip([f64; 3]),
+}
+
+/// The part of a group that commands one finger. What is none keeps its value.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct FingerCommand {
+    /// Number of the finger, 1 to 3.
+    pub finger: i32,
+    /// Desired pose.
+    pub pose: Option<Pose>,
+    /// Kx in the finger's frame, N/cm: `rows[row][column]`, as in [`Hand::send_stiffness`].
+    pub stiffness: Option<[[f64; 3]; 3]>,
+    /// Relative damping, as in [`Hand::send_damping`].
+    pub damping: Option<f64>,
+}
+
+impl FingerCommand {
+    /// Returns a command that changes nothing.
+    #[must_use]
+    pub fn new(finger: i32) -> Self {
+        Self { finger, ..Self::default() }
+    }
+
+    /// Sets the desired joint angles, rad.
+    #[must_use]
+    pub fn joints(self, joints: [f64; 3]) -> Self {
+        Self { pose: Some(Pose::Joints(joints)), ..self }
+    }
+
+    /// Sets the desired position of the tip, cm.
+    #[must_use]
+    pub fn tip(self, tip: [f64; 3]) -> Self {
+        Self { pose: Some(Pose::Tip(tip)), ..self }
+    }
+
+    /// Sets Kx, N/cm.
+    #[must_use]
+    pub fn stiffness(self, rows: [[f64; 3]; 3]) -> Self {
+        Self { stiffness: Some(rows), ..self }
+    }
+
+    /// Sets the relative damping.
+    #[must_use]
+    pub fn damping(self, ratio: f64) -> Self {
+        Self { damping: Some(ratio), ..self }
+    }
+
+    /// Checks the command. Returns a change of the set point, which may still refuse the damping that results.
+    /// `present` is the pose of the finger, rad.
+    fn admit(
+        &self,
+        admission: &Admission,
+        present: &Vector3<f64>,
+    ) -> Result<impl FnOnce(&mut SetPoint) -> Result<(), SetPointError> + use<>, SetPointError> {
+        let pose = match self.pose {
+            None => None,
+            Some(Pose::Joints(joints)) => Some((admission.joints(joints)?, admission.law)),
+            Some(Pose::Tip(tip)) => Some((admission.tip(tip, present)?, Law::Exact)),
+        };
+        let stiffness = self.stiffness.map(|rows| admission.stiffness(rows)).transpose()?;
+        let ratio = self.damping;
+        admission.finite("Damping", ratio.as_slice())?;
+        let damping = admission.damping;
+        Ok(move |set_point: &mut SetPoint| {
+            (set_point.joints, set_point.law) = pose.unwrap_or((set_point.joints, set_point.law));
+            set_point.stiffness = stiffness.unwrap_or(set_point.stiffness);
+            set_point.damping = ratio.unwrap_or(set_point.damping);
+            if stiffness.is_some() || ratio.is_some() { damping.admit(set_point) } else { Ok(()) }
+        })
+    }
+}
+
+impl Hand {
+    /// Sends commands to several fingers. All of them take effect in the same cycle, also if different threads serve
+    /// the fingers: in the same period of the hand, which begins within two periods. Either every command is sent, or
+    /// none is.
+    ///
+    /// If a servo is so late that it skips this period, its fingers follow in their next cycle. With
+    /// `hand.clock = "board"` the periods of the threads follow different clocks. Then a finger may follow one period
+    /// later, about once in the time in which two clocks differ by a period.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger, if a finger has two commands, if a finger refuses its command, if a
+    /// finger is faulted, or if 16 groups of a finger have not taken effect yet.
+    pub fn send_group(&self, commands: &[FingerCommand]) -> Result<(), HandError> {
+        let mut by_finger: [Option<&FingerCommand>; FINGERS] = [None; FINGERS];
+        for command in commands {
+            let finger = FingerNumber::try_from(command.finger)?;
+            self.dispatcher.member(finger)?;
+            if by_finger[finger.index()].replace(command).is_some() {
+                return Err(SetPointError::TwiceInGroup(finger).into());
+            }
+        }
+        // The locks are taken in the order of the fingers, and held until every finger has its command.
+        let mut admissions = [const { None }; FINGERS];
+        let mut prepared: [Option<PreparedSetPoint<'_>>; FINGERS] = [const { None }; FINGERS];
+        for number in FingerNumber::ALL {
+            let Some(command) = by_finger[number.index()] else { continue };
+            let member = self.dispatcher.member(number)?;
+            let admission = admissions[number.index()].insert(member.admission.read());
+            let change = command.admit(admission, &member.mailbox.report().cycle.joints)?;
+            let faulted = |fault| HandError::Faulted { finger: number, fault };
+            let set_point = member.mailbox.prepare(change).map_err(faulted)??;
+            if !set_point.has_room() {
+                return Err(SetPointError::GroupsWaiting(number).into());
+            }
+            prepared[number.index()] = Some(set_point);
+        }
+        self.dispatcher.gate.send(prepared);
+        Ok(())
+    }
+}
