@@ -1,6 +1,7 @@
 //! Checks of a configuration before a motor may move.
 
 mod monitors;
+mod object;
 mod ranges;
 mod sharing;
 mod simulation;
@@ -74,7 +75,8 @@ impl ConfiguredHand {
             return unusable("watchdog_ms", reason);
         }
         path("black_box", self.black_box.as_deref().unwrap_or_default())?;
-        each("gravity", &self.gravity, -100.0, 100.0, "m/s^2")
+        each("gravity", &self.gravity, -100.0, 100.0, "m/s^2")?;
+        self.check_simulated_object()
     }
 }
 

@@ -47,6 +47,8 @@ pub struct Plant {
     braked: bool,
     jammed: [bool; 4],
     external_force: Vector3<f64>,
+    /// Force of an object that the tip shares with other fingers, N, in the finger's frame.
+    object_force: Option<Vector3<f64>>,
     held: Option<HoldingHand>,
     surface: Option<Surface>,
 }
@@ -83,6 +85,7 @@ impl Plant {
             braked: true,
             jammed: [false; 4],
             external_force: Vector3::zeros(),
+            object_force: None,
             held: None,
             surface: simulation.surface,
             tendons,
@@ -103,7 +106,8 @@ impl Plant {
         self.tendons.lengthen(&self.theta, &self.motor, h);
         let TendonTensions { motor: at_motors, joint: at_joints, .. } = self.tendons.tensions(&self.theta, &self.motor);
 
-        let force = self.external_force + self.contact_force();
+        let mut force = self.external_force + self.contact_force();
+        self.object_force.iter().for_each(|by_object| force += by_object);
         let jacobian = self.links.jacobian(&self.theta) * 0.01;
         let torque = self.tendons.joint_torque(&at_joints)
             + jacobian.tr_mul(&force)
@@ -211,6 +215,16 @@ impl Plant {
     /// Applies a constant force to the fingertip, N, in the finger's frame.
     pub fn set_external_force(&mut self, force: Vector3<f64>) {
         self.external_force = force;
+    }
+
+    /// Applies the force of an object to the fingertip, N, in the finger's frame, until the next call.
+    pub fn set_object_force(&mut self, force: Vector3<f64>) {
+        self.object_force = Some(force);
+    }
+
+    /// Returns the velocity of the fingertip in the finger's frame, cm/s.
+    pub fn tip_velocity(&self) -> Vector3<f64> {
+        self.links.jacobian(&self.theta) * self.theta_dot
     }
 
     /// Holds the joints at these angles, rad, as a person's hand does.

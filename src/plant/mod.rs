@@ -6,14 +6,18 @@ mod capstan;
 mod contact;
 mod elasticity;
 mod finger_plant;
+mod friction_contact;
 mod gauge_filter;
 mod holding_hand;
 mod joint_friction;
 mod joint_stops;
 mod motors;
+mod object;
+mod object_shape;
 mod sensors;
 mod stribeck;
 mod tendon;
 
 pub use finger_plant::{PLANT_STEP_SECONDS, Plant};
+pub use object::{FreeObject, TipMotion};
 pub use sensors::Sensors;

@@ -10,6 +10,7 @@ use crate::model::TendonsError;
 use crate::model::configuration::Configuration;
 use crate::plant::PLANT_STEP_SECONDS;
 use crate::simulated::finger::SimulatedFinger;
+use crate::simulated::scene::Scene;
 use thiserror::Error;
 
 /// Why a simulated board cannot be built.
@@ -35,6 +36,8 @@ pub struct SimulatedBoard {
     decoder: Decoder,
     /// The fingers in the order of their addresses.
     fingers: Vec<SimulatedFinger>,
+    /// The object that the fingers can touch.
+    scene: Option<Scene>,
     /// Time up to which the physics has been computed, ns. `None` before the first call.
     time: Option<u64>,
 }
@@ -45,9 +48,14 @@ const _: () = assert!(STEP == 100_000, "the conversion to whole nanoseconds has 
 
 impl SimulatedBoard {
     /// Creates a board with these `fingers` of a hand, at their configured addresses. The fingers are braked at their
-    /// start poses. Each finger has its own noise.
+    /// start poses. Each finger has its own noise. The board has its own object if one is configured.
     pub fn new(hand: &Configuration, fingers: &[FingerNumber]) -> Result<Self, SimulatedBoardError> {
-        let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), time: None };
+        Ok(Self { scene: Scene::new(hand), ..Self::without_object(hand, fingers)? })
+    }
+
+    /// Creates a board as [`SimulatedBoard::new`] does, whose fingers touch no object.
+    pub(super) fn without_object(hand: &Configuration, fingers: &[FingerNumber]) -> Result<Self, SimulatedBoardError> {
+        let mut board = Self { decoder: Decoder::default(), fingers: Vec::new(), scene: None, time: None };
         for &number in fingers {
             let address = hand.address(number);
             let mut configured = hand.fingers[number.index()].clone();
@@ -86,10 +94,16 @@ impl SimulatedBoard {
         let time = self.time.get_or_insert(now);
         while *time + STEP <= now {
             *time += STEP;
+            self.scene.iter_mut().for_each(|scene| scene.step(self.fingers.iter_mut()));
             for finger in &mut self.fingers {
                 finger.step(*time);
             }
         }
+    }
+
+    /// Returns the object of this board and its surroundings, if one is configured.
+    pub fn scene(&mut self) -> Option<&mut Scene> {
+        self.scene.as_mut()
     }
 
     /// Receives bytes at `now`, ns, and passes each complete answer to `send`.

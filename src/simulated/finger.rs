@@ -1,12 +1,13 @@
 //! One finger of a simulated board. It answers the frames of the protocol, and computes the physics.
 
+mod ending;
 mod greeting;
 mod identity;
 
-use crate::board::protocol::{Command, Configure, Configured, Frame, Reason, Refused, Reply, Status, Stopped, VERSION};
+use crate::board::protocol::{Command, Configure, Configured, Frame, Reason, Refused, Reply, Status, VERSION};
 use crate::model::FingerNumber;
 use crate::model::TendonsError;
-use crate::model::configuration::{ConfiguredFinger, EndState};
+use crate::model::configuration::ConfiguredFinger;
 use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
 use identity::SHORTEST_WATCHDOG_MS;
 use nalgebra::{Vector3, Vector4};
@@ -32,6 +33,7 @@ enum State {
 /// One finger of a [`SimulatedBoard`](crate::simulated::SimulatedBoard).
 #[derive(Debug)]
 pub struct SimulatedFinger {
+    number: FingerNumber,
     address: u8,
     unique_number: [u8; 12],
     plant: Plant,
@@ -71,6 +73,7 @@ impl SimulatedFinger {
         let torque_unit = (strongest * 1e7 / 30_000.0).ceil().max(1.0);
         let counts = finger.encoder.counts_per_revolution;
         Ok(Self {
+            number,
             address,
             unique_number: identity::unique_number(number, address),
             plant: Plant::new(finger, gravity)?,
@@ -89,6 +92,11 @@ impl SimulatedFinger {
             damaged_before: 0,
             zero_valid: true,
         })
+    }
+
+    /// Returns the finger's number in its hand.
+    pub(super) fn number(&self) -> FingerNumber {
+        self.number
     }
 
     /// Returns the finger's address.
@@ -240,7 +248,7 @@ impl SimulatedFinger {
             (State::Ready | State::Enabled, true) => {
                 self.plant.release_brake();
                 (self.state, self.commanded_at) = (State::Enabled, Some(now));
-                self.torques = within(command.torques, self.terms.torque_limits);
+                self.torques = Self::clipped(command.torques, self.terms.torque_limits);
                 clipped = self.torques != command.torques;
             }
             (State::Ready | State::Enabled, false) => {
@@ -264,36 +272,4 @@ impl SimulatedFinger {
             sampled_at: (now / 1000) as u16,
         })
     }
-
-    pub(super) fn stop(&mut self, now: u64) -> Frame {
-        match self.state {
-            State::Enabled => self.end(now),
-            State::Ready => self.state = State::Ended { holds_until: None },
-            // A repeated Stop does not prolong the hold.
-            State::Idle | State::Ended { .. } => {}
-        }
-        Frame::Stopped(Stopped { status: self.status() })
-    }
-
-    fn end(&mut self, now: u64) {
-        let holds_until = match self.terms.end_state {
-            EndState::Hold if self.terms.hold_time_ms > 0 => {
-                self.torques = within(self.torques, [self.terms.hold_torque_limit; 4]);
-                Some(now + u64::from(self.terms.hold_time_ms) * MILLISECOND)
-            }
-            EndState::Release | EndState::Hold => {
-                self.torques = [0; 4];
-                None
-            }
-        };
-        (self.state, self.ended_at) = (State::Ended { holds_until }, Some(now));
-    }
-}
-
-/// Clips each torque to plus or minus its limit.
-fn within(torques: [i16; 4], limits: [u16; 4]) -> [i16; 4] {
-    std::array::from_fn(|motor| {
-        let limit = limits[motor].min(i16::MAX as u16) as i16;
-        torques[motor].clamp(-limit, limit)
-    })
 }

@@ -9,6 +9,7 @@ mod line;
 mod pace;
 mod port;
 mod pseudo_terminal;
+mod scene;
 
 pub use board::{SimulatedBoard, SimulatedBoardError};
 pub use cable::SimulatedCable;
@@ -17,3 +18,4 @@ pub use finger::SimulatedFinger;
 pub use line::LineFault;
 pub use pace::{Pace, PacedTime};
 pub use port::SimulatedPort;
+pub use scene::{ObjectState, Scene};

@@ -4,7 +4,7 @@ use crate::reading::{REFERENCE, keys, read, usable, with_numbers, with_optional_
 use std::collections::BTreeSet;
 use sun2xp::control::Controller;
 use sun2xp::model::FingerNumber;
-use sun2xp::model::configuration::Configuration;
+use sun2xp::model::configuration::{Configuration, ConfiguredObject};
 use toml_edit::{DocumentMut, Item, Table};
 
 /// The keys that a table can have, taken from the error for an unknown key.
@@ -33,6 +33,7 @@ fn every_key_of_every_table_is_in_it() {
     let in_file: BTreeSet<String> = document.iter().map(|(key, _)| key.to_owned()).collect();
     assert_eq!(in_file, ["finger", "hand"].map(String::from).into());
     assert_eq!(named("hand"), expected_keys("hand"));
+    assert_eq!(named("hand.simulated_object"), expected_keys("hand.simulated_object"));
     // Keys with different defaults for each finger are in the tables of the fingers.
     let of_fingers: BTreeSet<String> = &named("finger") | &named("finger.1");
     assert_eq!(&of_fingers - &fingers, expected_keys("finger"));
@@ -75,6 +76,8 @@ fn the_optional_keys_name_their_defaults() {
         assert_eq!(controller(&unshown), controller(reference));
         assert!(finger.simulation.surface.is_some());
     }
+    let object = shown.hand.simulated_object.expect("an object");
+    assert_eq!(object, ConfiguredObject { table: object.table, ..Default::default() });
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `[hand]`: values that all fingers share.
 
+use super::object::ConfiguredObject;
 use serde::{Deserialize, Serialize};
 
 /// The behaviour of the motors when commands stop because the hand is closed, or because the planner exits or dies.
@@ -97,6 +98,8 @@ pub struct ConfiguredHand {
     pub black_box: Option<String>,
     /// Gravity in palm coordinates, m/s^2.
     pub gravity: [f64; 3],
+    /// Object that the fingers of a simulated hand can touch. Without it there is none.
+    pub simulated_object: Option<ConfiguredObject>,
 }
 
 impl ConfiguredHand {
@@ -128,6 +131,7 @@ impl Default for ConfiguredHand {
             print_refusals: true,
             black_box: None,
             gravity: [0.0; 3],
+            simulated_object: None,
         }
     }
 }
