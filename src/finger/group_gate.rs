@@ -4,8 +4,8 @@
 //! posted group first decides its period. If the planner chose the period instead, a planner that is preempted before
 //! it has sent every set point would choose one that some servos have already begun.
 
+use crate::realtime::atomics::{AtomicU64, Ordering};
 use crate::realtime::{LockedMemory, Pages, SharedPages};
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Number of groups whose state the gate remembers. It is larger than the number of groups that can wait in a finger.
 const REMEMBERED: usize = 64;

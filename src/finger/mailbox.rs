@@ -11,9 +11,9 @@ pub(super) mod groups;
 use crate::control::SetPoint;
 use crate::finger::group_gate::GroupGate;
 use crate::finger::{Adjustable, Fault, FingerReport, Order, Stage};
+use crate::realtime::atomics::{AtomicBool, Ordering};
 use crate::realtime::{Consumer, Input, LockedMemory, Output, Pages, Producer, SharedPages, ring, triple_buffer};
 use parking_lot::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The planners' end.
 pub struct Mailbox {

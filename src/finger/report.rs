@@ -43,6 +43,27 @@ pub struct FingerReport {
 }
 
 impl FingerReport {
+    /// Returns the report before the first cycle of a finger that will hold `set_point`.
+    pub fn opening(set_point: SetPoint) -> Self {
+        Self {
+            stage: Stage::Opening,
+            set_point,
+            set_point_period: 0,
+            period: 0,
+            springs: 0,
+            cycle: Report::default(),
+            controller: 0,
+            orders: 0,
+            calibration: None,
+            losses: Losses::default(),
+            recoveries: 0,
+            warnings: Warnings::default(),
+            first: 0,
+            last: 0,
+            next: 0,
+        }
+    }
+
     /// Returns the number of whole periods of `period` ns that have passed without a cycle and are not yet counted in
     /// [`Losses::skipped_periods`]. The servo counts them at the end of its next cycle. `now` is in ns of the monotonic
     /// clock.

@@ -1,12 +1,14 @@
 //! Signals that stop a healthy finger: an emergency stop call, or a fault of another finger.
 
 use crate::finger::FaultKind;
+use crate::realtime::atomics::{AtomicU32, Ordering, static_counter};
 use crate::realtime::{LockedMemory, Pages, SharedPages};
-use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Number of emergency stop calls in this process. It is a counter and not a flag, so that a finger that has recovered
-/// from one call stops at the next.
-static CALLS: AtomicU32 = AtomicU32::new(0);
+static_counter! {
+    /// Number of emergency stop calls in this process. It is a counter and not a flag, so that a finger that has
+    /// recovered from one call stops at the next.
+    CALLS
+}
 
 /// Emergency stop: every finger of every open hand in this process faults at the beginning of its next cycle. A finger
 /// stays faulted until it recovers or its hand is opened again.

@@ -2,6 +2,7 @@
 //! module also separates this library's threads from the planner's: signals, cancellation and floating-point
 //! environments.
 
+pub(crate) mod atomics;
 mod cancellation;
 mod clock;
 mod delegated_call;

@@ -2,16 +2,23 @@
 #![allow(unsafe_code, reason = "places that two threads access in turns")]
 
 use super::LockedMemory;
+use super::atomics::{AtomicUsize, Ordering, UnsafeCell};
 use super::pages::{Pages, SharedPages};
-use std::cell::UnsafeCell;
 use std::mem::MaybeUninit;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The writer's end of a ring.
-pub struct Producer<T>(SharedPages<Ring<T>>);
+pub struct Producer<T> {
+    ring: SharedPages<Ring<T>>,
+    /// The value of the ring's `left`. Only this end changes it.
+    left: usize,
+}
 
 /// The reader's end of a ring.
-pub struct Consumer<T>(SharedPages<Ring<T>>);
+pub struct Consumer<T> {
+    ring: SharedPages<Ring<T>>,
+    /// The value of the ring's `taken`. Only this end changes it.
+    taken: usize,
+}
 
 /// Both counters run from 0 to twice the number of places and then start again at 0, so that a full ring differs from
 /// an empty one. The places from `taken` to `left` hold values.
@@ -37,13 +44,13 @@ pub fn ring<T>(capacity: usize) -> (Producer<T>, Consumer<T>) {
         places: Pages::from_fn(capacity.max(1), |_| UnsafeCell::new(MaybeUninit::uninit())),
     };
     let ring = SharedPages::from(Pages::new(ring));
-    (Producer(ring.clone()), Consumer(ring))
+    (Producer { ring: ring.clone(), left: 0 }, Consumer { ring, taken: 0 })
 }
 
 impl<T> Ring<T> {
-    fn place(&self, number: usize) -> *mut MaybeUninit<T> {
+    fn place(&self, number: usize) -> &UnsafeCell<MaybeUninit<T>> {
         let count = self.places.len();
-        self.places[if number < count { number } else { number - count }].get()
+        &self.places[if number < count { number } else { number - count }]
     }
 
     fn after(&self, number: usize) -> usize {
@@ -62,65 +69,65 @@ impl<T> Producer<T> {
     /// # Errors
     /// Returns the value itself if the ring is full.
     pub fn push(&mut self, value: T) -> Result<(), T> {
-        let ring = &*self.0;
-        // Only this end writes `left`.
-        let left = ring.left.0.load(Ordering::Relaxed);
+        let (ring, left) = (&*self.ring, self.left);
         if ring.count(ring.taken.0.load(Ordering::Acquire), left) == ring.places.len() {
             return Err(value);
         }
         // SAFETY: the reader has taken the previous value of this place, and does not access it before `left` has
         // passed it.
-        unsafe { (*ring.place(left)).write(value) };
-        ring.left.0.store(ring.after(left), Ordering::Release);
+        ring.place(left).with_mut(|place| unsafe {
+            (*place).write(value);
+        });
+        self.left = ring.after(left);
+        ring.left.0.store(self.left, Ordering::Release);
         Ok(())
     }
 
     /// Whether the next push succeeds.
     pub fn has_room(&self) -> bool {
-        let ring = &*self.0;
-        let left = ring.left.0.load(Ordering::Relaxed);
-        ring.count(ring.taken.0.load(Ordering::Acquire), left) < ring.places.len()
+        let ring = &*self.ring;
+        ring.count(ring.taken.0.load(Ordering::Acquire), self.left) < ring.places.len()
     }
 
     /// Adds the ring's pages to `memory`.
     pub fn add_to(&self, memory: &mut LockedMemory) {
-        memory.add_shared(&self.0);
-        memory.add(&self.0.places);
+        memory.add_shared(&self.ring);
+        memory.add(&self.ring.places);
     }
 }
 
 impl<T> Consumer<T> {
     /// Takes the oldest value. Returns `None` if the ring is empty.
     pub fn pop(&mut self) -> Option<T> {
-        let ring = &*self.0;
-        // Only this end writes `taken`.
-        let taken = ring.taken.0.load(Ordering::Relaxed);
+        let (ring, taken) = (&*self.ring, self.taken);
         if taken == ring.left.0.load(Ordering::Acquire) {
             return None;
         }
         // SAFETY: the writer has left a value here, and does not access the place again before `taken` has passed it.
-        let value = unsafe { (*ring.place(taken)).assume_init_read() };
-        ring.taken.0.store(ring.after(taken), Ordering::Release);
+        let value = ring.place(taken).with(|place| unsafe { (*place).assume_init_read() });
+        self.taken = ring.after(taken);
+        ring.taken.0.store(self.taken, Ordering::Release);
         Some(value)
     }
 
     /// Whether the ring is empty.
     pub fn is_empty(&self) -> bool {
-        self.0.taken.0.load(Ordering::Relaxed) == self.0.left.0.load(Ordering::Acquire)
+        self.taken == self.ring.left.0.load(Ordering::Acquire)
     }
 
     /// Whether the writer's end has been dropped.
     pub fn is_abandoned(&self) -> bool {
-        self.0.is_alone()
+        self.ring.is_alone()
     }
 }
 
 impl<T> Drop for Ring<T> {
     fn drop(&mut self) {
-        let (mut taken, left) = (*self.taken.0.get_mut(), *self.left.0.get_mut());
+        // Both ends are gone, so no thread changes the counters any more.
+        let (mut taken, left) = (self.taken.0.load(Ordering::Relaxed), self.left.0.load(Ordering::Relaxed));
         while taken != left {
             // SAFETY: both ends are gone. The writer left this value, and the reader did not take it.
-            unsafe { (*self.place(taken)).assume_init_drop() };
+            self.place(taken).with_mut(|place| unsafe { (*place).assume_init_drop() });
             taken = self.after(taken);
         }
     }

@@ -3,9 +3,8 @@
 #![allow(unsafe_code, reason = "places that two threads access in turns")]
 
 use super::LockedMemory;
+use super::atomics::{AtomicU8, Ordering, UnsafeCell};
 use super::pages::{Pages, SharedPages};
-use std::cell::UnsafeCell;
-use std::sync::atomic::{AtomicU8, Ordering};
 
 /// Bit of `between`: the writer has published a value that the reader has not taken yet.
 const NEW: u8 = 4;
@@ -51,7 +50,7 @@ impl<T> Input<T> {
     /// Returns the buffer for the next value to publish. It still holds an older value.
     pub fn input_buffer_mut(&mut self) -> &mut T {
         // SAFETY: only this end has the number of this place, and this end is borrowed mutably.
-        unsafe { &mut *self.places.places[usize::from(self.own)].0.get() }
+        self.places.places[usize::from(self.own)].0.with_mut(|value| unsafe { &mut *value })
     }
 
     /// Publishes the buffer.
@@ -88,7 +87,7 @@ impl<T> Output<T> {
     /// Returns the value that was taken last.
     pub fn output_buffer(&mut self) -> &T {
         // SAFETY: only this end has the number of this place, and this end is borrowed mutably.
-        unsafe { &*self.places.places[usize::from(self.own)].0.get() }
+        self.places.places[usize::from(self.own)].0.with(|value| unsafe { &*value })
     }
 
     /// Takes the newest value if there is one, and returns the value that was taken last.

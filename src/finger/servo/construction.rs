@@ -8,7 +8,7 @@ use crate::finger::events::event_log;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Mailbox, mailbox};
 use crate::finger::supervision::Supervision;
-use crate::finger::{FingerReport, Losses, Recorder, Stage, StopSignal, stop_calls};
+use crate::finger::{FingerReport, Recorder, StopSignal, stop_calls};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredHand, Unusable};
 use crate::realtime::{CycleTiming, Producer};
@@ -78,7 +78,7 @@ impl FingerServo {
         let link = LinkWatch::new(hand, finger.simulated());
         let law = finger.controller.law;
         let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
-        let report = opening_report(initial);
+        let report = FingerReport::opening(initial);
         let (planners, servo, mut memory) = mailbox(report, &adjustable);
         memory.append(&black_box.memory());
         timings.add_to(&mut memory);
@@ -123,26 +123,5 @@ impl FingerServo {
             memory,
         };
         Ok((this, planners))
-    }
-}
-
-/// Returns the report before the first cycle.
-fn opening_report(set_point: SetPoint) -> FingerReport {
-    FingerReport {
-        stage: Stage::Opening,
-        set_point,
-        set_point_period: 0,
-        period: 0,
-        springs: 0,
-        controller: 0,
-        cycle: Default::default(),
-        orders: 0,
-        calibration: None,
-        losses: Losses::default(),
-        recoveries: 0,
-        warnings: Default::default(),
-        first: 0,
-        last: 0,
-        next: 0,
     }
 }

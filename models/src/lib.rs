@@ -1,0 +1,81 @@
+//! Model checking of the lock-free code of sun2xp. This package compiles the lock-free files of the library a second
+//! time. Their atomic types are those of loom, which runs the threads of a check in every order that the memory model
+//! of C++ allows, up to a number of preemptions. `docs/deadlock.md` describes the checks.
+//!
+//! The models for spin are in `promela/`.
+
+// The unit tests in the library's files use the library's own atomic types, so they are not run here.
+#![cfg(not(test))]
+
+#[allow(missing_docs, dead_code)]
+#[path = "../../src/realtime"]
+mod realtime {
+    #[path = "../../models/src/atomics.rs"]
+    pub mod atomics;
+    mod memory;
+    mod pages;
+    mod ring;
+    mod triple_buffer;
+
+    pub use memory::LockedMemory;
+    pub use pages::{Pages, SharedPages};
+    pub use ring::{Consumer, Producer, ring};
+    pub use triple_buffer::{Input, Output, triple_buffer};
+}
+
+mod control {
+    pub use sun2xp::control::SetPoint;
+}
+
+mod model {
+    pub use sun2xp::model::configuration;
+}
+
+#[allow(missing_docs, dead_code)]
+#[path = "../../src/finger"]
+mod finger {
+    #[path = "../../models/src/group_checks.rs"]
+    pub mod group_checks;
+    mod group_gate;
+    mod mailbox;
+    #[path = "../../models/src/mailbox_checks.rs"]
+    pub mod mailbox_checks;
+    mod stop_signal;
+    #[path = "../../models/src/stop_signal_checks.rs"]
+    pub mod stop_signal_checks;
+
+    pub use group_gate::GroupGate;
+    pub use sun2xp::finger::{Fault, FaultKind, FingerReport, Stage};
+
+    /// Takes the place of the controller, which is larger than the stack that loom gives a thread.
+    #[derive(Clone)]
+    pub struct Adjustable {
+        pub number: u32,
+    }
+
+    /// Takes the place of the orders, which contain controllers.
+    #[derive(Clone)]
+    pub enum Order {
+        Nothing,
+        Restart { limp: bool },
+    }
+}
+pub mod ring_checks;
+mod tracked;
+pub mod triple_buffer_checks;
+
+pub use finger::{group_checks, mailbox_checks, stop_signal_checks};
+pub use realtime::atomics::weakened;
+
+use loom::model::Builder;
+
+/// Largest number of preemptions in one run of a check. Loom's authors found that most defects show with 2, and advise
+/// 2 or 3.
+const PREEMPTIONS: usize = 3;
+
+/// Runs `check` in every order of its threads.
+pub fn explore(check: impl Fn() + Send + Sync + 'static) {
+    let mut builder = Builder::new();
+    builder.preemption_bound = Some(PREEMPTIONS);
+    builder.check(check);
+}

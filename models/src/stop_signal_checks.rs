@@ -1,0 +1,41 @@
+//! Checks of `src/finger/stop_signal.rs`.
+
+use super::FaultKind;
+use super::stop_signal::{StopSignal, stop_all, stop_calls};
+use loom::thread;
+
+/// A recovery ignores the stop calls before its request, and no later one. Returns what the finger then has to do.
+pub fn a_stop_call_during_a_recovery_is_not_lost() -> (Option<FaultKind>, Option<FaultKind>) {
+    let mut signal = StopSignal::new(false, stop_calls());
+    stop_all();
+    assert_eq!(signal.pending(), Some(FaultKind::EmergencyStopCall));
+    let requested = stop_calls();
+    let caller = thread::spawn(stop_all);
+    signal.forget(requested);
+    let at_once = signal.pending();
+    caller.join().expect("no panic");
+    assert_eq!(signal.pending(), Some(FaultKind::EmergencyStopCall), "the later call is lost");
+    (at_once, signal.pending())
+}
+
+/// A fault stops the fingers that stop together with the faulted one. It is passed on once and does not return.
+pub fn a_fault_stops_the_companion_once() {
+    let first = StopSignal::new(true, stop_calls());
+    let mut second = first.clone();
+    let faulting = thread::spawn(move || {
+        first.raise(FaultKind::SlackTendon);
+        first
+    });
+    // The second finger faults when it notices the signal. The signal of a companion is not passed on.
+    if let Some(kind) = second.pending() {
+        assert_eq!(kind, FaultKind::Companion);
+        second.raise(kind);
+    }
+    let first = faulting.join().expect("no panic");
+    assert_eq!(second.pending(), Some(FaultKind::Companion), "the fault is lost");
+    second.forget(stop_calls());
+    assert_eq!(second.pending(), None);
+    let mut first = first;
+    first.forget(stop_calls());
+    assert_eq!(first.pending(), None, "the companion's signal has returned");
+}

@@ -1,0 +1,96 @@
+//! The lock-free code of the library, in every order of its threads.
+
+use std::process::Command;
+use std::sync::{Arc, Mutex};
+use sun2xp_models::{
+    explore, group_checks, mailbox_checks, ring_checks, stop_signal_checks, triple_buffer_checks, weakened,
+};
+
+/// Environment variable of a process that runs one test with weakened orderings.
+const WEAKENED: &str = "SUN2XP_TEST_WEAKENED";
+
+/// Runs a check, and runs it again without the orderings of the code. The second run must find a data race. It is a
+/// process of its own, because a data race in a destructor ends the process.
+fn holds_and_needs_its_orderings(check: impl Fn() + Send + Sync + 'static) {
+    if std::env::var_os(WEAKENED).is_some() {
+        return weakened(|| explore(check));
+    }
+    explore(check);
+    let thread = std::thread::current();
+    let name = thread.name().expect("the name of the test");
+    let mut test = Command::new(std::env::current_exe().expect("the test's own program"));
+    let run = test.args(["--exact", name, "--nocapture"]).env(WEAKENED, "1").output().expect("the test starts");
+    let output = String::from_utf8_lossy(&run.stderr);
+    assert!(!run.status.success() && output.contains("Causality violation"), "no ordering is checked: {output}");
+}
+
+#[test]
+fn a_triple_buffer_passes_whole_values_in_order() {
+    holds_and_needs_its_orderings(triple_buffer_checks::values_are_whole_and_in_order);
+}
+
+#[test]
+fn a_value_in_a_triple_buffer_is_new_once() {
+    holds_and_needs_its_orderings(triple_buffer_checks::a_value_is_new_once);
+}
+
+#[test]
+fn a_ring_passes_every_value_once_and_in_order() {
+    holds_and_needs_its_orderings(ring_checks::values_arrive_once_and_in_order);
+}
+
+#[test]
+fn a_ring_drops_what_was_not_taken() {
+    holds_and_needs_its_orderings(ring_checks::values_that_were_not_taken_are_dropped);
+}
+
+#[test]
+fn a_link_is_handed_over_and_back() {
+    holds_and_needs_its_orderings(ring_checks::a_link_goes_to_and_fro);
+}
+
+#[test]
+fn an_order_has_its_data() {
+    holds_and_needs_its_orderings(mailbox_checks::an_order_comes_after_its_data);
+}
+
+#[test]
+fn a_set_point_is_valid_for_one_spring() {
+    holds_and_needs_its_orderings(mailbox_checks::a_set_point_is_for_one_spring);
+}
+
+/// The gate passes the decision itself, and no other data.
+#[test]
+fn a_group_takes_effect_in_one_period() {
+    explore(group_checks::a_group_takes_effect_in_one_period);
+}
+
+#[test]
+fn a_posted_group_has_its_set_points() {
+    explore(group_checks::a_posted_group_has_its_set_points);
+}
+
+/// The request passes no other data.
+#[test]
+fn a_request_to_close_is_answered() {
+    explore(mailbox_checks::a_request_to_close_is_answered);
+}
+
+/// The counters pass no other data, so this check needs no ordering. It must reach both results: the finger notices
+/// the call in this cycle, or in a later one.
+#[test]
+fn a_stop_call_during_a_recovery_stops_the_finger() {
+    let seen = Arc::new(Mutex::new(Vec::new()));
+    let results = seen.clone();
+    explore(move || {
+        let (at_once, _) = stop_signal_checks::a_stop_call_during_a_recovery_is_not_lost();
+        results.lock().expect("no panic").push(at_once.is_some());
+    });
+    let seen = seen.lock().expect("no panic");
+    assert!(seen.contains(&true) && seen.contains(&false), "{seen:?}");
+}
+
+#[test]
+fn a_fault_stops_the_fingers_that_stop_together() {
+    explore(stop_signal_checks::a_fault_stops_the_companion_once);
+}
