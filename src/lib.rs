@@ -88,5 +88,14 @@ pub mod groups {
     pub use crate::hand::{FingerCommand, Pose};
 }
 
+/// Events: what happens to a finger, with the cycle to which it belongs. [`Hand::events`] and [`Hand::on_event`] give
+/// them to planners.
+pub mod events {
+    pub use crate::control::events::Arrival;
+    pub use crate::finger::events::{Event, EventKind, ValueKind};
+    pub use crate::hand::{EventListener, EventQueue};
+    pub use crate::model::configuration::ConfiguredEvents;
+}
+
 /// The matrix library of the public signatures.
 pub use nalgebra;

@@ -1,6 +1,7 @@
 //! The part of a servo's data that a planner can change while the servo runs.
 
 use crate::control::Controller;
+use crate::control::events::Detectors;
 use nalgebra::Vector3;
 
 /// The data that a servo computes with and that a planner can change while the servo runs.
@@ -12,6 +13,8 @@ pub struct Adjustable {
     pub controller: Controller,
     /// Lowest and highest joint angles that a finger under tension can have, rad.
     pub pose: (Vector3<f64>, Vector3<f64>),
+    /// The detectors of events.
+    pub detectors: Detectors,
 }
 
 // The servo copies a value of this type out of a buffer. The copy must neither allocate nor free.

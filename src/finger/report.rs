@@ -1,6 +1,7 @@
 //! The servo's report on its finger.
 
 use crate::calibration::Verdict;
+use crate::control::events::Arrival;
 use crate::control::{Report, SetPoint};
 use crate::finger::{Losses, Stage, Warnings};
 
@@ -34,6 +35,8 @@ pub struct FingerReport {
     pub recoveries: u32,
     /// Warnings of the finger.
     pub warnings: Warnings,
+    /// Whether the finger has reached the set point in force, and has come to rest.
+    pub arrival: Arrival,
     /// Beginning of the first cycle, ns of the monotonic clock.
     pub first: u64,
     /// Beginning of the last cycle, ns of the monotonic clock.
@@ -58,6 +61,7 @@ impl FingerReport {
             losses: Losses::default(),
             recoveries: 0,
             warnings: Warnings::default(),
+            arrival: Arrival::default(),
             first: 0,
             last: 0,
             next: 0,

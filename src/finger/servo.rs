@@ -5,6 +5,8 @@ mod calibrating;
 mod calibration;
 mod construction;
 mod control;
+mod event_output;
+mod events;
 mod exchange;
 mod groups;
 mod life;
@@ -14,7 +16,7 @@ use crate::board::protocol::{Identity, Status};
 use crate::calibration::Verdict;
 use crate::control::{Activity, Feedback, MotorCommand, SetPoint, State};
 use crate::finger::Adjustable;
-use crate::finger::events::{EventLog, EventWriter, Occurrence};
+use crate::finger::events::Occurrence;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::ServoEnd;
 use crate::finger::supervision::Supervision;
@@ -22,6 +24,7 @@ use crate::finger::{CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage
 use crate::model::configuration::EndState;
 use crate::realtime::{self, CycleTiming, LockedMemory, Producer};
 use calibration::Calibrating;
+use event_output::EventOutput;
 
 /// Number of Stop frames that the board gets after a fault. There are several, because a line that has just failed may
 /// lose one.
@@ -43,8 +46,7 @@ pub struct FingerServo {
     timing: CycleTiming,
     timings: Producer<CycleTiming>,
     black_box: Recorder,
-    events: EventWriter,
-    event_log: EventLog,
+    events: EventOutput,
     /// The black box record of this cycle; none if the finger was already faulted or closed.
     record: Option<CycleRecord>,
     /// Whether the last cycle was recorded.
@@ -96,11 +98,6 @@ impl FingerServo {
     pub fn limp(mut self) -> Self {
         self.go_limp();
         self
-    }
-
-    /// Returns the log of the finger's events.
-    pub fn event_log(&self) -> &EventLog {
-        &self.event_log
     }
 
     /// Returns the memory that the servo accesses outside this value.

@@ -146,6 +146,16 @@ impl<T: Transport, C: Clock> Servo<T, C> {
                 computing = computed;
             }
         }
+        self.announce_events();
+    }
+
+    /// Wakes a thread that waits for events, if there are new ones. This makes at most one system call, after the
+    /// reports of all fingers are published, because all fingers of a hand have the same readers.
+    fn announce_events(&self) {
+        let mut fingers = self.ports.iter().flat_map(|port| port.fingers.iter());
+        if let Some(finger) = fingers.find(|finger| finger.has_new_events()) {
+            finger.announce_events();
+        }
     }
 
     /// Faults every finger and stops every board. This is the last action after a panic.
@@ -162,6 +172,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
                 finger.publish();
             }
         }
+        self.announce_events();
         self.confirm_stops();
     }
 

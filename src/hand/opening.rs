@@ -4,8 +4,10 @@
 use crate::board::protocol::Status;
 use crate::board::{Link, Port, Terms, capacity};
 use crate::control::{AdmissibleDamping, JointSprings};
+use crate::finger::events::EventLog;
 use crate::finger::{BlackBox, FingerServo, GroupGate, Mailbox, ServedPort, StopSignal, link_handover, stop_calls};
 use crate::hand::admission::{Admission, DampingAdmission};
+use crate::hand::events::EventSource;
 use crate::hand::fingers::Fingers;
 use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
@@ -15,7 +17,7 @@ use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
 use crate::model::{Shown, ShownPath, UnusableConfiguration};
-use crate::realtime::{Consumer, CycleTiming, Priority, now, ring};
+use crate::realtime::{Consumer, CycleTiming, EventCount, Pages, Priority, SharedPages, now, ring};
 use crate::simulated::{Pace, SimulatedBoard, SimulatedPort};
 use nalgebra::Matrix3;
 use std::path::{Path, PathBuf};
@@ -39,6 +41,8 @@ pub(super) struct Reached {
     pub timings: Consumer<CycleTiming>,
     /// Cycle records from the servo.
     pub black_box: BlackBox,
+    /// Events from the servo.
+    pub events: EventLog,
 }
 
 /// A hand after the handshakes.
@@ -51,6 +55,8 @@ pub(super) struct Connected {
     pub gate: GroupGate,
     /// The data for repairing the ports.
     pub repairs: Vec<PortRepair>,
+    /// The events of all fingers.
+    pub events: EventSource,
 }
 
 /// A port with its fingers, and the number of the thread that will serve it.
@@ -130,6 +136,7 @@ pub(super) fn reach(
     let gate = GroupGate::new();
     let (mut lines, mut reached, mut repairs) = (Vec::new(), Vec::new(), Vec::new());
     let mut identities = Identities::default();
+    let readers = SharedPages::from(Pages::new(EventCount::default()));
     for (path, sharing) in ports(configuration, fingers, simulated) {
         let first = sharing[0];
         let failed = |source| HandError::Link { finger: first, source };
@@ -139,7 +146,7 @@ pub(super) fn reach(
         for &number in &sharing {
             let (servo, finger, board) = shake_hands(configuration, number, &mut link)?;
             identities.add(board.finger, &path, &board.identity)?;
-            let servo = servo.with(alarm.clone()).in_groups(gate.clone());
+            let servo = servo.with(alarm.clone()).in_groups(gate.clone()).with_readers(readers.clone());
             servos.push(if limp { servo.limp() } else { servo });
             reached.push(finger);
             boards.push(board);
@@ -159,7 +166,9 @@ pub(super) fn reach(
         repairs.push(PortRepair::new(path, baud, reconnect, boards, repair_end));
     }
     reached.sort_by_key(|finger| finger.number);
-    Ok(Connected { lines, reached, gate, repairs })
+    let logs = reached.iter().map(|finger| finger.events.clone()).collect();
+    let events = EventSource::new(logs, readers, configuration.hand.period());
+    Ok(Connected { lines, reached, gate, repairs, events })
 }
 
 /// Returns the ports of these fingers, each with its fingers.
@@ -228,7 +237,8 @@ fn shake_hands(
             .map_err(unusable)?;
     let zero_valid = configured.status.has(Status::ZERO_VALID);
     let board = KnownBoard { finger: number, address, terms, identity, zero_valid };
-    Ok((servo, Reached { number, mailbox, admission: admission(configuration, number), timings, black_box }, board))
+    let (admission, events) = (admission(configuration, number), servo.event_log().clone());
+    Ok((servo, Reached { number, mailbox, admission, timings, black_box, events }, board))
 }
 
 pub(super) fn admission(configuration: &Configuration, number: FingerNumber) -> Admission {

@@ -2,6 +2,7 @@
 
 use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::dispatcher::Dispatcher;
+use crate::hand::events::EventSource;
 use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach, simulate};
 use crate::hand::reconnection::Recovery;
 use crate::hand::servo_threads::{PortServo, RealtimeState, start};
@@ -14,6 +15,7 @@ use nalgebra::Vector3;
 use parking_lot::{Mutex, RwLock};
 use std::path::PathBuf;
 use std::process::id;
+use std::sync::Arc;
 use std::thread::{JoinHandle, sleep};
 use std::time::Duration;
 
@@ -35,6 +37,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(1);
 #[must_use = "a hand that is dropped is closed"]
 pub struct Hand {
     pub(super) dispatcher: Dispatcher,
+    pub(super) events: Arc<EventSource>,
     servos: Vec<JoinHandle<PortServo>>,
     pub(super) recovery: Recovery,
     simulated: [Option<SimulatedPort>; FINGERS],
@@ -102,16 +105,27 @@ impl Hand {
         waiting.map_err(|source| HandError::System { doing: "sleep until a given time (clock_nanosleep)", source })?;
         let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
         let simulated = simulate(&configuration, fingers)?;
-        let Connected { lines, reached, gate, repairs } = reach(&configuration, fingers, &simulated, limp)?;
+        let Connected { lines, reached, gate, repairs, events } = reach(&configuration, fingers, &simulated, limp)?;
         let recovery = Recovery::new(repairs);
         let dispatcher = Dispatcher::new(reached, gate);
         let ending = u64::from(configuration.hand.release_ramp_ms) * 1_000_000 + STOP_CONFIRMATION;
         let configuration = RwLock::new(configuration);
         let servos = Vec::new();
         let real_time = RealtimeState::default();
-        let (found, process) = (Mutex::default(), id());
-        let mut hand =
-            Self { dispatcher, servos, recovery, simulated, configuration, file, found, real_time, ending, process };
+        let (events, found, process) = (Arc::new(events), Mutex::default(), id());
+        let mut hand = Self {
+            dispatcher,
+            events,
+            servos,
+            recovery,
+            simulated,
+            configuration,
+            file,
+            found,
+            real_time,
+            ending,
+            process,
+        };
         // From here on, dropping the hand closes it.
         let collecting = hand.dispatcher.start_collecting(folder);
         collecting.map_err(|source| HandError::System { doing: "start the thread that collects reports", source })?;
@@ -232,6 +246,7 @@ impl Drop for Hand {
             self.recovery.forget();
             return;
         }
+        self.events.close();
         self.dispatcher.members().iter().for_each(|member| member.mailbox.close());
         for servo in self.servos.drain(..) {
             // A servo thread catches its panics. Its ports are closed here and not in the servo, because closing may

@@ -1,5 +1,6 @@
 //! Checks of a configuration before a motor may move.
 
+mod events;
 mod monitors;
 mod object;
 mod ranges;
@@ -102,6 +103,7 @@ impl ConfiguredFinger {
         self.check_controller()?;
         self.check_mechanics()?;
         self.monitors.check()?;
+        self.events.check()?;
         self.check_calibration()?;
         self.check_simulation()
     }

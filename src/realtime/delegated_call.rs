@@ -1,9 +1,9 @@
 //! Work that a thread of this library does on behalf of a planner's thread. The planner's thread waits for the result.
 //! Signal handlers of the planner run on the waiting thread. A handler may leave the wait by siglongjmp, because the
 //! waiting thread waits on a futex word and holds no lock.
-#![allow(unsafe_code, reason = "the futex system call")]
 
 use super::cancellation::NoCancellation;
+use super::futex;
 use super::signals::SignalsBlocked;
 use super::threads::spawn_alike;
 use parking_lot::Mutex;
@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread::JoinHandle;
 
 /// Interval at which a waiting thread checks whether to give up, ns.
-const CHECK_INTERVAL: libc::c_long = 100_000_000;
+const CHECK_INTERVAL: u64 = 100_000_000;
 
 /// Work that has started.
 pub struct DelegatedCall<T>(Arc<Outcome<T>>);
@@ -45,7 +45,7 @@ impl<T: Send + 'static> DelegatedCall<T> {
         let worker = spawn_alike("sun2xp call", move || {
             *workers.result.lock() = Some(work());
             workers.done.store(1, Ordering::Release);
-            wake(&workers.done);
+            futex::wake(&workers.done, 1);
         })?;
         // `try_with` fails if the calling thread is ending and has no thread-local data any more. Then no thread joins
         // the worker.
@@ -61,7 +61,7 @@ impl<T: Send + 'static> DelegatedCall<T> {
         // allocator, and a siglongjmp out of a handler would leave the lock taken.
         let given_up = blocked.lifted(|| {
             while done.load(Ordering::Acquire) == 0 {
-                wait_for_change(done, 0);
+                futex::wait(done, 0, CHECK_INTERVAL);
                 if give_up() {
                     return true;
                 }
@@ -83,21 +83,6 @@ impl<T: Send + 'static> DelegatedCall<T> {
 
 fn take_worker() -> Option<JoinHandle<()>> {
     WORKER.try_with(RefCell::take).ok().flatten()
-}
-
-/// Waits while `word` is `value`, for at most `CHECK_INTERVAL`. This is not a cancellation point.
-fn wait_for_change(word: &AtomicU32, value: u32) {
-    let limit = libc::timespec { tv_sec: 0, tv_nsec: CHECK_INTERVAL };
-    let operation = libc::FUTEX_WAIT | libc::FUTEX_PRIVATE_FLAG;
-    // SAFETY: the word and the time-out are valid during the call. The caller checks the word again, whatever the
-    // result.
-    unsafe { libc::syscall(libc::SYS_futex, word.as_ptr(), operation, value, &limit) };
-}
-
-fn wake(word: &AtomicU32) {
-    let operation = libc::FUTEX_WAKE | libc::FUTEX_PRIVATE_FLAG;
-    // SAFETY: the word is valid during the call.
-    unsafe { libc::syscall(libc::SYS_futex, word.as_ptr(), operation, 1) };
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 mod calibrating;
 mod commands;
+mod events;
 #[allow(dead_code)]
 #[path = "../common/finger_on_a_cable.rs"]
 mod finger_on_a_cable;

@@ -5,6 +5,7 @@ use crate::finger_on_a_cable::{Hooks, ServedFinger, World};
 use nalgebra::Vector3;
 use sun2xp::board::protocol::{Frame, Message, WireFrame};
 use sun2xp::board::{PortError, Terms, Transport};
+use sun2xp::finger::events::EventReader;
 use sun2xp::finger::{Fault, FaultKind, FingerReport, LinkRepairEnd, Mailbox, RepairedLink, Servo, Stage, stop_calls};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
@@ -62,6 +63,7 @@ pub struct Bench {
     pub world: World<Line>,
     pub servo: Servo<World<Line>, World<Line>>,
     pub mailbox: Mailbox,
+    pub events: EventReader,
     repair_end: LinkRepairEnd<World<Line>>,
     /// The configuration of the board.
     configuration: Configuration,
@@ -90,8 +92,9 @@ impl Bench {
         let mut belief = configuration.clone();
         believed(&mut belief);
         let world = World::new(&configuration, Line::default());
-        let ServedFinger { servo, mailbox, repair_end, .. } = ServedFinger::believing(&world, &configuration, &belief);
-        Self { world, servo, mailbox, repair_end, configuration }
+        let ServedFinger { servo, mailbox, repair_end, events, .. } =
+            ServedFinger::believing(&world, &configuration, &belief);
+        Self { world, servo, mailbox, events: events.reader(), repair_end, configuration }
     }
 
     pub fn report(&self) -> FingerReport {

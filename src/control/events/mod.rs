@@ -1,8 +1,15 @@
 //! Detectors derive observations from the measurements, the report and the set point of a cycle: facts that a planner
 //! or a reflex may wait for, and that are no faults. Each detector has one file, which defines its observations.
 //!
-//! The detectors run while a finger follows a set point.
+//! The detectors run while a finger follows a set point, in the cycles with a reply.
 
+mod arrival;
+mod contact_edges;
+mod detectors;
+mod joint_limits;
 mod observation;
+mod tension_bounds;
 
+pub use arrival::Arrival;
+pub use detectors::{DetectorState, Detectors};
 pub use observation::{Observation, ObservationKind, Observations};

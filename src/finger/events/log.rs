@@ -1,8 +1,8 @@
 //! The log of a finger's events: a ring that its servo overwrites, and that any number of readers reads.
 //!
-//! The servo neither waits for a reader nor knows of one. A reader that falls behind loses the oldest events, and counts
-//! them. Each place has a sequence number, which the servo clears before it overwrites the place. A reader therefore
-//! detects that a place has changed while it copied it.
+//! The servo neither waits for a reader nor knows of one. A reader that falls behind loses the oldest events, and
+//! counts them. Each place has a sequence number, which the servo clears before it overwrites the place. A reader
+//! therefore detects that a place has changed while it copied it.
 
 use super::words::WORDS;
 use super::{Event, Occurrence};

@@ -5,7 +5,8 @@
 use super::kind::{Description, ValueKind};
 
 macro_rules! kinds {
-    ($($number:literal $kind:ident $constant:literal $part:expr, [$($value:ident),*], $name:literal, $text:literal;)*) => {
+    ($($number:literal $kind:ident $constant:literal $part:expr, [$($value:ident),*],
+        $name:literal, $text:literal;)*) => {
         /// The kind of an event.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u8)]

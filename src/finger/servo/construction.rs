@@ -1,10 +1,11 @@
 //! Construction of a finger's servo from the configuration and the board's answers.
 
+use super::event_output::EventOutput;
 use super::{FingerServo, Limits, STOPS_AFTER_FAULT};
 use crate::board::protocol::{Configured, Identity};
+use crate::control::events::Detectors;
 use crate::control::{Activity, Controller, Feedback, MotorCommand, SetPoint};
 use crate::finger::Adjustable;
-use crate::finger::events::event_log;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Mailbox, mailbox};
 use crate::finger::supervision::Supervision;
@@ -34,7 +35,8 @@ impl Adjustable {
         let (low, high) = finger.joint_limits();
         let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
         let controller = Controller::in_gravity(finger, &configuration.gravity(number), configuration.hand.rate)?;
-        Ok(Self { number: 0, controller, pose })
+        let detectors = Detectors::new(finger, configuration.hand.rate);
+        Ok(Self { number: 0, controller, pose, detectors })
     }
 }
 
@@ -76,14 +78,12 @@ impl FingerServo {
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         let state = adjustable.controller.start(&feedback);
         let link = LinkWatch::new(hand, finger.simulated());
-        let law = finger.controller.law;
-        let initial = SetPoint { law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
+        let initial = SetPoint { law: finger.controller.law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
         let report = FingerReport::opening(initial);
         let (planners, servo, mut memory) = mailbox(report, &adjustable);
         memory.append(&black_box.memory());
         timings.add_to(&mut memory);
-        let (events, event_log) = event_log(number);
-        events.add_to(&mut memory);
+        let events = EventOutput::new(number, initial, &mut memory);
         let this = Self {
             adjustable,
             state,
@@ -98,7 +98,6 @@ impl FingerServo {
             timings,
             black_box,
             events,
-            event_log,
             record: None,
             recording: false,
             report,

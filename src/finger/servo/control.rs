@@ -28,6 +28,7 @@ impl FingerServo {
         let previous = previous.map_or(*number, |previous| previous.number);
         let record = ControlRecord { controller: *number, previous, input, command, report };
         self.watch(adjusted);
+        self.observe();
         self.move_on();
         record
     }

@@ -55,6 +55,7 @@ impl FingerServo {
                     self.report.springs += 1;
                     self.follow(SetPoint { joints, ..self.initial });
                     self.supervision.begin();
+                    self.events.restart_detectors(self.report.set_point);
                     self.enter(Stage::Running);
                 }
             }

@@ -5,6 +5,7 @@
 
 mod controller;
 mod encoder;
+mod events;
 mod friction;
 mod gauge;
 mod geometry;
@@ -23,6 +24,7 @@ mod zeroing;
 
 pub use controller::{ConfiguredController, Law, Scheme};
 pub use encoder::ConfiguredEncoder;
+pub use events::ConfiguredEvents;
 pub use friction::ConfiguredFriction;
 pub use gauge::{ConfiguredGauge, GaugeReference};
 pub use geometry::ConfiguredGeometry;
@@ -105,6 +107,8 @@ pub struct ConfiguredFinger {
     pub friction: ConfiguredFriction,
     /// `[finger.monitors]`
     pub monitors: ConfiguredMonitors,
+    /// `[finger.events]`
+    pub events: ConfiguredEvents,
     /// `[finger.zeroing]`
     pub zeroing: ConfiguredZeroing,
     /// `[finger.stiffness]`
@@ -185,6 +189,7 @@ impl Default for ConfiguredFinger {
             links: Default::default(),
             friction: Default::default(),
             monitors: Default::default(),
+            events: Default::default(),
             zeroing: Default::default(),
             stiffness: Default::default(),
             controller: Default::default(),

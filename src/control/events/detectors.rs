@@ -1,0 +1,68 @@
+//! Runs all detectors of a finger in each cycle.
+
+use super::arrival::{Arrival, ArrivalDetector, ArrivalState};
+use super::contact_edges::{ContactBefore, ContactEdges};
+use super::joint_limits::JointLimits;
+use super::observation::Observations;
+use super::tension_bounds::TensionBounds;
+use crate::control::signals::{Report, SetPoint};
+use crate::model::configuration::ConfiguredFinger;
+
+/// All detectors of a finger.
+#[derive(Clone, Debug)]
+pub struct Detectors {
+    contact: ContactEdges,
+    tensions: TensionBounds,
+    joints: JointLimits,
+    arrival: ArrivalDetector,
+}
+
+/// The state of the detectors.
+#[derive(Clone, Copy, Debug)]
+pub struct DetectorState {
+    contact: ContactBefore,
+    /// Whether each tension is beyond a bound.
+    tensions: [bool; 4],
+    /// Whether each joint is at a limit.
+    joints: [bool; 3],
+    arrival: ArrivalState,
+}
+
+impl Detectors {
+    /// Constructs the detectors of a finger with this `rate`, Hz.
+    pub fn new(finger: &ConfiguredFinger, rate: f64) -> Self {
+        Self {
+            contact: ContactEdges::new(&finger.events),
+            tensions: TensionBounds::new(&finger.events),
+            joints: JointLimits::new(finger),
+            arrival: ArrivalDetector::new(&finger.events, rate),
+        }
+    }
+
+    /// Runs the detectors after a cycle with a reply in which the finger followed `set_point`.
+    pub fn observe(&self, state: &mut DetectorState, report: &Report, set_point: &SetPoint) -> Observations {
+        let mut observations = Observations::default();
+        self.contact.observe(&mut state.contact, &report.contact, &mut observations);
+        self.tensions.observe(&mut state.tensions, report, &mut observations);
+        self.joints.observe(&mut state.joints, report, &mut observations);
+        self.arrival.observe(&mut state.arrival, report, set_point, &mut observations);
+        observations
+    }
+}
+
+impl DetectorState {
+    /// Returns the state of a finger that has become a spring and holds this set point. This is no arrival.
+    pub fn holding(set_point: SetPoint) -> Self {
+        Self {
+            contact: ContactBefore::default(),
+            tensions: [false; 4],
+            joints: [false; 3],
+            arrival: ArrivalState::holding(set_point),
+        }
+    }
+
+    /// Returns whether the finger has arrived at its set point and has settled.
+    pub fn arrival(&self) -> Arrival {
+        self.arrival.arrival()
+    }
+}

@@ -1,0 +1,74 @@
+//! The servo's part of a finger's events: the detectors, the log, and the threads that wait for events.
+
+use crate::control::events::{Arrival, DetectorState, Detectors};
+use crate::control::{Report, SetPoint};
+use crate::finger::events::{EventLog, EventWriter, Occurrence, event_log};
+use crate::model::FingerNumber;
+use crate::realtime::{EventCount, LockedMemory, SharedPages};
+
+/// The servo's part of a finger's events.
+pub(super) struct EventOutput {
+    writer: EventWriter,
+    log: EventLog,
+    detectors: DetectorState,
+    /// Whether the last cycle has published events.
+    published: bool,
+    /// The threads that wait for events.
+    readers: Option<SharedPages<EventCount>>,
+}
+
+impl EventOutput {
+    /// Adds the pages of the log to `memory`.
+    pub fn new(finger: FingerNumber, initial: SetPoint, memory: &mut LockedMemory) -> Self {
+        let (writer, log) = event_log(finger);
+        writer.add_to(memory);
+        Self { writer, log, detectors: DetectorState::holding(initial), published: false, readers: None }
+    }
+
+    /// Begins a cycle. Later events get its number and its time, ns.
+    pub fn begin_cycle(&mut self, cycle: u64, time: u64) {
+        self.writer.begin_cycle(cycle, time);
+    }
+
+    /// Writes an event of this cycle.
+    pub fn write(&mut self, occurrence: Occurrence) {
+        self.writer.write(occurrence);
+    }
+
+    /// Publishes the events of this cycle. `next` is the scheduled beginning of the next one, ns.
+    pub fn publish(&mut self, next: u64) {
+        self.published = self.writer.publish(next);
+    }
+
+    /// Starts the detectors anew, when the finger becomes a spring and holds this set point.
+    pub fn restart_detectors(&mut self, set_point: SetPoint) {
+        self.detectors = DetectorState::holding(set_point);
+    }
+
+    /// Runs the detectors after a cycle, and writes their observations to the log.
+    pub fn observe(&mut self, detectors: &Detectors, report: &Report, set_point: &SetPoint) -> Arrival {
+        let observations = detectors.observe(&mut self.detectors, report, set_point);
+        observations.iter().for_each(|observation| self.writer.write(observation.into()));
+        self.detectors.arrival()
+    }
+
+    /// Sets the threads that wait for events.
+    pub fn set_readers(&mut self, readers: SharedPages<EventCount>) {
+        self.readers = Some(readers);
+    }
+
+    /// Wakes a thread that waits for events. Makes one system call if a thread waits, and otherwise none.
+    pub fn announce(&self) {
+        self.readers.iter().for_each(|readers| readers.notify());
+    }
+
+    /// Returns whether the last cycle has published events.
+    pub fn published(&self) -> bool {
+        self.published
+    }
+
+    /// Returns the log.
+    pub fn log(&self) -> &EventLog {
+        &self.log
+    }
+}

@@ -1,0 +1,105 @@
+//! A queue of a hand's events. Planners take events, wait for them, or wait for a descriptor that is readable while
+//! there are events.
+
+use super::queue_state::QueueState;
+use super::readiness::Readiness;
+use super::source::EventSource;
+use crate::finger::events::Event;
+use crate::realtime::now;
+use parking_lot::Mutex;
+use std::io;
+use std::os::fd::RawFd;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A queue of all events of a hand, in the order of their times. All functions may be called from several threads. Each
+/// event is then returned to one of them.
+///
+/// A queue that is not read loses the oldest events, and counts them. An event is in order, except if the servo of
+/// another finger is late by more than two periods. Then the events of that finger come later than those of the others.
+/// The time of an event is always that of its cycle.
+pub struct EventQueue {
+    shared: Arc<QueueState>,
+    readiness: Mutex<Option<Readiness>>,
+}
+
+impl EventQueue {
+    pub(super) fn new(source: Arc<EventSource>) -> Self {
+        Self { shared: Arc::new(QueueState::new(source)), readiness: Mutex::new(None) }
+    }
+
+    /// Takes the earliest event. Returns none if there is no event now.
+    #[must_use]
+    pub fn next(&self) -> Option<Event> {
+        let event = self.shared.take();
+        if event.is_none()
+            && let Some(readiness) = &*self.readiness.lock()
+        {
+            readiness.queue_is_empty();
+        }
+        event
+    }
+
+    /// Waits for an event for at most `limit`, or without a limit if it is none, and takes the event. Returns none
+    /// after the limit, and if the hand is closed.
+    #[must_use]
+    pub fn wait(&self, limit: Option<Duration>) -> Option<Event> {
+        let deadline = deadline(limit);
+        while self.shared.wait_until(deadline, || false) {
+            // Another thread may have taken the event.
+            if let Some(event) = self.next() {
+                return Some(event);
+            }
+        }
+        None
+    }
+
+    /// Waits like [`EventQueue::wait`], but does not take the event. Returns whether there is one. Another thread may
+    /// take it meanwhile.
+    #[must_use]
+    pub fn wait_until_ready(&self, limit: Option<Duration>) -> bool {
+        self.shared.wait_until(deadline(limit), || false)
+    }
+
+    /// Returns whether the hand is closed. Then there are no later events.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.shared.source.is_closed()
+    }
+
+    /// Returns the number of events that this queue has lost, the oldest first, because they were not taken in time.
+    #[must_use]
+    pub fn lost(&self) -> u64 {
+        self.shared.lost()
+    }
+
+    /// Discards all events up to now.
+    pub fn clear(&self) {
+        self.shared.clear();
+    }
+
+    /// Returns a descriptor for poll(2) and select(2). It is readable while there is an event, and when the hand is
+    /// closed. The caller must not read, write or close it. [`EventQueue::next`] makes it unreadable when it finds no
+    /// event. The descriptor is closed with the queue.
+    ///
+    /// # Errors
+    /// Returns the system's error if it cannot create the descriptor or its thread.
+    pub fn descriptor(&self) -> io::Result<RawFd> {
+        let mut readiness = self.readiness.lock();
+        if let Some(readiness) = &*readiness {
+            return Ok(readiness.number());
+        }
+        let started = Readiness::start(self.shared.clone())?;
+        Ok(readiness.insert(started).number())
+    }
+
+    /// Returns the state that a listener needs to wait with a reason to stop.
+    pub(super) fn state(&self) -> &QueueState {
+        &self.shared
+    }
+}
+
+fn deadline(limit: Option<Duration>) -> u64 {
+    let limit = limit.and_then(|limit| u64::try_from(limit.as_nanos()).ok());
+    limit.map_or(u64::MAX, |limit| now().saturating_add(limit))
+}

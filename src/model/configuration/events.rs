@@ -1,0 +1,37 @@
+//! `[finger.events]`: the bounds at which the servo reports an event.
+
+use serde::{Deserialize, Serialize};
+
+/// `[finger.events]`. Without a bound there are no events of its kind.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredEvents {
+    /// Largest difference of any joint from the set point at which the finger counts as arrived, degrees.
+    pub arrived_degrees: f64,
+    /// Largest motion of any joint at which the finger counts as settled, degrees.
+    pub settled_degrees: f64,
+    /// Time for which the joints must not move more than that, ms.
+    pub settled_ms: f64,
+    /// Distance from its limit at which a joint counts as being at the limit, degrees.
+    pub limit_margin_degrees: f64,
+    /// Upper bound of the tension of each tendon, N.
+    pub tension_above: Option<f64>,
+    /// Lower bound of the tension of each tendon, N.
+    pub tension_below: Option<f64>,
+    /// Upper bound of the force at the fingertip, N.
+    pub force_above: Option<f64>,
+}
+
+impl Default for ConfiguredEvents {
+    fn default() -> Self {
+        Self {
+            arrived_degrees: 2.0,
+            settled_degrees: 0.3,
+            settled_ms: 100.0,
+            limit_margin_degrees: 1.0,
+            tension_above: None,
+            tension_below: None,
+            force_above: None,
+        }
+    }
+}
