@@ -328,32 +328,35 @@ _Pragma("push_macro(\"Fault\")") _Pragma("push_macro(\"FaultText\")") _Pragma("p
 _Pragma("push_macro(\"Finger\")") _Pragma("push_macro(\"FingerCommand\")") _Pragma("push_macro(\"FingerRecord\")")
 _Pragma("push_macro(\"FingerStatus\")") _Pragma("push_macro(\"FingerTiming\")") _Pragma("push_macro(\"FingerTip\")")
 _Pragma("push_macro(\"Follows\")") _Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")")
-_Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetRecord\")") _Pragma("push_macro(\"GetStatus\")")
-_Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")") _Pragma("push_macro(\"HandError\")")
-_Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"Kx\")") _Pragma("push_macro(\"LateReplies\")")
-_Pragma("push_macro(\"LostReplies\")") _Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"MeasuredRate\")")
-_Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")") _Pragma("push_macro(\"Minimum\")")
-_Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"Oldest\")")
-_Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OpenHand\")") _Pragma("push_macro(\"Overruns\")")
-_Pragma("push_macro(\"P99\")") _Pragma("push_macro(\"P999\")") _Pragma("push_macro(\"Part\")")
-_Pragma("push_macro(\"Pos\")") _Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"PushFinger\")")
+_Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetObject\")") _Pragma("push_macro(\"GetRecord\")")
+_Pragma("push_macro(\"GetStatus\")") _Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")")
+_Pragma("push_macro(\"HandError\")") _Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"Kx\")")
+_Pragma("push_macro(\"LateReplies\")") _Pragma("push_macro(\"LostReplies\")") _Pragma("push_macro(\"Maximum\")")
+_Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")")
+_Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"Number\")")
+_Pragma("push_macro(\"ObjectState\")") _Pragma("push_macro(\"Oldest\")") _Pragma("push_macro(\"OnCore\")")
+_Pragma("push_macro(\"OpenHand\")") _Pragma("push_macro(\"Overruns\")") _Pragma("push_macro(\"P99\")")
+_Pragma("push_macro(\"P999\")") _Pragma("push_macro(\"Part\")") _Pragma("push_macro(\"Pos\")")
+_Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"Position\")") _Pragma("push_macro(\"PushFinger\")")
 _Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")")
-_Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"SendContact\")") _Pragma("push_macro(\"SendDamping\")")
-_Pragma("push_macro(\"SendGroup\")") _Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"Size\")")
-_Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")")
-_Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")")
-_Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")")
-_Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")") _Pragma("push_macro(\"Tip\")")
-_Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Value\")")
-_Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")") _Pragma("push_macro(\"WakeUpMedian\")")
-_Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")") _Pragma("push_macro(\"WarningValue\")")
-_Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pragma("push_macro(\"ZeroFinger\")")
-_Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")") _Pragma("push_macro(\"const\")")
-_Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")") _Pragma("push_macro(\"float\")")
-_Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")") _Pragma("push_macro(\"long\")")
-_Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")") _Pragma("push_macro(\"sizeof\")")
-_Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")") _Pragma("push_macro(\"typedef\")")
-_Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("push_macro(\"volatile\")")
+_Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"Rotation\")") _Pragma("push_macro(\"SendContact\")")
+_Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendGroup\")") _Pragma("push_macro(\"SendTip\")")
+_Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Spin\")")
+_Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")")
+_Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")") _Pragma("push_macro(\"StopHand\")")
+_Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")")
+_Pragma("push_macro(\"Time\")") _Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"Torque\")")
+_Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Touching\")") _Pragma("push_macro(\"Value\")")
+_Pragma("push_macro(\"Velocity\")") _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")")
+_Pragma("push_macro(\"WakeUpMedian\")") _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")")
+_Pragma("push_macro(\"WarningValue\")") _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")")
+_Pragma("push_macro(\"ZeroFinger\")") _Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")")
+_Pragma("push_macro(\"const\")") _Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")")
+_Pragma("push_macro(\"float\")") _Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")")
+_Pragma("push_macro(\"long\")") _Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")")
+_Pragma("push_macro(\"sizeof\")") _Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")")
+_Pragma("push_macro(\"typedef\")") _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")")
+_Pragma("push_macro(\"volatile\")")
 #undef AdjustFinger
 #undef Answered
 #undef Calibration
@@ -379,6 +382,7 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Force
 #undef ForeignFrames
 #undef GetFault
+#undef GetObject
 #undef GetRecord
 #undef GetStatus
 #undef GetTiming
@@ -395,6 +399,7 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Minimum
 #undef Newest
 #undef Number
+#undef ObjectState
 #undef Oldest
 #undef OnCore
 #undef OpenHand
@@ -404,17 +409,20 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Part
 #undef Pos
 #undef PosSent
+#undef Position
 #undef PushFinger
 #undef Rate
 #undef Realtime
 #undef RecoverHand
 #undef ResetTiming
+#undef Rotation
 #undef SendContact
 #undef SendDamping
 #undef SendGroup
 #undef SendTip
 #undef Size
 #undef SkippedPeriods
+#undef Spin
 #undef Stage
 #undef State
 #undef StatusBits
@@ -428,7 +436,9 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Tip
 #undef Torque
 #undef TorqueScale
+#undef Touching
 #undef Value
+#undef Velocity
 #undef WakeUp99
 #undef WakeUpMaximum
 #undef WakeUpMedian
@@ -815,6 +825,22 @@ struct FingerCommand {
     double Damping;                 /* Ratio of SendDamping. 0: the damping stays. */
 };
 
+/* Result of GetObject. Vectors are in the palm's frame. */
+struct ObjectState {
+    unsigned int Size;              /* In: sizeof (struct ObjectState). Out: bytes written, at most that. */
+    int Touching;                   /* Number of fingers that touch the object. */
+    double Time;                    /* Simulated time since OpenHand, s. It stops while the machine is too busy for
+                                       the simulation. */
+    double Position[3];             /* Position of the middle: x, y, z, cm. */
+    double Rotation[3][3];          /* Rotation matrix from the object's frame to the palm's, row by row. At the
+                                       start it is the unit matrix. */
+    double Velocity[3];             /* Velocity of the middle, cm/s. */
+    double Spin[3];                 /* Angular velocity, rad/s. */
+    double Force[3][3];             /* Force of each finger on the object, N: Force[0] is that of finger 1. It is the
+                                       true force, without the errors of GetTip. It is zero for a finger that does
+                                       not touch the object. */
+};
+
 /* Result of GetRecord: one cycle of a finger, from the black box. */
 struct FingerRecord {
     unsigned int Size;              /* In: sizeof (struct FingerRecord). Out: bytes written, at most that. */
@@ -1173,6 +1199,34 @@ int PushFinger(int, const double *);
 int SendGroup(int, const struct FingerCommand *);
 
 /*
+ GetObject - read pose and motion of the object in the simulated hand
+
+     int GetObject(struct ObjectState *Object);
+
+   Object   result, some milliseconds old at most; set Object->Size before the call
+
+ All simulated fingers touch one object if hand.simulated_object is configured: a ball or a box with
+ mass, friction and gravity, on a table or not. hand.gravity is its gravity.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Object is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small
+   ENOTSUP  no object is configured; no finger is simulated
+
+ Threads: any. Never waits for a servo or for the simulation. Takes less than 1 us.
+
+ Example:
+
+     struct ObjectState Object;
+     Object.Size = sizeof Object;
+     if (GetObject(&Object) == 0)
+         printf("z is %g cm, %d fingers touch\n", Object.Position[2], Object.Touching);
+ */
+int GetObject(struct ObjectState *);
+
+/*
  GetRecord - one cycle of the last two seconds of a finger
 
      int GetRecord(int i, unsigned long Cycle, struct FingerRecord *Record);
@@ -1435,6 +1489,7 @@ typedef char Sun2XpFingerStatusSize[sizeof(struct FingerStatus) == 120 ? 1 : -1]
 typedef char Sun2XpFingerTimingSize[sizeof(struct FingerTiming) == 120 ? 1 : -1];
 typedef char Sun2XpFingerTipSize[sizeof(struct FingerTip) == 160 ? 1 : -1];
 typedef char Sun2XpFingerCommandSize[sizeof(struct FingerCommand) == 40 ? 1 : -1];
+typedef char Sun2XpObjectStateSize[sizeof(struct ObjectState) == 232 ? 1 : -1];
 typedef char Sun2XpFingerRecordSize[sizeof(struct FingerRecord) == 200 ? 1 : -1];
 typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
 #endif
@@ -1593,32 +1648,35 @@ _Pragma("pop_macro(\"Fault\")") _Pragma("pop_macro(\"FaultText\")") _Pragma("pop
 _Pragma("pop_macro(\"Finger\")") _Pragma("pop_macro(\"FingerCommand\")") _Pragma("pop_macro(\"FingerRecord\")")
 _Pragma("pop_macro(\"FingerStatus\")") _Pragma("pop_macro(\"FingerTiming\")") _Pragma("pop_macro(\"FingerTip\")")
 _Pragma("pop_macro(\"Follows\")") _Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")")
-_Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetRecord\")") _Pragma("pop_macro(\"GetStatus\")")
-_Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")") _Pragma("pop_macro(\"HandError\")")
-_Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"Kx\")") _Pragma("pop_macro(\"LateReplies\")")
-_Pragma("pop_macro(\"LostReplies\")") _Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"MeasuredRate\")")
-_Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")") _Pragma("pop_macro(\"Minimum\")")
-_Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"Oldest\")")
-_Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OpenHand\")") _Pragma("pop_macro(\"Overruns\")")
-_Pragma("pop_macro(\"P99\")") _Pragma("pop_macro(\"P999\")") _Pragma("pop_macro(\"Part\")")
-_Pragma("pop_macro(\"Pos\")") _Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"PushFinger\")")
+_Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetObject\")") _Pragma("pop_macro(\"GetRecord\")")
+_Pragma("pop_macro(\"GetStatus\")") _Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")")
+_Pragma("pop_macro(\"HandError\")") _Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"Kx\")")
+_Pragma("pop_macro(\"LateReplies\")") _Pragma("pop_macro(\"LostReplies\")") _Pragma("pop_macro(\"Maximum\")")
+_Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")")
+_Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"Number\")")
+_Pragma("pop_macro(\"ObjectState\")") _Pragma("pop_macro(\"Oldest\")") _Pragma("pop_macro(\"OnCore\")")
+_Pragma("pop_macro(\"OpenHand\")") _Pragma("pop_macro(\"Overruns\")") _Pragma("pop_macro(\"P99\")")
+_Pragma("pop_macro(\"P999\")") _Pragma("pop_macro(\"Part\")") _Pragma("pop_macro(\"Pos\")")
+_Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"Position\")") _Pragma("pop_macro(\"PushFinger\")")
 _Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")")
-_Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"SendContact\")") _Pragma("pop_macro(\"SendDamping\")")
-_Pragma("pop_macro(\"SendGroup\")") _Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"Size\")")
-_Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")")
-_Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")")
-_Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"Tension\")") _Pragma("pop_macro(\"TensionSent\")")
-_Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")") _Pragma("pop_macro(\"Tip\")")
-_Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Value\")")
-_Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")") _Pragma("pop_macro(\"WakeUpMedian\")")
-_Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")") _Pragma("pop_macro(\"WarningValue\")")
-_Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")") _Pragma("pop_macro(\"ZeroFinger\")")
-_Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")") _Pragma("pop_macro(\"const\")")
-_Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")") _Pragma("pop_macro(\"float\")")
-_Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")") _Pragma("pop_macro(\"long\")")
-_Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")") _Pragma("pop_macro(\"sizeof\")")
-_Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")") _Pragma("pop_macro(\"typedef\")")
-_Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")") _Pragma("pop_macro(\"volatile\")")
+_Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"Rotation\")") _Pragma("pop_macro(\"SendContact\")")
+_Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendGroup\")") _Pragma("pop_macro(\"SendTip\")")
+_Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Spin\")")
+_Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")")
+_Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")") _Pragma("pop_macro(\"StopHand\")")
+_Pragma("pop_macro(\"Tension\")") _Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")")
+_Pragma("pop_macro(\"Time\")") _Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"Torque\")")
+_Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Touching\")") _Pragma("pop_macro(\"Value\")")
+_Pragma("pop_macro(\"Velocity\")") _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")")
+_Pragma("pop_macro(\"WakeUpMedian\")") _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")")
+_Pragma("pop_macro(\"WarningValue\")") _Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")")
+_Pragma("pop_macro(\"ZeroFinger\")") _Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")")
+_Pragma("pop_macro(\"const\")") _Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")")
+_Pragma("pop_macro(\"float\")") _Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")")
+_Pragma("pop_macro(\"long\")") _Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")")
+_Pragma("pop_macro(\"sizeof\")") _Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")")
+_Pragma("pop_macro(\"typedef\")") _Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")")
+_Pragma("pop_macro(\"volatile\")")
 #endif
 
 #endif

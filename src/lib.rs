@@ -97,5 +97,11 @@ pub mod events {
     pub use crate::model::configuration::ConfiguredEvents;
 }
 
+/// An object that all fingers of a simulated hand touch.
+pub mod object {
+    pub use crate::model::configuration::{ConfiguredObject, ObjectShape};
+    pub use crate::simulated::ObjectState;
+}
+
 /// The matrix library of the public signatures.
 pub use nalgebra;

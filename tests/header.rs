@@ -16,6 +16,7 @@ const OTHER_CALLS: &[&str] = &[
     "timing_calls.rs",
     "fingertip_calls.rs",
     "group_calls.rs",
+    "object_calls.rs",
     "black_box_calls.rs",
     "calibration_calls.rs",
     "fault_calls.rs",

@@ -21,6 +21,7 @@ mod fingertip_calls;
 mod forked;
 mod group_calls;
 mod memory;
+mod object_calls;
 mod process;
 mod recovery_calls;
 mod refusal;

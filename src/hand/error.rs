@@ -173,6 +173,11 @@ pub enum HandError {
     /// Only a simulated finger can be pushed.
     #[error("finger {0} has a real port: only a simulated finger (`port = \"simulated\"`) can be pushed")]
     NotSimulated(FingerNumber),
+    /// The hand has no simulated object.
+    #[error(
+        "the hand has no simulated object: configure [hand.simulated_object] and a finger with `port = \"simulated\"`"
+    )]
+    NoObject,
 }
 
 impl From<UnusableConfiguration> for HandError {

@@ -12,20 +12,15 @@ use crate::hand::fingers::Fingers;
 use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
 use crate::hand::port_repair::{KnownBoard, PortRepair};
+use crate::hand::simulated_hand::SimulatedHand;
 use crate::hand::{ConfigurationError, HandError, SetPointError};
 use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
-use crate::model::configuration::{Configuration, FINGERS, OnFault, RealTime, Unusable};
+use crate::model::configuration::{Configuration, OnFault, Unusable};
 use crate::model::{Shown, ShownPath, UnusableConfiguration};
-use crate::realtime::{Consumer, CycleTiming, EventCount, Pages, Priority, SharedPages, now, ring};
-use crate::simulated::{Pace, SimulatedBoard, SimulatedPort};
+use crate::realtime::{Consumer, CycleTiming, EventCount, Pages, SharedPages, now, ring};
 use nalgebra::Matrix3;
 use std::path::{Path, PathBuf};
-
-/// Highest SCHED_FIFO priority of a simulated board. A servo has priority 80 by default, so a board does not delay it.
-/// The priority of a board is never higher than that of its finger. If the finger has no such priority, neither has its
-/// board.
-const SIMULATED_BOARD_PRIORITY: u8 = 20;
 
 /// Capacity of the timing rings, s. If nothing is collected for longer than this, timings are lost.
 const UNCOLLECTED: f64 = 0.8;
@@ -97,38 +92,11 @@ pub(super) fn from_here(path: PathBuf) -> PathBuf {
     std::path::absolute(&path).unwrap_or(path)
 }
 
-/// Starts a simulated board at a pseudo-terminal for each of these fingers whose port is `simulated`.
-pub fn simulate(
-    configuration: &Configuration,
-    fingers: Fingers,
-) -> Result<[Option<SimulatedPort>; FINGERS], HandError> {
-    let mut ports = [const { None }; FINGERS];
-    for number in fingers.members() {
-        let finger = &configuration.fingers[number.index()];
-        if !finger.simulated() {
-            continue;
-        }
-        let board = SimulatedBoard::new(configuration, &[number]).map_err(|error| {
-            let unusable = Unusable { key: "simulation", reason: error.to_string() };
-            UnusableConfiguration { finger: Some(number), unusable }
-        })?;
-        let fifo = match configuration.hand.real_time {
-            RealTime::Ignore => 0,
-            _ => finger.priority.min(SIMULATED_BOARD_PRIORITY),
-        };
-        let priority = Priority { fifo, core: None };
-        let port = SimulatedPort::start(board, Pace::patient(configuration.hand.rate), priority)
-            .map_err(HandError::SimulatedPort)?;
-        ports[number.index()] = Some(port);
-    }
-    Ok(ports)
-}
-
 /// Opens the ports of these fingers and shakes hands with each finger. If `limp` is true, the motors stay off.
 pub(super) fn reach(
     configuration: &Configuration,
     fingers: Fingers,
-    simulated: &[Option<SimulatedPort>; FINGERS],
+    simulated: &SimulatedHand,
     limp: bool,
 ) -> Result<Connected, HandError> {
     // The hand reacts to every emergency stop call that is made after this line.
@@ -160,7 +128,7 @@ pub(super) fn reach(
         // The port of a simulated board is not reopened. After the port is lost, the system may use its path for a
         // pseudo-terminal that the planner opens.
         let reconnects = |&number: &FingerNumber| {
-            configuration.fingers[number.index()].reconnect && simulated[number.index()].is_none()
+            configuration.fingers[number.index()].reconnect && simulated.path(number).is_none()
         };
         let reconnect = sharing.iter().any(reconnects);
         repairs.push(PortRepair::new(path, baud, reconnect, boards, repair_end));
@@ -175,12 +143,12 @@ pub(super) fn reach(
 pub fn ports(
     configuration: &Configuration,
     fingers: Fingers,
-    simulated: &[Option<SimulatedPort>; FINGERS],
+    simulated: &SimulatedHand,
 ) -> Vec<(PathBuf, Vec<FingerNumber>)> {
     let mut ports: Vec<(PathBuf, Vec<FingerNumber>)> = Vec::new();
     for number in fingers.members() {
         let named = || PathBuf::from(&configuration.fingers[number.index()].port);
-        let path = simulated[number.index()].as_ref().map_or_else(named, |port| port.path());
+        let path = simulated.path(number).unwrap_or_else(named);
         match ports.iter_mut().find(|(known, _)| *known == path) {
             Some((_, fingers)) => fingers.push(number),
             None => ports.push((path, vec![number])),

@@ -3,14 +3,15 @@
 use crate::finger::{FingerReport, Losses, Stage};
 use crate::hand::dispatcher::Dispatcher;
 use crate::hand::events::EventSource;
-use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach, simulate};
+use crate::hand::opening::{Connected, black_box_folder, check, from_here, reach};
 use crate::hand::reconnection::Recovery;
 use crate::hand::servo_threads::{PortServo, RealtimeState, start};
+use crate::hand::simulated_hand::SimulatedHand;
 use crate::hand::{Configured, Fingers, Found, HandError, find_configuration};
 use crate::model::FingerNumber;
-use crate::model::configuration::{Configuration, FINGERS};
+use crate::model::configuration::Configuration;
 use crate::realtime::{self, Distribution, MonotonicClock, now};
-use crate::simulated::{SimulatedFinger, SimulatedPort};
+use crate::simulated::SimulatedFinger;
 use nalgebra::Vector3;
 use parking_lot::{Mutex, RwLock};
 use std::path::PathBuf;
@@ -40,7 +41,7 @@ pub struct Hand {
     pub(super) events: Arc<EventSource>,
     servos: Vec<JoinHandle<PortServo>>,
     pub(super) recovery: Recovery,
-    simulated: [Option<SimulatedPort>; FINGERS],
+    pub(super) simulated: SimulatedHand,
     /// The configuration in force. Planners can adjust it, and a calibration puts its results into it.
     pub(super) configuration: RwLock<Configuration>,
     /// The configuration file, in which calibration results are stored.
@@ -104,7 +105,7 @@ impl Hand {
         let waiting = MonotonicClock::check_sleep();
         waiting.map_err(|source| HandError::System { doing: "sleep until a given time (clock_nanosleep)", source })?;
         let (folder, file) = (black_box_folder(&configuration)?, file.map(from_here));
-        let simulated = simulate(&configuration, fingers)?;
+        let simulated = SimulatedHand::start(&configuration, fingers)?;
         let Connected { lines, reached, gate, repairs, events } = reach(&configuration, fingers, &simulated, limp)?;
         let recovery = Recovery::new(repairs);
         let dispatcher = Dispatcher::new(reached, gate);
@@ -189,15 +190,15 @@ impl Hand {
     pub fn push_simulated(&self, finger: i32, force: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         self.dispatcher.member(finger)?.admission.read().finite("Force", &force)?;
-        let port = self.simulated[finger.index()].as_ref().ok_or(HandError::NotSimulated(finger))?;
+        if !self.configuration.read().fingers[finger.index()].simulated() {
+            return Err(HandError::NotSimulated(finger));
+        }
         let largest = Vector3::from(force).amax();
         if largest > STRONGEST_PUSH {
             return Err(HandError::TooMuchForce { finger, force: largest, strongest: STRONGEST_PUSH });
         }
         let push = |finger: &mut SimulatedFinger| finger.plant().set_external_force(Vector3::from(force));
-        // The board of a simulated finger has only this address.
-        port.with_finger(self.configuration.read().address(finger), push);
-        Ok(())
+        self.simulated.with_finger(finger, push).ok_or(HandError::NotSimulated(finger))
     }
 
     /// Requests the end state of every finger, and waits until all fingers have reached it or the time limit is over.

@@ -43,7 +43,7 @@ pub struct SimulatedBoard {
 }
 
 /// Duration of one step of the physics, ns.
-const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
+pub(super) const STEP: u64 = (PLANT_STEP_SECONDS * 1e9) as u64;
 const _: () = assert!(STEP == 100_000, "the conversion to whole nanoseconds has rounded the step");
 
 impl SimulatedBoard {
@@ -91,13 +91,19 @@ impl SimulatedBoard {
     /// Advances the physics to `now`, ns. The first call sets the board's clock. A `now` before the present time has no
     /// effect.
     pub fn advance(&mut self, now: u64) {
-        let time = self.time.get_or_insert(now);
-        while *time + STEP <= now {
-            *time += STEP;
+        let mut time = *self.time.get_or_insert(now);
+        while time + STEP <= now {
+            time += STEP;
             self.scene.iter_mut().for_each(|scene| scene.step(self.fingers.iter_mut()));
-            for finger in &mut self.fingers {
-                finger.step(*time);
-            }
+            self.step(time);
+        }
+    }
+
+    /// Advances the fingers by one step, which ends at `time`, ns.
+    pub(super) fn step(&mut self, time: u64) {
+        self.time = Some(time);
+        for finger in &mut self.fingers {
+            finger.step(time);
         }
     }
 

@@ -3,6 +3,7 @@
 
 mod board;
 mod cable;
+mod coupled_ports;
 mod defects;
 mod finger;
 mod line;
@@ -10,9 +11,11 @@ mod pace;
 mod port;
 mod pseudo_terminal;
 mod scene;
+mod shared_time;
 
 pub use board::{SimulatedBoard, SimulatedBoardError};
 pub use cable::SimulatedCable;
+pub use coupled_ports::{CoupledPorts, CoupledPortsError};
 pub use defects::Defect;
 pub use finger::SimulatedFinger;
 pub use line::LineFault;

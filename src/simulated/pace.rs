@@ -1,12 +1,12 @@
 //! Relates the time of a simulated board to real time. It has no clock and no thread; the caller passes both times.
 
 /// The longest time by which one wake-up of the board's thread advances the board's time, ns.
-const LONGEST_STEP: u64 = 2_000_000;
+pub(super) const LONGEST_STEP: u64 = 2_000_000;
 
 /// The longest silence that a [`Pace::Patient`] board attributes to a pause of the machine, ns. A host at 1000 Hz sends
 /// a command again if the answer has not arrived after a hundred cycles. On a busy machine, the cycles of a host that
 /// is not real-time can be some 10 ms apart. The hundred cycles then take about 1 s.
-const PATIENCE: u64 = 2_000_000_000;
+pub(super) const PATIENCE: u64 = 2_000_000_000;
 
 /// The rate at which the time of a simulated board passes.
 ///

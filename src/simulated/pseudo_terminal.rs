@@ -2,9 +2,11 @@
 #![allow(unsafe_code, reason = "raw descriptors")]
 
 use crate::board::descriptor::{Descriptor, check};
+use crate::model::configuration::FINGERS;
 use std::ffi::CStr;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -79,6 +81,24 @@ impl PseudoTerminal {
         }
         sleep(timeout);
         Ok(0)
+    }
+
+    /// Waits until one of these terminals has bytes, at most for `timeout`. Returns whether one has, or has failed.
+    pub fn wait_for_any(terminals: &[Option<Arc<Self>>; FINGERS], timeout: Duration) -> bool {
+        // The system ignores negative numbers.
+        let number = |terminal: &Option<Arc<Self>>| terminal.as_ref().map_or(-1, |own| own.board_end.number());
+        let mut polled = terminals.each_ref().map(|terminal| libc::pollfd {
+            fd: number(terminal),
+            events: libc::POLLIN,
+            revents: 0,
+        });
+        let limit = libc::timespec { tv_sec: 0, tv_nsec: timeout.subsec_nanos().into() };
+        // SAFETY: the pollfds and the time limit live during the call, and the mask of signals may be null.
+        let ready = unsafe { libc::ppoll(polled.as_mut_ptr(), FINGERS as libc::nfds_t, &limit, std::ptr::null()) };
+        if ready < 0 {
+            sleep(timeout);
+        }
+        ready > 0
     }
 
     /// Sends bytes without waiting, as a UART does. Bytes that the host does not read are lost.

@@ -38,6 +38,7 @@ static double NanForce[3] = {1e4, 0, 0}, StrongForce[3] = {1e4, 0, 0}, Force[3];
 static struct FingerStatus Status;
 static struct FingerTiming Timing;
 static struct FingerTip Fingertip;
+static struct ObjectState Object;
 static struct FingerRecord Record;
 static struct FingerCommand Command[2];
 static struct Fault Fault;
@@ -77,6 +78,7 @@ static void null_pointers(void)
     REFUSED("SendContact", SendContact(9, 99, NULL, NULL), "K is");
     REFUSED("SendContact", SendContact(9, 4, Nan[0], NULL), "Normal");
     REFUSED("SendGroup", SendGroup(9, NULL), "Commands");
+    REFUSED("GetObject", GetObject(NULL), "Object");
     REFUSED("AdjustFinger", AdjustFinger(9, NULL), "Keys");
     REFUSED("PushFinger", PushFinger(9, NULL), "Force");
     REFUSED("GetRecord", GetRecord(9, 99, NULL), "Record");
@@ -97,6 +99,7 @@ static void without_hand(void)
     REFUSED("SendContact", SendContact(9, 99, Nan[0], NoNormal), "OpenHand");
     REFUSED("SendDamping", SendDamping(9, NAN), "OpenHand");
     REFUSED("SendGroup", SendGroup(9, Command), "OpenHand");
+    REFUSED("GetObject", GetObject(&Object), "OpenHand");
     REFUSED("AdjustFinger", AdjustFinger(9, "="), "OpenHand");
     REFUSED("PushFinger", PushFinger(9, NanForce), "OpenHand");
     REFUSED("GetRecord", GetRecord(9, 99, &Record), "OpenHand");
@@ -113,6 +116,9 @@ static void small_structs(void)
     REFUSED("GetTip", GetTip(9, &Fingertip), "Size");
     REFUSED("GetRecord", GetRecord(9, 99, &Record), "Size");
     REFUSED("GetFault", GetFault(9, &Fault), "Size");
+    REFUSED("GetObject", GetObject(&Object), "Size");
+    Object.Size = sizeof Object;
+    REFUSED("GetObject", GetObject(&Object), "no simulated object");
     REFUSED("SendGroup", SendGroup(1, Command), "Size");
     Command[0].Size = Command[1].Size = sizeof Command[0];
     Status.Size = sizeof Status;

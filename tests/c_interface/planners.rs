@@ -160,3 +160,17 @@ fn a_group_of_fingers_is_commanded_as_a_whole_or_not_at_all() {
 fn a_fingertip_is_sent_read_and_made_a_contact() {
     succeed(&strict(&["-ansi"]), &["tip.c"]);
 }
+
+#[test]
+fn the_object_of_the_simulated_hand_is_read() {
+    let bench = Bench::new();
+    let program = bench.build(c_compiler(), &strict(&["-ansi"]), &["object.c"]);
+    let mut without = Command::new(&program);
+    without.arg("none");
+    let run = bench.run(without);
+    assert!(run.status.success(), "{}", said(&run));
+    let object = "[hand]\ngravity = [0, 0, 9.81]\n[hand.simulated_object]\nposition = [0, 0, 20]\ntable = 22\n";
+    std::fs::write(bench.path().join("sun2xp.toml"), object).expect("a configuration file");
+    let run = bench.run(Command::new(&program));
+    assert!(run.status.success(), "{}", said(&run));
+}

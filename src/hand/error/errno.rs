@@ -26,7 +26,7 @@ impl HandError {
             Self::BlackBox { source, .. } => errno(source),
             Self::NotStored { source, .. } => source.errno(),
             Self::NoRecord { .. } => libc::ENOENT,
-            Self::NotSimulated(_) => libc::ENOTSUP,
+            Self::NotSimulated(_) | Self::NoObject => libc::ENOTSUP,
         }
     }
 }

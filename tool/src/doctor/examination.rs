@@ -4,7 +4,7 @@ use super::finding::Finding;
 use super::{machine, measured, ports};
 use std::path::Path;
 use std::time::Duration;
-use sun2xp::hand::{Fingers, HandError, check, simulate};
+use sun2xp::hand::{Fingers, HandError, SimulatedHand, check};
 use sun2xp::model::configuration::Configuration;
 
 /// Checks the machine, whose files are below `root` (`/`, except in tests), and the ports of a hand. No program may
@@ -17,7 +17,7 @@ pub fn examine(configuration: &Configuration, root: &Path, duration: Duration) -
     check(configuration)?;
     let mut findings = machine::findings(configuration, root);
     findings.extend(measured::wake_ups(configuration, duration / 2)?);
-    let simulated = simulate(configuration, Fingers::ALL)?;
+    let simulated = SimulatedHand::start(configuration, Fingers::ALL)?;
     findings.extend(ports::findings(configuration, &simulated, root, duration / 2)?);
     Ok(findings)
 }

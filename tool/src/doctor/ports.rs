@@ -10,14 +10,13 @@ use sun2xp::board::{Allowance, Link, LinkError, OutgoingCommand, Port, PortError
 use sun2xp::finger::REPLY_WINDOW;
 use sun2xp::hand::ports;
 use sun2xp::hand::priority;
-use sun2xp::hand::{Fingers, HandError};
+use sun2xp::hand::{Fingers, HandError, SimulatedHand};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, FINGERS};
 use sun2xp::realtime::{
     Clock, CycleStage, CycleTiming, Distribution, Histograms, MonotonicClock, Schedule, now, spawn,
 };
-use sun2xp::simulated::SimulatedPort;
 
 /// Fraction of the reply window. If the 99 % round trip exceeds it, little reserve is left.
 const LONG: f64 = 0.75;
@@ -27,7 +26,7 @@ const TOO_MANY_LOST: f64 = 0.01;
 
 pub(super) fn findings(
     configuration: &Configuration,
-    simulated: &[Option<SimulatedPort>; FINGERS],
+    simulated: &SimulatedHand,
     root: &Path,
     duration: Duration,
 ) -> Result<Vec<Finding>, HandError> {
