@@ -16,7 +16,9 @@ static void child(void)
     struct FingerTip Tip;
     struct FingerRecord Record;
     struct Fault Fault;
+    struct ObjectState Object;
 
+    Object.Size = sizeof Object;
     Status.Size = sizeof Status;
     Timing.Size = sizeof Timing;
     Tip.Size = sizeof Tip;
@@ -30,6 +32,7 @@ static void child(void)
     REFUSED(SendContact(9, 9, NULL, NULL));
     REFUSED(SendDamping(1, 1));
     REFUSED(AdjustFinger(1, ""));
+    REFUSED(GetObject(&Object));
     REFUSED(GetRecord(1, 0, &Record));
     REFUSED(WriteBlackBox(1, "child.jsonl"));
     REFUSED(ZeroFinger(1));

@@ -1,0 +1,151 @@
+/* Grasp.c - three fingers grasp a ball, lift it from the table, hold it and put it down.
+
+   The hand is that of grasp.toml. The fingertips are springs. Their anchors are set inside the ball, and the springs
+   then press the tips against it. Friction carries the weight. The exit status is 0 if the ball is lifted, does not
+   creep while it is held, and is back on the table at the end. The program works with the simulated hand only, because
+   GetObject gives the pose of the ball. C99. */
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+#include "Sun2Xp.h"
+
+#define RADIUS 1.5                      /* of the ball, cm */
+#define CLEAR 0.4                       /* between the open fingertips and the ball, cm */
+#define SQUEEZE 0.8                     /* depth of the anchors below the surface of the ball, cm */
+#define LIFT 1.5                        /* cm */
+#define HOLD 2.0                        /* s */
+#define HALF 0.5
+#define SINE 0.8660254                  /* of 60 degrees */
+
+/* Position of the ball on the table, and the contacts around its equator, in the palm's frame, cm. Fingers 1 and 2 are
+   side by side, and finger 3 is the thumb. The palm faces down, so the table is at z = 12 cm. */
+static const double Start[3] = {0.0, 0.0, 10.5};
+static const double Contact[3][3] = {{SINE, HALF, 0.0}, {-SINE, HALF, 0.0}, {0.0, -1.0, 0.0}};
+
+/* The places of the fingers in the palm, as in docs/sun2xp.toml: the thumb is turned by 180 degrees about z. */
+static const double Base[3][3] = {{3.0, 3.5, 0.0}, {-3.0, 3.5, 0.0}, {0.0, -3.5, 0.0}};     /* cm */
+static const double Turned[3] = {1.0, 1.0, -1.0};
+
+static const double Kx[9] = {3.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 3.0};                  /* N/cm */
+
+static void check(int result)
+{
+    if (result != 0) {
+        fprintf(stderr, "%s\n", HandError());
+        exit(1);
+    }
+}
+
+static struct ObjectState object(void)
+{
+    struct ObjectState Object;
+
+    Object.Size = sizeof Object;
+    check(GetObject(&Object));
+    return Object;
+}
+
+/* Waits for the given simulated time. It passes more slowly than real time on a busy machine. */
+static void pass(double seconds)
+{
+    const struct timespec tick = {0, 2000000};
+    const double end = object().Time + seconds;
+
+    while (object().Time < end)
+        nanosleep(&tick, 0);
+}
+
+/* Sets the anchors of all fingertips in one cycle: at the height of the ball plus up, and at the given distance from
+   its axis, cm. */
+static void anchor(double up, double distance)
+{
+    struct FingerCommand Group[3] = {{0}};
+    double Tip[3][3];
+    int i;
+
+    for (i = 0; i < 3; i++) {
+        Tip[i][0] = Turned[i] * (Start[0] + distance * Contact[i][0] - Base[i][0]);
+        Tip[i][1] = Turned[i] * (Start[1] + distance * Contact[i][1] - Base[i][1]);
+        Tip[i][2] = Start[2] - up - Base[i][2];
+        Group[i].Size = sizeof Group[i];
+        Group[i].Finger = i + 1;
+        Group[i].Tip = Tip[i];
+        Group[i].Kx = Kx;
+    }
+    check(SendGroup(3, Group));
+}
+
+/* Moves the anchors in small steps. */
+static void glide(double up, double distance, double to_up, double to_distance)
+{
+    int step;
+
+    for (step = 1; step <= 20; step++) {
+        anchor(up + (to_up - up) * step / 20, distance + (to_distance - distance) * step / 20);
+        pass(0.05);
+    }
+    pass(0.5);
+}
+
+static void show(const char *doing)
+{
+    struct ObjectState Object = object();
+    int i;
+
+    printf("%-10s  ball at %6.3f %6.3f %6.3f cm, pressed with", doing, Object.Position[0], Object.Position[1],
+           Object.Position[2]);
+    for (i = 0; i < 3; i++)
+        printf(" %4.2f", sqrt(pow(Object.Force[i][0], 2) + pow(Object.Force[i][1], 2) + pow(Object.Force[i][2], 2)));
+    printf(" N\n");
+}
+
+/* Mean position of the ball over 0.1 s. The fingers vibrate by some micrometres. */
+static void average(double *Mean)
+{
+    int tries, axis;
+
+    Mean[0] = Mean[1] = Mean[2] = 0.0;
+    for (tries = 0; tries < 50; tries++) {
+        struct ObjectState Object = object();
+        for (axis = 0; axis < 3; axis++)
+            Mean[axis] += Object.Position[axis] / 50;
+        pass(0.002);
+    }
+}
+
+/* Distance by which the ball moves while it is held, cm. */
+static double hold(double seconds)
+{
+    double Before[3], After[3];
+
+    average(Before);
+    pass(seconds);
+    average(After);
+    return sqrt(pow(After[0] - Before[0], 2) + pow(After[1] - Before[1], 2) + pow(After[2] - Before[2], 2));
+}
+
+int main(void)
+{
+    double lifted, crept, back;
+
+    check(OpenHand());
+    show("opened");
+    anchor(0.0, RADIUS + CLEAR);
+    pass(1.0);
+    show("open");
+    glide(0.0, RADIUS + CLEAR, 0.0, RADIUS - SQUEEZE);
+    show("grasped");
+    glide(0.0, RADIUS - SQUEEZE, LIFT, RADIUS - SQUEEZE);
+    show("lifted");
+    lifted = Start[2] - object().Position[2];
+    crept = hold(HOLD);
+    printf("held for %g s: moved by %.4f cm\n", HOLD, crept);
+    glide(LIFT, RADIUS - SQUEEZE, 0.0, RADIUS - SQUEEZE);
+    glide(0.0, RADIUS - SQUEEZE, 0.0, RADIUS + CLEAR);
+    show("released");
+    back = fabs(object().Position[2] - Start[2]);
+    CloseHand();
+    return lifted > LIFT - 0.3 && crept < 0.01 && back < 0.1 ? 0 : 1;
+}
