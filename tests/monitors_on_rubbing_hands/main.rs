@@ -89,6 +89,36 @@ fn a_hand_that_only_rubs_or_was_measured_badly_has_no_fault() {
     }
 }
 
+/// Poses, degrees, in which the push makes two tendons slack for a moment. The other two tendons meanwhile slide in their
+/// conduits, and turn back when the first two are taut again.
+const SLACKENED: [[f64; 3]; 4] = [[-9.4, 6.6, 41.8], [-9.9, 1.8, 53.1], [-15.5, -4.0, 60.0], [-12.0, 3.0, 50.0]];
+
+/// The tolerance of the stiffness that identification finds is small, so that friction is what remains.
+#[test]
+fn a_tendon_that_hangs_for_a_moment_on_an_identified_hand_is_no_fault() {
+    for pose in SLACKENED {
+        for seed in 0..4 {
+            let mut configuration = Configuration::default();
+            let finger = &mut configuration.fingers[0];
+            (RUBBING.make)(finger);
+            finger.friction.conduit = [0.232; 4];
+            finger.tendon.stiffness_tolerance = 0.047;
+            finger.simulation.start_degrees = pose;
+            finger.simulation.seed = seed;
+            finger.stiffness.initial = [[6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0]];
+            let mut bench = Bench::new(configuration, seed);
+            rest(&mut bench, 300);
+            for newton in [-1.2, 1.2] {
+                bench.with_finger(|finger| finger.plant().set_external_force(Vector3::x() * newton));
+                rest(&mut bench, 500);
+                assert_eq!(bench.fault(), None, "{pose:?}, seed {seed}, {newton} N");
+                bench.with_finger(|finger| finger.plant().set_external_force(Vector3::zeros()));
+                rest(&mut bench, 500);
+            }
+        }
+    }
+}
+
 /// Injects a defect into the rubbing hand, which then moves on. Returns the fault, and the time, ms, from the moment
 /// when `begins` is first true of the finger.
 fn report(seed: u64, defect: impl Fn(u8) -> Defect, begins: impl Fn(&Bench, u8) -> bool) -> (u8, Option<Fault>, f64) {

@@ -87,14 +87,25 @@ pub(super) struct Memory {
     duration: f64,
     /// Tension of each tendon minus the tension that its gauge shows, if the other three gauges are right, N.
     missing: Vector4<f64>,
+    /// Part of `missing` that a change of the directions of friction can cause, N.
+    by_friction: Vector4<f64>,
     /// Mean of pull minus tension of each tendon, N.
     unbalanced: Vector4<f64>,
 }
 
+/// The tensions that the gauges do not show although the stretch of the tendons indicates them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Missing {
+    /// Tension of each tendon minus the tension that its gauge shows, if the other three gauges are right, N.
+    pub tensions: Vector4<f64>,
+    /// Part of it that a change of the directions of friction can cause, N.
+    pub by_friction: Vector4<f64>,
+}
+
 impl Memory {
-    /// Returns `missing` of the last sample, N.
-    pub fn missing(&self) -> Vector4<f64> {
-        self.missing
+    /// Returns the missing tensions of the last sample.
+    pub fn missing(&self) -> Missing {
+        Missing { tensions: self.missing, by_friction: self.by_friction }
     }
 }
 
@@ -148,7 +159,8 @@ impl Agreement {
         terms.fixed_rows_mut::<3>(4).copy_from(&turned);
         let mismatch = &mut memory.mismatch;
         // Friction may have acted in the opposite direction during zeroing.
-        let friction = mismatch.friction(self.friction * self.of_tension.dot(&(tensions + memory.tensions)));
+        let expected = self.friction * self.of_tension.dot(&(tensions + memory.tensions));
+        let friction = mismatch.friction(expected);
         let (explained, deviation) = mismatch.explained(&terms);
         memory.difference = left(disagreement, explained);
         let tolerated = self.tolerance + friction + DEVIATIONS * deviation;
@@ -159,6 +171,7 @@ impl Agreement {
             let by_others = explained - mismatch.explained_by(tendon, &terms);
             left(disagreement, by_others) / self.of_tension[tendon]
         });
+        memory.by_friction = self.of_tension.map(|weight| expected / weight);
         if !hangs && memory.ratio <= 1.0 {
             mismatch.learn(&terms, disagreement, memory.ratio, sample.elapsed);
         }

@@ -3,9 +3,13 @@
 //! A fast motion or an impact makes an intact tendon slack for a moment, and the tendon hangs. A torn or slipping
 //! tendon, or one with a dead gauge, shows no tension although the other three gauges and the encoders indicate that it
 //! is stretched. In these cases the difference between indicated and shown tension appears from one sample to the next.
+//! A tendon that hung is different: the encoders first indicate that it is not stretched. Until it is taut again, the
+//! tendons slide in other directions than before, so their friction may indicate a stretch that does not exist.
+//!
 //! If the difference grew while the gauge still showed tension, the gauge drifts, and the controller keeps the tendon
 //! at the tension that the gauge shows. `agreement` detects that case.
 
+use super::agreement::Missing;
 use super::alarm::{Alarm, Alarms, Symptom, first_of};
 use super::gauge_stuck::{self, Flicker};
 use super::sample::Sample;
@@ -61,6 +65,8 @@ pub(super) struct Memory {
     impulse: Vector4<f64>,
     /// Mean of the missing tension before any tendon became low, N.
     before: Vector4<f64>,
+    /// Whether each tendon has hung since it became low.
+    hung: [bool; 4],
     /// Time for which each tendon has been low with missing tension, s.
     missed: Vector4<f64>,
     /// Time for which the tension of each tendon has been gone, s.
@@ -80,9 +86,8 @@ impl TensionLost {
         Self { low: LOW * minimum, gone: GONE * minimum, missed: MISSED * minimum }
     }
 
-    /// Returns the alarms. `missing` is the tension of each tendon minus the tension that its gauge shows, if the other
-    /// three gauges are right, N.
-    pub fn watch(&self, memory: &mut Memory, sample: &Sample, missing: &Vector4<f64>, flicker: &Flicker) -> Alarms {
+    /// Returns the alarms.
+    pub fn watch(&self, memory: &mut Memory, sample: &Sample, missing: &Missing, flicker: &Flicker) -> Alarms {
         let any_low = sample.tensions.min() < self.low;
         for tendon in 0..4 {
             let tension = sample.tensions[tendon];
@@ -91,10 +96,13 @@ impl TensionLost {
             memory.low[tendon] = counted(memory.low[tendon], low);
             memory.samples[tendon] = if low { memory.samples[tendon].saturating_add(1) } else { 0 };
             if !any_low {
-                memory.before[tendon] += (missing[tendon] - memory.before[tendon]) * (sample.elapsed / BEFORE).min(1.0);
+                let change = missing.tensions[tendon] - memory.before[tendon];
+                memory.before[tendon] += change * (sample.elapsed / BEFORE).min(1.0);
             }
-            let suddenly = missing[tendon] - memory.before[tendon];
-            memory.missed[tendon] = counted(memory.missed[tendon], low && suddenly > self.missed);
+            let suddenly = missing.tensions[tendon] - memory.before[tendon];
+            memory.hung[tendon] = low && (memory.hung[tendon] || suddenly < -self.missed);
+            let by_friction = if memory.hung[tendon] { missing.by_friction[tendon] } else { 0.0 };
+            memory.missed[tendon] = counted(memory.missed[tendon], low && suddenly > self.missed + by_friction);
             memory.gone[tendon] = counted(memory.gone[tendon], tension < self.gone);
             let impulse = memory.impulse[tendon] + tension * sample.elapsed;
             memory.impulse[tendon] = if low { impulse } else { 0.0 };
