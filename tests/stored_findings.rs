@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use sun2xp::calibration::{Findings, Identified, Zeros};
+use sun2xp::calibration::{Findings, Identified, Tolerances, Zeros};
 use sun2xp::hand::{ConfigurationError, Found, read_configuration, store_findings};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
@@ -54,6 +54,7 @@ impl Worker {
                 tendon_stiffness: [100.0 + number; 4].into(),
                 stiffness_tolerance: 0.03,
                 travel_residual: 0.0,
+                tolerances: Tolerances { friction: 0.2, moment_arms: None, gauges: 0.05 },
                 motor_coulomb: [0.07; 4].into(),
                 conduit: [0.05; 4].into(),
                 pulley: [0.02; 4].into(),

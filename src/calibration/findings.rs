@@ -51,6 +51,8 @@ pub struct Identified {
     pub stiffness_tolerance: f64,
     /// Part of the motors' travel that the identified elasticity does not explain: rms residual, cm.
     pub travel_residual: f64,
+    /// The errors that the monitors must tolerate after the identification.
+    pub tolerances: Tolerances,
     /// `friction.motor_coulomb`, N cm of commanded torque.
     pub motor_coulomb: Vector4<f64>,
     /// `friction.conduit`.
@@ -78,6 +80,17 @@ pub struct IdentifiedArms {
     pub r: Matrix3x4<f64>,
     /// `encoder.zero`.
     pub encoder_zero: [i32; 4],
+}
+
+/// How well friction, moment arms and gauges are known after an identification. The residuals of its fits show it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// `monitors.friction_tolerance`.
+    pub friction: f64,
+    /// `monitors.moment_arm_tolerance`, if the moment arms were measured.
+    pub moment_arms: Option<f64>,
+    /// `monitors.gauge_tolerance`.
+    pub gauges: f64,
 }
 
 impl Identified {
@@ -127,6 +140,11 @@ impl Findings {
                 finger.friction.conduit = found.conduit.into();
                 finger.friction.pulley = found.pulley.into();
                 finger.friction.joint_coulomb = found.joint_coulomb.into();
+                finger.monitors.friction_tolerance = found.tolerances.friction;
+                finger.monitors.gauge_tolerance = found.tolerances.gauges;
+                if let Some(tolerance) = found.tolerances.moment_arms {
+                    finger.monitors.moment_arm_tolerance = tolerance;
+                }
                 if let Some(arms) = &found.moment_arms {
                     finger.geometry.r = arms.rows();
                     finger.encoder.zero = arms.encoder_zero;

@@ -84,6 +84,7 @@ impl Identification {
             motor_friction: MotorFriction::new(),
             free: FreeFinger {
                 gains: Vector4::repeat(1.0),
+                gain_uncertainty: 0.0,
                 coulomb: Vector3::zeros(),
                 viscous: Vector3::zeros(),
                 pulley: Vector4::zeros(),

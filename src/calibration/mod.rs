@@ -18,7 +18,7 @@ mod stop_search;
 mod take_up;
 mod zeroing;
 
-pub use findings::{Findings, Identified, IdentifiedArms, Signs, Zeros};
+pub use findings::{Findings, Identified, IdentifiedArms, Signs, Tolerances, Zeros};
 pub use obstacle::Obstacle;
 pub use routine::{Calibration, Task, Verdict};
 pub use step::{Progress, Sample, Step};

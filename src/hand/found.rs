@@ -96,7 +96,12 @@ impl Found {
                     value("friction", "conduit", Numbers::Real(found.conduit.as_slice().into())),
                     value("friction", "pulley", Numbers::Real(found.pulley.as_slice().into())),
                     value("friction", "joint_coulomb", Numbers::Real(found.joint_coulomb.as_slice().into())),
+                    value("monitors", "friction_tolerance", Numbers::One(found.tolerances.friction)),
+                    value("monitors", "gauge_tolerance", Numbers::One(found.tolerances.gauges)),
                 ];
+                if let Some(tolerance) = found.tolerances.moment_arms {
+                    values.push(value("monitors", "moment_arm_tolerance", Numbers::One(tolerance)));
+                }
                 if let Some(arms) = &found.moment_arms {
                     let rows = arms.rows().map(|row| row.to_vec());
                     values.push(value("geometry", "r", Numbers::Rows(rows.into())));

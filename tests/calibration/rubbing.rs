@@ -61,10 +61,11 @@ impl Run {
     fn print(&self, largest: f64, seconds: f64) {
         let friction = &self.belief.friction;
         eprintln!(
-            "{}: {seconds:.0} s, largest {largest:.1} N\n    k {:.1?} tolerance {:.3} residual {:.2} um\n    \
+            "{}: {seconds:.0} s, largest {largest:.1} N, {:.3?}\n    k {:.1?} tolerance {:.3} residual {:.2} um\n    \
              motor {:.4?} conduit {:.4?} \
              pulley {:.4?}\n    joint {:.4?} gain {:.4?} motor ratio {:.4?}\n    joint error {:.4} rad, moment arms {}",
             self.name,
+            self.found.tolerances,
             self.belief.tendon.stiffness,
             self.belief.tendon.stiffness_tolerance,
             self.found.travel_residual * 1e4,
@@ -77,6 +78,32 @@ impl Run {
             self.joint_error,
             self.found.moment_arms.map_or("as configured".into(), |arms| format!("{:.4}", arms.r)),
         );
+    }
+
+    /// The tolerances of the monitors cover what the identification has not found, and are in the configuration.
+    fn check_tolerances(&self) {
+        let (tolerances, monitors) = (self.found.tolerances, &self.belief.monitors);
+        let arms = tolerances.moment_arms.expect("every joint has its stops");
+        assert_eq!(monitors.friction_tolerance, tolerances.friction);
+        assert_eq!((monitors.gauge_tolerance, monitors.moment_arm_tolerance), (tolerances.gauges, arms));
+        let simulation = &self.truth.simulation;
+        let friction = simulation.conduit_friction + simulation.pulley_friction;
+        let (name, most) = (&self.name, friction + simulation.shaft_friction + 0.12);
+        assert!((friction..most).contains(&tolerances.friction), "{name}: {tolerances:?}");
+        let shown: [f64; 4] =
+            std::array::from_fn(|gauge| simulation.gauge_gain_ratio[gauge] * self.found.gauge_gain[gauge]);
+        let mean = shown.iter().sum::<f64>() / 4.0;
+        assert!(shown.iter().all(|gain| (gain / mean - 1.0).abs() <= tolerances.gauges), "{name}: {tolerances:?}");
+        assert!((0.02..0.05 + 0.4 * friction).contains(&tolerances.gauges), "{name}: {tolerances:?}");
+        for joint in 0..3 {
+            let found = self.belief.geometry.r[joint];
+            let largest = found.map(f64::abs).into_iter().fold(0.0, f64::max);
+            for (tendon, found) in found.into_iter().enumerate() {
+                let truth = self.truth.geometry.r[joint][tendon] * simulation.moment_arm_ratio[joint][tendon];
+                assert!((found - truth).abs() <= arms * largest, "{name}: {joint} {tendon}: {found}, not {truth}");
+            }
+        }
+        assert!((0.01..0.03).contains(&arms), "{name}: {tolerances:?}");
     }
 
     fn near(&self, what: &str, found: &[f64], expected: f64, within: f64) {
@@ -94,6 +121,7 @@ impl Run {
         let mean = self.belief.friction.pulley.iter().sum::<f64>() / 4.0;
         self.near("mean pulley friction", &[mean], pulley, 0.003 + 0.05 * pulley);
         assert!(self.joint_error < 0.01 + 0.02 * self.truth.simulation.conduit_friction, "{}", self.name);
+        self.check_tolerances();
         // The friction of conduit and shaft in both directions: half of the difference of the pulls.
         let (conduit, shaft) = (1.0 + self.truth.simulation.conduit_friction, self.truth.simulation.shaft_friction);
         let expected = 0.5 * (conduit * (1.0 + shaft) - (1.0 - shaft) / conduit);

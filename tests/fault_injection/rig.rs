@@ -101,12 +101,17 @@ pub struct Bench {
 
 impl Bench {
     /// Opens the finger and waits until it is a spring.
-    pub fn new(mut configuration: Configuration, seed: u64) -> Self {
+    pub fn new(configuration: Configuration, seed: u64) -> Self {
+        Self::simulating(&configuration.clone(), configuration, seed)
+    }
+
+    /// The same with a finger that differs from the configuration of its controller.
+    pub fn simulating(truth: &Configuration, mut configuration: Configuration, seed: u64) -> Self {
         // Uses the time limits of a real port.
         configuration.fingers[0].port = "in memory".into();
         // A blow can leave a tendon slack by centimetres, and slack is taken up slowly.
         configuration.hand.open_timeout_ms = 30_000;
-        let world = World::new(&configuration, Watch::default());
+        let world = World::new(truth, Watch::default());
         let served = ServedFinger::new(&world, &configuration);
         let terms = Terms::new(&configuration.hand, &configuration.fingers[0]);
         let mut bench = Self {

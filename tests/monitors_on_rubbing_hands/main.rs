@@ -2,6 +2,9 @@
 //! a hand must still be reported in time.
 
 #[allow(dead_code)]
+#[path = "../calibration/bench.rs"]
+mod bench;
+#[allow(dead_code)]
 #[path = "../common/finger_on_a_cable.rs"]
 mod finger_on_a_cable;
 #[allow(dead_code)]
@@ -13,8 +16,9 @@ use nalgebra::Vector3;
 use rig::{Bench, MILLISECOND};
 use std::collections::BTreeMap;
 use std::panic::catch_unwind;
+use sun2xp::calibration::Task;
 use sun2xp::finger::{Fault, FaultKind};
-use sun2xp::model::configuration::Configuration;
+use sun2xp::model::configuration::{Configuration, ConfiguredFinger};
 use sun2xp::simulated::Defect;
 use truths::{RUBBING, Truth, truths};
 
@@ -86,6 +90,32 @@ fn a_hand_that_only_rubs_or_was_measured_badly_has_no_fault() {
             let alarm = life(&mut bench(&truth, seed));
             assert!(alarm.is_none(), "{}, {seed}: {alarm:?}", truth.what);
         }
+    }
+}
+
+/// An identified finger of this hand: the simulated finger, and the configuration with the findings.
+fn identified(truth: &Truth, seed: u64) -> (Configuration, Configuration) {
+    let (mut simulated, mut configuration) = (Configuration::default(), Configuration::default());
+    let finger = &mut simulated.fingers[0];
+    (truth.make)(finger);
+    // Zeroing comes before identification, and removes the offsets.
+    finger.simulation.gauge_offset = [0.0; 4];
+    finger.simulation.seed = seed;
+    let mut bench = bench::Bench::new(finger, &ConfiguredFinger::default(), 1000.0).open();
+    bench.calibrate(Task::Identify).unwrap_or_else(|obstacle| panic!("{}: {obstacle}", truth.what));
+    configuration.fingers[0] = bench.belief;
+    println!("{}: {:?}", truth.what, configuration.fingers[0].monitors);
+    (simulated, configuration)
+}
+
+#[test]
+fn an_identified_hand_has_no_fault() {
+    const OTHERS: [&str; 5] = ["conduit 10 %", "k x1.3", "moment arms +-5 %, other signs", "gauges +5 %", "worn"];
+    for truth in truths().into_iter().filter(|truth| !OTHERS.contains(&truth.what)) {
+        let (simulated, mut configuration) = identified(&truth, 5);
+        configuration.fingers[0].stiffness.initial = [[6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0]];
+        let alarm = life(&mut Bench::simulating(&simulated, configuration, 5));
+        assert!(alarm.is_none(), "{}: {alarm:?}", truth.what);
     }
 }
 

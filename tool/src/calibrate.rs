@@ -205,6 +205,14 @@ fn compare(finger: i32, before: &ConfiguredFinger, after: &ConfiguredFinger) -> 
     row("friction.conduit", list(&old.conduit, 4), list(&new.conduit, 4))?;
     row("friction.pulley", list(&old.pulley, 4), list(&new.pulley, 4))?;
     row("friction.joint_coulomb, N cm", list(&old.joint_coulomb, 4), list(&new.joint_coulomb, 4))?;
+    let tolerances = |finger: &ConfiguredFinger| {
+        let monitors = &finger.monitors;
+        [monitors.friction_tolerance, monitors.moment_arm_tolerance, monitors.gauge_tolerance]
+    };
+    let names = ["friction", "moment_arm", "gauge"];
+    for (name, (old, new)) in names.iter().zip(tolerances(before).into_iter().zip(tolerances(after))) {
+        row(&format!("monitors.{name}_tolerance"), list(&[old], 3), list(&[new], 3))?;
+    }
     for (joint, (old, new)) in before.geometry.r.iter().zip(&after.geometry.r).enumerate() {
         row(&format!("geometry.r, row {}, cm", joint + 1), list(old, 4), list(new, 4))?;
     }

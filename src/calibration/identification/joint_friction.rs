@@ -59,6 +59,9 @@ pub(super) struct JointFriction {
 pub(super) struct FreeFinger {
     /// Factors for the tensions of the gauges. Their mean is 1.
     pub gains: Vector4<f64>,
+    /// Relative uncertainty of the gains: the largest difference between those that one direction of motion gives and
+    /// those of all directions.
+    pub gain_uncertainty: f64,
     /// C, N cm.
     pub coulomb: Vector3<f64>,
     /// b, N cm s/rad.
@@ -82,22 +85,22 @@ impl JointFriction {
     pub fn solve(&self, instruments: &Instruments) -> Result<FreeFinger, Obstacle> {
         let mut found = FreeFinger {
             gains: Vector4::repeat(1.0),
+            gain_uncertainty: 0.0,
             coulomb: Vector3::zeros(),
             viscous: Vector3::zeros(),
             pulley: Vector4::zeros(),
         };
         for _ in 0..ROUNDS {
-            found.gains = self.gains(instruments, &found.pulley)?;
+            (found.gains, found.gain_uncertainty) = self.gains(instruments, &found.pulley)?;
             self.refine(instruments, &mut found)?;
         }
         found.coulomb = found.coulomb.map(|friction| friction.max(0.0));
         Ok(found)
     }
 
-    /// Returns the gains of the gauges if the pulleys have the friction `pulley`.
-    fn gains(&self, instruments: &Instruments, pulley: &Vector4<f64>) -> Result<Vector4<f64>, Obstacle> {
-        let mut rise = Vector4::zeros();
-        for direction in 0..DIRECTIONS {
+    /// Returns the gains of the gauges if the pulleys have the friction `pulley`, and their relative uncertainty.
+    fn gains(&self, instruments: &Instruments, pulley: &Vector4<f64>) -> Result<(Vector4<f64>, f64), Obstacle> {
+        let rises: [Vector4<f64>; DIRECTIONS] = std::array::from_fn(|direction| {
             let level = |high: bool| {
                 let of = |stroke: &Stroke| stroke.direction == direction && stroke.high == high;
                 let mut strokes = self.strokes.iter().rev().filter(|(stroke, _)| of(stroke));
@@ -107,16 +110,22 @@ impl JointFriction {
                     (ways[0] + ways[1]) * 0.5
                 })
             };
-            rise += level(true) - level(false);
-        }
-        let gains = instruments.pretension.component_div(&rise);
-        let gains = gains / gains.mean();
+            level(true) - level(false)
+        });
+        let relative = |rise: &Vector4<f64>| {
+            let gains = instruments.pretension.component_div(rise);
+            gains / gains.mean()
+        };
+        let gains = relative(&rises.iter().sum());
+        // Each direction alone gives all gains too.
+        let spread = rises.iter().map(|rise| (relative(rise).component_div(&gains)).add_scalar(-1.0).amax());
+        let uncertainty = spread.fold(0.0, f64::max);
         match gains.iter().position(|gain| !GAINS.contains(gain)) {
             Some(index) => {
                 let what = "the gain, relative to the other gauges,";
                 Err(Obstacle::Implausible { part: Part::gauge(index), what, value: 1.0 / gains[index] })
             }
-            None => Ok(gains),
+            None => Ok((gains, uncertainty)),
         }
     }
 

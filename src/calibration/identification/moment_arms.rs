@@ -13,7 +13,7 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 
 /// Moment arms that differ from the configured ones by less than this part of the largest moment arm of their joint are
 /// not changed. On the simulated finger the measurement is accurate to 0.3 %.
-const SIGNIFICANT: f64 = 0.01;
+pub(super) const SIGNIFICANT: f64 = 0.01;
 /// Largest plausible difference, as a part of the largest moment arm of the joint.
 const LARGEST: f64 = 0.2;
 /// Largest plausible error of a joint's range with the configured moment arms, as a part of the range. A larger one
@@ -50,6 +50,23 @@ pub(super) struct MomentArmsFound {
 }
 
 impl MomentArms {
+    /// Returns the uncertainty of the moment arms, as a part of the largest moment arm of their joint: half of the
+    /// difference between the arms that the motions up and down give.
+    pub fn uncertainty(
+        &self,
+        instruments: &Instruments,
+        elasticity: &StiffnessFound,
+        stops: &(Vector3<f64>, Vector3<f64>),
+    ) -> f64 {
+        let travel = |rest: &Rest| rest.travel - elasticity.stretch(&rest.tensions, &rest.winding);
+        let of_joint = |joint: usize| {
+            let between = travel(&self.lower[joint + 1]) - travel(&self.lower[joint]);
+            let range = stops.1[joint] - stops.0[joint];
+            0.5 * between.amax() / (range * instruments.tendons.r.row(joint).amax())
+        };
+        (0..3).map(of_joint).fold(0.0, f64::max)
+    }
+
     /// Returns R if it differs from the configured one. `stops` are the angles of the lower and upper stops, rad.
     /// `known` says whether they are known exactly.
     pub fn solve(

@@ -1,14 +1,20 @@
 //! Combines the results of all phases.
 
 use super::Identification;
-use super::moment_arms::MomentArmsFound;
-use super::tendon_stiffness::StiffnessFound;
-use crate::calibration::findings::{Identified, IdentifiedArms};
+use super::joint_friction::FreeFinger;
+use super::moment_arms::{MomentArmsFound, SIGNIFICANT};
+use super::motor_friction::MotorFrictionFound;
+use super::tendon_stiffness::{StiffnessFound, UNCERTAIN};
+use crate::calibration::findings::{Identified, IdentifiedArms, Tolerances};
 use crate::calibration::instruments::Instruments;
 use crate::calibration::obstacle::Obstacle;
+use crate::control::monitors::SHARE_OF_FRICTION;
 use crate::model::configuration::GaugeReference;
 use crate::model::{Part, Tendons};
 use nalgebra::Vector4;
+
+/// Largest configurable tolerance of moment arms and gauges.
+const LARGEST_TOLERANCE: f64 = 0.5;
 
 impl Identification {
     /// Returns all results. The configured reference determines the mean of the gauge gains.
@@ -32,6 +38,7 @@ impl Identification {
             tendon_stiffness: elasticity.stiffness.component_mul(&ratio),
             stiffness_tolerance: elasticity.tolerance,
             travel_residual: elasticity.residual,
+            tolerances: self.tolerances(&free, &motors, elasticity, instruments),
             gauge_gain: free.gains,
             motor_coulomb: motors.coulomb.component_mul(&instruments.radius),
             conduit: motors.conduit,
@@ -45,6 +52,26 @@ impl Identification {
             GaugeReference::Gauges => found,
             GaugeReference::Motors => found.scaled(motors.ratio.mean()),
         })
+    }
+
+    /// Returns the errors that the monitors must tolerate.
+    fn tolerances(
+        &self,
+        free: &FreeFinger,
+        motors: &MotorFrictionFound,
+        elasticity: &StiffnessFound,
+        instruments: &Instruments,
+    ) -> Tolerances {
+        let friction = (motors.conduit + free.pulley).max().max(elasticity.rubbing / SHARE_OF_FRICTION);
+        let moment_arms = self.moment_arms.map(|arms| {
+            let uncertainty = arms.uncertainty(instruments, elasticity, &self.stops);
+            (SIGNIFICANT + uncertainty).min(LARGEST_TOLERANCE)
+        });
+        Tolerances {
+            friction: (friction + UNCERTAIN + elasticity.unexplained).min(1.0),
+            moment_arms,
+            gauges: (UNCERTAIN + free.gain_uncertainty).min(LARGEST_TOLERANCE),
+        }
     }
 
     /// Returns the instruments with other moment arms.

@@ -25,7 +25,7 @@ const WORKING: f64 = 0.42;
 const MEASURED: f64 = 0.6;
 /// Uncertainty of every stiffness. On the simulated finger the identified stiffness is accurate to 0.2 %, but no real
 /// tendon stretches exactly as this model.
-const UNCERTAIN: f64 = 0.02;
+pub(super) const UNCERTAIN: f64 = 0.02;
 /// Tensions are divided by this value, N, so that all coefficients have similar sizes.
 const SCALE: f64 = 10.0;
 
@@ -49,6 +49,11 @@ pub(super) struct StiffnessFound {
     pub tolerance: f64,
     /// Part of the travel that the model does not explain, cm rms.
     pub residual: f64,
+    /// The same as a fraction of the stretch in the range of tensions in which the controller works.
+    pub unexplained: f64,
+    /// Largest difference that the friction of a conduit causes between the mean tension along its tendon and the
+    /// tension at the gauge, as a fraction of the latter.
+    pub rubbing: f64,
     /// c, cm/N, d, cm/N^2, and h, cm/N.
     linear: Vector4<f64>,
     curved: Vector4<f64>,
@@ -115,6 +120,8 @@ impl TendonStiffness {
         let unexplained = residual / (compliance.min() * (most - least));
         let tolerance = UNCERTAIN + off(least).max(off(MEASURED * instruments.maximum)) + unexplained;
         let friction = found.fixed_rows::<4>(8) / SCALE;
-        Ok(StiffnessFound { stiffness, tolerance: tolerance.min(1.0), residual, linear, curved, friction })
+        let rubbing = friction.component_div(&compliance).amax();
+        let tolerance = tolerance.min(1.0);
+        Ok(StiffnessFound { stiffness, tolerance, residual, unexplained, rubbing, linear, curved, friction })
     }
 }

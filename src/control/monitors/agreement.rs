@@ -26,7 +26,7 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 /// Part of the friction along a tendon by which its mean tension can differ from the tension at the gauge. It is a
 /// third if the friction acts at one point between the motor and a gauge in the middle. It is a half if the friction is
 /// distributed evenly and the gauge is at one end.
-const SHARE_OF_FRICTION: f64 = 0.4;
+pub(crate) const SHARE_OF_FRICTION: f64 = 0.4;
 
 /// Expected factor of a joint's term, as a part of the largest. The largest occurs only if the signs of the errors
 /// equal the signs of the moment arms.

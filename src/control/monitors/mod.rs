@@ -18,6 +18,7 @@ mod stalled_motor;
 mod tension_lost;
 mod watch;
 
+pub(crate) use agreement::SHARE_OF_FRICTION;
 pub use alarm::{Alarm, Alarms, Symptom};
 pub use line_quality::LineQuality;
 pub(crate) use watch::Monitors;

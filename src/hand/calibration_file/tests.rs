@@ -1,7 +1,7 @@
 //! Tests of storing results in a file.
 
 use super::*;
-use crate::calibration::{Findings, Identified, IdentifiedArms, Signs, Zeros};
+use crate::calibration::{Findings, Identified, IdentifiedArms, Signs, Tolerances, Zeros};
 use crate::model::FingerNumber;
 use nalgebra::Vector3;
 use std::fs;
@@ -43,6 +43,7 @@ fn friction(stiffness: [f64; 4], conduit: f64) -> Identified {
         tendon_stiffness: stiffness.into(),
         stiffness_tolerance: 0.03,
         travel_residual: 0.0,
+        tolerances: Tolerances { friction: 0.2, moment_arms: None, gauges: 0.05 },
         motor_coulomb: [0.07; 4].into(),
         conduit: [conduit; 4].into(),
         pulley: [0.0; 4].into(),
