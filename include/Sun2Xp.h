@@ -51,8 +51,9 @@
    2. RETURN VALUES, ERRNO
 
    Every call except HandError and FaultText returns an int: 0 if it succeeded, -1 if it was
-   refused. A refused call changes nothing, unless its entry says otherwise. errno gives the kind of
-   the refusal. HandError() gives its cause and the remedy:
+   refused. NextEvent, WaitEvent and EventDescriptor also return larger numbers. A refused call
+   changes nothing, unless its entry says otherwise. errno gives the kind of the refusal.
+   HandError() gives its cause and the remedy:
 
        EPERM      the process is a forked child (chapter 6)
        EFAULT     an argument is a null pointer
@@ -137,7 +138,7 @@
    like C keywords, such as const, volatile, int or float. The exceptions are
 
        SendPos, SendKx, GetPos, SendPosD, SendKxD, GetPosD
-       names that begin with FAULT_, FINGER_, TIMING_, SUN2XP_ or Sun2Xp
+       names that begin with EVENT_, FAULT_, FINGER_, TIMING_, SUN2XP_ or Sun2Xp
        _Pragma, and names that the compiler defines itself
        _Generic, default and sizeof where a C file calls SendPos, SendKx or GetPos
 
@@ -177,10 +178,11 @@
    Sandbox: install a sandbox (seccomp) before OpenHand. If it forbids a system call that threads,
    waits, ports or pseudo-terminals need, OpenHand is refused with the errno of the sandbox.
 
-   Slow calls: OpenHand, CloseHand, RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger and
-   WriteBlackBox run in a thread of the library, and the planner's thread waits for it. A signal
-   handler may jump out of that wait (siglongjmp). The call then continues to its end; until then
-   OpenHand is refused with EBUSY, and CloseHand waits.
+   Slow calls: OpenHand, CloseHand, RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger,
+   WriteBlackBox, OnEvent, EventDescriptor and WaitEvent (while there is no event) run in a thread of
+   the library, and the planner's thread waits for it. A signal handler may jump out of that wait
+   (siglongjmp). The call then continues to its end; until then OpenHand is refused with EBUSY, and
+   CloseHand waits. A WaitEvent that is left takes no event.
 
    Undefined behaviour: the behaviour is undefined if a signal handler jumps out of any other call
    (longjmp, siglongjmp). The same holds if a handler that interrupted a call calls pthread_exit or,
@@ -188,12 +190,13 @@
 
    Memory: OpenHand allocates the memory for the servos, for CloseHand and for all calls that are
    not slow. These calls work even if malloc later returns NULL. OpenHand (12 MiB), RecoverHand,
-   ZeroFinger, IdentifyFinger, AdjustFinger and WriteBlackBox (4 MiB) are refused with ENOMEM if
-   that much memory is not free. If memory runs out while one of them runs, the process is aborted,
-   and the boards' watchdogs end the motion. If less than 4 MiB are free when a finger faults, the
-   fault is reported but no black box is written, and a line on standard error says so. If the
-   library was loaded with dlopen, the first call of a thread needs memory for its thread-local
-   data. If there is none, the C library aborts the process.
+   ZeroFinger, IdentifyFinger, AdjustFinger and WriteBlackBox (4 MiB), OnEvent, EventDescriptor and
+   WaitEvent (64 KiB) are refused with ENOMEM if that much memory is not free. If memory runs out
+   while one of them runs, the process is aborted, and the boards' watchdogs end the motion. If less
+   than 4 MiB are free when a finger faults, the fault is reported but no black box is written, and
+   a line on standard error says so. If the library was loaded with dlopen, the first call of a
+   thread needs memory for its thread-local data. If there is none, the C library aborts the
+   process.
 
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the planner's next
    cancellation point or, with asynchronous cancellation, when the call returns.
@@ -286,7 +289,7 @@
    Later versions of the library add members at the end; a call never writes more than Size bytes.
 
    The examples are statements of a function that has opened the hand, in a file that includes
-   errno.h, signal.h, stdio.h, stdlib.h and unistd.h.
+   errno.h, poll.h, signal.h, stdio.h, stdlib.h and unistd.h.
 
 
    10. FAULTS
@@ -324,17 +327,19 @@ _Pragma("push_macro(\"AdjustFinger\")") _Pragma("push_macro(\"Answered\")") _Pra
 _Pragma("push_macro(\"CloseHand\")") _Pragma("push_macro(\"Computed\")") _Pragma("push_macro(\"CorruptReplies\")")
 _Pragma("push_macro(\"Count\")") _Pragma("push_macro(\"Cycle\")") _Pragma("push_macro(\"Cycles\")")
 _Pragma("push_macro(\"DamagedFrames\")") _Pragma("push_macro(\"Damping\")") _Pragma("push_macro(\"DuplicateReplies\")")
-_Pragma("push_macro(\"Fault\")") _Pragma("push_macro(\"FaultText\")") _Pragma("push_macro(\"Felt\")")
-_Pragma("push_macro(\"Finger\")") _Pragma("push_macro(\"FingerCommand\")") _Pragma("push_macro(\"FingerRecord\")")
-_Pragma("push_macro(\"FingerStatus\")") _Pragma("push_macro(\"FingerTiming\")") _Pragma("push_macro(\"FingerTip\")")
-_Pragma("push_macro(\"Follows\")") _Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")")
-_Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetObject\")") _Pragma("push_macro(\"GetRecord\")")
-_Pragma("push_macro(\"GetStatus\")") _Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")")
-_Pragma("push_macro(\"HandError\")") _Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"Kx\")")
-_Pragma("push_macro(\"LateReplies\")") _Pragma("push_macro(\"LostReplies\")") _Pragma("push_macro(\"Maximum\")")
-_Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")")
-_Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"Number\")")
-_Pragma("push_macro(\"ObjectState\")") _Pragma("push_macro(\"Oldest\")") _Pragma("push_macro(\"OnCore\")")
+_Pragma("push_macro(\"Event\")") _Pragma("push_macro(\"EventDescriptor\")") _Pragma("push_macro(\"Fault\")")
+_Pragma("push_macro(\"FaultText\")") _Pragma("push_macro(\"Felt\")") _Pragma("push_macro(\"Finger\")")
+_Pragma("push_macro(\"FingerCommand\")") _Pragma("push_macro(\"FingerRecord\")") _Pragma("push_macro(\"FingerStatus\")")
+_Pragma("push_macro(\"FingerTiming\")") _Pragma("push_macro(\"FingerTip\")") _Pragma("push_macro(\"Follows\")")
+_Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")") _Pragma("push_macro(\"GetFault\")")
+_Pragma("push_macro(\"GetObject\")") _Pragma("push_macro(\"GetRecord\")") _Pragma("push_macro(\"GetStatus\")")
+_Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")") _Pragma("push_macro(\"HandError\")")
+_Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"Kind\")") _Pragma("push_macro(\"Kx\")")
+_Pragma("push_macro(\"LateReplies\")") _Pragma("push_macro(\"Lost\")") _Pragma("push_macro(\"LostReplies\")")
+_Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")")
+_Pragma("push_macro(\"MemoryLocked\")") _Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")")
+_Pragma("push_macro(\"NextEvent\")") _Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"ObjectState\")")
+_Pragma("push_macro(\"Oldest\")") _Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OnEvent\")")
 _Pragma("push_macro(\"OpenHand\")") _Pragma("push_macro(\"Overruns\")") _Pragma("push_macro(\"P99\")")
 _Pragma("push_macro(\"P999\")") _Pragma("push_macro(\"Part\")") _Pragma("push_macro(\"Pos\")")
 _Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"Position\")") _Pragma("push_macro(\"PushFinger\")")
@@ -347,16 +352,16 @@ _Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")") _
 _Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")")
 _Pragma("push_macro(\"Time\")") _Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"Torque\")")
 _Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Touching\")") _Pragma("push_macro(\"Value\")")
-_Pragma("push_macro(\"Velocity\")") _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")")
-_Pragma("push_macro(\"WakeUpMedian\")") _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")")
-_Pragma("push_macro(\"WarningValue\")") _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")")
-_Pragma("push_macro(\"ZeroFinger\")") _Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")")
-_Pragma("push_macro(\"const\")") _Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")")
-_Pragma("push_macro(\"float\")") _Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")")
-_Pragma("push_macro(\"long\")") _Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")")
-_Pragma("push_macro(\"sizeof\")") _Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")")
-_Pragma("push_macro(\"typedef\")") _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")")
-_Pragma("push_macro(\"volatile\")")
+_Pragma("push_macro(\"Values\")") _Pragma("push_macro(\"Velocity\")") _Pragma("push_macro(\"WaitEvent\")")
+_Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")") _Pragma("push_macro(\"WakeUpMedian\")")
+_Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")") _Pragma("push_macro(\"WarningValue\")")
+_Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pragma("push_macro(\"ZeroFinger\")")
+_Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")") _Pragma("push_macro(\"const\")")
+_Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")") _Pragma("push_macro(\"float\")")
+_Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")") _Pragma("push_macro(\"long\")")
+_Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")") _Pragma("push_macro(\"sizeof\")")
+_Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")") _Pragma("push_macro(\"typedef\")")
+_Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("push_macro(\"volatile\")")
 #undef AdjustFinger
 #undef Answered
 #undef Calibration
@@ -369,6 +374,8 @@ _Pragma("push_macro(\"volatile\")")
 #undef DamagedFrames
 #undef Damping
 #undef DuplicateReplies
+#undef Event
+#undef EventDescriptor
 #undef Fault
 #undef FaultText
 #undef Felt
@@ -389,8 +396,10 @@ _Pragma("push_macro(\"volatile\")")
 #undef GetTip
 #undef HandError
 #undef IdentifyFinger
+#undef Kind
 #undef Kx
 #undef LateReplies
+#undef Lost
 #undef LostReplies
 #undef Maximum
 #undef MeasuredRate
@@ -398,10 +407,12 @@ _Pragma("push_macro(\"volatile\")")
 #undef MemoryLocked
 #undef Minimum
 #undef Newest
+#undef NextEvent
 #undef Number
 #undef ObjectState
 #undef Oldest
 #undef OnCore
+#undef OnEvent
 #undef OpenHand
 #undef Overruns
 #undef P99
@@ -438,7 +449,9 @@ _Pragma("push_macro(\"volatile\")")
 #undef TorqueScale
 #undef Touching
 #undef Value
+#undef Values
 #undef Velocity
+#undef WaitEvent
 #undef WakeUp99
 #undef WakeUpMaximum
 #undef WakeUpMedian
@@ -521,8 +534,10 @@ int OpenHand(void);
 
  Returns 0, or -1 with
    EPERM    forked child
+   EBUSY    in a callback of OnEvent: another thread is opening or closing the hand
 
- Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes.
+ Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes. Waits until the
+ callback of OnEvent has returned, except in this callback.
  */
 int CloseHand(void);
 
@@ -711,6 +726,25 @@ const char *HandError(void);
 #define FAULT_OPENING_TIMED_OUT      48 /* opening timed out */
 #define FAULT_SAME_NUMBER            49 /* same number */
 
+/* The kinds of events (docs/events.md). Numbers never change. */
+#define EVENT_TOUCH_MADE              1 /* touch made */
+#define EVENT_TOUCH_LOST              2 /* touch lost */
+#define EVENT_TOUCH_SLIP              3 /* touch slips */
+#define EVENT_TOUCH_PRESSURE          4 /* touch pressure */
+#define EVENT_CONTACT                 5 /* contact */
+#define EVENT_CONTACT_LOST            6 /* contact lost */
+#define EVENT_SLIP                    7 /* slip */
+#define EVENT_TENSION_BOUND           8 /* tension bound */
+#define EVENT_FORCE_BOUND             9 /* force bound */
+#define EVENT_JOINT_AT_LIMIT         10 /* joint at limit */
+#define EVENT_ARRIVED                11 /* arrived */
+#define EVENT_SETTLED                12 /* settled */
+#define EVENT_FAULT                  13 /* fault */
+#define EVENT_WARNING                14 /* warning */
+#define EVENT_REFLEX_FIRED           15 /* reflex fired */
+#define EVENT_PATH_ENDED             16 /* path ended */
+#define EVENT_EXPIRED                17 /* set point expired */
+
 /* State of a finger (FingerStatus.State, FingerRecord.State) */
 #define FINGER_RUNNING 1            /* The fingertip is the spring that the planner has commanded. */
 #define FINGER_FAULTED 2            /* The finger has stopped because of a fault. Its motors are in the configured
@@ -874,6 +908,23 @@ struct Fault {
                                        (docs/faults.md). */
     double WarningValue;            /* Value of the warning. */
     unsigned long Warnings;         /* Warnings since OpenHand. A warning that persists counts once. */
+};
+
+/* An event: something that happened to a finger in one cycle of its servo. */
+struct Event {
+    unsigned int Size;              /* In: sizeof (struct Event). Out: bytes written, at most that. */
+    int Finger;                     /* Finger, 1 to 3. */
+    int Kind;                       /* Kind of the event: EVENT_... */
+    int Part;                       /* Part of the finger that the event concerns: joint (0 to 2), or tendon, motor,
+                                       gauge or encoder (1 to 4). 0 if the event concerns the whole finger. */
+    unsigned long Cycle;            /* Number of the cycle to which the event belongs, as in FingerStatus.Cycles and
+                                       FingerRecord.Cycle. */
+    unsigned long Lost;             /* Events that were lost since OpenHand, the oldest first, because they were not
+                                       taken in time. */
+    double Time;                    /* Time at which this cycle began, s of CLOCK_MONOTONIC. All events of a cycle
+                                       have the same time. */
+    double Values[4];               /* Values, with the meanings and units of the kind (docs/events.md). Unused
+                                       values are 0. */
 };
 
 /*
@@ -1482,6 +1533,131 @@ int StopHand(void);
  */
 int RecoverHand(int);
 
+/*
+ NextEvent - take the next event
+
+     int NextEvent(struct Event *Event);
+
+   Event    result; set Event->Size before the call
+
+ Takes the earliest event of all fingers since OpenHand that no call has taken yet. Events come in
+ the order of their times, except if a servo is late by more than two periods. Each finger keeps its
+ newest 4096 events. If they are not taken in time, the oldest are lost, and Event->Lost counts them.
+ A callback of OnEvent takes nothing away from this call.
+
+ Returns 1 if there was an event, 0 if there was none, or -1 with
+   EPERM    forked child
+   EFAULT   Event is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small
+
+ Threads: any; each event goes to one thread. Never waits for a servo.
+
+ Example:
+
+     struct Event Event;
+     Event.Size = sizeof Event;
+     while (NextEvent(&Event) == 1)
+         if (Event.Kind == EVENT_SETTLED)
+             printf("finger %d rests at %.2f s\n", Event.Finger, Event.Time);
+ */
+int NextEvent(struct Event *);
+
+/*
+ WaitEvent - wait for the next event
+
+     int WaitEvent(struct Event *Event, int Milliseconds);
+
+   Event         result; set Event->Size before the call
+   Milliseconds  longest wait; 0: no wait; negative: no limit
+
+ Takes an event as NextEvent does, and waits for one if there is none. CloseHand ends the wait.
+
+ Returns 1 if there was an event, 0 if there was none within the time, or -1 with
+   EPERM    forked child
+   EFAULT   Event is null
+   ENODEV   no hand is open, or it was closed meanwhile
+   EINVAL   Size is too small
+
+ Threads: any; each event goes to one thread. Several threads may wait.
+
+ Example, until finger 1 has settled:
+
+     double Pos[3] = {0.0, 0.5, 0.8};
+     struct Event Event;
+     Event.Size = sizeof Event;
+     SendPos(1, Pos);
+     while (WaitEvent(&Event, 5000) == 1)
+         if (Event.Finger == 1 && Event.Kind == EVENT_SETTLED)
+             break;
+ */
+int WaitEvent(struct Event *, int);
+
+/*
+ OnEvent - call a function with each event
+
+     int OnEvent(void (*)(const struct Event *Event, void *Context), void *Context);
+
+   Callback   function to call, or null for none
+   Context    second argument of each call of the function
+
+ From now on a thread of the library, which is not real-time, calls Callback with each event. There
+ is one callback for the hand; a later OnEvent replaces it. While Callback runs, later events wait.
+ Callback may make every call, and must return: no longjmp, pthread_exit or exception.
+
+ When OnEvent or CloseHand has returned, the previous callback is not running and is not called
+ again. If they are called by the callback itself, they do not wait for it, and it is not called
+ again after it has returned.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   ENODEV   no hand is open
+   EAGAIN   the system refuses to start a thread
+
+ Threads: any, and Callback. Waits until the previous callback has returned.
+
+ Example:
+
+     static void OnContact(const struct Event *Event, void *Context)
+     {
+         (void)Context;
+         if (Event->Kind == EVENT_CONTACT)
+             printf("finger %d touches something\n", Event->Finger);
+     }
+
+     OnEvent(OnContact, NULL);
+ */
+int OnEvent(void (*)(const struct Event*, void*), void *);
+
+/*
+ EventDescriptor - a descriptor for poll and select
+
+     int EventDescriptor(void);
+
+ The descriptor is readable while NextEvent would return an event, and when the hand is closed.
+ NextEvent makes it unreadable when it returns 0, so call NextEvent until it returns 0 after each
+ poll. Do not read, write or close the descriptor. CloseHand closes it.
+
+ Returns the descriptor, the same one until CloseHand, or -1 with
+   EPERM    forked child
+   ENODEV   no hand is open
+   EMFILE, ENFILE, EAGAIN ...  the system refuses the descriptor or the thread
+
+ Threads: any.
+
+ Example:
+
+     struct pollfd Ready;
+     struct Event Event;
+     Ready.fd = EventDescriptor();
+     Ready.events = POLLIN;
+     Event.Size = sizeof Event;
+     while (poll(&Ready, 1, 1000) == 1)
+         while (NextEvent(&Event) == 1)
+             printf("event %d\n", Event.Kind);
+ */
+int EventDescriptor(void);
+
 
 /* These do not compile if the compiler lays out structs differently than the library. */
 #ifdef __LP64__
@@ -1492,6 +1668,7 @@ typedef char Sun2XpFingerCommandSize[sizeof(struct FingerCommand) == 40 ? 1 : -1
 typedef char Sun2XpObjectStateSize[sizeof(struct ObjectState) == 232 ? 1 : -1];
 typedef char Sun2XpFingerRecordSize[sizeof(struct FingerRecord) == 200 ? 1 : -1];
 typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
+typedef char Sun2XpEventSize[sizeof(struct Event) == 72 ? 1 : -1];
 #endif
 
 #endif /* SUN2XP_FIVE_CALLS */
@@ -1644,17 +1821,19 @@ _Pragma("pop_macro(\"AdjustFinger\")") _Pragma("pop_macro(\"Answered\")") _Pragm
 _Pragma("pop_macro(\"CloseHand\")") _Pragma("pop_macro(\"Computed\")") _Pragma("pop_macro(\"CorruptReplies\")")
 _Pragma("pop_macro(\"Count\")") _Pragma("pop_macro(\"Cycle\")") _Pragma("pop_macro(\"Cycles\")")
 _Pragma("pop_macro(\"DamagedFrames\")") _Pragma("pop_macro(\"Damping\")") _Pragma("pop_macro(\"DuplicateReplies\")")
-_Pragma("pop_macro(\"Fault\")") _Pragma("pop_macro(\"FaultText\")") _Pragma("pop_macro(\"Felt\")")
-_Pragma("pop_macro(\"Finger\")") _Pragma("pop_macro(\"FingerCommand\")") _Pragma("pop_macro(\"FingerRecord\")")
-_Pragma("pop_macro(\"FingerStatus\")") _Pragma("pop_macro(\"FingerTiming\")") _Pragma("pop_macro(\"FingerTip\")")
-_Pragma("pop_macro(\"Follows\")") _Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")")
-_Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetObject\")") _Pragma("pop_macro(\"GetRecord\")")
-_Pragma("pop_macro(\"GetStatus\")") _Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")")
-_Pragma("pop_macro(\"HandError\")") _Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"Kx\")")
-_Pragma("pop_macro(\"LateReplies\")") _Pragma("pop_macro(\"LostReplies\")") _Pragma("pop_macro(\"Maximum\")")
-_Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")")
-_Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"Number\")")
-_Pragma("pop_macro(\"ObjectState\")") _Pragma("pop_macro(\"Oldest\")") _Pragma("pop_macro(\"OnCore\")")
+_Pragma("pop_macro(\"Event\")") _Pragma("pop_macro(\"EventDescriptor\")") _Pragma("pop_macro(\"Fault\")")
+_Pragma("pop_macro(\"FaultText\")") _Pragma("pop_macro(\"Felt\")") _Pragma("pop_macro(\"Finger\")")
+_Pragma("pop_macro(\"FingerCommand\")") _Pragma("pop_macro(\"FingerRecord\")") _Pragma("pop_macro(\"FingerStatus\")")
+_Pragma("pop_macro(\"FingerTiming\")") _Pragma("pop_macro(\"FingerTip\")") _Pragma("pop_macro(\"Follows\")")
+_Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")") _Pragma("pop_macro(\"GetFault\")")
+_Pragma("pop_macro(\"GetObject\")") _Pragma("pop_macro(\"GetRecord\")") _Pragma("pop_macro(\"GetStatus\")")
+_Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")") _Pragma("pop_macro(\"HandError\")")
+_Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"Kind\")") _Pragma("pop_macro(\"Kx\")")
+_Pragma("pop_macro(\"LateReplies\")") _Pragma("pop_macro(\"Lost\")") _Pragma("pop_macro(\"LostReplies\")")
+_Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")")
+_Pragma("pop_macro(\"MemoryLocked\")") _Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")")
+_Pragma("pop_macro(\"NextEvent\")") _Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"ObjectState\")")
+_Pragma("pop_macro(\"Oldest\")") _Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OnEvent\")")
 _Pragma("pop_macro(\"OpenHand\")") _Pragma("pop_macro(\"Overruns\")") _Pragma("pop_macro(\"P99\")")
 _Pragma("pop_macro(\"P999\")") _Pragma("pop_macro(\"Part\")") _Pragma("pop_macro(\"Pos\")")
 _Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"Position\")") _Pragma("pop_macro(\"PushFinger\")")
@@ -1667,16 +1846,16 @@ _Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")") _Pr
 _Pragma("pop_macro(\"Tension\")") _Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")")
 _Pragma("pop_macro(\"Time\")") _Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"Torque\")")
 _Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Touching\")") _Pragma("pop_macro(\"Value\")")
-_Pragma("pop_macro(\"Velocity\")") _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")")
-_Pragma("pop_macro(\"WakeUpMedian\")") _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")")
-_Pragma("pop_macro(\"WarningValue\")") _Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")")
-_Pragma("pop_macro(\"ZeroFinger\")") _Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")")
-_Pragma("pop_macro(\"const\")") _Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")")
-_Pragma("pop_macro(\"float\")") _Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")")
-_Pragma("pop_macro(\"long\")") _Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")")
-_Pragma("pop_macro(\"sizeof\")") _Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")")
-_Pragma("pop_macro(\"typedef\")") _Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")")
-_Pragma("pop_macro(\"volatile\")")
+_Pragma("pop_macro(\"Values\")") _Pragma("pop_macro(\"Velocity\")") _Pragma("pop_macro(\"WaitEvent\")")
+_Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")") _Pragma("pop_macro(\"WakeUpMedian\")")
+_Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")") _Pragma("pop_macro(\"WarningValue\")")
+_Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")") _Pragma("pop_macro(\"ZeroFinger\")")
+_Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")") _Pragma("pop_macro(\"const\")")
+_Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")") _Pragma("pop_macro(\"float\")")
+_Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")") _Pragma("pop_macro(\"long\")")
+_Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")") _Pragma("pop_macro(\"sizeof\")")
+_Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")") _Pragma("pop_macro(\"typedef\")")
+_Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")") _Pragma("pop_macro(\"volatile\")")
 #endif
 
 #endif

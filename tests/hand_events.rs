@@ -61,7 +61,7 @@ fn every_queue_and_every_listener_gets_every_event_in_order() {
     let (first, second) = (hand.events(), hand.events());
     let heard = Arc::new(Mutex::new(Vec::new()));
     let noted = heard.clone();
-    let listener = hand.on_event(move |event| noted.lock().expect("not poisoned").push(*event)).expect("a thread");
+    let listener = hand.on_event(move |event, _| noted.lock().expect("not poisoned").push(*event)).expect("a thread");
     for finger in 1..=3 {
         hand.send_position(finger, TARGET).expect("sent");
     }
@@ -117,7 +117,7 @@ fn closing_the_hand_ends_every_wait() {
     queue.clear();
     let calls = Arc::new(AtomicUsize::new(0));
     let counted = calls.clone();
-    let count = move |_: &Event| {
+    let count = move |_: &Event, _| {
         counted.fetch_add(1, Ordering::Relaxed);
     };
     let listener = hand.on_event(count).expect("a thread");
@@ -141,7 +141,7 @@ fn a_listener_may_end_itself_and_call_the_hand() {
     let own = Arc::new(Mutex::new(None));
     let ended = Arc::new(AtomicUsize::new(0));
     let (inside, own_inside, count) = (hand.clone(), own.clone(), ended.clone());
-    let listener = hand.on_event(move |event| {
+    let listener = hand.on_event(move |event, _| {
         inside.position(event.finger.get()).expect("a position");
         // Dropping the listener in its own function does not wait for that function.
         drop(own_inside.lock().expect("not poisoned").take());

@@ -6,6 +6,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::{env, fs};
 use sun2xp::finger::FaultKind;
+use sun2xp::finger::events::EventKind;
 
 /// The five calls of 1990 and HandError.
 const CALLS_OF_1990: &[&str] = &["calls.rs"];
@@ -21,6 +22,7 @@ const OTHER_CALLS: &[&str] = &[
     "calibration_calls.rs",
     "fault_calls.rs",
     "recovery_calls.rs",
+    "event_calls.rs",
 ];
 
 /// Keywords of C and C++ that the header uses outside of the declarations.
@@ -47,6 +49,15 @@ fn faults() -> String {
         format!("#define FAULT_{:<22} {:>2} /* {} */", description.constant, kind.number(), description.name)
     };
     FaultKind::ALL.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// A constant for each kind of event.
+fn events() -> String {
+    let line = |kind: &EventKind| {
+        let description = kind.description();
+        format!("#define EVENT_{:<22} {:>2} /* {} */", description.constant, kind.number(), description.name)
+    };
+    EventKind::ALL.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// The chapters of the manual as a C comment.
@@ -115,15 +126,22 @@ fn beside(declaration: &str, comment: &str) -> String {
 /// the declaration has them.
 fn without_parameter_names(line: &str) -> String {
     let call = line.starts_with("int ") || line.starts_with("const char *");
+    let line = without_name_of_function(line);
     let Some((call, parameters)) = line.strip_suffix(");").filter(|_| call).and_then(|line| line.split_once('('))
     else {
-        return line.to_string();
+        return line;
     };
     let kind = |parameter: &str| {
         let kind = parameter.trim_end_matches(|letter: char| letter.is_alphanumeric() || letter == '_');
         if parameter == "void" { parameter.to_string() } else { kind.trim_end().to_string() }
     };
     format!("{call}({});", parameters.split(", ").map(kind).collect::<Vec<_>>().join(", "))
+}
+
+/// Removes the name of a parameter that is a pointer to a function.
+fn without_name_of_function(line: &str) -> String {
+    let named = line.split_once("(*").and_then(|(before, rest)| Some((before, rest.split_once(')')?.1)));
+    named.map_or_else(|| line.to_string(), |(before, after)| format!("{before}(*){after}"))
 }
 
 /// The declarations without their comments.
@@ -214,9 +232,11 @@ fn the_committed_header_is_the_one_of_the_exports() {
     let body = format!(
         "{calls_of_1990}\n\n\
          #ifndef SUN2XP_FIVE_CALLS\n\n\
-         /* The faults (chapter 10). Numbers never change. */\n{}\n{others}\n\n{sizes}\n\
+         /* The faults (chapter 10). Numbers never change. */\n{}\n\n\
+         /* The kinds of events (docs/events.md). Numbers never change. */\n{}\n{others}\n\n{sizes}\n\
          #endif /* SUN2XP_FIVE_CALLS */\n",
-        faults()
+        faults(),
+        events()
     );
     let (shield, unshield) = shields(&names(&code(&format!("{calls_of_1990}{others}"))));
     let (before, after) =

@@ -3,6 +3,7 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use sun2xp::events::Event;
 use sun2xp::groups::FingerCommand;
 use sun2xp::hand::Hand;
 use sun2xp::model::configuration::Configuration;
@@ -10,6 +11,9 @@ use sun2xp::model::configuration::Configuration;
 static BY_SERVOS: AtomicU64 = AtomicU64::new(0);
 static BY_REPORTS: AtomicU64 = AtomicU64::new(0);
 static BY_OTHERS: AtomicU64 = AtomicU64::new(0);
+
+/// Number of events.
+static EVENTS: AtomicU64 = AtomicU64::new(0);
 
 struct Counting;
 
@@ -47,9 +51,22 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
+/// Opens a hand whose tensions cross a bound in every motion of finger 1.
+fn open() -> Hand {
+    let mut configuration = Configuration::default();
+    configuration.fingers[0].events.tension_above = Some(7.0);
+    Hand::open(configuration).expect("the simulated hand")
+}
+
+fn note(_: &Event, _: u64) {
+    EVENTS.fetch_add(1, Relaxed);
+}
+
 #[test]
 fn a_servo_thread_allocates_nothing_while_it_runs() {
-    let hand = Hand::open(Configuration::default()).expect("the simulated hand");
+    let hand = open();
+    // This thread waits for events, so the servos wake it.
+    let _listener = hand.on_event(note).expect("a thread");
     assert!(BY_SERVOS.load(Relaxed) > 0, "starting a thread allocates: the counter must see it");
     let before = BY_SERVOS.load(Relaxed);
     // This part begins with empty black boxes and lasts until they are full. Storing a record must never allocate: when
@@ -102,4 +119,5 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
     hand.adjust(2, "zeroing.method = \"pose\"").expect("adjusted");
     hand.zero(2, |_| {}).expect("zeroed");
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads, calibrating");
+    assert!(EVENTS.load(Relaxed) > 10, "there were events: {}", EVENTS.load(Relaxed));
 }

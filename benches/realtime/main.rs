@@ -4,12 +4,14 @@
 //!     cargo bench --bench realtime -- throughput [--seconds 5] [--priority 0]
 //!     cargo bench --bench realtime -- planner [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- groups [--groups 10000]
+//!     cargo bench --bench realtime -- events [--repeats 5] [--seconds 5]
 //!     cargo bench --bench realtime -- long-run [--minutes 30]
 //!
 //! wake-up and long-run need cyclictest (Debian: rt-tests), and wake-up also needs stress-ng. The sides of a comparison
 //! alternate within one run. Without a name, everything except the long run is measured.
 
 mod cyclictest;
+mod events;
 mod explain;
 mod fingers;
 mod groups;
@@ -45,6 +47,8 @@ enum Figure {
     /// they can.
     Planner(Turns),
     Groups(groups::Arguments),
+    /// Measures the wake-up latency of the servos with and without 10 000 events a second.
+    Events(Turns),
     LongRun(long_run::Arguments),
 }
 
@@ -54,6 +58,7 @@ fn main() -> Result<(), Failure> {
         Some(Figure::Throughput(arguments)) => throughput::run(&arguments),
         Some(Figure::Planner(turns)) => planner::run(&turns),
         Some(Figure::Groups(arguments)) => groups::run(&arguments),
+        Some(Figure::Events(turns)) => events::run(&turns),
         Some(Figure::LongRun(arguments)) => long_run::run(&arguments),
         None => {
             // A measurement that fails does not prevent the others.
@@ -62,6 +67,7 @@ fn main() -> Result<(), Failure> {
                 throughput::run(&throughput::Arguments::default()),
                 planner::run(&Turns::default()),
                 groups::run(&groups::Arguments::default()),
+                events::run(&Turns::default()),
             ];
             measured.into_iter().collect()
         }

@@ -1,10 +1,11 @@
 //! Medians and percentiles.
 
-/// Median, 99th percentile and maximum, us.
+/// Median, 99th and 99.9th percentiles and maximum, us.
 #[derive(Clone, Copy, Default)]
 pub struct Percentiles {
     pub median: f64,
     pub p99: f64,
+    pub p999: f64,
     pub maximum: f64,
 }
 
@@ -14,7 +15,12 @@ impl Percentiles {
         times.sort_unstable();
         let at =
             |part: f64| times.get((times.len() as f64 * part) as usize).map_or(f64::NAN, |&time| time as f64 * 1e-3);
-        Self { median: at(0.5), p99: at(0.99), maximum: times.last().map_or(f64::NAN, |&time| time as f64 * 1e-3) }
+        Self {
+            median: at(0.5),
+            p99: at(0.99),
+            p999: at(0.999),
+            maximum: times.last().map_or(f64::NAN, |&time| time as f64 * 1e-3),
+        }
     }
 }
 

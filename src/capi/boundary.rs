@@ -23,7 +23,7 @@ pub(super) const MEMORY_OF_HAND: usize = 12 << 20;
 pub(super) const MEMORY_OF_CALL: usize = 4 << 20;
 
 /// Memory that the thread of a call may need, bytes.
-const MEMORY_OF_THREAD: usize = 64 * 1024;
+pub(super) const MEMORY_OF_THREAD: usize = 64 * 1024;
 
 /// Runs a quick call. Returns 0, or -1 if it is refused. `call` must have no cancellation point.
 #[inline(always)]

@@ -6,6 +6,7 @@
 #![allow(non_snake_case)]
 
 use crate::capi::boundary::{MEMORY_OF_HAND, delegated, delegated_or_done_here, guarded, uncancelled};
+use crate::capi::default_events::in_callback;
 use crate::capi::default_hand;
 use crate::capi::memory::{load, load_rows, non_null};
 use crate::capi::refusal::{self, Wanted};
@@ -56,11 +57,14 @@ pub extern "C" fn OpenHand() -> c_int {
 ///
 /// Returns 0, or -1 with
 ///   EPERM    forked child
+///   EBUSY    in a callback of OnEvent: another thread is opening or closing the hand
 ///
-/// Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes.
+/// Threads: any. Waits for an OpenHand or CloseHand of another thread, then closes. Waits until the
+/// callback of OnEvent has returned, except in this callback.
 #[unsafe(no_mangle)]
 pub extern "C" fn CloseHand() -> c_int {
-    delegated_or_done_here("CloseHand", default_hand::close)
+    let close = if in_callback() { default_hand::close_in_callback } else { default_hand::close };
+    delegated_or_done_here("CloseHand", close)
 }
 
 /// SendPos - send desired joint angles to a finger

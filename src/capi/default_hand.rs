@@ -1,6 +1,7 @@
 //! The one hand of the C calls.
 
 use crate::calibration::Task;
+use crate::capi::default_events;
 use crate::capi::process;
 use crate::capi::refusal::{self, Refusal};
 use crate::hand::{self, Calibrating, CalibrationState, Hand, HandError, Recovering};
@@ -41,16 +42,31 @@ pub(super) fn open() -> Result<(), Refusal> {
     // If the process exits, this line returns an error, and the return drops the hand, which closes it. The exit
     // handler waits only briefly for this call, so it cannot be relied on to close this hand.
     refuse_while_exiting()?;
+    default_events::open(&hand);
     *HAND.write() = Some(hand);
     Ok(())
 }
 
 pub(super) fn close() -> Result<(), Refusal> {
     let _closing = LIFECYCLE.lock();
+    close_hand(false);
+    Ok(())
+}
+
+/// Closes the hand on behalf of the planner's callback for events.
+pub(super) fn close_in_callback() -> Result<(), Refusal> {
+    // A CloseHand of another thread waits for the callback, so waiting for that call would be a deadlock.
+    let Some(_closing) = LIFECYCLE.try_lock() else { return Err(Refusal::Busy) };
+    close_hand(true);
+    Ok(())
+}
+
+fn close_hand(in_callback: bool) {
     let hand = HAND.write().take();
     // Dropping the hand takes a long time. `HAND` is already unlocked, so other calls are refused instead of waiting.
     drop(hand);
-    Ok(())
+    // The callback may take longer than the hand.
+    default_events::close(in_callback);
 }
 
 fn close_at_exit() {
@@ -63,6 +79,7 @@ fn close_at_exit() {
     {
         hand.end();
     }
+    default_events::end(LONGEST_WAIT_AT_EXIT);
 }
 
 /// Runs `call` on the open hand.

@@ -52,15 +52,61 @@ pub(super) unsafe fn fill<T>(
     least: usize,
     read: impl FnOnce(&Hand) -> Result<T, HandError>,
 ) -> Result<(), Refusal> {
+    // SAFETY: the contract of this function.
+    let size = unsafe { size_given(out, name) }?;
+    let whole = default_hand::with(|hand| {
+        refuse_below(size, name, least)?;
+        Ok::<T, Refusal>(read(hand)?)
+    })?;
+    // SAFETY: the contract of this function, and `out` is not null.
+    unsafe { copy_out(whole, out, size) };
+    Ok(())
+}
+
+/// Fills a struct of the caller with the next of several values, if there is one. Returns whether there was one.
+/// `source` finds the place from which `next` takes the value. Nothing is taken if Size is too small. Otherwise like
+/// [`fill`].
+///
+/// # Safety
+/// As for [`fill`].
+pub(super) unsafe fn fill_next<T, S>(
+    out: *mut T,
+    name: &'static str,
+    least: usize,
+    source: impl FnOnce() -> Result<S, Refusal>,
+    next: impl FnOnce(S) -> Option<T>,
+) -> Result<bool, Refusal> {
+    // SAFETY: the contract of this function.
+    let size = unsafe { size_given(out, name) }?;
+    let source = source()?;
+    refuse_below(size, name, least)?;
+    let Some(whole) = next(source) else { return Ok(false) };
+    // SAFETY: the contract of this function, and `out` is not null.
+    unsafe { copy_out(whole, out, size) };
+    Ok(true)
+}
+
+/// Returns the Size of a struct of the caller.
+///
+/// # Safety
+/// `out` is null, or points to at least a Size.
+unsafe fn size_given<T>(out: *mut T, name: &'static str) -> Result<usize, Refusal> {
     // The type name contains the path of its module.
     let of_type = type_name::<T>().rsplit("::").next().unwrap_or_default();
     non_null(out, name, Wanted::Struct(of_type))?;
     // SAFETY: `out` is not null, as checked above. By the contract its first member exists; the others may not.
-    let size = unsafe { out.cast::<c_uint>().read_unaligned() } as usize;
-    let mut whole = default_hand::with(|hand| match size < least {
-        true => Err(Refusal::SmallStruct { name, size, least }),
-        false => Ok(read(hand)?),
-    })?;
+    Ok(unsafe { out.cast::<c_uint>().read_unaligned() } as usize)
+}
+
+fn refuse_below(size: usize, name: &'static str, least: usize) -> Result<(), Refusal> {
+    if size < least { Err(Refusal::SmallStruct { name, size, least }) } else { Ok(()) }
+}
+
+/// Copies a struct to the caller, up to `size` bytes.
+///
+/// # Safety
+/// `T` is `repr(C)` and begins with a Size of type `c_uint`. `out` points to `size` bytes.
+unsafe fn copy_out<T>(mut whole: T, out: *mut T, size: usize) {
     let filled = size.min(size_of::<T>());
     let from = (&raw mut whole).cast::<u8>();
     // SAFETY: `whole` begins with its Size. `filled` exceeds neither the caller's room nor the size of `whole`.
@@ -68,5 +114,4 @@ pub(super) unsafe fn fill<T>(
         from.cast::<c_uint>().write(filled as c_uint);
         from.copy_to_nonoverlapping(out.cast(), filled);
     }
-    Ok(())
 }

@@ -26,11 +26,13 @@ impl Hand {
     }
 
     /// Calls `callback` with each event from now on, in an ordinary thread of its own, until the listener is dropped or
-    /// the hand is closed. The callback may make every call of the hand. While it runs, later events wait.
+    /// the hand is closed. The second argument is the number of events that the listener has lost, the oldest first,
+    /// because the callback was too slow. The callback may make every call of the hand. While it runs, later events
+    /// wait.
     ///
     /// # Errors
     /// Returns an error if the system cannot start a thread.
-    pub fn on_event(&self, callback: impl FnMut(&Event) + Send + 'static) -> Result<EventListener, HandError> {
+    pub fn on_event(&self, callback: impl FnMut(&Event, u64) + Send + 'static) -> Result<EventListener, HandError> {
         let queue = self.events();
         queue.clear();
         EventListener::start(queue, callback)

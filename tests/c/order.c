@@ -42,6 +42,7 @@ static struct ObjectState Object;
 static struct FingerRecord Record;
 static struct FingerCommand Command[2];
 static struct Fault Fault;
+static struct Event Event;
 
 static void make_arguments(void)
 {
@@ -84,6 +85,8 @@ static void null_pointers(void)
     REFUSED("GetRecord", GetRecord(9, 99, NULL), "Record");
     REFUSED("WriteBlackBox", WriteBlackBox(9, NULL), "Path");
     REFUSED("GetFault", GetFault(9, NULL), "Fault");
+    REFUSED("NextEvent", NextEvent(NULL), "Event");
+    REFUSED("WaitEvent", WaitEvent(NULL, 0), "Event");
 }
 
 static void without_hand(void)
@@ -107,6 +110,10 @@ static void without_hand(void)
     REFUSED("ZeroFinger", ZeroFinger(9), "OpenHand");
     REFUSED("GetFault", GetFault(9, &Fault), "OpenHand");
     REFUSED("RecoverHand", RecoverHand(9), "OpenHand");
+    REFUSED("NextEvent", NextEvent(&Event), "OpenHand");
+    REFUSED("WaitEvent", WaitEvent(&Event, -1), "OpenHand");
+    REFUSED("OnEvent", OnEvent(NULL, NULL), "OpenHand");
+    REFUSED("EventDescriptor", EventDescriptor(), "OpenHand");
 }
 
 static void small_structs(void)
@@ -120,6 +127,8 @@ static void small_structs(void)
     Object.Size = sizeof Object;
     REFUSED("GetObject", GetObject(&Object), "no simulated object");
     REFUSED("SendGroup", SendGroup(1, Command), "Size");
+    REFUSED("NextEvent", NextEvent(&Event), "Size");
+    REFUSED("WaitEvent", WaitEvent(&Event, -1), "Size");
     Command[0].Size = Command[1].Size = sizeof Command[0];
     Status.Size = sizeof Status;
     Timing.Size = sizeof Timing;

@@ -63,6 +63,11 @@ fn arrays_of_variable_length_are_what_their_elements_are() {
 }
 
 #[test]
+fn events_are_taken_and_waited_for_in_every_way() {
+    succeed(&strict(&["-ansi"]), &["events.c"]);
+}
+
+#[test]
 fn null_pointers_are_refused() {
     succeed(&strict(&["-ansi"]), &["null.c"]);
 }

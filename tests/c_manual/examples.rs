@@ -6,7 +6,7 @@ use std::os::unix::fs::symlink;
 use std::process::Command;
 
 /// The headers that chapter 9 names for examples that consist of statements.
-const INCLUDED: &[&str] = &["errno.h", "signal.h", "stdio.h", "stdlib.h", "unistd.h"];
+const INCLUDED: &[&str] = &["errno.h", "poll.h", "signal.h", "stdio.h", "stdlib.h", "unistd.h"];
 
 /// For some examples: the call that the example belongs to, statements that run before it to prepare it, and statements
 /// that run after it to check that it worked.

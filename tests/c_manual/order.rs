@@ -10,7 +10,10 @@ use std::process::Command;
 /// recoveries in progress, and some of the system's.
 const NOT_TRIED: &[(&str, &[&str])] = &[
     ("OpenHand", &["EACCES", "EIO", "ETIMEDOUT", "EPERM", "ENOMEM"]),
+    ("CloseHand", &["EBUSY"]),
     ("SendGroup", &["EBUSY"]),
+    ("OnEvent", &["EAGAIN"]),
+    ("EventDescriptor", &["EMFILE", "ENFILE", "EAGAIN"]),
     ("ZeroFinger", &["EBUSY", "ECANCELED", "ETIMEDOUT", "EACCES", "ENOSPC"]),
     ("RecoverHand", &["EIO", "EBUSY", "ENOENT", "EACCES", "ETIMEDOUT"]),
     ("WriteBlackBox", &["EACCES", "ENOSPC"]),

@@ -22,7 +22,7 @@ pub struct EventListener {
 
 impl EventListener {
     /// Starts the thread.
-    pub(super) fn start(queue: EventQueue, mut callback: impl FnMut(&Event) + Send + 'static) -> io::Result<Self> {
+    pub(super) fn start(queue: EventQueue, mut callback: impl FnMut(&Event, u64) + Send + 'static) -> io::Result<Self> {
         let (queue, stop) = (Arc::new(queue), Arc::new(AtomicBool::new(false)));
         let (events, ends) = (queue.clone(), stop.clone());
         let process = id();
@@ -30,7 +30,7 @@ impl EventListener {
             let stops = || ends.load(Ordering::Acquire);
             while !stops() && events.state().wait_until(u64::MAX, stops) {
                 let Some(event) = events.next().filter(|_| !stops()) else { continue };
-                callback(&event);
+                callback(&event, events.lost());
                 if id() != process {
                     // The callback has forked, and this is the child. The events belong to its parent.
                     return;

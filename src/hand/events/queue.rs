@@ -5,7 +5,11 @@ use super::queue_state::QueueState;
 use super::readiness::Readiness;
 use super::source::EventSource;
 use crate::finger::events::Event;
+#[cfg(feature = "internals")]
+use crate::finger::events::EventLog;
 use crate::realtime::now;
+#[cfg(feature = "internals")]
+use crate::realtime::{EventCount, SharedPages};
 use parking_lot::Mutex;
 use std::io;
 use std::os::fd::RawFd;
@@ -26,6 +30,13 @@ pub struct EventQueue {
 impl EventQueue {
     pub(super) fn new(source: Arc<EventSource>) -> Self {
         Self { shared: Arc::new(QueueState::new(source)), readiness: Mutex::new(None) }
+    }
+
+    /// Returns a queue of logs that do not belong to a hand, for benchmarks. Their writers notify `readers`. `period`
+    /// is in ns.
+    #[cfg(feature = "internals")]
+    pub fn of_logs(logs: Vec<EventLog>, readers: SharedPages<EventCount>, period: u64) -> Self {
+        Self::new(Arc::new(EventSource::new(logs, readers, period)))
     }
 
     /// Takes the earliest event. Returns none if there is no event now.
