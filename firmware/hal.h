@@ -34,6 +34,10 @@ void hal_send(unsigned line, const uint8_t *bytes, size_t length);
 /* Encoder counters and ADC: samples all eight sensors together. */
 void hal_sample(unsigned finger, struct sensors *sensors);
 
+/* Tactile element: its newest count. Returns false if the element cannot be read. Called only for a finger with
+   CAPABILITY_TACTILE, once a millisecond or more often, so it must not wait for a converter. */
+bool hal_touch(unsigned finger, unsigned element, uint16_t *count);
+
 /* PWM: sets the currents that the motor drivers hold from now on, uA. The board defines the positive direction. All
    zeros must remove the torque, whatever state the drivers are in. */
 void hal_set_currents(unsigned finger, const int32_t microamperes[MOTORS]);

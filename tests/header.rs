@@ -18,6 +18,7 @@ const OTHER_CALLS: &[&str] = &[
     "fingertip_calls.rs",
     "group_calls.rs",
     "object_calls.rs",
+    "touch_calls.rs",
     "black_box_calls.rs",
     "calibration_calls.rs",
     "fault_calls.rs",

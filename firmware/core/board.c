@@ -37,6 +37,7 @@ static int expected_length(uint8_t type)
     case TYPE_CONFIGURE: return CONFIGURE_LENGTH;
     case TYPE_COMMAND: return COMMAND_LENGTH;
     case TYPE_STOP: return STOP_LENGTH;
+    case TYPE_TACTILE_REQUEST: return TACTILE_REQUEST_LENGTH;
     default: return -1;
     }
 }
@@ -59,6 +60,7 @@ static void answer(struct board *board, const struct frame *request, uint32_t ar
         case TYPE_HELLO: finger_hello(finger, request, addresses(board), &reply); break;
         case TYPE_CONFIGURE: finger_configure(finger, request, &reply); break;
         case TYPE_COMMAND: finger_command(finger, request, arrived_at, &reply); break;
+        case TYPE_TACTILE_REQUEST: finger_touch(finger, request, &reply); break;
         default: finger_stop(finger, request, arrived_at, &reply); break;
         }
     }

@@ -101,6 +101,8 @@ void finger_tick(struct finger *finger, uint32_t now)
     }
     if (finger->holding && passed(finger->held_since, now, finger->terms.hold_time_ms))
         motors_off(finger);
+    if (finger->traits->capabilities & CAPABILITY_TACTILE)
+        touch_scan(&finger->touch, &finger->traits->touch, finger->index, now);
 }
 
 static uint16_t status(const struct finger *finger)
@@ -215,6 +217,17 @@ void finger_command(struct finger *finger, const struct frame *request, uint32_t
     finger->damaged = false;
     answer_begin(finger, request, TYPE_REPLY, answer);
     write_reply(answer, reported, &sensors, (uint16_t)(sampled_at & 0xFFFFu));
+}
+
+void finger_touch(struct finger *finger, const struct frame *request, struct frame *answer)
+{
+    if ((finger->traits->capabilities & CAPABILITY_TACTILE) == 0) {
+        finger_refuse(finger, request, REASON_UNKNOWN_FRAME, TACTILE_REQUEST_LENGTH, answer);
+        return;
+    }
+    struct tactile_event event = touch_fetch(&finger->touch, frame_get8(request, 2));
+    answer_begin(finger, request, TYPE_TACTILE_EVENT, answer);
+    write_tactile_event(answer, &event);
 }
 
 void finger_stop(struct finger *finger, const struct frame *request, uint32_t now, struct frame *answer)

@@ -4,6 +4,7 @@
 #define FIRMWARE_FINGER_H
 
 #include "messages.h"
+#include "touch.h"
 
 /* The properties of a finger that are fixed when the board is built. */
 struct finger_traits {
@@ -18,6 +19,7 @@ struct finger_traits {
     uint32_t capabilities;
     uint32_t torque_constants[MOTORS]; /* Used where a Configure says 0; uN m/A, not 0. */
     int32_t largest_currents[MOTORS];  /* Currents that driver and motor can carry continuously, uA. */
+    struct touch_traits touch;         /* Used with CAPABILITY_TACTILE. */
 };
 
 enum finger_state { FINGER_IDLE, FINGER_READY, FINGER_ENABLED, FINGER_ENDED };
@@ -33,6 +35,7 @@ struct finger {
     uint16_t latched;      /* Status bits that stay set until the next Configure. */
     uint32_t commanded_at; /* Arrival of the last Command that restarted the watchdog, us. */
     uint32_t held_since;   /* Start of the hold, us. */
+    struct touch touch;
 };
 
 /* The state after power-up: idle, with the motors off. */
@@ -47,6 +50,7 @@ void finger_tick(struct finger *finger, uint32_t now);
 void finger_hello(struct finger *finger, const struct frame *request, uint16_t addresses, struct frame *answer);
 void finger_configure(struct finger *finger, const struct frame *request, struct frame *answer);
 void finger_command(struct finger *finger, const struct frame *request, uint32_t now, struct frame *answer);
+void finger_touch(struct finger *finger, const struct frame *request, struct frame *answer);
 void finger_stop(struct finger *finger, const struct frame *request, uint32_t now, struct frame *answer);
 
 /* Turns `answer` into a Refused. */

@@ -85,6 +85,17 @@ void write_reply(struct frame *frame, uint16_t status, const struct sensors *sen
     frame_put16(frame, sampled_at);
 }
 
+void write_tactile_event(struct frame *frame, const struct tactile_event *event)
+{
+    frame_put8(frame, event->waiting);
+    frame_put8(frame, event->number);
+    frame_put8(frame, event->change);
+    frame_put16(frame, event->element);
+    frame_put16(frame, event->count);
+    frame_put32(frame, event->noticed_at);
+    frame_put8(frame, event->lost);
+}
+
 void write_stopped(struct frame *frame, uint16_t status)
 {
     frame_put16(frame, status);

@@ -42,6 +42,13 @@ struct identity {
     uint32_t capabilities;
 };
 
+struct tactile_event {
+    uint8_t waiting, number, change;
+    uint16_t element, count;
+    uint32_t noticed_at; /* us. */
+    uint8_t lost;
+};
+
 /* Type and length of the frame must have been checked. */
 void read_hello(const struct frame *frame, struct hello *hello);
 void read_configure(const struct frame *frame, struct configure *configure);
@@ -52,6 +59,7 @@ void write_identity(struct frame *frame, const struct identity *identity);
 void write_configured(struct frame *frame, const struct configure *terms, const struct sensors *sensors,
                       uint16_t status);
 void write_reply(struct frame *frame, uint16_t status, const struct sensors *sensors, uint16_t sampled_at);
+void write_tactile_event(struct frame *frame, const struct tactile_event *event);
 void write_stopped(struct frame *frame, uint16_t status);
 void write_refused(struct frame *frame, uint8_t type, uint8_t reason, uint16_t detail);
 

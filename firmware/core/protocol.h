@@ -11,16 +11,18 @@ enum {
     TYPE_CONFIGURE = 0x2,
     TYPE_COMMAND = 0x3,
     TYPE_STOP = 0x4,
+    TYPE_TACTILE_REQUEST = 0x6,
     TYPE_IDENTITY = 0x9,
     TYPE_CONFIGURED = 0xA,
     TYPE_REPLY = 0xB,
     TYPE_STOPPED = 0xC,
     TYPE_REFUSED = 0xD,
+    TYPE_TACTILE_EVENT = 0xE,
     TYPE_IS_ANSWER = 0x8
 };
 
 /* Body lengths of the requests that a board receives. */
-enum { HELLO_LENGTH = 2, CONFIGURE_LENGTH = 32, COMMAND_LENGTH = 9, STOP_LENGTH = 0 };
+enum { HELLO_LENGTH = 2, CONFIGURE_LENGTH = 32, COMMAND_LENGTH = 9, STOP_LENGTH = 0, TACTILE_REQUEST_LENGTH = 1 };
 
 /* A Hello to address 0 is for the finger with the lowest address on the board. */
 enum { ANY_ADDRESS = 0, HIGHEST_ADDRESS = 15 };
@@ -40,6 +42,16 @@ enum { FIELD_VERSION = 2, FIELD_WATCHDOG = 3, FIELD_END_STATE = 5, FIELD_TORQUE_
 
 /* Flags of a Command. */
 enum { FLAG_TOGGLE = 1 << 0, FLAG_ENABLE = 1 << 1 };
+
+/* Changes of a tactile element. */
+enum {
+    CHANGE_NOTHING = 0,
+    CHANGE_MADE = 1,
+    CHANGE_LOST = 2,
+    CHANGE_SLIP = 3,
+    CHANGE_PRESSURE = 4,
+    CHANGE_INVALID = 5
+};
 
 /* Bits of the status. */
 enum {

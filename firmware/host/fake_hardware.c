@@ -9,7 +9,9 @@ struct fake_hardware fake;
         .address = number, .unique_number = {'f', 'a', 'k', 'e', number}, .firmware_version = {1, 0, 0},               \
         .counts_per_revolution = 2000, .gauge_bits = 12, .torque_unit = 2000, .torque_limit = 30000,                   \
         .shortest_watchdog_ms = 2,                                                                                     \
-        .capabilities = CAPABILITY_HOLD | CAPABILITY_KEEPS_ZERO | CAPABILITY_EMERGENCY_STOP | CAPABILITY_TOGGLE_PIN,   \
+        .capabilities = CAPABILITY_HOLD | CAPABILITY_KEEPS_ZERO | CAPABILITY_EMERGENCY_STOP | CAPABILITY_TOGGLE_PIN |  \
+                        (number == 2 ? CAPABILITY_TACTILE : 0),                                                       \
+        .touch = {.elements = 2, .made = 50, .lost = 25, .step = 100},                                                 \
         .torque_constants = {20000, 20000, 20000, 20000}, .largest_currents = {3000000, 3000000, 3000000, 3000000},    \
     }
 
@@ -52,6 +54,13 @@ void hal_sample(unsigned finger, struct sensors *sensors)
 void hal_set_currents(unsigned finger, const int32_t microamperes[MOTORS])
 {
     memcpy(fake.currents[finger], microamperes, sizeof fake.currents[finger]);
+}
+
+bool hal_touch(unsigned finger, unsigned element, uint16_t *count)
+{
+    (void)finger;
+    *count = fake.touch[element];
+    return !fake.touch_broken[element];
 }
 
 uint16_t hal_faults(unsigned finger)

@@ -17,11 +17,14 @@ struct fake_hardware {
     uint16_t faults;
     int32_t currents[FAKE_FINGERS][MOTORS];
     struct sensors sensors;
+    uint16_t touch[TOUCH_ELEMENTS_MOST];
+    bool touch_broken[TOUCH_ELEMENTS_MOST];
 };
 
 extern struct fake_hardware fake;
 
-/* Fingers 1 and 2 of a board with every capability that the core supports. */
+/* Fingers 1 and 2 of a board with every capability that the core supports, except that only finger 2 has tactile
+   elements. */
 extern const struct finger_traits fake_traits[FAKE_FINGERS];
 
 /* The torque that corresponds to the current on a motor, torque units. The torque constant is in uN m/A. */

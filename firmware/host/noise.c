@@ -58,7 +58,8 @@ static unsigned long long accepted, answered, enabled;
 static size_t some_request(uint8_t wire[WIRE_MOST])
 {
     struct frame frame;
-    uint8_t type = (uint8_t)(below(8) == 0 ? below(16) : 1 + below(4));
+    static const uint8_t types[5] = {TYPE_HELLO, TYPE_CONFIGURE, TYPE_COMMAND, TYPE_STOP, TYPE_TACTILE_REQUEST};
+    uint8_t type = below(8) == 0 ? (uint8_t)below(16) : types[below(5)];
     uint8_t address = (uint8_t)(below(8) == 0 ? below(16) : 1 + below(2));
     frame_begin(&frame, type, address, (uint8_t)any());
     if (type == TYPE_CONFIGURE && below(4) != 0) {
@@ -72,8 +73,15 @@ static size_t some_request(uint8_t wire[WIRE_MOST])
         for (size_t i = 0; i < MOTORS; i++)
             frame_put32(&frame, below(3) == 0 ? 0 : any() >> below(32));
     } else {
-        static const size_t lengths[5] = {0, HELLO_LENGTH, CONFIGURE_LENGTH, COMMAND_LENGTH, STOP_LENGTH};
-        size_t length = type <= 4 && below(16) != 0 ? lengths[type] : below(FRAME_MOST - FRAME_LEAST + 1);
+        static const size_t lengths[TYPE_TACTILE_REQUEST + 1] = {
+            [TYPE_HELLO] = HELLO_LENGTH,
+            [TYPE_CONFIGURE] = CONFIGURE_LENGTH,
+            [TYPE_COMMAND] = COMMAND_LENGTH,
+            [TYPE_STOP] = STOP_LENGTH,
+            [TYPE_TACTILE_REQUEST] = TACTILE_REQUEST_LENGTH,
+        };
+        bool exact = type <= TYPE_TACTILE_REQUEST && below(16) != 0;
+        size_t length = exact ? lengths[type] : below(FRAME_MOST - FRAME_LEAST + 1);
         for (size_t i = 0; i < length; i++)
             frame_put8(&frame, (uint8_t)(below(2) == 0 ? below(4) : any()));
     }

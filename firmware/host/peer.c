@@ -83,6 +83,14 @@ void hal_set_currents(unsigned finger, const int32_t microamperes[MOTORS])
     }
 }
 
+bool hal_touch(unsigned finger, unsigned element, uint16_t *count)
+{
+    (void)finger;
+    (void)element;
+    (void)count;
+    return false;
+}
+
 uint16_t hal_faults(unsigned finger)
 {
     (void)finger;

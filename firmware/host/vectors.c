@@ -110,6 +110,17 @@ static bool write_answer(struct frame *frame, uint8_t type)
         write_reply(frame, status, &sensors, (uint16_t)number("sampled_at", 0));
     } else if (type == TYPE_STOPPED) {
         write_stopped(frame, status);
+    } else if (type == TYPE_TACTILE_EVENT) {
+        struct tactile_event event = {
+            .waiting = (uint8_t)number("waiting", 0),
+            .number = (uint8_t)number("number", 0),
+            .change = (uint8_t)number("change", 0),
+            .element = (uint16_t)number("element", 0),
+            .count = (uint16_t)number("count", 0),
+            .noticed_at = (uint32_t)number("noticed_at", 0),
+            .lost = (uint8_t)number("lost", 0),
+        };
+        write_tactile_event(frame, &event);
     } else if (type == TYPE_REFUSED) {
         uint8_t request = (uint8_t)number("request", 0), reason = (uint8_t)number("reason", 0);
         write_refused(frame, request, reason, (uint16_t)number("detail", 0));

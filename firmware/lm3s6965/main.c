@@ -10,7 +10,9 @@
         .address = number, .unique_number = {'l', 'm', '3', 's', '6', '9', '6', '5', 0, 0, 0, number},                 \
         .firmware_version = {1, 0, 0}, .counts_per_revolution = 2000, .gauge_bits = 12, .torque_unit = 2000,           \
         .torque_limit = 23750, .shortest_watchdog_ms = 2,                                                              \
-        .capabilities = CAPABILITY_HOLD | CAPABILITY_KEEPS_ZERO | CAPABILITY_EMERGENCY_STOP | CAPABILITY_TOGGLE_PIN,   \
+        .capabilities = CAPABILITY_HOLD | CAPABILITY_KEEPS_ZERO | CAPABILITY_EMERGENCY_STOP | CAPABILITY_TOGGLE_PIN |  \
+                        CAPABILITY_TACTILE,                                                                           \
+        .touch = {.elements = PLANT_ELEMENTS, .made = 50, .lost = 25, .step = 100},                                    \
         .torque_constants = {23400, 23400, 23400, 23400}, .largest_currents = {2100000, 2100000, 2100000, 2100000},    \
     }
 

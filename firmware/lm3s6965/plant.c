@@ -12,7 +12,9 @@ struct request {
 struct answer {
     int32_t encoders[MOTORS];
     uint16_t gauges[MOTORS];
-    uint16_t faults, unused;
+    uint16_t faults;
+    uint16_t touch[PLANT_ELEMENTS];
+    uint16_t unused;
 };
 
 /* How old the plant's last answer may become before plant_poll queries it, us. */
@@ -22,6 +24,7 @@ static struct {
     int32_t currents[MOTORS];
     uint32_t set_at, asked_at;
     uint16_t faults;
+    uint16_t touch[PLANT_ELEMENTS];
 } fingers[PLANT_FINGERS];
 
 /* Operations of semihosting. */
@@ -74,6 +77,7 @@ static void ask(unsigned finger, bool sample, struct answer *answer)
     transfer(WRITE, to_plant, &request, sizeof request);
     transfer(READ, from_plant, answer, sizeof *answer);
     fingers[finger].faults = answer->faults;
+    memcpy(fingers[finger].touch, answer->touch, sizeof answer->touch);
 }
 
 void plant_start(void)
@@ -110,6 +114,13 @@ void hal_set_currents(unsigned finger, const int32_t microamperes[MOTORS])
 {
     memcpy(fingers[finger].currents, microamperes, sizeof fingers[finger].currents);
     fingers[finger].set_at = timer_microseconds();
+}
+
+/* A count of 0xFFFF stands for an element that cannot be read. */
+bool hal_touch(unsigned finger, unsigned element, uint16_t *count)
+{
+    *count = fingers[finger].touch[element];
+    return *count != 0xFFFF;
 }
 
 uint16_t hal_faults(unsigned finger)

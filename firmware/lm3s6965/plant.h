@@ -8,14 +8,15 @@
    arrival of the last frame, us; u32 when the currents were last set, us; 4 x i32 present currents, uA. The plant
    applies them to the whole time since the last request.
 
-   Answer, in plant_from: 4 x i32 encoder counts; 4 x u16 gauge counts; u16 faults; u16 0. */
+   Answer, in plant_from: 4 x i32 encoder counts; 4 x u16 gauge counts; u16 faults; 2 x u16 counts of the tactile
+   elements, 0xFFFF for one that cannot be read; u16 0. */
 
 #ifndef FIRMWARE_PLANT_H
 #define FIRMWARE_PLANT_H
 
 #include "../hal.h"
 
-enum { PLANT_FINGERS = 3 };
+enum { PLANT_FINGERS = 3, PLANT_ELEMENTS = 2 };
 
 /* Opens the two files of the plant. */
 void plant_start(void);

@@ -52,6 +52,19 @@ pub fn exchange_microseconds(baud: u32, fingers: usize, more: usize) -> f64 {
     bytes as f64 * BITS_PER_BYTE / f64::from(baud) * 1e6 + f64::from(TURNAROUND_MICROSECONDS)
 }
 
+/// Returns the time by which a TactileRequest prolongs an exchange, us: the time of its answer, which follows the
+/// Replies. The request follows the Commands. It is on the line at the same time as the first Reply, which is longer.
+pub fn tactile_microseconds(baud: u32) -> f64 {
+    Kind::TactileEvent.wire_length() as f64 * BITS_PER_BYTE / f64::from(baud) * 1e6
+}
+
+/// Returns the number of TactileRequests, at most one for each finger, that fit into each period beside the Commands
+/// and Replies of a port.
+pub fn tactile_requests(baud: u32, fingers: usize, rate: f64) -> usize {
+    let left = USABLE_SHARE * 1e6 / rate - exchange_microseconds(baud, fingers, 0);
+    ((left / tactile_microseconds(baud)).floor().max(0.0) as usize).min(fingers)
+}
+
 /// Returns the share of a period in which the line is busy, 0 to [`USABLE_SHARE`].
 pub fn capacity(baud: u32, fingers: usize, rate: f64) -> Result<f64, TooFast> {
     const USUAL_BAUDS: [u32; 9] =
@@ -120,6 +133,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn tactile_requests_use_the_time_that_the_replies_leave() {
+        // The 20 bytes of an answer take 200 us at 1 megabaud, and 800 - 550 us are left.
+        assert_eq!(tactile_requests(1_000_000, 1, 1000.0), 1);
+        assert_eq!(tactile_requests(1_000_000, 1, 1100.0), 0);
+        // At 2 megabaud three fingers need 605 us, and 195 us are left for one answer of 100 us.
+        assert_eq!(tactile_requests(2_000_000, 3, 1000.0), 1);
+        assert_eq!(tactile_requests(3_000_000, 3, 1000.0), 3);
+        // A hand that does not fit has no time for touch.
+        assert_eq!(tactile_requests(115_200, 3, 1000.0), 0);
     }
 
     #[test]

@@ -2,36 +2,16 @@
 
 mod allowance;
 mod handshake;
+mod traffic;
 
 pub use allowance::Allowance;
+pub use traffic::{Arrival, OutgoingCommand, OutgoingRequest, Received};
 
 use super::link_error::LinkError;
 use super::port::Port;
-use super::protocol::{Command, Decoder, Frame, HIGHEST_ADDRESS, Kind, Message, Reply, WireFrame};
+use super::protocol::{Decoder, Frame, HIGHEST_ADDRESS, Kind, Message, WireFrame};
 use super::transport::Transport;
 use std::path::Path;
-
-/// A Command for one finger.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct OutgoingCommand {
-    /// The finger's address, 1 to 15.
-    pub address: u8,
-    /// The sequence number. The Reply contains the same number.
-    pub sequence: u8,
-    /// The command for the motors.
-    pub command: Command,
-}
-
-/// A Reply that was received.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Received {
-    /// The address of the finger that sent it.
-    pub address: u8,
-    /// The sequence number of the Command that it answers.
-    pub sequence: u8,
-    /// The content of the Reply.
-    pub reply: Reply,
-}
 
 /// Counts of what a link has received, and of the writes that failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -142,17 +122,33 @@ impl<T: Transport> Link<T> {
     /// Sends the Commands of all fingers on the port, at most 15, in one write. Bytes that the port does not accept at
     /// once are lost and counted. The caller notices the loss by the missing Reply.
     pub fn send(&mut self, commands: &[OutgoingCommand]) -> Result<(), LinkError> {
+        self.send_with(commands, &[])
+    }
+
+    /// Does the same as [`send`](Self::send), with TactileRequests after the Commands, at most 15. The answers then
+    /// follow the Replies and delay none of them.
+    pub fn send_with(&mut self, commands: &[OutgoingCommand], requests: &[OutgoingRequest]) -> Result<(), LinkError> {
         // An incomplete Reply of the last period is now useless, and must not damage the next Reply. It is kept if
         // reading was cut short, because the rest of it may still be unread.
         if self.unread.is_empty() && !self.cut_short {
             self.decoder.abandon();
         }
-        let mut bytes = [0; 1 + MOST_FINGERS * Kind::Command.wire_length()];
+        const LARGEST: usize = Kind::Command.wire_length() + Kind::TactileRequest.wire_length();
+        let mut bytes = [0; 1 + MOST_FINGERS * LARGEST];
         // The first byte is reserved for a delimiter.
         let mut length = 1;
-        for outgoing in commands.iter().take(MOST_FINGERS) {
-            let frame = Frame::Command(outgoing.command);
-            let wire = WireFrame::new(&Message { address: outgoing.address, sequence: outgoing.sequence, frame });
+        let commands = commands.iter().take(MOST_FINGERS).map(|outgoing| Message {
+            address: outgoing.address,
+            sequence: outgoing.sequence,
+            frame: Frame::Command(outgoing.command),
+        });
+        let requests = requests.iter().take(MOST_FINGERS).map(|outgoing| Message {
+            address: outgoing.address,
+            sequence: outgoing.sequence,
+            frame: Frame::TactileRequest(outgoing.request),
+        });
+        for message in commands.chain(requests) {
+            let wire = WireFrame::new(&message);
             let wire = wire.as_bytes();
             if let Some(room) = bytes.get_mut(length..length + wire.len()) {
                 room.copy_from_slice(wire);
@@ -173,9 +169,22 @@ impl<T: Transport> Link<T> {
     /// Does the same as [`receive`](Self::receive), for one of several Replies that are awaited together. The calls for
     /// all these Replies share one allowance. Returns `None` when the allowance is used up.
     pub fn receive_within(&mut self, allowance: &mut Allowance) -> Result<Option<Received>, LinkError> {
+        loop {
+            match self.next_arrival(allowance)? {
+                Some(Arrival::Reply(received)) => return Ok(Some(received)),
+                Some(Arrival::Tactile { .. }) => self.foreign += 1,
+                None => return Ok(None),
+            }
+        }
+    }
+
+    /// Returns the next Reply or the next answer to a TactileRequest. Otherwise like
+    /// [`receive_within`](Self::receive_within).
+    pub fn next_arrival(&mut self, allowance: &mut Allowance) -> Result<Option<Arrival>, LinkError> {
         while let Some(Message { address, sequence, frame }) = self.next_message(allowance)? {
             match frame {
-                Frame::Reply(reply) => return Ok(Some(Received { address, sequence, reply })),
+                Frame::Reply(reply) => return Ok(Some(Arrival::Reply(Received { address, sequence, reply }))),
+                Frame::TactileEvent(event) => return Ok(Some(Arrival::Tactile { address, sequence, event })),
                 // A refused handshake frame is no error here. Its refusal came too late, and is only counted.
                 Frame::Refused(refused) if refused.request == Kind::Command as u8 => {
                     return Err(LinkError::Refused { address, refused });
@@ -184,6 +193,11 @@ impl<T: Transport> Link<T> {
             }
         }
         Ok(None)
+    }
+
+    /// Counts an arrival that was not awaited.
+    pub fn count_foreign(&mut self) {
+        self.foreign += 1;
     }
 
     /// Writes `bytes[1..]`, or all of `bytes` with a delimiter as the first byte if one is needed.

@@ -10,8 +10,8 @@ pub mod protocol;
 mod terms;
 mod transport;
 
-pub use capacity::{TooFast, USABLE_SHARE, capacity, exchange_microseconds};
-pub use link::{Allowance, Link, LinkCounters, OutgoingCommand, Received};
+pub use capacity::{TooFast, USABLE_SHARE, capacity, exchange_microseconds, tactile_microseconds, tactile_requests};
+pub use link::{Allowance, Arrival, Link, LinkCounters, OutgoingCommand, OutgoingRequest, Received};
 pub use link_error::LinkError;
 pub use port::Port;
 pub use port_error::PortError;

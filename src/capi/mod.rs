@@ -31,3 +31,4 @@ mod remedy_calls;
 mod status_calls;
 mod text;
 mod timing_calls;
+mod touch_calls;

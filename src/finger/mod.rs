@@ -16,11 +16,13 @@ mod recording;
 #[cfg(feature = "internals")]
 mod replay;
 mod report;
+mod served_port;
 mod servo;
 mod servo_thread;
 mod stage;
 mod stop_signal;
 mod supervision;
+mod touch;
 
 pub use adjustable::Adjustable;
 pub use black_box::{BlackBox, Recorder};
@@ -38,7 +40,9 @@ pub use recording::{Origin, Recording, RecordingError};
 #[cfg(feature = "internals")]
 pub use replay::{Difference, NotReplayable, Replayed};
 pub use report::FingerReport;
+pub use served_port::ServedPort;
 pub use servo::FingerServo;
-pub use servo_thread::{REPLY_WINDOW, ServedPort, Servo};
+pub use servo_thread::{REPLY_WINDOW, Servo};
 pub use stage::Stage;
 pub use stop_signal::{StopSignal, stop_all, stop_calls};
+pub use touch::{Elements, TouchReading};

@@ -20,6 +20,7 @@ use crate::finger::events::Occurrence;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::ServoEnd;
 use crate::finger::supervision::Supervision;
+use crate::finger::touch::{Elements, TouchFetching};
 use crate::finger::{CycleRecord, Fault, FaultKind, FingerReport, Recorder, Stage, StopSignal};
 use crate::model::configuration::EndState;
 use crate::realtime::{self, CycleTiming, LockedMemory, Producer};
@@ -46,6 +47,7 @@ pub struct FingerServo {
     timing: CycleTiming,
     timings: Producer<CycleTiming>,
     black_box: Recorder,
+    touch: TouchFetching,
     events: EventOutput,
     /// The black box record of this cycle; none if the finger was already faulted or closed.
     record: Option<CycleRecord>,
@@ -98,6 +100,11 @@ impl FingerServo {
     pub fn limp(mut self) -> Self {
         self.go_limp();
         self
+    }
+
+    /// Returns the finger's tactile elements.
+    pub fn touch(&self) -> &Elements {
+        self.touch.elements()
     }
 
     /// Returns the memory that the servo accesses outside this value.

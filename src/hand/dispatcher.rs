@@ -4,7 +4,9 @@
 mod collected;
 mod collecting;
 
-use crate::finger::{self, Adjustable, BlackBox, FingerReport, GroupGate, KeptRecord, Losses, Mailbox, Recording};
+use crate::finger::{
+    self, Adjustable, BlackBox, Elements, FingerReport, GroupGate, KeptRecord, Losses, Mailbox, Recording,
+};
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
 use crate::hand::dispatcher::collected::Collected;
@@ -28,6 +30,7 @@ pub(super) struct Member {
     pub number: FingerNumber,
     pub admission: RwLock<Admission>,
     pub mailbox: Mailbox,
+    pub touch: Elements,
     /// Whether a caller has the right to calibrate the finger.
     pub calibrated: Arc<AtomicBool>,
 }
@@ -50,6 +53,7 @@ impl Dispatcher {
                 number: finger.number,
                 admission: RwLock::new(finger.admission),
                 mailbox: finger.mailbox,
+                touch: finger.touch,
                 calibrated: Arc::default(),
             });
             collected.push(Mutex::new(Collected {

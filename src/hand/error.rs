@@ -35,6 +35,19 @@ pub enum HandError {
     /// The servo cycle has no stage with this number.
     #[error("there is no stage {0}: the stages of a cycle are 0 to 7")]
     NoSuchStage(i32),
+    /// The finger has no tactile element with this number.
+    #[error(
+        "finger {finger} has no tactile element {element}, but {count}, which count from 0: list its elements in \
+         [finger.{finger}.touch]"
+    )]
+    NoSuchElement {
+        /// The finger.
+        finger: FingerNumber,
+        /// The requested element.
+        element: usize,
+        /// The number of elements.
+        count: usize,
+    },
     /// A set point that the finger cannot take.
     #[error(transparent)]
     SetPoint(#[from] SetPointError),

@@ -29,6 +29,7 @@ mod servo_threads;
 mod set_points;
 mod simulated_hand;
 mod status;
+mod touch;
 
 pub use crate::finger::stop_all;
 pub use black_box_file::save_recording;

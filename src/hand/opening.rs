@@ -2,10 +2,12 @@
 //! hands with the boards.
 
 use crate::board::protocol::Status;
-use crate::board::{Link, Port, Terms, capacity};
+use crate::board::{Link, Port, Terms, capacity, tactile_requests};
 use crate::control::{AdmissibleDamping, JointSprings};
 use crate::finger::events::EventLog;
-use crate::finger::{BlackBox, FingerServo, GroupGate, Mailbox, ServedPort, StopSignal, link_handover, stop_calls};
+use crate::finger::{
+    BlackBox, Elements, FingerServo, GroupGate, Mailbox, ServedPort, StopSignal, link_handover, stop_calls,
+};
 use crate::hand::admission::{Admission, DampingAdmission};
 use crate::hand::events::EventSource;
 use crate::hand::fingers::Fingers;
@@ -38,6 +40,8 @@ pub(super) struct Reached {
     pub black_box: BlackBox,
     /// Events from the servo.
     pub events: EventLog,
+    /// The finger's tactile elements.
+    pub touch: Elements,
 }
 
 /// A hand after the handshakes.
@@ -120,11 +124,16 @@ pub(super) fn reach(
             boards.push(board);
         }
         let (handover, repair_end) = link_handover();
+        let baud = configuration.fingers[first.index()].baud;
+        // A pseudo-terminal has no bit rate.
+        let requests = match simulated.path(first) {
+            Some(_) => sharing.len(),
+            None => tactile_requests(baud, sharing.len(), configuration.hand.rate),
+        };
         lines.push(Line {
             thread: configuration.thread(first),
-            port: ServedPort::new(link, servos).with_handover(handover),
+            port: ServedPort::new(link, servos).with_handover(handover).with_requests(requests),
         });
-        let baud = configuration.fingers[first.index()].baud;
         // The port of a simulated board is not reopened. After the port is lost, the system may use its path for a
         // pseudo-terminal that the planner opens.
         let reconnects = |&number: &FingerNumber| {
@@ -206,7 +215,8 @@ fn shake_hands(
     let zero_valid = configured.status.has(Status::ZERO_VALID);
     let board = KnownBoard { finger: number, address, terms, identity, zero_valid };
     let (admission, events) = (admission(configuration, number), servo.event_log().clone());
-    Ok((servo, Reached { number, mailbox, admission, timings, black_box, events }, board))
+    let touch = servo.touch().clone();
+    Ok((servo, Reached { number, mailbox, admission, timings, black_box, events, touch }, board))
 }
 
 pub(super) fn admission(configuration: &Configuration, number: FingerNumber) -> Admission {

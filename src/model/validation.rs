@@ -6,6 +6,7 @@ mod object;
 mod ranges;
 mod sharing;
 mod simulation;
+mod touch;
 
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, RATES, RealTime, Unusable};
 use crate::model::{FingerNumber, TendonsError};
@@ -104,6 +105,7 @@ impl ConfiguredFinger {
         self.check_mechanics()?;
         self.monitors.check()?;
         self.events.check()?;
+        self.touch.check()?;
         self.check_calibration()?;
         self.check_simulation()
     }

@@ -106,8 +106,7 @@ impl Plant {
         self.tendons.lengthen(&self.theta, &self.motor, h);
         let TendonTensions { motor: at_motors, joint: at_joints, .. } = self.tendons.tensions(&self.theta, &self.motor);
 
-        let mut force = self.external_force + self.contact_force();
-        self.object_force.iter().for_each(|by_object| force += by_object);
+        let force = self.force_on_tip();
         let jacobian = self.links.jacobian(&self.theta) * 0.01;
         let torque = self.tendons.joint_torque(&at_joints)
             + jacobian.tr_mul(&force)
@@ -212,6 +211,16 @@ impl Plant {
         self.links.tip(&self.theta)
     }
 
+    /// Returns the velocity of the fingertip in the finger's frame, cm/s.
+    pub fn tip_velocity(&self) -> Vector3<f64> {
+        self.links.jacobian(&self.theta) * self.theta_dot
+    }
+
+    /// Returns the link lengths.
+    pub fn links(&self) -> Links {
+        self.links
+    }
+
     /// Applies a constant force to the fingertip, N, in the finger's frame.
     pub fn set_external_force(&mut self, force: Vector3<f64>) {
         self.external_force = force;
@@ -220,11 +229,6 @@ impl Plant {
     /// Applies the force of an object to the fingertip, N, in the finger's frame, until the next call.
     pub fn set_object_force(&mut self, force: Vector3<f64>) {
         self.object_force = Some(force);
-    }
-
-    /// Returns the velocity of the fingertip in the finger's frame, cm/s.
-    pub fn tip_velocity(&self) -> Vector3<f64> {
-        self.links.jacobian(&self.theta) * self.theta_dot
     }
 
     /// Holds the joints at these angles, rad, as a person's hand does.
@@ -245,6 +249,12 @@ impl Plant {
     /// Returns the force of the surface on the fingertip, N, in the finger's frame.
     pub fn contact_force(&self) -> Vector3<f64> {
         self.surface.map_or_else(Vector3::zeros, |surface| contact::force(&surface, &self.tip()))
+    }
+
+    /// Returns the force of everything that touches the fingertip, N, in the finger's frame.
+    pub fn force_on_tip(&self) -> Vector3<f64> {
+        let force = self.external_force + self.contact_force();
+        self.object_force.map_or(force, |by_object| force + by_object)
     }
 
     /// Returns the energy of the moving parts, tendons, stops, holding hand, surface and gravity, J.

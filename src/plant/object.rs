@@ -131,6 +131,11 @@ impl FreeObject {
         self.velocity
     }
 
+    /// Returns the velocity of the object's material at a place, m and m/s in the palm's frame.
+    pub fn velocity_at(&self, place: &Vector3<f64>) -> Vector3<f64> {
+        self.velocity + self.angular_velocity().cross(&(place - self.position))
+    }
+
     /// Returns the angular velocity, rad/s.
     pub fn angular_velocity(&self) -> Vector3<f64> {
         let in_object = self.rotation.inverse() * self.spin;

@@ -146,8 +146,11 @@ fn answer(fingers: &mut [SimulatedFinger], now: u64, packet: &Packet, damaged: u
         Ok(Message { frame: Frame::Configure(terms), .. }) => finger.configure(&terms),
         Ok(Message { frame: Frame::Command(command), .. }) => finger.command(now, &command, damaged),
         Ok(Message { frame: Frame::Stop(_), .. }) => finger.stop(now),
-        // The board has no tactile sensors, and does not announce the capability.
-        Ok(Message { frame: Frame::TactileRequest(_), .. }) => refuse(Reason::UnknownFrame, packet.body().len() as u16),
+        Ok(Message { frame: Frame::TactileRequest(request), .. }) => match finger.touched(&request) {
+            Some(event) => Frame::TactileEvent(event),
+            // A finger without tactile elements does not announce the capability.
+            None => refuse(Reason::UnknownFrame, packet.body().len() as u16),
+        },
         // Answers were rejected above.
         Ok(_) => return None,
         Err(Malformed::Value { offset, .. }) => {

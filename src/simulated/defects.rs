@@ -41,6 +41,8 @@ pub enum Defect {
         /// Number of counts.
         counts: i32,
     },
+    /// A tactile element, counted from 0 as in the configuration, can no longer be read.
+    DeadElement(u8),
     /// The board reports that its encoder counts are no longer valid.
     ZeroLost,
     /// The emergency stop input is active.
@@ -60,7 +62,12 @@ impl SimulatedFinger {
             Defect::CutTendon(part) | Defect::JammedMotor(part) | Defect::HotMotor(part) => part,
             Defect::SlackTendon { tendon: part, .. } | Defect::DeadGauge { gauge: part, .. } => part,
             Defect::DriftingGauge { gauge: part, .. } | Defect::EncoderJump { encoder: part, .. } => part,
-            Defect::ZeroLost | Defect::EmergencyStop | Defect::Supply | Defect::Sensor | Defect::Reset => 1,
+            Defect::DeadElement(_)
+            | Defect::ZeroLost
+            | Defect::EmergencyStop
+            | Defect::Supply
+            | Defect::Sensor
+            | Defect::Reset => 1,
         };
         let Some(index) = usize::from(part).checked_sub(1).filter(|&index| index < 4) else { return false };
         match *defect {
@@ -71,6 +78,7 @@ impl SimulatedFinger {
             Defect::DeadGauge { count, .. } => self.sensors().kill_gauge(index, count),
             Defect::DriftingGauge { speed, .. } => self.sensors().let_gauge_drift(index, speed),
             Defect::EncoderJump { counts, .. } => self.sensors().jump(index, counts),
+            Defect::DeadElement(element) => return self.break_element(element.into()),
             Defect::ZeroLost => self.set_zero_valid(false),
             Defect::EmergencyStop => self.add_faults(Status::EMERGENCY_STOP),
             Defect::Supply => self.add_faults(Status::SUPPLY_FAULT),
@@ -84,6 +92,7 @@ impl SimulatedFinger {
     pub fn repair(&mut self) {
         self.plant().repair();
         self.sensors().repair();
+        self.repair_elements();
         self.set_zero_valid(true);
         self.set_faults(Status::default());
     }

@@ -3,12 +3,15 @@
 mod ending;
 mod greeting;
 mod identity;
+mod present_faults;
+mod touching;
 
 use crate::board::protocol::{Command, Configure, Configured, Frame, Reason, Refused, Reply, Status, VERSION};
 use crate::model::FingerNumber;
 use crate::model::TendonsError;
 use crate::model::configuration::ConfiguredFinger;
 use crate::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
+use crate::simulated::pads::Pads;
 use identity::SHORTEST_WATCHDOG_MS;
 use nalgebra::{Vector3, Vector4};
 
@@ -38,6 +41,9 @@ pub struct SimulatedFinger {
     unique_number: [u8; 12],
     plant: Plant,
     sensors: Sensors,
+    pads: Pads,
+    /// Velocity of the tip relative to an object that several fingers share, cm/s, in the finger's frame.
+    sliding: Vector3<f64>,
     state: State,
     /// Time up to which the physics has been computed, ns.
     clock: u64,
@@ -78,6 +84,8 @@ impl SimulatedFinger {
             unique_number: identity::unique_number(number, address),
             plant: Plant::new(finger, gravity)?,
             sensors: Sensors::new(finger),
+            pads: Pads::new(&finger.touch),
+            sliding: Vector3::zeros(),
             state: State::Idle,
             clock: 0,
             commanded_at: None,
@@ -147,23 +155,6 @@ impl SimulatedFinger {
         state | zero | self.latched
     }
 
-    /// Sets the faults that are present: bits of [`Status::FAULTS`]. A fault sets the torques to zero at once.
-    pub fn set_faults(&mut self, faults: Status) {
-        self.present = Status(faults.0 & Status::FAULTS.0);
-        self.latched |= self.present;
-        if self.present != Status::default() {
-            self.torques = [0; 4];
-            if self.state != State::Idle {
-                self.state = State::Ended { holds_until: None };
-            }
-        }
-    }
-
-    /// Adds faults to those that are present.
-    pub(super) fn add_faults(&mut self, faults: Status) {
-        self.set_faults(self.present | faults);
-    }
-
     pub(super) fn set_zero_valid(&mut self, valid: bool) {
         self.zero_valid = valid;
     }
@@ -200,6 +191,7 @@ impl SimulatedFinger {
         let newton_metres = self.motor_torques() * 0.01;
         self.plant.step(newton_metres.into());
         self.sensors.pass(PLANT_STEP_SECONDS);
+        self.feel();
     }
 
     pub(super) fn configure(&mut self, terms: &Configure) -> Frame {

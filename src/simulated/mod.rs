@@ -8,6 +8,7 @@ mod defects;
 mod finger;
 mod line;
 mod pace;
+mod pads;
 mod port;
 mod pseudo_terminal;
 mod scene;

@@ -58,9 +58,11 @@ impl Scene {
             *tip = finger.as_mut().map(|finger| tip_in_palm(finger, to_palm));
         }
         let forces = self.object.step(&tips, PLANT_STEP_SECONDS);
-        for ((finger, to_palm), force) in touching.into_iter().zip(&self.to_palm).zip(forces) {
-            let force = to_palm.inverse_transform_vector(&force);
-            finger.into_iter().for_each(|finger| finger.plant().set_object_force(force));
+        for (((finger, to_palm), force), tip) in touching.into_iter().zip(&self.to_palm).zip(forces).zip(tips) {
+            let (Some(finger), Some(tip)) = (finger, tip) else { continue };
+            finger.plant().set_object_force(to_palm.inverse_transform_vector(&force));
+            let sliding = (tip.velocity - self.object.velocity_at(&tip.position)) * 100.0;
+            finger.set_sliding(to_palm.inverse_transform_vector(&sliding));
         }
         self.time += PLANT_STEP_SECONDS;
     }

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use sun2xp::board::protocol::Identity;
 use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::finger::events::EventLog;
-use sun2xp::finger::{BlackBox, FingerServo, LinkRepairEnd, Mailbox, ServedPort, Servo, link_handover};
+use sun2xp::finger::{BlackBox, Elements, FingerServo, LinkRepairEnd, Mailbox, ServedPort, Servo, link_handover};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, Consumer, CycleTiming, Schedule, ring};
@@ -103,8 +103,9 @@ pub struct ServedFinger<W> {
     pub repair_end: LinkRepairEnd<W>,
     pub timings: Consumer<CycleTiming>,
     pub black_box: BlackBox,
-    pub events: EventLog,
     pub identity: Identity,
+    pub touch: Elements,
+    pub events: EventLog,
 }
 
 impl<W: Transport + Clock + Clone> ServedFinger<W> {
@@ -141,10 +142,10 @@ impl<W: Transport + Clock + Clone> ServedFinger<W> {
         let (finger, mailbox) =
             FingerServo::new(belief, FingerNumber::ONE, stiffness, &identity, &configured, producer, recorder)
                 .expect("a finger");
-        let events = finger.event_log().clone();
+        let (touch, events) = (finger.touch().clone(), finger.event_log().clone());
         let (handover, repair_end) = link_handover();
-        let ports = vec![ServedPort::new(link, vec![change(finger)]).with_handover(handover)];
+        let ports = vec![ServedPort::new(link, vec![change(finger)]).with_handover(handover).with_requests(1)];
         let servo = Servo::new(world.clone(), schedule, ports);
-        Self { servo, mailbox, repair_end, timings, black_box, events, identity }
+        Self { servo, mailbox, repair_end, timings, black_box, identity, touch, events }
     }
 }

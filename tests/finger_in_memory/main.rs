@@ -13,3 +13,4 @@ mod named_hands;
 mod opening;
 mod rig;
 mod set_points;
+mod touch;

@@ -6,7 +6,9 @@ use nalgebra::Vector3;
 use sun2xp::board::protocol::{Frame, Message, WireFrame};
 use sun2xp::board::{PortError, Terms, Transport};
 use sun2xp::finger::events::EventReader;
-use sun2xp::finger::{Fault, FaultKind, FingerReport, LinkRepairEnd, Mailbox, RepairedLink, Servo, Stage, stop_calls};
+use sun2xp::finger::{
+    Elements, Fault, FaultKind, FingerReport, LinkRepairEnd, Mailbox, RepairedLink, Servo, Stage, stop_calls,
+};
 use sun2xp::model::configuration::Configuration;
 use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
 
@@ -63,6 +65,7 @@ pub struct Bench {
     pub world: World<Line>,
     pub servo: Servo<World<Line>, World<Line>>,
     pub mailbox: Mailbox,
+    pub touch: Elements,
     pub events: EventReader,
     repair_end: LinkRepairEnd<World<Line>>,
     /// The configuration of the board.
@@ -92,9 +95,9 @@ impl Bench {
         let mut belief = configuration.clone();
         believed(&mut belief);
         let world = World::new(&configuration, Line::default());
-        let ServedFinger { servo, mailbox, repair_end, events, .. } =
+        let ServedFinger { servo, mailbox, repair_end, touch, events, .. } =
             ServedFinger::believing(&world, &configuration, &belief);
-        Self { world, servo, mailbox, events: events.reader(), repair_end, configuration }
+        Self { world, servo, mailbox, touch, events: events.reader(), repair_end, configuration }
     }
 
     pub fn report(&self) -> FingerReport {

@@ -137,6 +137,8 @@ pub struct Finger {
     motion_left: f64,
     /// Faults that are present from now on.
     pub faults: Status,
+    /// Counts of the tactile elements; 0xFFFF for one that cannot be read.
+    pub touch: [u16; 2],
     pub asked: Asked,
 }
 
@@ -156,6 +158,7 @@ impl Finger {
             rest: 0.0,
             motion_left: 0.0,
             faults: Status::default(),
+            touch: [300, 500],
             asked: Asked::default(),
         }
     }
@@ -177,7 +180,8 @@ impl Finger {
         let (encoders, gauges) = self.sensors.read(&self.plant);
         let encoders = encoders.iter().flat_map(|count| count.to_le_bytes());
         let gauges = gauges.iter().flat_map(|count| count.to_le_bytes());
-        encoders.chain(gauges).chain(self.faults.0.to_le_bytes()).chain([0; 2]).collect()
+        let touch = self.touch.iter().flat_map(|count| count.to_le_bytes());
+        encoders.chain(gauges).chain(self.faults.0.to_le_bytes()).chain(touch).chain([0; 2]).collect()
     }
 
     fn advance(&mut self, microseconds: u32, currents: [i32; 4]) {

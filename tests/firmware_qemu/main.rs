@@ -14,6 +14,7 @@ mod settling;
 #[allow(dead_code)]
 #[path = "../common/tools.rs"]
 mod tools;
+mod touch;
 
 use attempts::attempts;
 use machine::{Asked, Machine, build};
@@ -77,12 +78,17 @@ fn settled(hand: &Hand) -> Result<[[f64; 3]; 3], String> {
 /// Opens a hand on the firmware and calls `work` with it. An attempt may fail, because a busy machine may slow the
 /// emulator down too much. Every attempt starts a new emulator.
 fn with_hand(what: &str, work: impl Fn(&Machine, &Hand) -> Result<(), String>) {
+    with_configured_hand(what, KEYS, work);
+}
+
+/// Like [`with_hand`]. `keys` begin in the table `[hand]`, and are followed by the table `[finger]`.
+fn with_configured_hand(what: &str, keys: &str, work: impl Fn(&Machine, &Hand) -> Result<(), String>) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let image = build(folder.path());
     attempts(what, TOLERATED_PAUSE, |watch| {
         let machine = Machine::start(&image);
         watch.also(machine.process(), Part::Board);
-        let hand = Hand::open(configuration(&machine.port, KEYS)).map_err(text)?;
+        let hand = Hand::open(configuration(&machine.port, keys)).map_err(text)?;
         work(&machine, &hand).map_err(|failure| {
             let losses = [1, 2, 3].map(|finger| hand.losses(finger).expect("a finger"));
             format!("{failure}; {losses:?}")

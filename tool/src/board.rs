@@ -42,6 +42,7 @@ use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 ///     slack FINGER TENDON GRIP               let a tendon slip at tensions above GRIP, N
 ///     jam FINGER MOTOR                       block a motor
 ///     hot FINGER MOTOR                       switch a motor driver off, as at over-temperature
+///     dead-element FINGER ELEMENT            make a tactile element, counted from 0, unreadable
 ///     dead-gauge FINGER GAUGE [COUNT]        freeze a gauge at COUNT, or at its current count
 ///     drift-gauge FINGER GAUGE SPEED         let a gauge drift, N/s
 ///     jump FINGER ENCODER COUNTS             add COUNTS to the count of an encoder

@@ -4,7 +4,7 @@
 mod off_line;
 
 use crate::failure::Failure;
-use off_line::{Costs, RateLimit, Scheduled, Sensor, fastest_rate, off_line_schedule};
+use off_line::{Costs, RateLimit, Scheduled, Sensor, fastest_rate, off_line_schedule, touches};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
@@ -83,6 +83,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     table(&mut out, &schedule, &format!("{rate:.0} Hz"))?;
     let title = format!("{rate:.0} Hz with {} more bytes and {:.0} us more per finger", sensor.bytes, sensor.compute);
     table(&mut out, &more, &title)?;
+    for thread in &schedule {
+        let touches = touches(&configuration, &thread.fingers, rate);
+        if touches > 0 {
+            writeln!(out, "Thread {} fetches up to {touches} tactile events in every period.", thread.thread)?;
+        }
+    }
     let [fastest, with_sensor] =
         [&none, &sensor].map(|sensor| fastest_rate(&configuration, &costs, sensor, *RATES.end() as u32));
     let limited = |rate: u32, sensor| limits(&off_line_schedule(&configuration, f64::from(rate + 1), &costs, sensor));

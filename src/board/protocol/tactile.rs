@@ -22,7 +22,7 @@ pub struct TactileRequest {
 /// | 5..7 | sensor element |
 /// | 7..9 | count of the element |
 /// | 9..13 | time of the event, us |
-/// | 13 | lost events, at most 255 |
+/// | 13 | lost events, modulo 256 |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TactileEvent {
     /// Number of queued events, including this one.
@@ -37,7 +37,7 @@ pub struct TactileEvent {
     pub count: u16,
     /// The board's clock at the event, us, modulo 2^32.
     pub noticed_at: u32,
-    /// Number of events since power-up that did not fit into the queue. 255 means 255 or more.
+    /// Number of events since power-up that did not fit into the queue, modulo 256.
     pub lost: u8,
 }
 
@@ -55,6 +55,8 @@ pub enum TactileChange {
     Slip,
     /// 4: the count changed by more than the board's threshold.
     Pressure,
+    /// 5: the element cannot be read. The count has no meaning.
+    Invalid,
     /// A number that only this board or a later version defines.
     Other(u8),
 }
@@ -105,6 +107,7 @@ impl TactileChange {
             2 => TactileChange::Lost,
             3 => TactileChange::Slip,
             4 => TactileChange::Pressure,
+            5 => TactileChange::Invalid,
             other => TactileChange::Other(other),
         }
     }
@@ -117,6 +120,7 @@ impl TactileChange {
             TactileChange::Lost => 2,
             TactileChange::Slip => 3,
             TactileChange::Pressure => 4,
+            TactileChange::Invalid => 5,
             TactileChange::Other(number) => number,
         }
     }

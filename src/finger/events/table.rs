@@ -73,6 +73,8 @@ kinds! {
         "the finger has followed its path to the end";
     17 Expired "EXPIRED" None, [Age], "set point expired",
         "the planner has not replaced a set point within the time for which it was valid";
+    18 TouchInvalid "TOUCH_INVALID" None, [Element], "touch invalid",
+        "a tactile element of the fingertip cannot be read";
 }
 
 impl EventKind {

@@ -9,6 +9,7 @@ use crate::finger::Adjustable;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Mailbox, mailbox};
 use crate::finger::supervision::Supervision;
+use crate::finger::touch::{Elements, TouchFetching};
 use crate::finger::{FingerReport, Recorder, StopSignal, stop_calls};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredHand, Unusable};
@@ -73,10 +74,8 @@ impl FingerServo {
         black_box: Recorder,
     ) -> Result<(Self, Mailbox), Unusable> {
         let (hand, finger) = (&configuration.hand, &configuration.fingers[number.index()]);
-        let address = configuration.address(number);
         let adjustable = Adjustable::new(configuration, number)?;
         let feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
-        let state = adjustable.controller.start(&feedback);
         let link = LinkWatch::new(hand, finger.simulated());
         let initial = SetPoint { law: finger.controller.law, ..SetPoint::hard_finger(Vector3::zeros(), stiffness) };
         let report = FingerReport::opening(initial);
@@ -84,9 +83,10 @@ impl FingerServo {
         memory.append(&black_box.memory());
         timings.add_to(&mut memory);
         let events = EventOutput::new(number, initial, &mut memory);
+        let touch = TouchFetching::new(Elements::new(&finger.touch), identity.capabilities, &mut memory);
         let this = Self {
+            state: adjustable.controller.start(&feedback),
             adjustable,
-            state,
             activity: Activity::TakeUpSlack,
             calibration: None,
             status: configured.status,
@@ -97,11 +97,12 @@ impl FingerServo {
             timing: CycleTiming::default(),
             timings,
             black_box,
+            touch,
             events,
             record: None,
             recording: false,
             report,
-            address,
+            address: configuration.address(number),
             board: *identity,
             sequence: 0,
             toggle: false,

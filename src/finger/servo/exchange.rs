@@ -2,8 +2,8 @@
 //! accepts.
 
 use super::FingerServo;
-use crate::board::protocol::{Command, Status};
-use crate::board::{OutgoingCommand, Received};
+use crate::board::protocol::{Command, Status, TactileEvent};
+use crate::board::{OutgoingCommand, OutgoingRequest, Received};
 use crate::finger::{Fault, FaultKind};
 use crate::realtime::CycleStage;
 
@@ -15,6 +15,7 @@ impl FingerServo {
     /// Begins a cycle. Returns the command that the last cycle computed, if the finger is under control and a command
     /// is due.
     pub fn begin(&mut self) -> Option<OutgoingCommand> {
+        self.touch.begin(self.answered && self.under_control());
         if !self.under_control() {
             return None;
         }
@@ -28,6 +29,34 @@ impl FingerServo {
         let torques = self.command.motor_torques.map(|torque| self.board.torque_count(torque)).into();
         let command = Command { toggle: self.toggle, enable: true, torques };
         Some(OutgoingCommand { address: self.address, sequence: self.sequence, command })
+    }
+
+    /// Returns whether a TactileRequest may follow this period's Command.
+    pub fn touch_due(&self) -> bool {
+        self.touch.due()
+    }
+
+    /// Returns the TactileRequest of this period.
+    pub fn touch_request(&mut self) -> OutgoingRequest {
+        self.touch.request(self.address, self.sequence)
+    }
+
+    /// Whether this period's TactileRequest has no answer yet.
+    pub fn awaits_touch(&self) -> bool {
+        self.touch.waiting()
+    }
+
+    /// Takes the answer to a TactileRequest. Returns whether the answer was awaited. Events that happened before the
+    /// finger was a spring are not reported, because they may be older than this hand.
+    pub fn take_touch(&mut self, sequence: u8, event: &TactileEvent) -> bool {
+        let awaited = self.touch.awaits(sequence);
+        if awaited
+            && let Some(occurrence) = self.touch.take(event)
+            && self.report.springs > 0
+        {
+            self.events.write(occurrence);
+        }
+        awaited
     }
 
     /// Whether to send a Stop frame to the board. A finger that is faulted or closed gets a limited number of Stop

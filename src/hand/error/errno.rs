@@ -9,7 +9,7 @@ impl HandError {
     #[must_use]
     pub fn errno(&self) -> i32 {
         match self {
-            Self::NoSuchFinger(_) | Self::NoSuchStage(_) => libc::EINVAL,
+            Self::NoSuchFinger(_) | Self::NoSuchStage(_) | Self::NoSuchElement { .. } => libc::EINVAL,
             Self::SetPoint(error) => error.errno(),
             Self::Configuration(error) => error.errno(),
             Self::Recovery(error) => error.errno(),

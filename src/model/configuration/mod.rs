@@ -20,6 +20,7 @@ mod object;
 mod simulation;
 mod stiffness;
 mod tendon;
+mod touch;
 mod zeroing;
 
 pub use controller::{ConfiguredController, Law, Scheme};
@@ -38,6 +39,7 @@ pub use object::{ConfiguredObject, ObjectShape};
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use stiffness::ConfiguredStiffness;
 pub use tendon::ConfiguredTendon;
+pub use touch::{ConfiguredTouch, MOST_ELEMENTS, TouchElement};
 pub use zeroing::{ConfiguredZeroing, ZeroingMethod};
 
 pub use crate::model::finger_number::FINGERS;
@@ -109,6 +111,8 @@ pub struct ConfiguredFinger {
     pub monitors: ConfiguredMonitors,
     /// `[finger.events]`
     pub events: ConfiguredEvents,
+    /// `[finger.touch]`
+    pub touch: ConfiguredTouch,
     /// `[finger.zeroing]`
     pub zeroing: ConfiguredZeroing,
     /// `[finger.stiffness]`
@@ -190,6 +194,7 @@ impl Default for ConfiguredFinger {
             friction: Default::default(),
             monitors: Default::default(),
             events: Default::default(),
+            touch: Default::default(),
             zeroing: Default::default(),
             stiffness: Default::default(),
             controller: Default::default(),

@@ -11,6 +11,11 @@ const SIMULATED_BOARD: u16 = 1;
 const GAUGE_BITS: u8 = 12;
 
 impl SimulatedFinger {
+    fn capabilities(&self) -> Capabilities {
+        let tactile = if self.pads.exist() { Capabilities::TACTILE.0 } else { 0 };
+        Capabilities(Capabilities::HOLD.0 | Capabilities::KEEPS_ZERO.0 | Capabilities::EMERGENCY_STOP.0 | tactile)
+    }
+
     /// Writes the board's number into the unique number, which then differs from that of the same finger on other
     /// simulated boards.
     pub(in crate::simulated) fn set_board_number(&mut self, number: u32) {
@@ -38,9 +43,7 @@ impl SimulatedFinger {
             torque_unit: self.torque_unit,
             torque_limit: self.torque_limit,
             shortest_watchdog_ms: SHORTEST_WATCHDOG_MS,
-            capabilities: Capabilities(
-                Capabilities::HOLD.0 | Capabilities::KEEPS_ZERO.0 | Capabilities::EMERGENCY_STOP.0,
-            ),
+            capabilities: self.capabilities(),
         })
     }
 }

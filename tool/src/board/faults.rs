@@ -73,7 +73,7 @@ impl Trouble {
     }
 
     fn read_defect(name: &str, rest: &[&str]) -> Result<Option<Self>, String> {
-        const NAMES: [&str; 12] = [
+        const NAMES: [&str; 13] = [
             "cut",
             "slack",
             "jam",
@@ -81,6 +81,7 @@ impl Trouble {
             "dead-gauge",
             "drift-gauge",
             "jump",
+            "dead-element",
             "zero-lost",
             "emergency",
             "supply",
@@ -110,6 +111,7 @@ impl Trouble {
             }
             ("drift-gauge", &[gauge, speed]) => Defect::DriftingGauge { gauge: part(gauge)?, speed },
             ("jump", &[encoder, counts]) => Defect::EncoderJump { encoder: part(encoder)?, counts: counts as i32 },
+            ("dead-element", &[element]) => Defect::DeadElement(whole(element)?),
             ("zero-lost", &[]) => Defect::ZeroLost,
             ("emergency", &[]) => Defect::EmergencyStop,
             ("supply", &[]) => Defect::Supply,
@@ -194,6 +196,7 @@ mod tests {
             ("dead-gauge 1 2", Trouble::Finger(1, Defect::DeadGauge { gauge: 2, count: None })),
             ("dead-gauge 1 2 4095", Trouble::Finger(1, Defect::DeadGauge { gauge: 2, count: Some(4095) })),
             ("jump 1 2 -300", Trouble::Finger(1, Defect::EncoderJump { encoder: 2, counts: -300 })),
+            ("dead-element 1 0", Trouble::Finger(1, Defect::DeadElement(0))),
             ("reset 3", Trouble::Finger(3, Defect::Reset)),
             ("mend 3", Trouble::Mend(3)),
             ("drop 0.05", Trouble::Line(LineFault::Drop, 0.05, FOREVER)),

@@ -3,7 +3,7 @@
 //! and ports.
 
 use serde::Deserialize;
-use sun2xp::board::{USABLE_SHARE, exchange_microseconds};
+use sun2xp::board::{USABLE_SHARE, exchange_microseconds, tactile_microseconds, tactile_requests};
 use sun2xp::finger::REPLY_WINDOW;
 use sun2xp::hand::{Wrong, deserialize};
 use sun2xp::model::FingerNumber;
@@ -105,7 +105,7 @@ pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor:
     let timed = threads.into_iter().zip(tasks).zip(responses);
     timed
         .map(|(((thread, fingers), task), response)| {
-            let line = longest_exchange(hand, &fingers, sensor) / period;
+            let line = longest_exchange(hand, &fingers, sensor, period) / period;
             let window = task.wake_up as f64 * 1e-3 + REPLY_WINDOW * period;
             let response = response.map(|response| (response.waited as f64 * 1e-3, response.done as f64 * 1e-3));
             let limit = match response {
@@ -146,9 +146,34 @@ fn task(hand: &Configuration, fingers: &[FingerNumber], period: f64, costs: &Cos
         period: (period * 1e3) as u64,
         wake_up: needed(costs.wake_up),
         before: needed(ports * costs.write),
-        waiting: needed(longest_exchange(hand, fingers, sensor)),
-        after: needed(fingers.len() as f64 * (costs.read + costs.compute + sensor.compute)),
+        waiting: needed(longest_exchange(hand, fingers, sensor, period)),
+        after: needed(
+            fingers.len() as f64 * (costs.read + costs.compute + sensor.compute)
+                + touches(hand, fingers, 1e6 / period) as f64 * costs.read,
+        ),
     }
+}
+
+/// The number of tactile events that a thread fetches in every period at a rate, Hz.
+pub fn touches(hand: &Configuration, fingers: &[FingerNumber], rate: f64) -> usize {
+    lines(hand, fingers).map(|(finger, sharing)| touches_on_line(hand, fingers, finger, sharing, rate)).sum()
+}
+
+/// The number of tactile events on the port of `finger`, which has `sharing` fingers.
+fn touches_on_line(
+    hand: &Configuration,
+    fingers: &[FingerNumber],
+    finger: FingerNumber,
+    sharing: usize,
+    rate: f64,
+) -> usize {
+    let configured = &hand.fingers[finger.index()];
+    let on_port = |other: &&FingerNumber| {
+        **other == finger || (!configured.simulated() && hand.fingers[other.index()].port == configured.port)
+    };
+    let with_elements = fingers.iter().filter(on_port);
+    let with_elements = with_elements.filter(|other| !hand.fingers[other.index()].touch.elements.is_empty()).count();
+    tactile_requests(configured.baud, sharing, rate).min(with_elements)
 }
 
 /// The ports of a thread. Each item is one finger on a port and the number of the thread's fingers on that port. Every
@@ -164,16 +189,21 @@ fn lines<'a>(hand: &'a Configuration, fingers: &'a [FingerNumber]) -> impl Itera
         .map(move |&finger| (finger, fingers.iter().filter(|&&other| shares(finger, other)).count()))
 }
 
-/// Time of the longest exchange on the thread's ports, us.
-fn longest_exchange(hand: &Configuration, fingers: &[FingerNumber], sensor: &Sensor) -> f64 {
+/// Time of the longest exchange on the thread's ports with its tactile events, us. `period` is in us.
+fn longest_exchange(hand: &Configuration, fingers: &[FingerNumber], sensor: &Sensor, period: f64) -> f64 {
     lines(hand, fingers)
-        .map(|(finger, sharing)| exchange_microseconds(hand.fingers[finger.index()].baud, sharing, sensor.bytes))
+        .map(|(finger, sharing)| {
+            let baud = hand.fingers[finger.index()].baud;
+            let touches = touches_on_line(hand, fingers, finger, sharing, 1e6 / period);
+            exchange_microseconds(baud, sharing, sensor.bytes) + touches as f64 * tactile_microseconds(baud)
+        })
         .fold(0.0, f64::max)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sun2xp::model::configuration::TouchElement;
 
     const COSTS: Costs = Costs { wake_up: 100.0, write: 10.0, read: 5.0, compute: 15.0 };
 
@@ -235,6 +265,23 @@ mod tests {
         let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
         assert_eq!(schedule[0].response, Some((715.0, 775.0)));
         assert_eq!((&schedule[0].fingers[..], schedule[0].limit), (&FingerNumber::ALL[..], None));
+    }
+
+    /// The answer to a TactileRequest takes 200 us, and reading it 5 us more.
+    #[test]
+    fn touch_takes_the_time_that_the_line_has_left() {
+        let mut hand = Configuration::default();
+        hand.fingers.iter_mut().enumerate().for_each(|(core, finger)| finger.core = Some(core));
+        let element = TouchElement { position: [0.0; 3], normal: [0.0, 0.0, 1.0], newton_per_count: 0.001, zero: 0 };
+        hand.fingers[1].touch.elements = vec![element];
+        let schedule = off_line_schedule(&hand, 1000.0, &COSTS, &Sensor::default());
+        let touched: Vec<usize> = schedule.iter().map(|thread| touches(&hand, &thread.fingers, 1000.0)).collect();
+        assert_eq!(touched, [0, 1, 0]);
+        assert_eq!((schedule[0].response, schedule[1].response), (Some((660.0, 680.0)), Some((860.0, 885.0))));
+        assert!((schedule[1].line - 0.75).abs() < 1e-9);
+        // At 1100 Hz no time is left, so the servo sends no requests, and touch makes no cycle later.
+        assert_eq!(touches(&hand, &[FingerNumber::TWO], 1100.0), 0);
+        assert_eq!(fastest_rate(&hand, &COSTS, &Sensor::default(), 5000), 1454);
     }
 
     /// A late wake-up is not the board's fault: the reply window begins at the wake-up.

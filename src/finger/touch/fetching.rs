@@ -1,0 +1,107 @@
+//! The fetching of tactile events, one in a period.
+
+use super::Elements;
+use crate::board::OutgoingRequest;
+use crate::board::protocol::{Capabilities, TactileChange, TactileEvent, TactileRequest};
+use crate::finger::events::{EventKind, Occurrence};
+use crate::model::Part;
+use crate::realtime::LockedMemory;
+
+/// Number of requests in a row without an answer, after which the board is asked less often.
+const PATIENCE: u32 = 10;
+
+/// Number of periods between two requests to a board that does not answer them.
+const PAUSE: u32 = 100;
+
+/// The servo's side of the touch of one finger. It never waits or allocates.
+pub(in crate::finger) struct TouchFetching {
+    elements: Elements,
+    /// Whether the board has tactile events, and elements are configured.
+    enabled: bool,
+    /// Whether the line has time for a request in this period.
+    permitted: bool,
+    /// The sequence number of this period's request, until its answer arrives.
+    asked: Option<u8>,
+    /// Number of the last event that was received; 0 if none.
+    received: u8,
+    /// The board's count of lost events in its last answer; none before the first answer.
+    lost: Option<u8>,
+    /// Number of requests in a row without an answer.
+    unanswered: u32,
+    /// Number of periods until the next request.
+    pause: u32,
+}
+
+impl TouchFetching {
+    /// Constructs the touch of a finger whose board has these capabilities.
+    /// Adds the pages of the elements to `memory`.
+    pub fn new(elements: Elements, board: Capabilities, memory: &mut LockedMemory) -> Self {
+        elements.add_to(memory);
+        let enabled = board.has(Capabilities::TACTILE) && elements.count() > 0;
+        Self { elements, enabled, permitted: false, asked: None, received: 0, lost: None, unanswered: 0, pause: 0 }
+    }
+
+    /// Returns the elements, which planners read.
+    pub fn elements(&self) -> &Elements {
+        &self.elements
+    }
+
+    /// Begins a period. `answered`: whether the last Command was answered. Otherwise the line has no time for touch. A
+    /// request without an answer is not repeated in its own period. The next request fetches the same event.
+    pub fn begin(&mut self, answered: bool) {
+        self.permitted = answered;
+        if self.asked.take().is_some() {
+            self.unanswered += 1;
+            if self.unanswered >= PATIENCE {
+                self.pause = PAUSE;
+            }
+        }
+        self.pause = self.pause.saturating_sub(1);
+    }
+
+    /// Returns whether a request is due in this period.
+    pub fn due(&self) -> bool {
+        self.enabled && self.permitted && self.pause == 0
+    }
+
+    /// Returns the request of this period for the finger with this address. `sequence` is that of its Command.
+    pub fn request(&mut self, address: u8, sequence: u8) -> OutgoingRequest {
+        self.asked = Some(sequence);
+        OutgoingRequest { address, sequence, request: TactileRequest { received: self.received } }
+    }
+
+    /// Returns whether this period's request has no answer yet.
+    pub fn waiting(&self) -> bool {
+        self.asked.is_some()
+    }
+
+    /// Returns whether an answer with this sequence number answers this period's request. A late answer to an earlier
+    /// request is dropped: this period's request fetches the same event.
+    pub fn awaits(&self, sequence: u8) -> bool {
+        self.asked == Some(sequence)
+    }
+
+    /// Takes the answer to this period's request. Returns what has happened, if an element has changed.
+    pub fn take(&mut self, event: &TactileEvent) -> Option<Occurrence> {
+        (self.asked, self.unanswered) = (None, 0);
+        let lost = event.lost.wrapping_sub(self.lost.unwrap_or(event.lost));
+        self.elements.count_lost(lost);
+        self.lost = Some(event.lost);
+        if event.waiting == 0 || event.number == self.received {
+            return None;
+        }
+        self.received = event.number;
+        let reading = self.elements.store(event)?;
+        let kind = match event.change {
+            TactileChange::Made => EventKind::TouchMade,
+            TactileChange::Lost => EventKind::TouchLost,
+            TactileChange::Slip => EventKind::TouchSlip,
+            TactileChange::Pressure => EventKind::TouchPressure,
+            TactileChange::Invalid => EventKind::TouchInvalid,
+            TactileChange::Nothing | TactileChange::Other(_) => return None,
+        };
+        // An element that cannot be read has no force.
+        let force = if reading.valid { reading.force } else { 0.0 };
+        Some(Occurrence { kind, part: Part::Finger, values: [event.element.into(), force, 0.0, 0.0] })
+    }
+}

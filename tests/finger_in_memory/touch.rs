@@ -1,0 +1,147 @@
+//! Tactile events: from the elements of a simulated fingertip to the events of the finger.
+
+use crate::rig::{Bench, MILLISECOND};
+use nalgebra::Vector3;
+use sun2xp::board::Transport;
+use sun2xp::finger::events::{Event, EventKind};
+use sun2xp::model::configuration::{Configuration, TouchElement};
+use sun2xp::simulated::{Defect, LineFault};
+
+/// Two elements: one looks forward along the last link, one sideways along the axis of joint 2.
+fn two_elements(configuration: &mut Configuration) {
+    let element = |normal| TouchElement { position: [0.0; 3], normal, newton_per_count: 0.001, zero: 200 };
+    configuration.fingers[0].touch.elements = vec![element([0.0, 0.0, 1.0]), element([1.0, 0.0, 0.0])];
+}
+
+fn push(bench: &Bench, force: [f64; 3]) {
+    bench.with_finger(|finger| {
+        let turn = finger.plant().links().tip_rotation(&finger.plant().joints());
+        finger.plant().set_external_force(turn * Vector3::from(force));
+    });
+}
+
+fn touches(bench: &mut Bench) -> Vec<Event> {
+    let touch = [
+        EventKind::TouchMade,
+        EventKind::TouchLost,
+        EventKind::TouchSlip,
+        EventKind::TouchPressure,
+        EventKind::TouchInvalid,
+    ];
+    std::iter::from_fn(|| bench.events.next()).filter(|event| touch.contains(&event.kind)).collect()
+}
+
+#[test]
+fn a_touch_is_an_event_of_the_next_cycle() {
+    let mut bench = Bench::with(two_elements);
+    bench.goes(Vector3::new(0.1, 0.5, 1.0));
+    touches(&mut bench);
+    let before = bench.report().losses.cycles;
+    push(&bench, [0.0, 0.0, -0.3]);
+    bench.cycles(2);
+    let events = touches(&mut bench);
+    let [event] = events[..] else { panic!("{events:?}") };
+    assert_eq!((event.kind, event.values[0]), (EventKind::TouchMade, 0.0));
+    assert!((event.values[1] - 0.3).abs() < 0.01, "{event:?}");
+    assert!(event.cycle - before <= 2, "{event:?} after cycle {before}");
+    let reading = bench.touch.reading(0).expect("an element");
+    assert!(reading.valid && reading.pressed && (reading.force - 0.3).abs() < 0.01, "{reading:?}");
+    // Nothing has pressed the other element, so its reading is not known.
+    assert!(!bench.touch.reading(1).expect("an element").valid);
+    push(&bench, [0.0; 3]);
+    bench.cycles(2);
+    let events = touches(&mut bench);
+    assert_eq!(events.iter().map(|event| event.kind).collect::<Vec<_>>(), [EventKind::TouchLost]);
+    assert_eq!(bench.touch.reading(2), None);
+}
+
+#[test]
+fn a_tare_makes_the_present_counts_the_zeros() {
+    let mut bench = Bench::with(two_elements);
+    push(&bench, [0.0, 0.0, -0.3]);
+    bench.cycles(3);
+    let count = bench.touch.reading(0).expect("an element").count;
+    assert_eq!(bench.touch.tare(), [count, 200]);
+    assert_eq!(bench.touch.reading(0).expect("an element").force, 0.0);
+}
+
+#[test]
+fn an_element_that_cannot_be_read_has_no_number() {
+    let mut bench = Bench::with(two_elements);
+    push(&bench, [-0.5, 0.0, 0.0]);
+    bench.cycles(3);
+    touches(&mut bench);
+    assert!(bench.touch.reading(1).expect("an element").valid);
+    assert!(bench.with_finger(|finger| finger.inject(&Defect::DeadElement(1))));
+    assert!(!bench.with_finger(|finger| finger.inject(&Defect::DeadElement(2))));
+    bench.cycles(2);
+    let events = touches(&mut bench);
+    let [event] = events[..] else { panic!("{events:?}") };
+    assert_eq!((event.kind, event.values), (EventKind::TouchInvalid, [1.0, 0.0, 0.0, 0.0]));
+    assert_eq!(bench.touch.reading(1), Some(Default::default()));
+}
+
+/// Frames are lost in both directions. Every event arrives once, in order, and no cycle pays for it.
+#[test]
+fn no_touch_is_lost_on_a_bad_line() {
+    let mut bench = Bench::with(two_elements);
+    bench.cycles(100);
+    touches(&mut bench);
+    let until = u64::MAX;
+    bench.with_cable(|cable| {
+        cable.inject(LineFault::Drop, 0.05, until, 1);
+        cable.inject_to_board(LineFault::Drop, 0.05, until, 2);
+        cable.inject(LineFault::Duplicate, 0.05, until, 3);
+        cable.inject(LineFault::Delay(MILLISECOND + 50_000), 0.05, until, 4);
+    });
+    for _ in 0..200 {
+        push(&bench, [0.0, 0.0, -0.3]);
+        bench.cycles(10);
+        push(&bench, [0.0; 3]);
+        bench.cycles(10);
+    }
+    assert_eq!(bench.fault(), None);
+    let kinds: Vec<EventKind> = touches(&mut bench).iter().map(|event| event.kind).collect();
+    let pairs = kinds.chunks(2).filter(|pair| **pair == [EventKind::TouchMade, EventKind::TouchLost]).count();
+    assert_eq!((kinds.len(), pairs), (400, 200));
+    assert_eq!((bench.touch.lost(), bench.touch.unknown()), (0, 0));
+}
+
+/// A board has 16 places for events. What does not fit is lost, and counted.
+#[test]
+fn a_burst_of_touches_is_counted() {
+    let mut bench = Bench::with(two_elements);
+    bench.cycles(100);
+    touches(&mut bench);
+    // The servo does not run while the finger is touched 30 times, which are 60 events.
+    for touch in 0..60 {
+        push(&bench, [0.0, 0.0, if touch % 2 == 0 { -0.3 } else { 0.0 }]);
+        bench.with_cable(|cable| cable.advance_to(cable.now() + 100_000));
+    }
+    bench.cycles(100);
+    assert_eq!(touches(&mut bench).len() as u64 + bench.touch.lost(), 60);
+    assert!(bench.touch.lost() >= 44);
+    assert_eq!(bench.fault(), None);
+}
+
+/// A board with fewer or more elements than configured.
+#[test]
+fn an_element_that_is_not_configured_is_counted() {
+    let mut bench = Bench::believing(two_elements, |belief| belief.fingers[0].touch.elements.truncate(1));
+    bench.opens();
+    push(&bench, [-0.5, 0.0, 0.0]);
+    bench.cycles(3);
+    assert!(touches(&mut bench).is_empty());
+    assert_eq!(bench.touch.unknown(), 1);
+}
+
+/// A finger without elements asks for nothing.
+#[test]
+fn a_finger_without_elements_sends_no_requests() {
+    let mut bench = Bench::believing(two_elements, |belief| belief.fingers[0].touch.elements.clear());
+    bench.opens();
+    push(&bench, [-0.5, 0.0, 0.0]);
+    bench.cycles(3);
+    assert!(touches(&mut bench).is_empty());
+    assert_eq!((bench.touch.unknown(), bench.touch.count()), (0, 0));
+}
