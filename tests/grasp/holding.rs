@@ -3,7 +3,7 @@
 use crate::rig::{GraspingHand, RADIUS, START, around_a_ball};
 use nalgebra::Vector3;
 use sun2xp::finger::Stage;
-use sun2xp::model::configuration::ObjectShape;
+use sun2xp::model::configuration::{ConfiguredSimulation, ObjectShape};
 
 /// Depth of the anchors below the surface of the object, cm. With 3 N/cm, each finger presses with 2.3 N.
 const SQUEEZE: f64 = 0.8;
@@ -94,4 +94,19 @@ fn the_other_fingers_hold_on_when_one_lets_go() {
     assert!(stages[0] == Stage::Closed && stages[1] == Stage::Running && stages[2] == Stage::Running, "{stages:?}");
     assert!(hand.object().position.iter().all(|part| part.is_finite()));
     assert!(hand.object().time > 6.0);
+}
+
+#[test]
+fn hands_with_rubbing_tendons_grasp_too() {
+    for named in ["worn", "sheathed", "cheap"] {
+        let mut configuration = around_a_ball(0.1, 0.6, 3);
+        for finger in &mut configuration.fingers {
+            let ConfiguredSimulation { start_degrees, seed, .. } = finger.simulation;
+            let values = ConfiguredSimulation::named(named).expect("a named hand");
+            finger.simulation = ConfiguredSimulation { start_degrees, seed, ..values };
+        }
+        let hand = lifted(GraspingHand::open(configuration));
+        let height = START.z - position(&hand).z;
+        assert!((height - HEIGHT).abs() < 0.25, "{named}: {height} cm");
+    }
 }
