@@ -330,28 +330,30 @@ _Pragma("push_macro(\"DamagedFrames\")") _Pragma("push_macro(\"Damping\")") _Pra
 _Pragma("push_macro(\"Event\")") _Pragma("push_macro(\"EventDescriptor\")") _Pragma("push_macro(\"Fault\")")
 _Pragma("push_macro(\"FaultText\")") _Pragma("push_macro(\"Felt\")") _Pragma("push_macro(\"Finger\")")
 _Pragma("push_macro(\"FingerCommand\")") _Pragma("push_macro(\"FingerRecord\")") _Pragma("push_macro(\"FingerStatus\")")
-_Pragma("push_macro(\"FingerTiming\")") _Pragma("push_macro(\"FingerTip\")") _Pragma("push_macro(\"Follows\")")
-_Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")") _Pragma("push_macro(\"GetFault\")")
-_Pragma("push_macro(\"GetObject\")") _Pragma("push_macro(\"GetRecord\")") _Pragma("push_macro(\"GetStatus\")")
-_Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")") _Pragma("push_macro(\"HandError\")")
-_Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"Kind\")") _Pragma("push_macro(\"Kx\")")
-_Pragma("push_macro(\"LateReplies\")") _Pragma("push_macro(\"Lost\")") _Pragma("push_macro(\"LostReplies\")")
+_Pragma("push_macro(\"FingerTiming\")") _Pragma("push_macro(\"FingerTip\")") _Pragma("push_macro(\"FingerTouch\")")
+_Pragma("push_macro(\"Follows\")") _Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")")
+_Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetObject\")") _Pragma("push_macro(\"GetRecord\")")
+_Pragma("push_macro(\"GetStatus\")") _Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")")
+_Pragma("push_macro(\"GetTouch\")") _Pragma("push_macro(\"HandError\")") _Pragma("push_macro(\"IdentifyFinger\")")
+_Pragma("push_macro(\"Kind\")") _Pragma("push_macro(\"Kx\")") _Pragma("push_macro(\"LateReplies\")")
+_Pragma("push_macro(\"Lost\")") _Pragma("push_macro(\"LostEvents\")") _Pragma("push_macro(\"LostReplies\")")
 _Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")")
 _Pragma("push_macro(\"MemoryLocked\")") _Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")")
 _Pragma("push_macro(\"NextEvent\")") _Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"ObjectState\")")
 _Pragma("push_macro(\"Oldest\")") _Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OnEvent\")")
 _Pragma("push_macro(\"OpenHand\")") _Pragma("push_macro(\"Overruns\")") _Pragma("push_macro(\"P99\")")
 _Pragma("push_macro(\"P999\")") _Pragma("push_macro(\"Part\")") _Pragma("push_macro(\"Pos\")")
-_Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"Position\")") _Pragma("push_macro(\"PushFinger\")")
-_Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")")
-_Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"Rotation\")") _Pragma("push_macro(\"SendContact\")")
-_Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendGroup\")") _Pragma("push_macro(\"SendTip\")")
-_Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Spin\")")
-_Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")")
-_Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")") _Pragma("push_macro(\"StopHand\")")
-_Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")")
-_Pragma("push_macro(\"Time\")") _Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"Torque\")")
-_Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Touching\")") _Pragma("push_macro(\"Value\")")
+_Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"Position\")") _Pragma("push_macro(\"Pressed\")")
+_Pragma("push_macro(\"PushFinger\")") _Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")")
+_Pragma("push_macro(\"RecoverHand\")") _Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"Rotation\")")
+_Pragma("push_macro(\"SendContact\")") _Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendGroup\")")
+_Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")")
+_Pragma("push_macro(\"Spin\")") _Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")")
+_Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")")
+_Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"TareTouch\")") _Pragma("push_macro(\"Tension\")")
+_Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")")
+_Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")")
+_Pragma("push_macro(\"Touching\")") _Pragma("push_macro(\"Valid\")") _Pragma("push_macro(\"Value\")")
 _Pragma("push_macro(\"Values\")") _Pragma("push_macro(\"Velocity\")") _Pragma("push_macro(\"WaitEvent\")")
 _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")") _Pragma("push_macro(\"WakeUpMedian\")")
 _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")") _Pragma("push_macro(\"WarningValue\")")
@@ -385,6 +387,7 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef FingerStatus
 #undef FingerTiming
 #undef FingerTip
+#undef FingerTouch
 #undef Follows
 #undef Force
 #undef ForeignFrames
@@ -394,12 +397,14 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef GetStatus
 #undef GetTiming
 #undef GetTip
+#undef GetTouch
 #undef HandError
 #undef IdentifyFinger
 #undef Kind
 #undef Kx
 #undef LateReplies
 #undef Lost
+#undef LostEvents
 #undef LostReplies
 #undef Maximum
 #undef MeasuredRate
@@ -421,6 +426,7 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Pos
 #undef PosSent
 #undef Position
+#undef Pressed
 #undef PushFinger
 #undef Rate
 #undef Realtime
@@ -440,6 +446,7 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Stiffness
 #undef StiffnessScale
 #undef StopHand
+#undef TareTouch
 #undef Tension
 #undef TensionSent
 #undef Tensions
@@ -448,6 +455,7 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Torque
 #undef TorqueScale
 #undef Touching
+#undef Valid
 #undef Value
 #undef Values
 #undef Velocity
@@ -744,6 +752,7 @@ const char *HandError(void);
 #define EVENT_REFLEX_FIRED           15 /* reflex fired */
 #define EVENT_PATH_ENDED             16 /* path ended */
 #define EVENT_EXPIRED                17 /* set point expired */
+#define EVENT_TOUCH_INVALID          18 /* touch invalid */
 
 /* State of a finger (FingerStatus.State, FingerRecord.State) */
 #define FINGER_RUNNING 1            /* The fingertip is the spring that the planner has commanded. */
@@ -873,6 +882,20 @@ struct ObjectState {
     double Force[3][3];             /* Force of each finger on the object, N: Force[0] is that of finger 1. It is the
                                        true force, without the errors of GetTip. It is zero for a finger that does
                                        not touch the object. */
+};
+
+/* Result of GetTouch. */
+struct FingerTouch {
+    unsigned int Size;              /* In: sizeof (struct FingerTouch). Out: bytes written, at most that. */
+    int Valid;                      /* 1 if the board has reported this element since OpenHand and could read it,
+                                       otherwise 0. If it is 0, Pressed, Count and Force are 0 too. */
+    int Pressed;                    /* 1 if something presses the element, otherwise 0. */
+    unsigned int Count;             /* The raw count of the element. */
+    double Force;                   /* Force on the element, N: its count minus its zero, times newton_per_count of
+                                       the configuration. */
+    unsigned long LostEvents;       /* Tactile events of the finger that were lost since OpenHand, because they did
+                                       not fit into the queue of the board or because their element is not
+                                       configured. */
 };
 
 /* Result of GetRecord: one cycle of a finger, from the black box. */
@@ -1278,6 +1301,58 @@ int SendGroup(int, const struct FingerCommand *);
 int GetObject(struct ObjectState *);
 
 /*
+ GetTouch - the newest reading of a tactile element
+
+     int GetTouch(int i, int Element, struct FingerTouch *Touch);
+
+   i        finger, 1 to 3
+   Element  element, from 0, in the order of [finger.touch] in the configuration
+   Touch    result; set Touch->Size before the call
+
+ A board reports an element when its reading changes. The servo fetches one such event of a finger in each period in
+ which the line has time for it. A faulted finger keeps its last readings.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Touch is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger; no such Element
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example:
+
+     struct FingerTouch Touch;
+     Touch.Size = sizeof Touch;
+     if (GetTouch(1, 0, &Touch) == 0 && Touch.Valid)
+         printf("%.3f N\n", Touch.Force);
+ */
+int GetTouch(int, int, struct FingerTouch *);
+
+/*
+ TareTouch - make the present readings of a finger's tactile elements their zeros
+
+     int TareTouch(int i);
+
+   i        finger, 1 to 3
+
+ Call TareTouch while nothing touches the finger. An element without a valid reading keeps its zero. The zeros are in
+ force until CloseHand. The configuration keeps its own zeros.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   ENODEV   no hand is open
+   EINVAL   no such finger
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example:
+
+     TareTouch(1);
+ */
+int TareTouch(int);
+
+/*
  GetRecord - one cycle of the last two seconds of a finger
 
      int GetRecord(int i, unsigned long Cycle, struct FingerRecord *Record);
@@ -1666,6 +1741,7 @@ typedef char Sun2XpFingerTimingSize[sizeof(struct FingerTiming) == 120 ? 1 : -1]
 typedef char Sun2XpFingerTipSize[sizeof(struct FingerTip) == 160 ? 1 : -1];
 typedef char Sun2XpFingerCommandSize[sizeof(struct FingerCommand) == 40 ? 1 : -1];
 typedef char Sun2XpObjectStateSize[sizeof(struct ObjectState) == 232 ? 1 : -1];
+typedef char Sun2XpFingerTouchSize[sizeof(struct FingerTouch) == 32 ? 1 : -1];
 typedef char Sun2XpFingerRecordSize[sizeof(struct FingerRecord) == 200 ? 1 : -1];
 typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
 typedef char Sun2XpEventSize[sizeof(struct Event) == 72 ? 1 : -1];
@@ -1824,28 +1900,30 @@ _Pragma("pop_macro(\"DamagedFrames\")") _Pragma("pop_macro(\"Damping\")") _Pragm
 _Pragma("pop_macro(\"Event\")") _Pragma("pop_macro(\"EventDescriptor\")") _Pragma("pop_macro(\"Fault\")")
 _Pragma("pop_macro(\"FaultText\")") _Pragma("pop_macro(\"Felt\")") _Pragma("pop_macro(\"Finger\")")
 _Pragma("pop_macro(\"FingerCommand\")") _Pragma("pop_macro(\"FingerRecord\")") _Pragma("pop_macro(\"FingerStatus\")")
-_Pragma("pop_macro(\"FingerTiming\")") _Pragma("pop_macro(\"FingerTip\")") _Pragma("pop_macro(\"Follows\")")
-_Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")") _Pragma("pop_macro(\"GetFault\")")
-_Pragma("pop_macro(\"GetObject\")") _Pragma("pop_macro(\"GetRecord\")") _Pragma("pop_macro(\"GetStatus\")")
-_Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")") _Pragma("pop_macro(\"HandError\")")
-_Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"Kind\")") _Pragma("pop_macro(\"Kx\")")
-_Pragma("pop_macro(\"LateReplies\")") _Pragma("pop_macro(\"Lost\")") _Pragma("pop_macro(\"LostReplies\")")
+_Pragma("pop_macro(\"FingerTiming\")") _Pragma("pop_macro(\"FingerTip\")") _Pragma("pop_macro(\"FingerTouch\")")
+_Pragma("pop_macro(\"Follows\")") _Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")")
+_Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetObject\")") _Pragma("pop_macro(\"GetRecord\")")
+_Pragma("pop_macro(\"GetStatus\")") _Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")")
+_Pragma("pop_macro(\"GetTouch\")") _Pragma("pop_macro(\"HandError\")") _Pragma("pop_macro(\"IdentifyFinger\")")
+_Pragma("pop_macro(\"Kind\")") _Pragma("pop_macro(\"Kx\")") _Pragma("pop_macro(\"LateReplies\")")
+_Pragma("pop_macro(\"Lost\")") _Pragma("pop_macro(\"LostEvents\")") _Pragma("pop_macro(\"LostReplies\")")
 _Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")")
 _Pragma("pop_macro(\"MemoryLocked\")") _Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")")
 _Pragma("pop_macro(\"NextEvent\")") _Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"ObjectState\")")
 _Pragma("pop_macro(\"Oldest\")") _Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OnEvent\")")
 _Pragma("pop_macro(\"OpenHand\")") _Pragma("pop_macro(\"Overruns\")") _Pragma("pop_macro(\"P99\")")
 _Pragma("pop_macro(\"P999\")") _Pragma("pop_macro(\"Part\")") _Pragma("pop_macro(\"Pos\")")
-_Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"Position\")") _Pragma("pop_macro(\"PushFinger\")")
-_Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")")
-_Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"Rotation\")") _Pragma("pop_macro(\"SendContact\")")
-_Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendGroup\")") _Pragma("pop_macro(\"SendTip\")")
-_Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Spin\")")
-_Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")")
-_Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")") _Pragma("pop_macro(\"StopHand\")")
-_Pragma("pop_macro(\"Tension\")") _Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")")
-_Pragma("pop_macro(\"Time\")") _Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"Torque\")")
-_Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Touching\")") _Pragma("pop_macro(\"Value\")")
+_Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"Position\")") _Pragma("pop_macro(\"Pressed\")")
+_Pragma("pop_macro(\"PushFinger\")") _Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")")
+_Pragma("pop_macro(\"RecoverHand\")") _Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"Rotation\")")
+_Pragma("pop_macro(\"SendContact\")") _Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendGroup\")")
+_Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")")
+_Pragma("pop_macro(\"Spin\")") _Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")")
+_Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")")
+_Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"TareTouch\")") _Pragma("pop_macro(\"Tension\")")
+_Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")")
+_Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")")
+_Pragma("pop_macro(\"Touching\")") _Pragma("pop_macro(\"Valid\")") _Pragma("pop_macro(\"Value\")")
 _Pragma("pop_macro(\"Values\")") _Pragma("pop_macro(\"Velocity\")") _Pragma("pop_macro(\"WaitEvent\")")
 _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")") _Pragma("pop_macro(\"WakeUpMedian\")")
 _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")") _Pragma("pop_macro(\"WarningValue\")")
