@@ -29,6 +29,8 @@ pub struct Calibrating {
     /// While this exists, no other call can calibrate the finger.
     _claim: Claim,
     order: u32,
+    /// Number of recoveries of the finger at the beginning.
+    recoveries: u32,
     /// The results; `None` until the finger is ordered to restart with them.
     found: Option<(Findings, Found)>,
     asked: Instant,
@@ -84,11 +86,12 @@ impl Calibrating {
             Stage::Faulted(fault) => HandError::Faulted { finger, fault },
             _ => HandError::Busy(finger),
         })?;
+        let recoveries = member.mailbox.report().recoveries;
         let order = hand.dispatcher.hand_over_calibration(finger, &configuration, adjustable, |adjustable| {
             let run = CalibrationRun { calibration, adjustable };
             Self::ordered(finger, member.mailbox.order(Order::Calibrate(run)))
         })?;
-        Ok(Self { finger, _claim: claim, order, found: None, asked: Instant::now() })
+        Ok(Self { finger, _claim: claim, order, recoveries, found: None, asked: Instant::now() })
     }
 
     fn ordered(finger: FingerNumber, given: Result<Option<u32>, Fault>) -> Result<u32, HandError> {
@@ -105,6 +108,11 @@ impl Calibrating {
     pub fn poll(&mut self, hand: &Hand) -> Result<CalibrationState, HandError> {
         let finger = self.finger;
         let report = hand.dispatcher.report(finger)?;
+        if report.recoveries != self.recoveries {
+            // The finger has faulted and recovered between two polls. Its verdict, if it has one, is not that of this
+            // calibration, and it would remain in progress without end.
+            return Err(HandError::Interrupted(finger));
+        }
         if report.orders != self.order {
             // Orders are counted from open. If the hand was opened again since, it has not received this order, and its
             // count began again at 0.
@@ -119,6 +127,11 @@ impl Calibrating {
             }
             hand.note(found.clone());
             return Ok(CalibrationState::Done(*findings));
+        }
+        let in_progress = matches!(report.calibration, None | Some(Verdict::InProgress(_)));
+        if in_progress && report.stage != Stage::Calibrating {
+            // The hand is being closed, which ends a calibration without a verdict.
+            return Err(HandError::Interrupted(finger));
         }
         match report.calibration {
             None => Ok(CalibrationState::InProgress(Progress { step: Step::TakingUpSlack, part: 0.0 })),

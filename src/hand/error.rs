@@ -130,6 +130,12 @@ pub enum HandError {
         /// The cause and the remedy.
         obstacle: Obstacle,
     },
+    /// A calibration has ended without a result.
+    #[error(
+        "the calibration of finger {0} ended without a result, because the finger faulted and recovered, or because the \
+         hand is being closed. Its previous calibration is in force: calibrate it again"
+    )]
+    Interrupted(FingerNumber),
     /// The finger is busy.
     #[error("finger {0} is being opened, calibrated or closed: wait until this is done")]
     Busy(FingerNumber),

@@ -19,7 +19,7 @@ impl HandError {
             Self::NotRealTime { missing } => missing.errno(),
             Self::Link { source, .. } => source.errno(),
             Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } | Self::NoAnswer(_) => libc::ETIMEDOUT,
-            Self::Calibration { .. } => libc::ECANCELED,
+            Self::Calibration { .. } | Self::Interrupted(_) => libc::ECANCELED,
             Self::SameNumber { .. } => libc::ENOTUNIQ,
             Self::NotOpened(_) => libc::ENODEV,
             Self::Busy(_) => libc::EBUSY,

@@ -1,0 +1,34 @@
+/* A slow call from C: the planner's thread waits on a futex word for the thread that does the work
+ * (src/realtime/delegated_call.rs). The model has no time limit: the planner's thread wakes up without the check every
+ * 100 ms. -DWAKE_FIRST is a mutant that wakes the planner before it stores the result.
+ */
+bool done;
+bool sleeping;
+
+/* DelegatedCall::begin, and the body of its thread. */
+active proctype Worker()
+{
+#ifdef WAKE_FIRST
+    sleeping = false;
+    done = true
+#else
+    done = true;
+    sleeping = false
+#endif
+}
+
+/* DelegatedCall::wait and wait_for_change. The kernel compares the word and puts the thread to sleep in one step. */
+active proctype Planner()
+{
+    do
+    :: done -> break
+    :: !done ->
+       atomic {
+           if
+           :: !done -> sleeping = true
+           :: else
+           fi
+       };
+       !sleeping
+    od
+}
