@@ -83,6 +83,11 @@ pub use model::configuration::{
 pub use model::{Contact, ContactError, FingerNumber, Part};
 pub use realtime::Distribution;
 
+/// Contact without touch sensors: the thresholds of `[finger.contact]`.
+pub mod contact {
+    pub use crate::model::configuration::ConfiguredContact;
+}
+
 /// Commands to several fingers that take effect in the same cycle.
 pub mod groups {
     pub use crate::hand::{FingerCommand, Pose};

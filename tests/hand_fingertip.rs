@@ -49,6 +49,10 @@ fn a_tip_moves_to_its_set_point_and_reports_its_force() {
         let tip = tip(&hand, 2);
         (Vector3::from(tip.force) - Vector3::new(0.0, -1.0, 0.0)).amax() < 0.3 && tip.felt == 3
     });
+    until("the contact is noticed", || {
+        let tip = tip(&hand, 2);
+        tip.touching && (Vector3::from(tip.contact) - Vector3::new(0.0, -1.0, 0.0)).amax() < 0.2 && tip.slide < 1.0
+    });
     // Compares by the spring's own law, within the dead band of the joint friction.
     let given_way = || Vector3::from(tip(&hand, 2).tip) - wanted;
     until("the spring gives way", || (given_way() - Vector3::new(0.0, 1.0 / 3.0, 0.0)).amax() < 0.08);

@@ -8,7 +8,7 @@ use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
 use crate::capi::default_hand;
 use crate::capi::memory::{fill, load, non_null, size_up_to};
 use crate::capi::refusal::Wanted;
-use crate::hand::{self, ConfigurationError, HandError, SetPointError};
+use crate::hand::{ConfigurationError, HandError, SetPointError};
 use crate::model::{Contact, ContactError};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use std::ffi::{CStr, c_char, c_int, c_uint};
@@ -33,6 +33,15 @@ pub struct FingerTip {
     /// what joint limits, nearness to the axis of joint 0 and the rotational stiffness of a contact add. It is zero
     /// along directions that the joints cannot measure, and while the finger is not running.
     pub Stiffness: [[f64; 3]; 3],
+    /// Force of the tip on the object that it touches: x, y, z, N, without friction, weight and inertia of the
+    /// finger, and without constant errors of the gauges. It is zero while the finger is not running.
+    pub Contact: [f64; 3],
+    /// Speed of the tip perpendicular to Contact, cm/s, while Touching: the tip slides on the object, or moves it.
+    pub Slide: f64,
+    /// 1: the finger touches something, as far as tensions and motion show it. 0: it does not.
+    pub Touching: c_int,
+    /// Always zero.
+    pub Unused: c_int,
 }
 
 /// SendTip - send a desired fingertip position to a finger
@@ -98,7 +107,7 @@ pub unsafe extern "C" fn GetTip(i: c_int, Tip: *mut FingerTip) -> c_int {
     guarded("GetTip", || {
         let least = size_up_to!(FingerTip, Tensions: [f64; 4]);
         // SAFETY: by the contract in the manual, `Tip` is null or points to as many bytes as its first member gives.
-        unsafe { fill(Tip, "Tip", least, |hand| hand.fingertip(i).map(|tip| to_c(&tip))) }
+        unsafe { fill(Tip, "Tip", least, |hand| hand.fingertip(i).map(|tip| tip.into())) }
     })
 }
 
@@ -281,16 +290,4 @@ pub unsafe extern "C" fn PushFinger(i: c_int, Force: *const f64) -> c_int {
         let force = unsafe { load::<f64, 3>(Force, "Force") }?;
         default_hand::command(|hand| hand.push_simulated(i, force))
     })
-}
-
-/// Converts everything except `Size`. [`fill`] sets `Size`, because it depends on the room of the caller.
-fn to_c(tip: &hand::FingerTip) -> FingerTip {
-    FingerTip {
-        Size: 0,
-        Felt: tip.felt as c_int, // 0 to 3
-        Tip: tip.tip,
-        Force: tip.force,
-        Tensions: tip.tensions,
-        Stiffness: tip.stiffness,
-    }
 }

@@ -20,6 +20,7 @@ mod event_calls;
 mod fault_calls;
 mod fault_texts;
 mod fingertip_calls;
+mod fingertip_result;
 mod forked;
 mod group_calls;
 mod memory;

@@ -30,6 +30,15 @@ pub struct FingerTip {
     /// joint 0 near its axis add. The tip turns as its joints turn it. It is zero in a direction that the joints do not
     /// feel, and while the finger is not a spring.
     pub stiffness: [[f64; 3]; 3],
+    /// Force on the touched object in the finger's frame, N, without the friction, weight and acceleration of the
+    /// finger, and without constant errors of the gauges: from the momentum observer of docs/contact.md. It is zero
+    /// while the finger does not follow a set point.
+    pub contact: [f64; 3],
+    /// Whether the finger touches something, as far as tensions and motion show it.
+    pub touching: bool,
+    /// Speed of the tip perpendicular to `contact`, cm/s, while the finger touches something: the tip slides on the
+    /// object, or moves it.
+    pub slide: f64,
 }
 
 impl Hand {
@@ -61,6 +70,9 @@ impl FingerTip {
             felt,
             tensions: report.cycle.tensions.into(),
             stiffness: stiffness.into(),
+            contact: (-report.cycle.contact.force).into(),
+            touching: report.cycle.contact.touching,
+            slide: report.cycle.contact.slide,
         }
     }
 }

@@ -16,6 +16,12 @@ pub struct LinkMomentum {
 }
 
 impl LinkMomentum {
+    /// Returns the momentum in another unit.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let Self { inertia, by_1, by_2, bend } = *self;
+        Self { inertia: inertia * factor, by_1: by_1 * factor, by_2: by_2 * factor, bend: bend * factor }
+    }
+
     /// Returns p = H(theta) theta_dot, N m s.
     pub fn of(&self, rates: &Vector3<f64>) -> Vector3<f64> {
         let h = &self.inertia;

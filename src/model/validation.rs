@@ -1,5 +1,6 @@
 //! Checks of a configuration before a motor may move.
 
+mod contact;
 mod events;
 mod monitors;
 mod object;
@@ -106,6 +107,7 @@ impl ConfiguredFinger {
         self.monitors.check()?;
         self.events.check()?;
         self.touch.check()?;
+        self.contact.check()?;
         self.check_calibration()?;
         self.check_simulation()
     }

@@ -36,6 +36,16 @@ impl IndependentFinger {
         Self { state, gravity, force, torque, home_tension }
     }
 
+    /// Changes the force on the tip, N.
+    pub fn push(&mut self, force: Vector3<f64>) {
+        self.force = force;
+    }
+
+    /// The tensions of the tendons, N.
+    pub fn tensions(&self) -> Vector4<f64> {
+        Vector4::from_fn(|tendon, _| self.tension(&self.state, tendon))
+    }
+
     pub fn joints(&self) -> Vector3<f64> {
         self.state.fixed_rows::<3>(0).into_owned()
     }
@@ -53,15 +63,18 @@ impl IndependentFinger {
         self.state += (a + (b + c) * 2.0 + d) * (h / 6.0);
     }
 
+    fn tension(&self, state: &State, tendon: usize) -> f64 {
+        let wrapped: f64 = (0..3).map(|joint| R[joint][tendon] * state[joint]).sum();
+        (TENDON_STIFFNESS * (PULLEY * state[3 + tendon] - wrapped) + self.home_tension[tendon]).max(0.0)
+    }
+
     fn derivative(&self, state: &State) -> State {
         let theta: Vector3<f64> = state.fixed_rows::<3>(0).into_owned();
         let rate: Vector3<f64> = state.fixed_rows::<3>(7).into_owned();
         let mut joint_torque = Vector3::zeros();
         let mut derivative = State::zeros();
         for tendon in 0..4 {
-            let wrapped: f64 = (0..3).map(|joint| R[joint][tendon] * theta[joint]).sum();
-            let stretched = TENDON_STIFFNESS * (PULLEY * state[3 + tendon] - wrapped) + self.home_tension[tendon];
-            let tension = stretched.max(0.0);
+            let tension = self.tension(state, tendon);
             for joint in 0..3 {
                 joint_torque[joint] += R[joint][tendon] * tension;
             }

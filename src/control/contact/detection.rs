@@ -1,53 +1,85 @@
-//! Decides whether a finger touches something: thresholds with hysteresis, and the slowly varying error of the model.
+//! Decides whether a finger touches something: thresholds with hysteresis, and the constant error of the torques.
 
+use crate::model::configuration::ConfiguredFinger;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Force from which a finger at rest touches something, N.
-const AT_REST: f64 = 0.07;
+/// Time constant with which the recent motion is forgotten, s. It exceeds the delay of the residual.
+const CALMING: f64 = 0.1;
 
-/// Increase of this force with the joint rate, N s/rad.
-const IN_MOTION: f64 = 0.18;
-
-/// The contact is lost below this part of the force.
-const LOST: f64 = 0.6;
-
-/// Torques below which no joint is loaded, N m. They are above the noise of the gauges and the friction of the joints.
-const LEAST_TORQUE: f64 = 1e-3;
-
-/// Time constant with which the motion level falls, s.
-const CALMING: f64 = 0.15;
-
-/// Time constant of the error of the model, s.
-const LEARNING: f64 = 2.0;
-
-/// Duration of the first average of the error of the model, s.
+/// Duration of the first average of the error, s. Nothing is touched until it has ended.
 const FIRST: f64 = 0.2;
+
+/// The constant part of the detection.
+#[derive(Clone, Debug)]
+pub(super) struct Detection {
+    force: f64,
+    force_per_rate: f64,
+    torque: Vector3<f64>,
+    mass_tolerance: f64,
+    lost: f64,
+    learning_time: f64,
+}
 
 /// The state of the detection.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
-pub(super) struct Detection {
-    /// Residual torques of a finger that touches nothing, N m.
+pub(super) struct DetectionState {
+    /// Residual torques of a finger that touches nothing, N cm.
     pub error: Vector3<f64>,
-    /// Highest joint rate of the recent past, rad/s.
-    level: f64,
-    /// Time since the start, s. It stops at [`LEARNING`].
+    /// Fastest joint rate of the recent past, rad/s.
+    rate: f64,
+    /// Largest inertial torque of each joint in the recent past, N cm.
+    inertial: Vector3<f64>,
+    /// Time since the start, s. It stops at the learning time.
     time: f64,
     pub touching: bool,
 }
 
+/// The torques of one sample, N cm.
+pub(super) struct Torques<'a> {
+    /// The residual of the momentum observer.
+    pub residual: &'a Vector3<f64>,
+    /// The derivative of the momentum.
+    pub inertial: &'a Vector3<f64>,
+    /// The part of the thresholds that depends on pose and tensions.
+    pub allowed: &'a Vector3<f64>,
+}
+
 impl Detection {
-    /// Decides from the external torques, N m, the force at the tip, N, and the joint rates, rad/s. `residual` is the
-    /// torque from which the error is not yet subtracted, N m.
-    pub fn decide(&mut self, residual: &Vector3<f64>, force: &Vector3<f64>, rates: &Vector3<f64>, elapsed: f64) {
-        self.level = (self.level * (1.0 - elapsed / CALMING)).max(rates.amax());
-        let threshold = AT_REST + IN_MOTION * self.level;
-        let threshold = if self.touching { threshold * LOST } else { threshold };
-        let loaded = (residual - self.error).amax() > LEAST_TORQUE;
-        self.touching = self.time >= FIRST && loaded && force.norm_squared() > threshold * threshold;
-        if !self.touching {
-            self.time = (self.time + elapsed).min(LEARNING);
-            self.error += (residual - self.error) * (elapsed / self.time);
+    pub fn new(finger: &ConfiguredFinger) -> Self {
+        let contact = &finger.contact;
+        Self {
+            force: contact.force,
+            force_per_rate: contact.force_per_rate,
+            torque: contact.torque.into(),
+            mass_tolerance: contact.mass_tolerance,
+            lost: contact.lost,
+            learning_time: contact.learning_time_s,
+        }
+    }
+
+    /// Decides from the torques, the force at the tip, N, and the joint rates, rad/s. `elapsed` is the time since the
+    /// previous sample, s.
+    pub fn decide(
+        &self,
+        state: &mut DetectionState,
+        torques: &Torques,
+        force: &Vector3<f64>,
+        rates: &Vector3<f64>,
+        elapsed: f64,
+    ) {
+        let fades = 1.0 - (elapsed * (1.0 / CALMING)).min(1.0);
+        state.rate = (state.rate * fades).max(rates.amax());
+        state.inertial = (state.inertial * fades).sup(&torques.inertial.abs());
+        let part = if state.touching { self.lost } else { 1.0 };
+        let least = (self.force + self.force_per_rate * state.rate) * part;
+        let bounds = (self.torque + torques.allowed + state.inertial * self.mass_tolerance) * part;
+        let excess = torques.residual - state.error;
+        let loaded = (excess.abs() - bounds).max() > 0.0;
+        state.touching = loaded && force.norm_squared() > least * least && state.time >= FIRST;
+        if !state.touching {
+            state.time = (state.time + elapsed).min(self.learning_time);
+            state.error += excess * (elapsed / state.time);
         }
     }
 }

@@ -10,8 +10,8 @@
 //!
 //! r = K (p - integral of (R t + C^T theta_dot + g - friction + r)).
 //!
-//! R t and the measured joint rates are low-pass filtered with the bandwidth K before. Without this filter, the noise
-//! of the joint rates would exceed the torques that are to be noticed.
+//! The joint rates are the differences of the joint angles. Tensions and rates first pass a low-pass filter with the
+//! bandwidth K. Without this filter, the noise of the rates would exceed the torques that are to be noticed.
 //!
 //! The tensions are measured between motors and joints, so the friction and the inertia of the motors do not matter.
 
@@ -20,71 +20,80 @@ use crate::model::{LinkMomentum, Tendons};
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
-/// K: bandwidth of the residual and of the filter of its inputs, 1/s.
-const BANDWIDTH: f64 = 60.0;
-
 /// Joint rate from which the whole Coulomb friction of a joint is expected, rad/s. A step at zero rate would convert
 /// the noise of the rates to torque.
 const CREEP: f64 = 0.1;
 
-/// The constant part of the observer, in SI units.
+/// The constant part of the observer, in N cm.
 #[derive(Clone, Debug)]
 pub(super) struct MomentumObserver {
-    /// R, m.
+    /// K, 1/s.
+    bandwidth: f64,
+    /// R, cm.
     r: Matrix3x4<f64>,
-    /// Coulomb friction of the joints, N m.
+    /// Coulomb friction of the joints, N cm.
     coulomb: Vector3<f64>,
-    /// Viscous friction of the joints, N m s/rad.
+    /// Viscous friction of the joints, N cm s/rad.
     viscous: Vector3<f64>,
 }
 
 /// The state of the observer.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub(super) struct MomentumState {
+    /// Joint angles of the last sample, rad.
+    joints: Vector3<f64>,
+    /// Tensions of the last sample, N.
+    tensions: Vector4<f64>,
+    /// Low-pass filtered tensions, N.
+    filtered: Vector4<f64>,
     /// Low-pass filtered joint rates, rad/s.
     pub rates: Vector3<f64>,
-    /// Low-pass filtered joint torques of the tendons, N m.
-    torques: Vector3<f64>,
-    /// p at the last sample, N m s.
+    /// p at the last sample, N cm s.
     momentum: Vector3<f64>,
-    /// r, N m.
+    /// r, N cm.
     pub residual: Vector3<f64>,
+    /// p_dot with the delay of r, N cm.
+    pub inertial: Vector3<f64>,
 }
 
 impl MomentumObserver {
     pub fn new(finger: &ConfiguredFinger, tendons: &Tendons) -> Self {
         Self {
-            r: tendons.r * 0.01,
-            coulomb: Vector3::from(finger.friction.joint_coulomb) * 0.01,
-            viscous: Vector3::from(finger.friction.joint_viscous) * 0.01,
+            bandwidth: finger.contact.bandwidth,
+            r: tendons.r,
+            coulomb: finger.friction.joint_coulomb.into(),
+            viscous: finger.friction.joint_viscous.into(),
         }
     }
 
-    /// Returns the state of a finger with these tensions, N, and joint rates, rad/s, on which nothing acts.
-    pub fn start(&self, links: &LinkMomentum, tensions: &Vector4<f64>, rates: &Vector3<f64>) -> MomentumState {
-        let torques = self.r * tensions;
-        MomentumState { rates: *rates, torques, momentum: links.of(rates), residual: Vector3::zeros() }
+    /// Returns the state of a finger at rest at these joint angles, rad, with these tensions, N, on which nothing acts.
+    pub fn start(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>) -> MomentumState {
+        MomentumState { joints: *joints, tensions: *tensions, filtered: *tensions, ..MomentumState::default() }
     }
 
-    /// Advances the residual to a sample with these tensions, N, and joint rates, rad/s. `gravity` is the torque of
-    /// gravity, N m, and `elapsed` the time since the previous sample, s.
+    /// Advances the residual to a sample with these joint angles, rad, and tensions, N. `links` has the unit N cm s^2.
+    /// `gravity` is the torque of gravity, N cm, and `elapsed` the time since the previous sample, s.
     pub fn advance(
         &self,
         state: &mut MomentumState,
         links: &LinkMomentum,
         gravity: &Vector3<f64>,
-        (tensions, rates): (&Vector4<f64>, &Vector3<f64>),
+        (joints, tensions): (&Vector3<f64>, &Vector4<f64>),
         elapsed: f64,
     ) {
         // The implicit Euler method. It is stable for any time between two samples.
-        let keeps = 1.0 / (1.0 + BANDWIDTH * elapsed);
-        state.rates += (rates - state.rates) * (1.0 - keeps);
-        state.torques += (self.r * tensions - state.torques) * (1.0 - keeps);
+        let keeps = 1.0 / (1.0 + self.bandwidth * elapsed);
+        let passes = 1.0 - keeps;
+        // A difference of angles is the rate in the middle between the two samples. So is the mean of two tensions.
+        state.rates = state.rates * keeps + (joints - state.joints) * (self.bandwidth * keeps);
+        state.filtered = state.filtered * keeps + (tensions + state.tensions) * (0.5 * passes);
+        (state.joints, state.tensions) = (*joints, *tensions);
         let rates = &state.rates;
         let momentum = links.of(rates);
-        let known = state.torques + links.energy_gradient(rates) + gravity - self.friction(rates);
-        let gained = momentum - state.momentum - known * elapsed;
-        state.residual = (state.residual + gained * BANDWIDTH) * keeps;
+        let known = self.r * state.filtered + links.energy_gradient(rates) + gravity - self.friction(rates);
+        let gained = (momentum - state.momentum) * (self.bandwidth * keeps);
+        state.inertial = state.inertial * keeps + gained;
+        state.residual = state.residual * keeps + gained - known * passes;
         state.momentum = momentum;
     }
 

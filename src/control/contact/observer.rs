@@ -1,19 +1,22 @@
 //! One cycle of the contact estimate.
 
-use super::detection::Detection;
+use super::detection::{Detection, DetectionState, Torques};
 use super::estimate::ContactEstimate;
 use super::momentum_observer::{MomentumObserver, MomentumState};
 use super::tip_force::TipForce;
 use crate::control::signals::Report;
 use crate::model::configuration::ConfiguredFinger;
 use crate::model::{LinkDynamics, LinkMomentum, Links, Tendons};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::{Matrix3x4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
-/// Number of cycles after which the quantities that depend only on the pose are computed again. Their parts are
-/// computed in different cycles, so that no cycle takes much longer than the others. A joint that turns at 1 rad/s
-/// moves by 0.016 rad in this time at 1000 Hz, which changes the inertia by less than 2 %.
-const REFRESH: u8 = 16;
+/// Time between two samples of the estimate, s. It is short compared with the delay of the residual. With every sample
+/// of the servo, the estimate would need four times the computing time at 1000 Hz and notice the same forces.
+const INTERVAL: f64 = 0.005;
+
+/// Number of samples after which the quantities that depend only on the pose are computed again, one of them at each
+/// sample. A joint that turns at 1 rad/s moves by 0.02 rad in this time, which changes the inertia by less than 2 %.
+const REFRESH: u8 = 4;
 
 /// The constant part of the contact estimate.
 #[derive(Clone, Debug)]
@@ -22,6 +25,14 @@ pub(in crate::control) struct ContactObserver {
     /// The links with gravity.
     dynamics: LinkDynamics,
     observer: MomentumObserver,
+    detection: Detection,
+    /// Largest change of the torque of each joint by the rubbing of each tendon on its pulleys, per tension, cm.
+    rubbing: Matrix3x4<f64>,
+    mass_tolerance: f64,
+    /// Shortest time between two samples, s.
+    interval: f64,
+    /// Part of the change of the torque of gravity that is learned in [`REFRESH`] samples.
+    learned: f64,
 }
 
 /// The state of the contact estimate.
@@ -33,38 +44,62 @@ pub(in crate::control) struct ContactState {
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 struct Following {
+    /// Time since the last sample, s.
+    waited: f64,
+    /// Number of the sample, 0 to [`REFRESH`] - 1.
+    sample: u8,
+    /// The links, N cm s^2.
     links: LinkMomentum,
-    /// Torque of gravity, N m.
+    /// Torque of gravity, N cm.
     gravity: Vector3<f64>,
+    /// Torque of gravity for which the error of the torques has been learned, N cm.
+    learned_gravity: Vector3<f64>,
+    /// Torque that friction of the tendons and the uncertain weight of the links can cause, N cm.
+    allowed: Vector3<f64>,
     tip: TipForce,
     momentum: MomentumState,
-    detection: Detection,
-    cycle: u8,
+    detection: DetectionState,
 }
 
 impl ContactObserver {
-    /// Constructs the estimate of a finger in `gravity`, m/s^2 in the finger's frame.
-    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, gravity: &Vector3<f64>) -> Self {
+    /// Constructs the estimate of a finger in `gravity`, m/s^2 in the finger's frame, at `rate`, Hz.
+    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, gravity: &Vector3<f64>, rate: f64) -> Self {
         let links = &finger.links;
+        let pulley = finger.friction.pulley;
         Self {
             links: finger.links(),
             dynamics: LinkDynamics::new(finger.links(), links.masses, links.radii, *gravity),
             observer: MomentumObserver::new(finger, tendons),
+            detection: Detection::new(finger),
+            // The learned error contains the friction of one direction of motion, and the other direction reverses it.
+            rubbing: Matrix3x4::from_fn(|joint, tendon| 2.0 * tendons.r[(joint, tendon)].abs() * pulley[tendon]),
+            mass_tolerance: finger.contact.mass_tolerance,
+            // Rounding errors of the time must not delay a sample by a period.
+            interval: INTERVAL - 0.5 / rate,
+            learned: (f64::from(REFRESH) * INTERVAL / finger.contact.learning_time_s).min(1.0),
         }
     }
 
     /// Advances the estimate to the sample of `report`, of a finger that follows a set point, and writes the estimate
     /// to the report. `elapsed` is the time since the previous sample, s.
     pub fn follow(&self, state: &mut ContactState, report: &mut Report, elapsed: f64) {
-        let Report { joints, joint_rates: rates, tensions, .. } = &*report;
-        let now = state.following.get_or_insert_with(|| self.start(joints, tensions, rates));
-        self.refresh(now, joints);
-        self.observer.advance(&mut now.momentum, &now.links, &now.gravity, (tensions, rates), elapsed);
-        let residual = &now.momentum.residual;
-        let torques = (residual - now.detection.error) * 100.0;
+        let Report { joints, tensions, .. } = &*report;
+        let now = state.following.get_or_insert_with(|| self.start(joints, tensions));
+        now.waited += elapsed;
+        if now.waited < self.interval {
+            return;
+        }
+        let elapsed = std::mem::take(&mut now.waited);
+        self.refresh(now, joints, tensions);
+        self.observer.advance(&mut now.momentum, &now.links, &now.gravity, (joints, tensions), elapsed);
+        let MomentumState { residual, inertial, rates, .. } = &now.momentum;
+        let torques = residual - now.detection.error;
         let force = now.tip.of(&torques);
-        now.detection.decide(residual, &force, &now.momentum.rates, elapsed);
-        report.contact = ContactEstimate { torques, force, touching: now.detection.touching };
+        let parts = Torques { residual, inertial, allowed: &now.allowed };
+        self.detection.decide(&mut now.detection, &parts, &force, rates, elapsed);
+        let touching = now.detection.touching;
+        let slide = if touching { slide(&force, &now.tip.speed(rates)) } else { 0.0 };
+        report.contact = ContactEstimate { torques, force, touching, slide };
     }
 
     /// Ends the estimate, because the finger does not follow a set point.
@@ -73,25 +108,49 @@ impl ContactObserver {
         report.contact = ContactEstimate::default();
     }
 
-    fn start(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>, rates: &Vector3<f64>) -> Following {
-        let links = self.dynamics.momentum(joints);
+    fn start(&self, joints: &Vector3<f64>, tensions: &Vector4<f64>) -> Following {
+        let gravity = self.gravity(joints);
         Following {
-            links,
-            gravity: self.dynamics.gravity_torque(joints),
+            waited: 0.0,
+            sample: 0,
+            links: self.momentum(joints),
+            gravity,
+            learned_gravity: gravity,
+            allowed: self.rubbing * tensions,
             tip: TipForce::at(&self.links, joints),
-            momentum: self.observer.start(&links, tensions, rates),
-            detection: Detection::default(),
-            cycle: 0,
+            momentum: self.observer.start(joints, tensions),
+            detection: DetectionState::default(),
         }
     }
 
-    fn refresh(&self, now: &mut Following, joints: &Vector3<f64>) {
-        now.cycle = (now.cycle + 1) % REFRESH;
-        match now.cycle {
-            0 => now.links = self.dynamics.momentum(joints),
-            5 => now.gravity = self.dynamics.gravity_torque(joints),
-            10 => now.tip = TipForce::at(&self.links, joints),
-            _ => {}
+    fn refresh(&self, now: &mut Following, joints: &Vector3<f64>, tensions: &Vector4<f64>) {
+        now.sample = now.sample.wrapping_add(1) % REFRESH;
+        match now.sample {
+            0 => now.links = self.momentum(joints),
+            1 => now.tip = TipForce::at(&self.links, joints),
+            2 => now.gravity = self.gravity(joints),
+            _ => {
+                let change = now.gravity - now.learned_gravity;
+                now.allowed = self.rubbing * tensions + change.abs() * self.mass_tolerance;
+                if !now.detection.touching {
+                    now.learned_gravity += change * self.learned;
+                }
+            }
         }
     }
+
+    fn momentum(&self, joints: &Vector3<f64>) -> LinkMomentum {
+        self.dynamics.momentum(joints).scaled(100.0)
+    }
+
+    fn gravity(&self, joints: &Vector3<f64>) -> Vector3<f64> {
+        self.dynamics.gravity_torque(joints) * 100.0
+    }
+}
+
+/// Returns the part of the tip's speed that is perpendicular to the force, cm/s.
+fn slide(force: &Vector3<f64>, speed: &Vector3<f64>) -> f64 {
+    // The force of a finger that touches something is not zero.
+    let along = force.dot(speed);
+    (speed.norm_squared() - along * along / force.norm_squared()).max(0.0).sqrt()
 }

@@ -1,59 +1,103 @@
 //! The force at the fingertip that exerts given torques on the joints: f = J^-T tau.
 //!
-//! Joint 0 turns the plane of the finger about the y axis. A force normal to this plane acts on joint 0 only, with the
-//! distance of the tip from the axis as its arm. A force in the plane acts on joints 1 and 2 only.
+//! Joint 0 turns the plane of the finger about the y axis. A force normal to this plane acts on joint 0 only, and its
+//! arm is the distance of the tip from the axis. A force in the plane acts on joints 1 and 2 only.
 
 use crate::model::Links;
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Matrix2, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// The arm below which a direction is considered as not felt, cm. It is the limit of observability that `FingerTip`
-/// uses.
+/// Arm below which the joints do not feel a force in a direction, cm. `FingerTip` uses the same limit.
 const FELT: f64 = 0.3;
 
-/// J^-T at one pose.
+/// The Jacobian of the tip at one pose, and its inverse.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub(super) struct TipForce {
     /// Sine and cosine of theta_0.
     turn: Vector2<f64>,
-    /// Force normal to the finger's plane per torque of joint 0, 1/cm.
+    /// Distance of the tip from the axis of joint 0, cm.
+    reach: f64,
+    /// Inverse of `reach`, 1/cm.
     normal: f64,
-    /// Force in the plane, away from the axis of joint 0, per torque of joints 1 and 2, 1/cm.
-    outward: Vector2<f64>,
-    /// Force along the y axis per torque of joints 1 and 2, 1/cm.
-    along: Vector2<f64>,
+    /// Motion of the tip in the plane, away from the axis of joint 0 and along y, per angle of joints 1 and 2, cm/rad.
+    plane: Matrix2<f64>,
+    /// Transposed inverse of `plane`, 1/cm.
+    inverse: Matrix2<f64>,
 }
 
 impl TipForce {
-    /// Returns J^-T at joint angles `theta`, rad. Near a singular pose, the inverse of each of the two blocks of J^T is
-    /// a damped one.
+    /// Returns the force map at joint angles `theta`, rad. Near a singular pose the inverses are damped ones.
     pub fn at(links: &Links, theta: &Vector3<f64>) -> Self {
         let [l0, l1, l2] = links.0;
         let (s0, c0) = theta[0].sin_cos();
         let (s1, c1) = theta[1].sin_cos();
         let (s12, c12) = (theta[1] + theta[2]).sin_cos();
         let reach = l0 + l1 * c1 + l2 * c12;
-        // Columns of the Jacobian of the plane: joints 1 and 2. Rows: outward, along y.
-        let (out1, out2) = (-l1 * s1 - l2 * s12, -l2 * s12);
-        let (y1, y2) = (-l1 * c1 - l2 * c12, -l2 * c12);
-        let determinant = out1 * y2 - out2 * y1;
-        // The product of the two arms is the determinant, and the larger arm is about the norm.
-        let least = FELT * FELT * (out1 * out1 + out2 * out2 + y1 * y1 + y2 * y2);
-        let inverse = determinant / (determinant * determinant + 0.25 * least);
+        let plane = Matrix2::new(-l1 * s1 - l2 * s12, -l2 * s12, -l1 * c1 - l2 * c12, -l2 * c12);
+        let determinant = plane.m11 * plane.m22 - plane.m12 * plane.m21;
+        // The determinant is the product of the larger and the smaller arm, and the norm is about the larger arm.
+        let unfelt = FELT * FELT * plane.norm_squared();
+        let scale = determinant / (determinant * determinant + 0.25 * unfelt);
         Self {
             turn: Vector2::new(s0, c0),
+            reach,
             normal: reach / (reach * reach + 0.25 * FELT * FELT),
-            outward: Vector2::new(y2, -y1) * inverse,
-            along: Vector2::new(-out2, out1) * inverse,
+            plane,
+            inverse: Matrix2::new(plane.m22, -plane.m21, -plane.m12, plane.m11) * scale,
         }
     }
 
     /// Returns the force, N in the finger's frame, of these joint torques, N cm.
     pub fn of(&self, torques: &Vector3<f64>) -> Vector3<f64> {
-        let normal = self.normal * torques.x;
-        let outward = self.outward.x * torques.y + self.outward.y * torques.z;
-        let along = self.along.x * torques.y + self.along.y * torques.z;
+        self.turned(self.normal * torques.x, &(self.inverse * torques.yz()))
+    }
+
+    /// Returns the speed of the tip, cm/s in the finger's frame, at these joint rates, rad/s.
+    pub fn speed(&self, rates: &Vector3<f64>) -> Vector3<f64> {
+        self.turned(self.reach * rates.x, &(self.plane * rates.yz()))
+    }
+
+    /// Returns the vector with these components normal to the finger's plane and in it.
+    fn turned(&self, normal: f64, plane: &Vector2<f64>) -> Vector3<f64> {
         let (sin, cos) = (self.turn.x, self.turn.y);
-        Vector3::new(normal * cos + outward * sin, along, outward * cos - normal * sin)
+        Vector3::new(normal * cos + plane.x * sin, plane.y, plane.x * cos - normal * sin)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::configuration::ConfiguredFinger;
+
+    const POSES: [[f64; 3]; 3] = [[0.0, 0.5, 1.0], [-0.7, 1.4, 1.9], [0.5, -0.3, 0.8]];
+
+    #[test]
+    fn the_force_makes_the_torques() {
+        let links = ConfiguredFinger::default().links();
+        for pose in POSES {
+            let (pose, force) = (Vector3::from(pose), Vector3::new(0.5, -1.0, 2.0));
+            let found = TipForce::at(&links, &pose).of(&links.jacobian(&pose).tr_mul(&force));
+            assert!((found - force).norm() < 0.02 * force.norm(), "{pose}: {found}");
+        }
+    }
+
+    #[test]
+    fn the_speed_is_that_of_the_jacobian() {
+        let links = ConfiguredFinger::default().links();
+        for pose in POSES {
+            let (pose, rates) = (Vector3::from(pose), Vector3::new(0.3, -0.2, 0.9));
+            let expected = links.jacobian(&pose) * rates;
+            assert!((TipForce::at(&links, &pose).speed(&rates) - expected).norm() < 1e-12, "{pose}");
+        }
+    }
+
+    #[test]
+    fn a_force_along_a_straight_finger_is_not_guessed() {
+        let links = ConfiguredFinger::default().links();
+        for bent in [0.0, 0.01, -0.01] {
+            let pose = Vector3::new(0.0, 0.0, bent);
+            let force = TipForce::at(&links, &pose).of(&Vector3::new(0.1, 0.1, -0.1));
+            assert!(force.norm() < 0.5, "{force}");
+        }
     }
 }

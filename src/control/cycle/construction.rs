@@ -64,7 +64,7 @@ impl Controller {
             admissible,
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
-            contact: ContactObserver::new(finger, &tendons, gravity),
+            contact: ContactObserver::new(finger, &tendons, gravity, rate),
             monitors: Monitors::new(finger, &tendons, rate),
             period: 1.0 / rate,
             sensors: SensorScales::new(finger)?,

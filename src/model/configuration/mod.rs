@@ -3,6 +3,7 @@
 //! the table's type. `[finger]` itself is in this file. The layer `hand` reads the values from a file.
 //! `model/validation.rs` checks them.
 
+mod contact;
 mod controller;
 mod encoder;
 mod events;
@@ -23,6 +24,7 @@ mod tendon;
 mod touch;
 mod zeroing;
 
+pub use contact::ConfiguredContact;
 pub use controller::{ConfiguredController, Law, Scheme};
 pub use encoder::ConfiguredEncoder;
 pub use events::ConfiguredEvents;
@@ -113,6 +115,8 @@ pub struct ConfiguredFinger {
     pub events: ConfiguredEvents,
     /// `[finger.touch]`
     pub touch: ConfiguredTouch,
+    /// `[finger.contact]`
+    pub contact: ConfiguredContact,
     /// `[finger.zeroing]`
     pub zeroing: ConfiguredZeroing,
     /// `[finger.stiffness]`
@@ -195,6 +199,7 @@ impl Default for ConfiguredFinger {
             monitors: Default::default(),
             events: Default::default(),
             touch: Default::default(),
+            contact: Default::default(),
             zeroing: Default::default(),
             stiffness: Default::default(),
             controller: Default::default(),

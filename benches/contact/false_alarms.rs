@@ -1,0 +1,47 @@
+//! False alarms in motion through the whole range of the joints.
+
+use crate::finger::{Finger, RATE};
+use crate::hands::Hand;
+use crate::motion::Motion;
+use nalgebra::Vector3;
+use std::error::Error;
+use sun2xp::model::configuration::ConfiguredContact;
+
+/// The fastest joint rates of the set points, rad/s. Infinity is a set point that jumps from pose to pose, which the
+/// controller follows as fast as it can. A run has equal times of each.
+const SPEEDS: [f64; 3] = [1.0, 3.0, f64::INFINITY];
+
+/// The result of a run.
+pub struct Alarms {
+    pub count: u32,
+    /// Part of the time in which a contact was reported.
+    pub share: f64,
+    /// Time of the first alarm, s.
+    pub first: Option<f64>,
+}
+
+/// Moves a finger that touches nothing for `seconds`.
+pub fn count(hand: &Hand, contact: &ConfiguredContact, seconds: f64, seed: u64) -> Result<Alarms, Box<dyn Error>> {
+    let (finger, own) = hand.finger(contact, seed);
+    let start = Vector3::from(finger.simulation.start_degrees.map(f64::to_radians));
+    let mut run = Finger::new(&finger, &own, hand.gravity)?;
+    let mut motion = Motion::new(seed, finger.joint_limits(), start);
+    let (mut count, mut touched, mut touching, mut first) = (0, 0, false, None);
+    let margin = (finger.simulation.stop_margin_degrees - 0.5).to_radians();
+    let (low, high) = finger.joint_limits();
+    let (low, high) = (low.add_scalar(-margin), high.add_scalar(margin));
+    let cycles = (seconds * RATE) as usize;
+    for cycle in 0..cycles {
+        let speed = SPEEDS[cycle * SPEEDS.len() / cycles];
+        let contact = run.cycle(motion.next(speed, 1.0 / RATE)).contact;
+        let stopped =
+            run.plant.joints().sup(&low) != run.plant.joints() || run.plant.joints().inf(&high) != run.plant.joints();
+        if contact.touching && !touching && !stopped {
+            count += 1;
+            first = first.or(Some(cycle as f64 / RATE));
+        }
+        touching = contact.touching;
+        touched += usize::from(touching);
+    }
+    Ok(Alarms { count, share: touched as f64 / cycles as f64, first })
+}

@@ -1,0 +1,90 @@
+//! Contact without sensors: the forces that simulated fingers notice, how fast, and their false alarms.
+//!
+//!     cargo bench --bench contact                       all tables of docs/contact.md
+//!     cargo bench --bench contact -- nominal            the hands with this word in their name
+//!     cargo bench --bench contact -- --minutes 1        shorter runs for false alarms
+//!     cargo bench --bench contact -- --keys 'force = 0.2'   other values of [finger.contact]
+
+mod false_alarms;
+mod finger;
+mod hands;
+mod motion;
+mod noticed;
+#[path = "../stiffness/parallel.rs"]
+mod parallel;
+
+use clap::Parser;
+use hands::{HANDS, Hand};
+use noticed::{FORCES, Pushes};
+use std::error::Error;
+use sun2xp::model::configuration::ConfiguredContact;
+
+#[derive(Parser)]
+struct Arguments {
+    /// A word in the names of the hands.
+    #[arg(default_value = "")]
+    hand: String,
+    /// Limit of the simulated time for false alarms, minutes.
+    #[arg(long, default_value_t = 60.0)]
+    minutes: f64,
+    /// Seeds for the forces that are noticed.
+    #[arg(long, default_value_t = 10)]
+    seeds: u64,
+    /// Keys of [finger.contact], as TOML.
+    #[arg(long, default_value = "")]
+    keys: String,
+    /// Counts only false alarms.
+    #[arg(long)]
+    alarms: bool,
+    /// `cargo bench` passes this option.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    let contact: ConfiguredContact = toml_edit::de::from_str(&arguments.keys)?;
+    let hands: Vec<&Hand> = HANDS.iter().filter(|hand| hand.name.contains(&arguments.hand)).collect();
+    println!("| hand | simulated time, min | false alarms | first, s | part of the time |\n|---|---|---|---|---|");
+    let alarms = parallel::each(&hands, |_, hand| {
+        let seconds = hand.seconds.min(arguments.minutes * 60.0);
+        false_alarms::count(hand, &contact, seconds, 1).map_err(|error| error.to_string())
+    });
+    for (hand, alarms) in hands.iter().zip(alarms) {
+        let alarms = alarms?;
+        let minutes = hand.seconds.min(arguments.minutes * 60.0) / 60.0;
+        let first = alarms.first.map_or("-".into(), |first| format!("{first:.1}"));
+        println!("| {} | {minutes:.0} | {} | {first} | {:.4} |", hand.name, alarms.count, alarms.share);
+    }
+    if arguments.alarms {
+        return Ok(());
+    }
+    for (title, measure) in [("At rest", noticed::at_rest as Measure), ("In motion", noticed::in_motion)] {
+        println!("\n{title}:\n");
+        println!("| hand | force, N | noticed | time, ms: median, worst | lost after, ms: median, worst | error, N |");
+        println!("|---|---|---|---|---|---|");
+        for hand in &hands {
+            for (force, pushes) in FORCES.into_iter().zip(measure(hand, &contact, arguments.seeds)?) {
+                row(hand.name, force, &pushes);
+            }
+        }
+    }
+    Ok(())
+}
+
+type Measure = fn(&Hand, &ConfiguredContact, u64) -> Result<Vec<Pushes>, Box<dyn Error>>;
+
+fn row(hand: &str, force: f64, pushes: &Pushes) {
+    let times = |sorted: &[f64]| match sorted {
+        [] => "-".into(),
+        [.., worst] => format!("{:.0}, {:.0}", sorted[sorted.len() / 2] * 1e3, worst * 1e3),
+    };
+    println!(
+        "| {hand} | {force} | {} of {} | {} | {} | {:.2} |",
+        pushes.noticed,
+        pushes.pushes,
+        times(&pushes.times),
+        times(&pushes.losses),
+        pushes.error
+    );
+}

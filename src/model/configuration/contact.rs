@@ -1,0 +1,39 @@
+//! `[finger.contact]`: from which forces the finger notices a contact without touch sensors.
+
+use serde::{Deserialize, Serialize};
+
+/// `[finger.contact]`. docs/contact.md has the forces that the defaults notice.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfiguredContact {
+    /// Bandwidth with which the estimated torques follow the true ones, 1/s.
+    pub bandwidth: f64,
+    /// Force at the tip from which a finger at rest touches something, N.
+    pub force: f64,
+    /// Increase of this force with the fastest joint rate, N s/rad.
+    pub force_per_rate: f64,
+    /// Torque that a contact must exceed at one joint at least, N cm. It must exceed the errors that noise, dither and
+    /// joint friction cause.
+    pub torque: [f64; 3],
+    /// Relative uncertainty of the masses of the links. It raises `torque` while joints accelerate, and when the
+    /// torques of gravity change.
+    pub mass_tolerance: f64,
+    /// The part of the thresholds below which a contact is lost.
+    pub lost: f64,
+    /// Time constant with which a constant error of the torques is learned while nothing is touched, s.
+    pub learning_time_s: f64,
+}
+
+impl Default for ConfiguredContact {
+    fn default() -> Self {
+        Self {
+            bandwidth: 60.0,
+            force: 0.06,
+            force_per_rate: 0.15,
+            torque: [0.25, 0.1, 0.09],
+            mass_tolerance: 0.4,
+            lost: 0.6,
+            learning_time_s: 2.0,
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! Contact without sensors: the estimate against an independent derivation of the dynamics, and a short version of
+//! `benches/contact`.
+
+#[path = "../core_lagrange/mod.rs"]
+mod core_lagrange;
+#[allow(dead_code)]
+#[path = "../../benches/contact/false_alarms.rs"]
+mod false_alarms;
+#[allow(dead_code)]
+#[path = "../../benches/contact/finger.rs"]
+mod finger;
+#[allow(dead_code)]
+#[path = "../../benches/contact/hands.rs"]
+mod hands;
+mod independent;
+#[allow(dead_code)]
+#[path = "../../benches/contact/motion.rs"]
+mod motion;
+#[allow(dead_code)]
+#[path = "../../benches/contact/noticed.rs"]
+mod noticed;
+#[allow(dead_code)]
+#[path = "../../benches/stiffness/parallel.rs"]
+mod parallel;
+mod simulated;

@@ -1,0 +1,107 @@
+//! The estimate on simulated fingers: a short version of `benches/contact`, and what docs/contact.md says of it.
+
+use crate::false_alarms;
+use crate::finger::{Finger, RATE};
+use crate::hands::{HANDS, Hand};
+use crate::noticed::{self, FORCES, Pushes};
+use nalgebra::Vector3;
+use sun2xp::control::ContactEstimate;
+use sun2xp::model::configuration::{ConfiguredContact, Surface};
+
+fn hand(name: &str) -> &'static Hand {
+    HANDS.iter().find(|hand| hand.name == name).expect("a hand of the benchmark")
+}
+
+fn start() -> Vector3<f64> {
+    Vector3::new(0.0f64, 30.0, 60.0).map(f64::to_radians)
+}
+
+fn nominal() -> Finger {
+    let (finger, own) = hand("nominal").finger(&ConfiguredContact::default(), 1);
+    Finger::new(&finger, &own, Vector3::zeros()).expect("a finger")
+}
+
+/// Runs the finger for `seconds`, and returns the estimate of every cycle.
+fn run(finger: &mut Finger, seconds: f64, mut joints: impl FnMut(f64) -> Vector3<f64>) -> Vec<ContactEstimate> {
+    let cycles = (seconds * RATE) as usize;
+    (0..cycles).map(|cycle| finger.cycle(joints(cycle as f64 / RATE)).contact).collect()
+}
+
+/// Returns the pushes with this force, N.
+fn with_force(pushes: &[Pushes], force: f64) -> &Pushes {
+    &pushes[FORCES.iter().position(|&one| one == force).expect("a force of the benchmark")]
+}
+
+#[test]
+fn a_finger_at_rest_notices_a_tenth_of_a_newton() {
+    let pushes = noticed::at_rest(hand("nominal"), &ConfiguredContact::default(), 1).expect("a finger");
+    let weak = with_force(&pushes, 0.1);
+    assert_eq!(weak.noticed, weak.pushes);
+    assert!(*weak.times.last().expect("pushes") < 0.2, "{:?}", weak.times);
+    assert!(*weak.losses.last().expect("pushes") < 0.15, "{:?}", weak.losses);
+    let strong = with_force(&pushes, 1.0);
+    assert!(strong.noticed == strong.pushes && strong.times[strong.times.len() - 1] < 0.03, "{:?}", strong.times);
+    assert!(strong.error < 0.35, "{}", strong.error);
+}
+
+#[test]
+fn a_moving_finger_notices_three_tenths_of_a_newton() {
+    let pushes = noticed::in_motion(hand("nominal"), &ConfiguredContact::default(), 2).expect("a finger");
+    let weak = with_force(&pushes, 0.3);
+    assert_eq!(weak.noticed, weak.pushes);
+    assert!(*weak.times.last().expect("pushes") < 0.1, "{:?}", weak.times);
+}
+
+#[test]
+fn motion_causes_no_false_alarm() {
+    for name in ["nominal", "masses 30 % higher, gravity", "masses 30 % lower, gravity", "sheathed, calibrated"] {
+        let alarms = false_alarms::count(hand(name), &ConfiguredContact::default(), 30.0, 2).expect("a finger");
+        assert!(alarms.count == 0 && alarms.share == 0.0, "{name}: {} at {:?}", alarms.count, alarms.first);
+    }
+    // The count is not zero if the thresholds are too low.
+    let low = ConfiguredContact { force: 0.001, force_per_rate: 0.0, torque: [0.01; 3], ..Default::default() };
+    let alarms = false_alarms::count(hand("nominal"), &low, 30.0, 2).expect("a finger");
+    assert!(alarms.count > 10, "{}", alarms.count);
+}
+
+#[test]
+fn a_gauge_that_drifts_slowly_is_no_contact() {
+    let mut finger = nominal();
+    finger.sensors.let_gauge_drift(1, 0.02);
+    let contacts = run(&mut finger, 30.0, |_| start());
+    assert!(contacts.iter().all(|contact| !contact.touching));
+}
+
+#[test]
+fn a_lasting_contact_lasts() {
+    let mut finger = nominal();
+    run(&mut finger, 1.0, |_| start());
+    let force = Vector3::new(0.0, 0.0, -0.3);
+    finger.plant.set_external_force(force);
+    let contacts = run(&mut finger, 30.0, |_| start());
+    assert!(contacts[200..].iter().all(|contact| contact.touching && (contact.force - force).norm() < 0.15));
+    finger.plant.set_external_force(Vector3::zeros());
+    let contacts = run(&mut finger, 2.0, |_| start());
+    assert!(contacts[200..].iter().all(|contact| !contact.touching));
+}
+
+#[test]
+fn the_tip_slides_along_a_wall() {
+    let mut finger = nominal();
+    run(&mut finger, 1.0, |_| start());
+    let tip = finger.plant.tip();
+    let normal = [0.0, 1.0, 0.0];
+    finger.plant.set_surface(Some(Surface::Wall { point: [0.0, tip.y - 0.05, 0.0], normal, stiffness: 50.0 }));
+    // Joint 1 presses the tip against the wall with about a newton.
+    let pressed = start() + Vector3::new(0.0, 0.05, 0.0);
+    let contacts = run(&mut finger, 1.0, |_| pressed);
+    let contact = contacts[contacts.len() - 1];
+    assert!(contact.touching && contact.force.y > 0.8 * contact.force.norm(), "{contact:?}");
+    assert!(contact.slide < 0.5, "{contact:?}");
+    assert!((contact.force - finger.plant.contact_force()).norm() < 0.2 * contact.force.norm(), "{contact:?}");
+    // Joint 0 turns the tip about the y axis, along the wall.
+    let contacts = run(&mut finger, 1.0, |time| pressed + Vector3::new(0.5 * time, 0.0, 0.0));
+    let contact = contacts[contacts.len() - 1];
+    let reach = finger.plant.tip().xz().norm();
+    assert!(contact.touching && (contact.slide - 0.5 * reach).abs() < 0.15 * reach, "{contact:?}");
+}
