@@ -2,14 +2,17 @@
 
 mod allowance;
 mod handshake;
+mod relayed;
 mod traffic;
 
 pub use allowance::Allowance;
 pub use traffic::{Arrival, OutgoingCommand, OutgoingRequest, Received};
 
+use relayed::RelayedRequest;
+
 use super::link_error::LinkError;
 use super::port::Port;
-use super::protocol::{Decoder, Frame, HIGHEST_ADDRESS, Kind, Message, WireFrame};
+use super::protocol::{Decoder, Frame, HIGHEST_ADDRESS, Kind, MAX_WIRE, Message, WireFrame};
 use super::transport::Transport;
 use std::path::Path;
 
@@ -67,6 +70,7 @@ pub struct Link<T = Port> {
     cut_short: bool,
     /// The next frame needs a delimiter in front, because it follows an incomplete frame or the noise of plugging in.
     delimit_first: bool,
+    relayed: RelayedRequest,
     handshake_sequence: u8,
     read_at: u64,
     foreign: u64,
@@ -90,6 +94,7 @@ impl<T: Transport> Link<T> {
             unread: 0..0,
             cut_short: false,
             delimit_first: true,
+            relayed: RelayedRequest::none(),
             handshake_sequence: 0,
             read_at: 0,
             foreign: 0,
@@ -129,12 +134,13 @@ impl<T: Transport> Link<T> {
     /// follow the Replies and delay none of them.
     pub fn send_with(&mut self, commands: &[OutgoingCommand], requests: &[OutgoingRequest]) -> Result<(), LinkError> {
         // An incomplete Reply of the last period is now useless, and must not damage the next Reply. It is kept if
-        // reading was cut short, because the rest of it may still be unread.
-        if self.unread.is_empty() && !self.cut_short {
+        // reading was cut short, because the rest of it may still be unread. It is also kept if it may be the answer to
+        // a relayed request.
+        if self.unread.is_empty() && !self.cut_short && !self.relayed.is_awaited() {
             self.decoder.abandon();
         }
         const LARGEST: usize = Kind::Command.wire_length() + Kind::TactileRequest.wire_length();
-        let mut bytes = [0; 1 + MOST_FINGERS * LARGEST];
+        let mut bytes = [0; 1 + MOST_FINGERS * LARGEST + 1 + MAX_WIRE];
         // The first byte is reserved for a delimiter.
         let mut length = 1;
         let commands = commands.iter().take(MOST_FINGERS).map(|outgoing| Message {
@@ -155,6 +161,11 @@ impl<T: Transport> Link<T> {
                 length += wire.len();
             }
         }
+        let relayed = self.relayed.take();
+        if let Some(room) = bytes.get_mut(length..length + relayed.len()) {
+            room.copy_from_slice(relayed);
+            length += relayed.len();
+        }
         self.write(&mut bytes[..length])
     }
 
@@ -172,7 +183,7 @@ impl<T: Transport> Link<T> {
         loop {
             match self.next_arrival(allowance)? {
                 Some(Arrival::Reply(received)) => return Ok(Some(received)),
-                Some(Arrival::Tactile { .. }) => self.foreign += 1,
+                Some(Arrival::Tactile { .. } | Arrival::Relayed(_)) => self.foreign += 1,
                 None => return Ok(None),
             }
         }
@@ -181,7 +192,8 @@ impl<T: Transport> Link<T> {
     /// Returns the next Reply or the next answer to a TactileRequest. Otherwise like
     /// [`receive_within`](Self::receive_within).
     pub fn next_arrival(&mut self, allowance: &mut Allowance) -> Result<Option<Arrival>, LinkError> {
-        while let Some(Message { address, sequence, frame }) = self.next_message(allowance)? {
+        while let Some(message) = self.next_message(allowance)? {
+            let Message { address, sequence, frame } = message;
             match frame {
                 Frame::Reply(reply) => return Ok(Some(Arrival::Reply(Received { address, sequence, reply }))),
                 Frame::TactileEvent(event) => return Ok(Some(Arrival::Tactile { address, sequence, event })),
@@ -189,10 +201,24 @@ impl<T: Transport> Link<T> {
                 Frame::Refused(refused) if refused.request == Kind::Command as u8 => {
                     return Err(LinkError::Refused { address, refused });
                 }
+                _ if self.relayed.is_awaited() => {
+                    self.relayed.answered();
+                    return Ok(Some(Arrival::Relayed(message)));
+                }
                 _ => self.foreign += 1,
             }
         }
         Ok(None)
+    }
+
+    /// Sends the bytes of a relayed request behind the Commands of this period.
+    pub fn relay(&mut self, request: &[u8]) {
+        self.relayed.set(request);
+    }
+
+    /// Returns whether the answer to a relayed request is awaited.
+    pub fn awaits_relayed(&self) -> bool {
+        self.relayed.is_awaited()
     }
 
     /// Counts an arrival that was not awaited.

@@ -3,7 +3,7 @@
 // The exported names are those of the header.
 #![allow(non_snake_case)]
 
-use crate::capi::boundary::{MEMORY_OF_CALL, delegated};
+use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
 use crate::capi::default_hand;
 use crate::hand;
 use std::ffi::c_int;
@@ -44,6 +44,29 @@ pub extern "C" fn StopHand() -> c_int {
     0
 }
 
+/// StopFinger - stop one finger
+///
+///     int StopFinger(int i);
+///
+///   i        finger, 1 to 3
+///
+/// The finger faults (FAULT_FINGER_STOP_CALL) at the start of its next cycle, and its board enters the
+/// configured end state, as with StopHand. The other fingers continue, unless hand.on_fault is "hand".
+/// The finger stays stopped until RecoverHand, or CloseHand and OpenHand. A finger that has faulted
+/// already stays as it is. Like StopHand, this is not a safety function. Unlike StopHand, it must not be
+/// called in a signal handler.
+///
+/// Returns 0, or -1 with
+///   EPERM    forked child
+///   ENODEV   no hand is open
+///   EINVAL   no such finger
+///
+/// Threads: any. Never waits for a servo.
+#[unsafe(no_mangle)]
+pub extern "C" fn StopFinger(i: c_int) -> c_int {
+    guarded("StopFinger", || default_hand::with(|hand| hand.stop(i)))
+}
+
 /// RecoverHand - make a faulted finger a spring again
 ///
 ///     int RecoverHand(int i);
@@ -52,9 +75,10 @@ pub extern "C" fn StopHand() -> c_int {
 ///
 /// Queries the identity of the finger's board and configures the board again. If the port has failed
 /// and finger.reconnect is true, reopens the port first. Then brings the tendons under tension. The
-/// finger holds its present pose at the configured initial stiffness. Other faulted fingers on the
-/// same port recover with it. A finger that is not faulted continues unchanged. Remove the cause of
-/// the fault first: GetFault and FaultText name it.
+/// finger holds its present pose at the configured initial stiffness. If another finger on the same
+/// port runs, it continues unchanged, and only finger i recovers. Otherwise all fingers on the port
+/// recover together. A finger that is not faulted continues unchanged. Remove the cause of the fault
+/// first: GetFault and FaultText name it.
 ///
 /// Waits until the finger holds its pose or faults again, up to some seconds. Other calls work
 /// meanwhile. CloseHand works too, and this call is then refused.
@@ -67,7 +91,6 @@ pub extern "C" fn StopHand() -> c_int {
 ///   EIO      the finger faults again; or its board is not the one found by OpenHand, or has lost its
 ///            zero; or its servo thread has failed (FAULT_SERVO_PANIC), which only CloseHand and
 ///            OpenHand remedy. HandError says which
-///   EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
 ///   ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
 ///            does not answer, or the servo does not run. Call again
 ///

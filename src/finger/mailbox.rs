@@ -11,14 +11,22 @@ pub(super) mod groups;
 use crate::control::SetPoint;
 use crate::finger::group_gate::GroupGate;
 use crate::finger::{Adjustable, Fault, FingerReport, Order, Stage};
-use crate::realtime::atomics::{AtomicBool, Ordering};
+use crate::realtime::atomics::{AtomicBool, AtomicU32, Ordering};
 use crate::realtime::{Consumer, Input, LockedMemory, Output, Pages, Producer, SharedPages, ring, triple_buffer};
 use parking_lot::Mutex;
 
 /// The planners' end.
 pub struct Mailbox {
     planners: Mutex<PlannersEnd>,
-    closing: SharedPages<AtomicBool>,
+    requests: SharedPages<Requests>,
+}
+
+/// Requests that do not wait for the lock of the planners, because a signal handler may make them.
+struct Requests {
+    closing: AtomicBool,
+    /// Number of requests to stop. It is a counter and not a flag, so that a finger that has recovered from one stops
+    /// at the next.
+    stops: AtomicU32,
 }
 
 struct PlannersEnd {
@@ -62,7 +70,7 @@ pub(super) struct ServoEnd {
     adjustments: Output<Adjustable>,
     orders: Output<Order>,
     reports: Input<FingerReport>,
-    closing: SharedPages<AtomicBool>,
+    requests: SharedPages<Requests>,
 }
 
 /// Creates a mailbox with `report`, its set point and `adjustable` at both ends. Also returns the memory that both ends
@@ -76,8 +84,9 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
     let (adjustments_in, adjustments_out) = shared(adjustable, &mut memory);
     let (reports_in, reports_out) = shared(&report, &mut memory);
     let (orders_in, orders_out) = shared(&Order::Nothing, &mut memory);
-    let closing = SharedPages::from(Pages::new(AtomicBool::new(false)));
-    memory.add_shared(&closing);
+    let requests =
+        SharedPages::from(Pages::new(Requests { closing: AtomicBool::new(false), stops: AtomicU32::new(0) }));
+    memory.add_shared(&requests);
     let planners = PlannersEnd {
         sent,
         set_points: set_points_in,
@@ -97,9 +106,9 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
         adjustments: adjustments_out,
         orders: orders_out,
         reports: reports_in,
-        closing: closing.clone(),
+        requests: requests.clone(),
     };
-    (Mailbox { planners: Mutex::new(planners), closing }, servo, memory)
+    (Mailbox { planners: Mutex::new(planners), requests }, servo, memory)
 }
 
 /// Returns a triple buffer, and adds its pages to `memory`.
@@ -203,7 +212,17 @@ impl Mailbox {
 
     /// Requests that the servo bring the finger to its end state.
     pub fn close(&self) {
-        self.closing.store(true, Ordering::Release);
+        self.requests.closing.store(true, Ordering::Release);
+    }
+
+    /// Requests that the finger fault at the beginning of its next cycle, so that its board enters its end state.
+    pub fn stop(&self) {
+        self.requests.stops.fetch_add(1, Ordering::AcqRel);
+    }
+
+    /// Returns the number of requests to stop so far.
+    pub fn stops(&self) -> u32 {
+        self.requests.stops.load(Ordering::Acquire)
     }
 }
 
@@ -272,7 +291,12 @@ impl ServoEnd {
 
     /// Returns whether a planner has requested the end state of the finger.
     pub fn closing(&self) -> bool {
-        self.closing.load(Ordering::Acquire)
+        self.requests.closing.load(Ordering::Acquire)
+    }
+
+    /// Returns the number of requests to stop so far.
+    pub fn stops(&self) -> u32 {
+        self.requests.stops.load(Ordering::Acquire)
     }
 
     /// Replaces the report.

@@ -13,6 +13,7 @@ mod losses;
 mod mailbox;
 mod order;
 mod recording;
+mod relay;
 #[cfg(feature = "internals")]
 mod replay;
 mod report;
@@ -30,13 +31,16 @@ pub use control_input::ControlInput;
 pub use cycle_record::{ControlRecord, ControllerSource, CycleRecord, KeptRecord};
 pub use faults::{Action, Description, Fault, FaultKind, PartKind, Quantity, Severity, Warnings};
 pub use group_gate::GroupGate;
-pub use link_handover::{LinkRepairEnd, LinkServoEnd, ReleasedLink, RepairedLink, link_handover};
+pub use link_handover::{
+    LinkRepairEnd, LinkServoEnd, ReleasedLink, RepairedLink, RestoredBoard, RestoredFinger, link_handover,
+};
 pub use link_watch::Fading;
 pub use losses::Losses;
 pub use mailbox::Mailbox;
 pub use mailbox::groups::PreparedSetPoint;
 pub use order::{CalibrationRun, Order};
 pub use recording::{Origin, Recording, RecordingError};
+pub use relay::Relay;
 #[cfg(feature = "internals")]
 pub use replay::{Difference, NotReplayable, Replayed};
 pub use report::FingerReport;
@@ -44,5 +48,5 @@ pub use served_port::ServedPort;
 pub use servo::FingerServo;
 pub use servo_thread::{REPLY_WINDOW, Servo};
 pub use stage::Stage;
-pub use stop_signal::{StopSignal, stop_all, stop_calls};
+pub use stop_signal::{StopCounts, StopSignal, stop_all, stop_calls};
 pub use touch::{Elements, TouchReading};

@@ -1,9 +1,11 @@
 //! A port and its fingers: sends their Commands, and receives the Replies.
 
+use crate::board::protocol::Message;
 use crate::board::{Allowance, Arrival, Link, LinkCounters, LinkError, OutgoingCommand, OutgoingRequest, Transport};
-use crate::finger::{FingerServo, LinkServoEnd, ReleasedLink, RepairedLink};
+use crate::finger::relay::RelayedRequest;
+use crate::finger::{FingerServo, LinkServoEnd, ReleasedLink, RepairedLink, RestoredFinger};
 use crate::model::configuration::FINGERS;
-use crate::realtime::{Clock, CycleStage, Pages};
+use crate::realtime::{Clock, CycleStage, LockedMemory, Pages};
 
 /// A port and its fingers.
 pub struct ServedPort<T> {
@@ -41,7 +43,8 @@ impl<T: Transport> ServedPort<T> {
         self
     }
 
-    /// Makes the servo release the link through `handover` for repair when all fingers of the port have faulted.
+    /// Makes the servo release the link through `handover` for repair when all fingers of the port have faulted, and
+    /// relay the handshakes of single fingers.
     pub fn with_handover(mut self, handover: LinkServoEnd<T>) -> Self {
         self.handover = Some(handover);
         self
@@ -49,9 +52,26 @@ impl<T: Transport> ServedPort<T> {
 }
 
 impl<T: Transport> ServedPort<T> {
-    /// Releases the link for repair when no finger uses it any more, or takes back a repaired one.
+    /// Returns the memory of the port that is not in this value itself.
+    pub(super) fn memory(&self) -> LockedMemory {
+        let mut memory = LockedMemory::default();
+        memory.add(&self.fingers);
+        self.fingers.iter().for_each(|finger| memory.append(finger.memory()));
+        self.handover.iter().for_each(|handover| handover.add_to(&mut memory));
+        memory
+    }
+
+    /// Releases the link for repair when no finger uses it any more, or takes back a repaired one. Takes back a finger
+    /// whose handshake was relayed.
     pub(super) fn exchange(&mut self) {
         let Some(handover) = &mut self.handover else { return };
+        // While the link is released, a relayed finger waits. The repair of the link then includes that finger.
+        if self.link.is_some()
+            && let Some(RestoredFinger { address, board }) = handover.restored.pop()
+        {
+            let finger = self.fingers.iter_mut().find(|finger| finger.address() == address && finger.at_rest());
+            finger.into_iter().for_each(|finger| finger.recover(&board));
+        }
         let all_at_rest = self.fingers.iter().all(FingerServo::at_rest);
         if let Some(link) = self.link.take_if(|_| all_at_rest) {
             self.earlier_counters = self.earlier_counters.saturating_add(&link.counters());
@@ -59,14 +79,16 @@ impl<T: Transport> ServedPort<T> {
             if let Err(rejected) = handover.released.push(ReleasedLink { link, failed: self.failed }) {
                 self.link = Some(rejected.link);
             }
-        } else if let Some(RepairedLink { link, configured, stop_calls }) = handover.repaired.pop() {
+        } else if let Some(RepairedLink { link, boards }) = handover.repaired.pop() {
             self.failed = false;
             // From now on, the counters of this link are added to the totals. They are subtracted here, so that the
             // totals do not jump, whether this is the same link or a new one.
             self.earlier_counters = self.earlier_counters.saturating_sub(&link.counters());
             self.link = Some(link);
-            for (finger, configured) in self.fingers.iter_mut().zip(configured) {
-                configured.into_iter().for_each(|configured| finger.recover(&configured, stop_calls));
+            // The handshakes of the repair are newer than a relayed one.
+            while handover.restored.pop().is_some() {}
+            for (finger, board) in self.fingers.iter_mut().zip(boards) {
+                board.iter().for_each(|board| finger.recover(board));
             }
         }
     }
@@ -76,7 +98,23 @@ impl<T: Transport> ServedPort<T> {
         self.link.as_ref().map_or(self.earlier_counters, |link| self.earlier_counters.saturating_add(&link.counters()))
     }
 
-    /// Sends all commands of the port back to back, so that replies overlap with the commands after them.
+    /// Returns a relayed request for a finger at rest. A request for another finger came too late, and is discarded.
+    fn relayed_request(&mut self) -> Option<RelayedRequest> {
+        let request = self.handover.as_mut()?.relay.requests.pop()?;
+        self.fingers.iter().any(|finger| finger.address() == request.address && finger.at_rest()).then_some(request)
+    }
+
+    /// Passes the answer to a relayed request on. Returns false if it is not from a finger at rest.
+    fn relay(&mut self, answer: &Message) -> bool {
+        let finger = self.fingers.iter().find(|finger| finger.address() == answer.address);
+        let (true, Some(handover)) = (finger.is_some_and(FingerServo::at_rest), &mut self.handover) else {
+            return false;
+        };
+        handover.relay.answers.push(*answer).is_ok()
+    }
+
+    /// Sends all commands of the port back to back, so that replies overlap with the commands after them. A relayed
+    /// request follows them.
     pub(super) fn send(&mut self) {
         let mut commands = [OutgoingCommand::default(); FINGERS];
         let mut count = 0;
@@ -84,8 +122,12 @@ impl<T: Transport> ServedPort<T> {
             *place = command;
             count += 1;
         }
-        let (requests, asked) = self.requests();
+        let relayed = self.relayed_request();
+        let relaying = relayed.is_some() || self.link.as_ref().is_some_and(Link::awaits_relayed);
+        // The line has no time for TactileRequests while it carries a handshake.
+        let (requests, asked) = if relaying { Default::default() } else { self.requests() };
         let Some(link) = &mut self.link else { return };
+        relayed.iter().for_each(|relayed| link.relay(relayed.bytes()));
         if let Err(error) = link.send_with(&commands[..count], &requests[..asked]) {
             self.fail(&error);
         }
@@ -122,6 +164,9 @@ impl<T: Transport> ServedPort<T> {
             let mut allowance = Allowance::for_replies(touch_deadline);
             while self.fingers.iter().any(FingerServo::awaits_touch) && self.receive_one(&mut allowance, sent, clock) {}
         }
+        // The servo does not wait for the answer to a relayed request, which may come in a later period.
+        let mut arrived = Allowance::for_replies(0);
+        while self.link.as_ref().is_some_and(Link::awaits_relayed) && self.receive_one(&mut arrived, sent, clock) {}
     }
 
     /// Receives one answer. Returns false if no answer arrived in time, or the port failed.
@@ -143,6 +188,13 @@ impl<T: Transport> ServedPort<T> {
             Ok(Some(Arrival::Tactile { address, sequence, event })) => {
                 let mut addressed = self.fingers.iter_mut().filter(|finger| finger.address() == address);
                 if !addressed.any(|finger| finger.take_touch(sequence, &event)) {
+                    link.count_foreign();
+                }
+            }
+            Ok(Some(Arrival::Relayed(answer))) => {
+                if !self.relay(&answer)
+                    && let Some(link) = &mut self.link
+                {
                     link.count_foreign();
                 }
             }

@@ -47,8 +47,7 @@ impl<T: Transport, C: Clock> Servo<T, C> {
         let mut memory = LockedMemory::default();
         memory.add(&self.ports);
         for port in self.ports.iter() {
-            memory.add(&port.fingers);
-            port.fingers.iter().for_each(|finger| memory.append(finger.memory()));
+            memory.append(&port.memory());
         }
         memory
     }

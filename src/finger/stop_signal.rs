@@ -23,6 +23,15 @@ pub fn stop_calls() -> u32 {
     CALLS.load(Ordering::SeqCst)
 }
 
+/// The numbers of requests to stop before a recovery began. The recovery answers these requests, and no later ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StopCounts {
+    /// Number of emergency stop calls ([`stop_calls`]).
+    pub calls: u32,
+    /// Number of requests to stop the finger ([`Mailbox::stops`](crate::finger::Mailbox::stops)).
+    pub of_finger: u32,
+}
+
 /// One finger's view of the stop signals.
 #[derive(Clone)]
 pub struct StopSignal {

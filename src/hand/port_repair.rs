@@ -1,8 +1,8 @@
 //! Repair of a port: reopens it and shakes hands again, and checks that its boards are the same as at open.
 
 use crate::board::protocol::{Configured, Identity, Status};
-use crate::board::{Link, LinkError, Port, Terms};
-use crate::finger::{Fault, FaultKind, LinkRepairEnd, RepairedLink};
+use crate::board::{Link, LinkError, Port, Terms, Transport};
+use crate::finger::{Fault, FaultKind, LinkRepairEnd, RepairedLink, RestoredBoard, RestoredFinger, StopCounts};
 use crate::hand::{HandError, RecoveryError};
 use crate::model::FingerNumber;
 use crate::model::configuration::FINGERS;
@@ -91,29 +91,54 @@ impl PortRepair {
     fn shake_hands(&self, link: &mut Link<Port>) -> Result<[Option<Configured>; FINGERS], HandError> {
         let mut all = [None; FINGERS];
         for (board, place) in self.boards.iter().zip(&mut all) {
-            let KnownBoard { finger, address, ref terms, .. } = *board;
-            // A board whose port failed has not received a Stop. If cable and power are back before its watchdog trips,
-            // the board still executes its last command.
-            let _ = link.stop(address, 0);
-            let (identity, configured) = link
-                .shake_hands(address, terms, now() + ANSWER)
-                .map_err(|source| HandError::Link { finger, source })?;
-            board.check(&identity, configured.status)?;
-            *place = Some(configured);
+            *place = Some(board.shake_hands(link)?);
         }
         Ok(all)
     }
 
-    pub fn give_back(&mut self, configured: [Option<Configured>; FINGERS], stop_calls: u32) {
+    /// Gives the link back to the servo, and makes every finger of the port recover. `stops` has the requests to stop
+    /// of each finger before the recovery began, in the order of the boards.
+    pub fn give_back(&mut self, configured: [Option<Configured>; FINGERS], stops: &[StopCounts; FINGERS]) {
         if let Some(link) = self.link.take() {
             self.released = false;
+            let board =
+                |place: usize| configured[place].map(|configured| RestoredBoard { configured, stops: stops[place] });
             // The ring has room for one link. The servo has released `link`, so it has taken the link of the last push.
-            let _ = self.handover.repaired.push(RepairedLink { link, configured, stop_calls });
+            let _ = self.handover.repaired.push(RepairedLink { link, boards: [board(0), board(1), board(2)] });
         }
+    }
+
+    /// Shakes hands with the board at `place` while the servo keeps the link, because other fingers of the port run.
+    /// Then makes that finger recover. `stops` are the requests to stop before the recovery began.
+    pub fn restore_beside_others(&mut self, place: usize, stops: StopCounts) -> Result<(), HandError> {
+        let Some(board) = self.boards.get(place) else { return Ok(()) };
+        let configured = board.shake_hands(&mut self.handover.relay)?;
+        let board = RestoredFinger { address: board.address, board: RestoredBoard { configured, stops } };
+        // The ring is full if the servo has released the link since the last handshake. The repair of the link then
+        // replaces both handshakes.
+        let _ = self.handover.restored.push(board);
+        Ok(())
+    }
+
+    /// Returns whether the servo has taken the finger of [`PortRepair::restore_beside_others`].
+    pub fn is_taken(&self) -> bool {
+        self.handover.restored.is_empty()
     }
 }
 
 impl KnownBoard {
+    /// Stops the board and shakes hands with it. It must be the same as at open, with valid zeros.
+    fn shake_hands<T: Transport>(&self, link: &mut Link<T>) -> Result<Configured, HandError> {
+        let KnownBoard { finger, address, ref terms, .. } = *self;
+        // A board whose port failed has not received a Stop. If cable and power are back before its watchdog trips, the
+        // board still executes its last command.
+        let _ = link.stop(address, 0);
+        let (identity, configured) =
+            link.shake_hands(address, terms, now() + ANSWER).map_err(|source| HandError::Link { finger, source })?;
+        self.check(&identity, configured.status)?;
+        Ok(configured)
+    }
+
     fn check(&self, identity: &Identity, status: Status) -> Result<(), HandError> {
         let faulted = |fault| Err(HandError::Faulted { finger: self.finger, fault });
         if *identity != self.identity {

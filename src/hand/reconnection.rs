@@ -2,6 +2,7 @@
 
 use crate::hand::port_repair::PortRepair;
 use crate::model::FingerNumber;
+use crate::model::configuration::FINGERS;
 use crate::realtime::{Priority, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use parking_lot::Mutex;
@@ -18,9 +19,9 @@ const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 pub(super) struct RepairablePort {
     /// Numbers of the fingers, 1 to 3.
     pub fingers: Vec<FingerNumber>,
-    /// Number of repairs that gave the link back to the servo. When the servo takes the link, each finger's number of
-    /// recoveries reaches this number.
-    pub repairs: AtomicU32,
+    /// Number of repairs that included the finger, in the order of `fingers`. When the servo takes a repaired finger,
+    /// the finger's number of recoveries reaches this number.
+    pub repairs: [AtomicU32; FINGERS],
     /// Locked during a repair, which takes long. `None` after the hand is closed.
     pub repair: Mutex<Option<PortRepair>>,
 }
@@ -35,7 +36,7 @@ impl Recovery {
     pub fn new(repairs: Vec<PortRepair>) -> Self {
         let port = |repair: PortRepair| {
             let fingers = repair.boards.iter().map(|board| board.finger).collect();
-            Arc::new(RepairablePort { fingers, repairs: AtomicU32::new(0), repair: Mutex::new(Some(repair)) })
+            Arc::new(RepairablePort { fingers, repairs: Default::default(), repair: Mutex::new(Some(repair)) })
         };
         Self { ports: repairs.into_iter().map(port).collect(), reconnecting: None }
     }

@@ -3,25 +3,24 @@
 //!
 //! The servo releases its link when every finger on it is at rest, because opening a port and shaking hands take too
 //! long for a servo. A recovery call does both on the planner's thread. If `finger.reconnect` is set, a separate thread
-//! tries both before that.
+//! tries both before that. If another finger of the port runs, the servo keeps the link and relays the handshake of the
+//! recovering finger.
 
-use crate::finger::{Stage, stop_calls};
+use crate::finger::{Stage, StopCounts, stop_calls};
 use crate::hand::reconnection::RepairablePort;
 use crate::hand::{Hand, HandError, RecoveryError};
 use crate::model::FingerNumber;
+use crate::model::configuration::FINGERS;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// If another finger of the port was not faulted at the beginning, a recovery waits this long for the link before it
-/// returns an error. That finger may be about to fault too. The servo then releases the link within this time.
-const RELEASE_LIMIT: Duration = Duration::from_millis(500);
-
 /// Interval at which a recovery is polled.
 const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
-/// A servo releases or takes back a link within some cycles. After this time the servo is considered stalled.
+/// A servo releases or takes back a link, or takes a finger, within some cycles. After this time the servo is
+/// considered stalled.
 const STALL_LIMIT: Duration = Duration::from_secs(5);
 
 /// A recovery in progress. It has three steps: begin, reconnect and poll. Only `reconnect` takes long, and it does not
@@ -35,14 +34,15 @@ pub struct Recovering {
 
 struct Task {
     finger: FingerNumber,
+    /// Place of the finger among those of the port.
+    place: usize,
     port: Arc<RepairablePort>,
-    /// Number of recoveries of the finger at the beginning.
-    recoveries: u32,
-    /// Every finger of the port, with its number of recoveries at the beginning.
-    fingers: Vec<(FingerNumber, u32)>,
-    /// A finger of `fingers` that was not faulted at the beginning.
-    running: Option<FingerNumber>,
-    stop_calls: u32,
+    /// Number of recoveries of every finger of the port at the beginning.
+    recoveries: [u32; FINGERS],
+    /// Requests to stop every finger of the port before the beginning.
+    stops: [StopCounts; FINGERS],
+    /// Whether another finger of the port was not faulted at the beginning.
+    beside_others: bool,
 }
 
 impl Recovering {
@@ -54,38 +54,55 @@ impl Recovering {
     pub fn begin(hand: &Hand, finger: i32) -> Result<Self, HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let begun = Instant::now();
-        // An emergency stop call after this point stops the recovered finger.
-        let stop_calls = stop_calls();
-        let port = hand.recovery.ports.iter().find(|port| port.fingers.contains(&finger));
-        let report = hand.dispatcher.last_report(finger)?;
-        let port = port.ok_or(HandError::NotOpened(finger))?.clone();
-        if !matches!(report.stage, Stage::Faulted(_)) {
-            return Ok(Self { task: None, begun });
+        // Requests to stop that are made after this point stop the recovered finger.
+        let calls = stop_calls();
+        let with_finger = |port: &&Arc<RepairablePort>| port.fingers.contains(&finger);
+        let port = hand.recovery.ports.iter().find(with_finger).ok_or(HandError::NotOpened(finger))?.clone();
+        let mut task = Task {
+            finger,
+            place: 0,
+            port: port.clone(),
+            recoveries: [0; FINGERS],
+            stops: [StopCounts { calls, of_finger: 0 }; FINGERS],
+            beside_others: false,
+        };
+        for (place, &member) in port.fingers.iter().enumerate() {
+            let mailbox = &hand.dispatcher.member(member)?.mailbox;
+            task.stops[place].of_finger = mailbox.stops();
+            let report = mailbox.report();
+            let faulted = matches!(report.stage, Stage::Faulted(_));
+            if member == finger {
+                if !faulted {
+                    return Ok(Self { task: None, begun });
+                }
+                task.place = place;
+            }
+            task.recoveries[place] = report.recoveries;
+            task.beside_others |= !faulted;
         }
-        let (mut fingers, mut running) = (Vec::new(), None);
-        for &finger in &port.fingers {
-            let report = hand.dispatcher.last_report(finger)?;
-            fingers.push((finger, report.recoveries));
-            running = running.or((!matches!(report.stage, Stage::Faulted(_))).then_some(finger));
-        }
-        let recoveries = report.recoveries;
-        Ok(Self { task: Some(Task { finger, port, recoveries, fingers, running, stop_calls }), begun })
+        Ok(Self { task: Some(task), begun })
     }
 
-    /// Repairs the connection of the finger, and makes every faulted finger of the port take up slack. This opens ports
-    /// and shakes hands, which may take a second. Only calls that repair the same port or close the hand wait for it.
+    /// Repairs the connection of the finger, and makes it take up slack. If no finger of the port runs, this opens the
+    /// port and shakes hands with all of its boards, which may take a second, and every faulted finger of the port
+    /// takes up slack. Only calls that repair the same port or close the hand wait for it.
     ///
     /// # Errors
-    /// Returns an error if another finger runs on the same port, if the port or a board does not work, if a board is
-    /// not the same as at open, if the servo has failed or does not run, or if the hand was closed.
+    /// Returns an error if the port or a board does not work, if a board is not the same as at open, if the servo has
+    /// failed or does not run, or if the hand was closed.
     pub fn reconnect(&self) -> Result<(), HandError> {
-        let Some(Task { finger, ref port, recoveries, running, stop_calls, .. }) = self.task else { return Ok(()) };
+        let Some(Task { finger, place, ref port, recoveries, ref stops, beside_others }) = self.task else {
+            return Ok(());
+        };
         let waiting = Instant::now();
+        // The refusal of the handshake beside other fingers. They may have faulted meanwhile, so that the servo is about
+        // to release the link.
+        let mut refusal = None;
+        let mut sent = false;
         loop {
             if let Some(repair) = &mut *port.repair.lock() {
-                if port.repairs.load(Ordering::Acquire) != recoveries {
-                    // Another caller has recovered a finger of the same port. Perhaps the servo has not taken the link
-                    // back yet.
+                if port.repairs[place].load(Ordering::Acquire) != recoveries[place] {
+                    // Another caller has recovered the finger. Perhaps the servo has not taken the link back yet.
                     return Ok(());
                 }
                 if repair.servo_ended() {
@@ -93,29 +110,49 @@ impl Recovering {
                 }
                 if repair.take_link() {
                     let configured = repair.restore()?;
-                    // The repair is counted before the servo gets the link, so that no finger has more recoveries than
-                    // its port has repairs.
-                    port.repairs.fetch_add(1, Ordering::Release);
-                    repair.give_back(configured, stop_calls);
+                    // The repairs are counted before the servo gets the link, so that no finger has more recoveries
+                    // than repairs.
+                    port.repairs[..port.fingers.len()].iter().for_each(|repairs| {
+                        repairs.fetch_add(1, Ordering::Release);
+                    });
+                    repair.give_back(configured, stops);
                     return Ok(());
+                }
+                if sent && repair.is_taken() {
+                    port.repairs[place].fetch_add(1, Ordering::Release);
+                    return Ok(());
+                }
+                if let Some(refusal) = refusal.take() {
+                    return Err(refusal);
+                }
+                if beside_others && !sent {
+                    match repair.restore_beside_others(place, stops[place]) {
+                        Ok(()) => sent = true,
+                        Err(error) => refusal = Some(error),
+                    }
                 }
             } else {
                 return Err(HandError::NoAnswer(finger));
             }
-            if let Some(refusal) = not_released(finger, running, waiting.elapsed()) {
-                return Err(refusal.into());
+            if waiting.elapsed() > STALL_LIMIT {
+                return Err(RecoveryError::ServoStalled(finger).into());
             }
             sleep(POLL_INTERVAL);
         }
     }
 
-    /// Returns whether every finger of the port holds its pose.
+    /// Returns whether every finger that this recovery has repaired holds its pose.
     ///
     /// # Errors
-    /// Returns an error if a finger of the port faults again, or if its servo does not take the link back.
+    /// Returns an error if such a finger faults again, or if its servo does not take it back.
     pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
         let mut done = true;
-        for &(finger, before) in self.task.iter().flat_map(|task| &task.fingers) {
+        let Some(Task { port, recoveries, .. }) = &self.task else { return Ok(true) };
+        for (place, &finger) in port.fingers.iter().enumerate() {
+            let before = recoveries[place];
+            if port.repairs[place].load(Ordering::Acquire) == before {
+                continue; // Another finger of the port, which was not repaired.
+            }
             let report = hand.dispatcher.last_report(finger)?;
             match report.stage {
                 Stage::Faulted(_) if report.recoveries == before => {
@@ -132,20 +169,10 @@ impl Recovering {
     }
 }
 
-/// The error for a servo that has not released the link of a finger within the permitted time; `None` before that.
-/// `running` is another finger of the port that was not faulted at the beginning.
-fn not_released(finger: FingerNumber, running: Option<FingerNumber>, waited: Duration) -> Option<RecoveryError> {
-    match running {
-        Some(other) if waited > RELEASE_LIMIT => Some(RecoveryError::PortInUse { finger, other }),
-        None if waited > STALL_LIMIT => Some(RecoveryError::ServoStalled(finger)),
-        _ => None,
-    }
-}
-
 impl Hand {
-    /// Makes a faulted finger 1, 2 or 3 a spring again, which holds its present pose at its initial stiffness. The
-    /// other faulted fingers on its port recover too. The cause of the fault must be removed first. Does nothing if
-    /// the finger is not faulted.
+    /// Makes a faulted finger 1, 2 or 3 a spring again, which holds its present pose at its initial stiffness. If no
+    /// finger on its port runs, the other fingers of the port recover too. The cause of the fault must be removed
+    /// first. Does nothing if the finger is not faulted.
     ///
     /// # Errors
     /// Returns the errors of [`Recovering::begin`], [`Recovering::reconnect`] and [`Recovering::poll`].
@@ -157,27 +184,16 @@ impl Hand {
         }
         Ok(())
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_a_finger_that_runs_is_said_to_use_the_port() {
-        for waited in [0, 100, 400].map(Duration::from_millis) {
-            assert!(
-                not_released(FingerNumber::ONE, None, waited).is_none()
-                    && not_released(FingerNumber::ONE, Some(FingerNumber::TWO), waited).is_none()
-            );
-        }
-        assert!(matches!(
-            not_released(FingerNumber::ONE, Some(FingerNumber::TWO), 2 * RELEASE_LIMIT),
-            Some(RecoveryError::PortInUse { finger: FingerNumber::ONE, other: FingerNumber::TWO })
-        ));
-        // This is the only finger of its port, and its servo does not run for a while.
-        assert!(not_released(FingerNumber::ONE, None, 2 * RELEASE_LIMIT).is_none());
-        let text = not_released(FingerNumber::ONE, None, 2 * STALL_LIMIT).expect("too long").to_string();
-        assert!(text.contains("no processor time") && text.contains("reduce the load"), "{text}");
+    /// Stops finger 1, 2 or 3: it faults ([`FaultKind::FingerStopCall`](crate::FaultKind::FingerStopCall)) at the beginning of its next cycle, and its
+    /// board enters the configured end state. The other fingers continue, unless `hand.on_fault` is `"hand"`. The
+    /// finger stays faulted until it recovers. A finger that has faulted already stays as it is.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger.
+    pub fn stop(&self, finger: i32) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
+        self.dispatcher.member(finger)?.mailbox.stop();
+        Ok(())
     }
 }

@@ -83,6 +83,11 @@ impl<T> Producer<T> {
         Ok(())
     }
 
+    /// Whether the reader has taken every value.
+    pub fn is_empty(&self) -> bool {
+        self.left == self.ring.taken.0.load(Ordering::Acquire)
+    }
+
     /// Whether the next push succeeds.
     pub fn has_room(&self) -> bool {
         let ring = &*self.ring;
@@ -113,6 +118,12 @@ impl<T> Consumer<T> {
     /// Whether the ring is empty.
     pub fn is_empty(&self) -> bool {
         self.taken == self.ring.left.0.load(Ordering::Acquire)
+    }
+
+    /// Adds the ring's pages to `memory`.
+    pub fn add_to(&self, memory: &mut LockedMemory) {
+        memory.add_shared(&self.ring);
+        memory.add(&self.ring.places);
     }
 
     /// Whether the writer's end has been dropped.

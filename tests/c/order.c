@@ -114,6 +114,7 @@ static void without_hand(void)
     REFUSED("WaitEvent", WaitEvent(&Event, -1), "OpenHand");
     REFUSED("OnEvent", OnEvent(NULL, NULL), "OpenHand");
     REFUSED("EventDescriptor", EventDescriptor(), "OpenHand");
+    REFUSED("StopFinger", StopFinger(9), "OpenHand");
 }
 
 static void small_structs(void)
@@ -162,6 +163,7 @@ static void no_such_finger(void)
     REFUSED("ZeroFinger", ZeroFinger(9), NO_FINGER);
     REFUSED("GetFault", GetFault(9, &Fault), NO_FINGER);
     REFUSED("RecoverHand", RecoverHand(9), NO_FINGER);
+    REFUSED("StopFinger", StopFinger(9), NO_FINGER);
 }
 
 static void wrong_groups(void)

@@ -10,12 +10,30 @@ static void on_signal(int number)
     StopHand();
 }
 
-static int faulted_by_stop(int i)
+static int fault_of(int i)
 {
     struct Fault Fault;
     Fault.Size = sizeof Fault;
     CHECK(GetFault(i, &Fault) == 0);
-    return Fault.Number == FAULT_EMERGENCY_STOP_CALL;
+    return Fault.Number;
+}
+
+static void stop_one_finger(void)
+{
+    double Pos[3];
+    int wait;
+
+    CHECK(StopFinger(0) == -1 && errno == EINVAL);
+    CHECK(StopFinger(2) == 0);
+    for (wait = 0; fault_of(2) != FAULT_FINGER_STOP_CALL; wait++) {
+        CHECK(wait < 1000);
+        PAUSE_MS(2);
+    }
+    CHECK(GetPosD(2, Pos) == -1 && errno == EIO);
+    CHECK(fault_of(1) == 0 && GetPosD(1, Pos) == 0);
+    CHECK(fault_of(3) == 0 && GetPosD(3, Pos) == 0);
+    CHECK(RecoverHand(2) == 0);
+    CHECK(GetPosD(2, Pos) == 0);
 }
 
 int main(void)
@@ -31,7 +49,7 @@ int main(void)
     errno = 0;
     CHECK(raise(SIGUSR1) == 0 && errno == 0);
     for (i = 1; i <= 3; i++) {
-        for (wait = 0; !faulted_by_stop(i); wait++) {
+        for (wait = 0; fault_of(i) != FAULT_EMERGENCY_STOP_CALL; wait++) {
             CHECK(wait < 1000);
             PAUSE_MS(2);
         }
@@ -44,5 +62,6 @@ int main(void)
         CHECK(GetPosD(i, Pos) == 0 && SendPosD(i, Pos) == 0);
     }
     CHECK(RecoverHand(1) == 0);
+    stop_one_finger();
     return CloseHand();
 }

@@ -15,7 +15,7 @@ const NOT_TRIED: &[(&str, &[&str])] = &[
     ("OnEvent", &["EAGAIN"]),
     ("EventDescriptor", &["EMFILE", "ENFILE", "EAGAIN"]),
     ("ZeroFinger", &["EBUSY", "ECANCELED", "ETIMEDOUT", "EACCES", "ENOSPC"]),
-    ("RecoverHand", &["EIO", "EBUSY", "ENOENT", "EACCES", "ETIMEDOUT"]),
+    ("RecoverHand", &["EIO", "ENOENT", "EACCES", "ETIMEDOUT"]),
     ("WriteBlackBox", &["EACCES", "ENOSPC"]),
 ];
 

@@ -7,7 +7,8 @@ use sun2xp::board::protocol::{Frame, Message, WireFrame};
 use sun2xp::board::{PortError, Terms, Transport};
 use sun2xp::finger::events::EventReader;
 use sun2xp::finger::{
-    Elements, Fault, FaultKind, FingerReport, LinkRepairEnd, Mailbox, RepairedLink, Servo, Stage, stop_calls,
+    Elements, Fault, FaultKind, FingerReport, LinkRepairEnd, Mailbox, RepairedLink, RestoredBoard, Servo, Stage,
+    StopCounts, stop_calls,
 };
 use sun2xp::model::configuration::Configuration;
 use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
@@ -214,7 +215,9 @@ impl Bench {
         let terms = Terms::new(&self.configuration.hand, &self.configuration.fingers[0]);
         let deadline = Transport::now(&self.world) + 1000 * MILLISECOND;
         let (_, configured) = link.shake_hands(1, &terms, deadline).expect("the board answers");
-        let repaired = RepairedLink { link, configured: [Some(configured), None, None], stop_calls: stop_calls() };
+        let stops = StopCounts { calls: stop_calls(), of_finger: self.mailbox.stops() };
+        let restored = RestoredBoard { configured, stops };
+        let repaired = RepairedLink { link, boards: [Some(restored), None, None] };
         assert!(self.repair_end.repaired.push(repaired).is_ok());
         self.cycles(1);
         assert_eq!(self.stage(), Stage::Opening);

@@ -27,6 +27,11 @@ impl Allowance {
         Self { deadline, bytes: None, used_up: false, found: false }
     }
 
+    /// Ends the wait: only bytes that have already arrived are read from now on.
+    pub fn end(&mut self) {
+        self.deadline = 0;
+    }
+
     /// Returns the deadline, ns on the transport's clock.
     pub(super) fn deadline(&self) -> u64 {
         self.deadline

@@ -1,6 +1,6 @@
 //! The cyclic traffic of a link: Commands with their Replies, and TactileRequests with their answers.
 
-use crate::board::protocol::{Command, Reply, TactileEvent, TactileRequest};
+use crate::board::protocol::{Command, Message, Reply, TactileEvent, TactileRequest};
 
 /// A Command for one finger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,4 +49,6 @@ pub enum Arrival {
         /// The content of the answer.
         event: TactileEvent,
     },
+    /// Another answer while the answer to a relayed request is awaited.
+    Relayed(Message),
 }

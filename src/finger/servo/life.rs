@@ -1,9 +1,8 @@
 //! The stages of a finger from open to close, and the transitions between them.
 
 use super::{FingerServo, STOPS_AFTER_FAULT};
-use crate::board::protocol::Configured;
 use crate::control::{Activity, Feedback, MotorCommand, SetPoint};
-use crate::finger::{Fault, FaultKind, Order, Stage};
+use crate::finger::{Fault, FaultKind, Order, RestoredBoard, Stage};
 use crate::model::Part;
 use nalgebra::Vector4;
 
@@ -100,9 +99,12 @@ impl FingerServo {
         self.stage_cycles = 0;
     }
 
-    /// Resumes after a fault. The board has been configured again, and no motor has moved since.
-    pub(in crate::finger) fn recover(&mut self, configured: &Configured, stop_calls: u32) {
-        self.alarm.forget(stop_calls);
+    /// Resumes after a fault. The board has been configured again, and no motor has moved since. Later requests to stop
+    /// than those of `restored` stop the finger again.
+    pub(in crate::finger) fn recover(&mut self, restored: &RestoredBoard) {
+        let RestoredBoard { configured, stops } = restored;
+        self.alarm.forget(stops.calls);
+        self.stops_seen = stops.of_finger;
         self.feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         self.status = configured.status;
         self.sampled_at = None;

@@ -15,7 +15,6 @@ impl HandError {
             Self::Link { source: LinkError::Port(PortError::Closed), .. } => &[Action::Close, Action::Open],
             Self::Configuration(ConfigurationError::Permanent { .. }) => &[Action::Close, Action::Open],
             Self::Recovery(error) => match error {
-                RecoveryError::PortInUse { .. } => &[Action::Stop, Action::Recover],
                 RecoveryError::ServoStalled(_) => &[Action::Recover],
                 RecoveryError::ServoEnded(_) => &[Action::Close, Action::Open],
                 RecoveryError::NotReconnected(_) => &[Action::Close, Action::Open],

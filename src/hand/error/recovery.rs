@@ -8,17 +8,6 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecoveryError {
-    /// Another finger on the same port is running.
-    #[error(
-        "finger {finger} shares its port with finger {other}, which is running, and fingers on one port recover only \
-         together: stop all fingers, then recover finger {finger}"
-    )]
-    PortInUse {
-        /// The finger.
-        finger: FingerNumber,
-        /// The running finger.
-        other: FingerNumber,
-    },
     /// The servo thread does not run, so it does not release its port.
     #[error(
         "the servo thread of finger {0} gets no processor time: reduce the load of the machine or permit \
@@ -45,7 +34,6 @@ impl RecoveryError {
     #[must_use]
     pub fn errno(&self) -> i32 {
         match self {
-            Self::PortInUse { .. } => libc::EBUSY,
             Self::ServoStalled(_) => libc::ETIMEDOUT,
             Self::ServoEnded(_) => libc::EIO,
             Self::NotReconnected(_) => libc::ENODEV,
