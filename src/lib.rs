@@ -88,9 +88,14 @@ pub mod contact {
     pub use crate::model::configuration::ConfiguredContact;
 }
 
-/// Commands to several fingers that take effect in the same cycle.
+/// Commands to several fingers that take effect in the same cycle, and waiting until several fingers are there.
 pub mod groups {
-    pub use crate::hand::{FingerCommand, Pose};
+    pub use crate::hand::{FingerCommand, Pose, Until, Waiting};
+}
+
+/// What the kinematics of a finger report: joint torques and its pose in the palm.
+pub mod kinematics {
+    pub use crate::hand::{JointTorques, PalmPose};
 }
 
 /// Events: what happens to a finger, with the cycle to which it belongs. [`Hand::events`] and [`Hand::on_event`] give

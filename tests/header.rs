@@ -19,6 +19,7 @@ const OTHER_CALLS: &[&str] = &[
     "group_calls.rs",
     "object_calls.rs",
     "touch_calls.rs",
+    "kinematics_calls.rs",
     "black_box_calls.rs",
     "calibration_calls.rs",
     "fault_calls.rs",

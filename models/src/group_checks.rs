@@ -46,5 +46,5 @@ pub fn a_posted_group_has_its_set_points() {
     }
     let _planner = thread.join().expect("no panic");
     let new = new.or(servo.new_group(report.springs, 4, || 4)).or(servo.new_group(report.springs, 5, || 5));
-    assert_eq!(new.map(|set_point| set_point.damping), Some(7.0));
+    assert_eq!(new.map(|set_point| set_point.0.damping), Some(7.0));
 }

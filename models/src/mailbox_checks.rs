@@ -58,10 +58,10 @@ pub fn a_set_point_is_for_one_spring() {
     servo.publish(report);
     let new = servo.new_set_point(report.springs);
     let planner = thread.join().expect("no panic");
-    let new = new.or(servo.new_set_point(report.springs));
+    let new = new.or(servo.new_set_point(report.springs)).map(|(set_point, _)| set_point);
     assert!(new.is_none_or(|new| new.damping == 101.0), "a set point of an earlier spring: {new:?}");
     planner.send(|set_point| set_point.damping += 1.0).expect("the finger is healthy");
-    let newer = servo.new_set_point(report.springs).expect("the set point arrives");
+    let (newer, _) = servo.new_set_point(report.springs).expect("the set point arrives");
     assert_eq!(newer.damping, new.map_or(101.0, |new| new.damping + 1.0));
 }
 

@@ -4,7 +4,7 @@ use crate::calibration::Task;
 use crate::capi::default_events;
 use crate::capi::process;
 use crate::capi::refusal::{self, Refusal};
-use crate::hand::{self, Calibrating, CalibrationState, Hand, HandError, Recovering};
+use crate::hand::{self, Calibrating, CalibrationState, Hand, HandError, Recovering, Until, Waiting};
 use parking_lot::{Mutex, RwLock};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
@@ -28,6 +28,9 @@ const LONGEST_WAIT_AT_EXIT: Duration = Duration::from_millis(100);
 
 /// Polling period of a calibration or recovery.
 const POLLING_PERIOD: Duration = Duration::from_millis(5);
+
+/// Polling period of a wait for fingers.
+const WAITING_PERIOD: Duration = Duration::from_millis(1);
 
 pub(super) fn open() -> Result<(), Refusal> {
     refuse_while_exiting()?;
@@ -110,6 +113,16 @@ pub(super) fn recover(finger: i32) -> Result<(), Refusal> {
     command(|_| result)?;
     while !command(|hand| recovering.poll(hand))? {
         sleep(POLLING_PERIOD);
+    }
+    Ok(())
+}
+
+/// Waits until the condition holds for these fingers. Unlocks the hand between two polls, so that CloseHand and other
+/// calls work meanwhile.
+pub(super) fn wait(fingers: &[i32], until: Until, limit: Duration) -> Result<(), Refusal> {
+    let waiting = with(|hand| Waiting::begin(hand, fingers, until, limit))?;
+    while !with(|hand| waiting.poll(hand))? {
+        sleep(WAITING_PERIOD);
     }
     Ok(())
 }

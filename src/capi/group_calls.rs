@@ -1,15 +1,16 @@
-//! The exported function for groups of fingers. Its doc comment is the C manual, as in `calls.rs`.
+//! The exported functions for groups of fingers. Their doc comments are the C manual, as in `calls.rs`.
 
 // The exported names are those of the header.
 #![allow(non_snake_case)]
 
-use crate::capi::boundary::guarded;
+use crate::capi::boundary::{MEMORY_OF_THREAD, delegated, guarded};
 use crate::capi::default_hand;
 use crate::capi::memory::{load, load_rows, non_null, size_up_to};
 use crate::capi::refusal::{Refusal, Wanted};
 use crate::hand::{self, SetPointError};
 use crate::model::configuration::FINGERS;
 use std::ffi::{c_int, c_uint};
+use std::time::Duration;
 
 /// Command to one finger of a group (SendGroup).
 #[repr(C)]
@@ -79,6 +80,69 @@ pub unsafe extern "C" fn SendGroup(Count: c_int, Commands: *const FingerCommand)
         default_hand::command(|hand| -> Result<(), Refusal> {
             let (commands, count) = commands?;
             Ok(hand.send_group(&commands[..count])?)
+        })
+    })
+}
+
+/// WaitFingers - wait until fingers have arrived or settled
+///
+///     int WaitFingers(int Count, const int *Fingers, int Until, double Limit);
+///
+///   Count     number of fingers, 0 to 3
+///   Fingers   Fingers[Count]: the fingers, 1 to 3
+///   Until     1: arrived. Every joint has been within finger.events.arrived_degrees of the set point sent
+///             last. 2: settled. Since that set point took effect, no joint has moved by more than
+///             finger.events.settled_degrees for finger.events.settled_ms
+///   Limit     longest time to wait, s
+///
+/// Waits until the condition holds for every finger. Returns at once if it holds already. A finger
+/// that an object blocks settles without arriving. With a set point of SendTip or a group, the joint
+/// angles are those that the call has computed. Other calls work meanwhile. CloseHand works too, and
+/// this call is then refused.
+///
+/// Returns 0, or -1 with
+///   EPERM    forked child
+///   EFAULT   Fingers is null
+///   ENODEV   no hand is open, or it was closed meanwhile
+///   EINVAL   Count is not 0 to 3; no such finger; no such Until; Limit is negative or NaN
+///   EIO      a finger is faulted
+///   EBUSY    a finger is limp, calibrated or closed
+///   ETIMEDOUT  Limit is over; HandError names a finger that has not arrived or settled
+///
+/// Threads: any.
+///
+/// Example:
+///
+///     int Fingers[2] = {1, 2};
+///     if (WaitFingers(2, Fingers, 2, 5.0) != 0)
+///         fprintf(stderr, "%s\n", HandError());
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn WaitFingers(Count: c_int, Fingers: *const c_int, Until: c_int, Limit: f64) -> c_int {
+    delegated("WaitFingers", MEMORY_OF_THREAD, || {
+        non_null(Fingers, "Fingers", Wanted::Array(FINGERS))?;
+        let number = usize::try_from(Count).ok().filter(|&number| number <= FINGERS);
+        let mut fingers = [0; FINGERS];
+        for (place, finger) in fingers[..number.unwrap_or(0)].iter_mut().enumerate() {
+            // SAFETY: by the contract in the manual, `Fingers` has `Count` entries.
+            *finger = unsafe { Fingers.add(place).read_unaligned() };
+        }
+        Ok(move || {
+            default_hand::with(|_| Ok::<_, Refusal>(()))?;
+            let number = number.ok_or(hand::HandError::from(SetPointError::GroupSize(Count)))?;
+            fingers[..number]
+                .iter()
+                .try_for_each(|&finger| default_hand::with(|hand| hand.report(finger).map(drop)))?;
+            let until = match Until {
+                1 => hand::Until::Arrived,
+                2 => hand::Until::Settled,
+                _ => return Err(hand::HandError::from(SetPointError::NoSuchCondition(Until)).into()),
+            };
+            // A limit that is too long for a Duration is no limit.
+            let limit = match Limit {
+                limit if limit >= 0.0 => Duration::try_from_secs_f64(limit).unwrap_or(Duration::MAX),
+                _ => return Err(hand::HandError::from(SetPointError::NoSuchLimit(Limit)).into()),
+            };
+            default_hand::wait(&fingers[..number], until, limit)
         })
     })
 }

@@ -23,6 +23,7 @@ mod fingertip_calls;
 mod fingertip_result;
 mod forked;
 mod group_calls;
+mod kinematics_calls;
 mod memory;
 mod object_calls;
 mod process;

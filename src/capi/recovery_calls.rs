@@ -50,7 +50,7 @@ pub extern "C" fn StopHand() -> c_int {
 ///
 ///   i        finger, 1 to 3
 ///
-/// The finger faults (FAULT_FINGER_STOP_CALL) at the start of its next cycle, and its board enters the
+/// The finger faults (FAULT_STOP_CALL) at the start of its next cycle, and its board enters the
 /// configured end state, as with StopHand. The other fingers continue, unless hand.on_fault is "hand".
 /// The finger stays stopped until RecoverHand, or CloseHand and OpenHand. A finger that has faulted
 /// already stays as it is. Like StopHand, this is not a safety function. Unlike StopHand, it must not be

@@ -7,11 +7,12 @@
 //! effect in all of its fingers, even if a newer set point follows.
 
 pub(super) mod groups;
+mod requests;
 
 use crate::control::SetPoint;
 use crate::finger::group_gate::GroupGate;
 use crate::finger::{Adjustable, Fault, FingerReport, Order, Stage};
-use crate::realtime::atomics::{AtomicBool, AtomicU32, Ordering};
+use crate::realtime::atomics::{AtomicBool, AtomicU32};
 use crate::realtime::{Consumer, Input, LockedMemory, Output, Pages, Producer, SharedPages, ring, triple_buffer};
 use parking_lot::Mutex;
 
@@ -50,6 +51,8 @@ struct SentSetPoint {
     /// Number of the finger's newest group, 0 if there is none. The set point includes the values of that group, so it
     /// must not take effect before the group does.
     group: u64,
+    /// Number of the set point, counted by the planners' end.
+    number: u32,
     set_point: SetPoint,
 }
 
@@ -71,21 +74,23 @@ pub(super) struct ServoEnd {
     orders: Output<Order>,
     reports: Input<FingerReport>,
     requests: SharedPages<Requests>,
+    /// Number of requests to stop that were made before the opening or the last recovery began.
+    stops_seen: u32,
 }
 
 /// Creates a mailbox with `report`, its set point and `adjustable` at both ends. Also returns the memory that both ends
 /// share.
 pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd, LockedMemory) {
     let mut memory = LockedMemory::default();
-    let sent = SentSetPoint { spring: report.springs, group: 0, set_point: report.set_point };
+    let sent = SentSetPoint { spring: report.springs, group: 0, number: 0, set_point: report.set_point };
     let (set_points_in, set_points_out) = shared(&sent, &mut memory);
     let (grouped_in, grouped_out) = ring(WAITING_GROUPS);
     grouped_in.add_to(&mut memory);
     let (adjustments_in, adjustments_out) = shared(adjustable, &mut memory);
     let (reports_in, reports_out) = shared(&report, &mut memory);
     let (orders_in, orders_out) = shared(&Order::Nothing, &mut memory);
-    let requests =
-        SharedPages::from(Pages::new(Requests { closing: AtomicBool::new(false), stops: AtomicU32::new(0) }));
+    let requests = Requests { closing: AtomicBool::new(false), stops: AtomicU32::new(0) };
+    let requests = SharedPages::from(Pages::new(requests));
     memory.add_shared(&requests);
     let planners = PlannersEnd {
         sent,
@@ -107,6 +112,7 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
         orders: orders_out,
         reports: reports_in,
         requests: requests.clone(),
+        stops_seen: 0,
     };
     (Mailbox { planners: Mutex::new(planners), requests }, servo, memory)
 }
@@ -147,6 +153,7 @@ impl Mailbox {
         let planners = &mut *self.planners.lock();
         planners.begin()?;
         change(&mut planners.sent.set_point);
+        planners.sent.number = planners.sent.number.wrapping_add(1);
         planners.set_points.write(planners.sent);
         Ok(())
     }
@@ -165,6 +172,7 @@ impl Mailbox {
         if let Err(refusal) = change(&mut next.set_point) {
             return Ok(Err(refusal));
         }
+        next.number = next.number.wrapping_add(1);
         planners.sent = *next;
         planners.set_points.publish();
         Ok(Ok(()))
@@ -176,6 +184,15 @@ impl Mailbox {
         let planners = &mut *self.planners.lock();
         planners.sent.begin_with(planners.reports.read());
         planners.sent.set_point
+    }
+
+    /// Returns the newest report, and whether the set point that was sent last is in force in it. A set point that was
+    /// sent before the finger became a spring is discarded and does not count.
+    pub fn newest_in_force(&self) -> (bool, FingerReport) {
+        let planners = &mut *self.planners.lock();
+        let report = *planners.reports.read();
+        planners.sent.begin_with(&report);
+        (planners.sent.number == report.set_point_number, report)
     }
 
     /// Replaces the data that the servo computes with, unless the finger is faulted.
@@ -209,21 +226,6 @@ impl Mailbox {
     pub fn restart(&self, adjustable: Adjustable, limp: bool) -> Result<Option<u32>, Fault> {
         self.planners.lock().order(Order::Restart { limp }, Some(adjustable))
     }
-
-    /// Requests that the servo bring the finger to its end state.
-    pub fn close(&self) {
-        self.requests.closing.store(true, Ordering::Release);
-    }
-
-    /// Requests that the finger fault at the beginning of its next cycle, so that its board enters its end state.
-    pub fn stop(&self) {
-        self.requests.stops.fetch_add(1, Ordering::AcqRel);
-    }
-
-    /// Returns the number of requests to stop so far.
-    pub fn stops(&self) -> u32 {
-        self.requests.stops.load(Ordering::Acquire)
-    }
 }
 
 impl SentSetPoint {
@@ -231,7 +233,8 @@ impl SentSetPoint {
     /// the set point that the servo holds.
     fn begin_with(&mut self, report: &FingerReport) {
         if report.springs != self.spring {
-            *self = Self { spring: report.springs, set_point: report.set_point, ..*self };
+            let number = report.set_point_number;
+            *self = Self { spring: report.springs, number, set_point: report.set_point, ..*self };
         }
     }
 }
@@ -266,9 +269,9 @@ impl PlannersEnd {
 }
 
 impl ServoEnd {
-    /// Returns the set point, if a planner has sent one for this spring phase since the last call. A set point that was
-    /// sent after a group waits until the group is in effect.
-    pub fn new_set_point(&mut self, spring: u32) -> Option<SetPoint> {
+    /// Returns the set point with its number, if a planner has sent one for this spring phase since the last call. A
+    /// set point that was sent after a group waits until the group is in effect.
+    pub fn new_set_point(&mut self, spring: u32) -> Option<(SetPoint, u32)> {
         self.held |= self.set_points.update();
         if !self.held {
             return None;
@@ -276,7 +279,7 @@ impl ServoEnd {
         let sent = self.set_points.output_buffer();
         self.held = sent.group > self.in_effect;
         // A group that was sent later and is in effect already includes this set point.
-        (sent.group == self.in_effect && sent.spring == spring).then_some(sent.set_point)
+        (sent.group == self.in_effect && sent.spring == spring).then_some((sent.set_point, sent.number))
     }
 
     /// Returns the data to compute with, if a planner has replaced it since the last call.
@@ -287,16 +290,6 @@ impl ServoEnd {
     /// Returns the order, if a planner has given one since the last call.
     pub fn new_order(&mut self) -> Option<Order> {
         self.orders.update().then(|| self.orders.output_buffer().clone())
-    }
-
-    /// Returns whether a planner has requested the end state of the finger.
-    pub fn closing(&self) -> bool {
-        self.requests.closing.load(Ordering::Acquire)
-    }
-
-    /// Returns the number of requests to stop so far.
-    pub fn stops(&self) -> u32 {
-        self.requests.stops.load(Ordering::Acquire)
     }
 
     /// Replaces the report.

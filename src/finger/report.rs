@@ -12,6 +12,8 @@ pub struct FingerReport {
     pub stage: Stage,
     /// The set point in force.
     pub set_point: SetPoint,
+    /// Number of the set point in force, which the planners' end of the mailbox has counted.
+    pub set_point_number: u32,
     /// Number of the period in which the set point in force took effect. Periods are numbered for the whole hand, from
     /// the start that its servo threads have in common.
     pub set_point_period: u64,
@@ -51,6 +53,7 @@ impl FingerReport {
         Self {
             stage: Stage::Opening,
             set_point,
+            set_point_number: 0,
             set_point_period: 0,
             period: 0,
             springs: 0,

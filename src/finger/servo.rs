@@ -65,8 +65,6 @@ pub struct FingerServo {
     link: LinkWatch,
     supervision: Supervision,
     alarm: StopSignal,
-    /// Number of requests to stop this finger that were made before the opening or the last recovery began.
-    stops_seen: u32,
     /// The board's clock at the last measurement, us modulo 65 536; none before the first measurement.
     sampled_at: Option<u16>,
     /// Number of periods from the last measurement to this cycle.
@@ -121,11 +119,11 @@ impl FingerServo {
         self
     }
 
-    /// Begins a period. `began` is the time at which it began, ns. Faults the finger after an emergency stop call, after
-    /// a request to stop this finger, or after the fault of a finger that stops together with this one.
+    /// Begins a period. `began` is the time at which it began, ns. Faults the finger after an emergency stop call,
+    /// after a request to stop this finger, or after the fault of a finger that stops together with this one.
     pub fn begin_period(&mut self, began: u64) {
         self.events.begin_cycle(self.report.losses.cycles + 1, began);
-        let requested = (self.mailbox.stops() != self.stops_seen).then_some(FaultKind::FingerStopCall);
+        let requested = self.mailbox.stop_requested().then_some(FaultKind::FingerStopCall);
         if let Some(kind) = self.alarm.pending().or(requested) {
             self.fault(Fault::new(kind));
         }

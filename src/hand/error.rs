@@ -139,6 +139,12 @@ pub enum HandError {
     /// The finger is busy.
     #[error("finger {0} is being opened, calibrated or closed: wait until this is done")]
     Busy(FingerNumber),
+    /// A wait has reached its time limit.
+    #[error(
+        "finger {0} has not arrived or settled within the time limit: check what keeps it from moving, send a set \
+         point that it can reach, or wait longer"
+    )]
+    NotThereInTime(FingerNumber),
     /// The servo does not respond.
     #[error(
         "finger {0} does not respond: the hand was closed or opened again during the call, or the finger's servo \

@@ -95,8 +95,8 @@ impl Recovering {
             return Ok(());
         };
         let waiting = Instant::now();
-        // The refusal of the handshake beside other fingers. They may have faulted meanwhile, so that the servo is about
-        // to release the link.
+        // The refusal of the handshake beside other fingers. They may have faulted meanwhile, so that the servo is
+        // about to release the link.
         let mut refusal = None;
         let mut sent = false;
         loop {
@@ -185,9 +185,9 @@ impl Hand {
         Ok(())
     }
 
-    /// Stops finger 1, 2 or 3: it faults ([`FaultKind::FingerStopCall`](crate::FaultKind::FingerStopCall)) at the beginning of its next cycle, and its
-    /// board enters the configured end state. The other fingers continue, unless `hand.on_fault` is `"hand"`. The
-    /// finger stays faulted until it recovers. A finger that has faulted already stays as it is.
+    /// Stops finger 1, 2 or 3: it faults at the beginning of its next cycle, and its board enters the configured end
+    /// state. The other fingers continue, unless `hand.on_fault` is `"hand"`. The finger stays faulted until it
+    /// recovers. A finger that has faulted already stays as it is.
     ///
     /// # Errors
     /// Returns an error if there is no such finger.

@@ -41,6 +41,10 @@ static struct FingerTip Fingertip;
 static struct ObjectState Object;
 static struct FingerRecord Record;
 static struct FingerCommand Command[2];
+static struct JointTorques Torques;
+static struct PalmPose Pose;
+static int Fingers[1] = {9};
+static double J[9];
 static struct Fault Fault;
 static struct Event Event;
 
@@ -80,6 +84,13 @@ static void null_pointers(void)
     REFUSED("SendContact", SendContact(9, 4, Nan[0], NULL), "Normal");
     REFUSED("SendGroup", SendGroup(9, NULL), "Commands");
     REFUSED("GetObject", GetObject(NULL), "Object");
+    REFUSED("WaitFingers", WaitFingers(9, NULL, 9, NAN), "Fingers");
+    REFUSED("GetJacobian", GetJacobian(9, NanPos, NULL), "J is");
+    REFUSED("FindTip", FindTip(9, NULL, Tip), "Pos");
+    REFUSED("FindTip", FindTip(9, NanPos, NULL), "Tip");
+    REFUSED("FindPos", FindPos(9, NULL, Pos), "Tip");
+    REFUSED("GetJointTorques", GetJointTorques(9, NULL), "Torques");
+    REFUSED("GetPalmPose", GetPalmPose(9, NULL), "Pose");
     REFUSED("AdjustFinger", AdjustFinger(9, NULL), "Keys");
     REFUSED("PushFinger", PushFinger(9, NULL), "Force");
     REFUSED("GetRecord", GetRecord(9, 99, NULL), "Record");
@@ -103,6 +114,12 @@ static void without_hand(void)
     REFUSED("SendDamping", SendDamping(9, NAN), "OpenHand");
     REFUSED("SendGroup", SendGroup(9, Command), "OpenHand");
     REFUSED("GetObject", GetObject(&Object), "OpenHand");
+    REFUSED("WaitFingers", WaitFingers(1, Fingers, 9, NAN), "OpenHand");
+    REFUSED("GetJacobian", GetJacobian(9, NanPos, J), "OpenHand");
+    REFUSED("FindTip", FindTip(9, NanPos, Tip), "OpenHand");
+    REFUSED("FindPos", FindPos(9, NanTip, Pos), "OpenHand");
+    REFUSED("GetJointTorques", GetJointTorques(9, &Torques), "OpenHand");
+    REFUSED("GetPalmPose", GetPalmPose(9, &Pose), "OpenHand");
     REFUSED("AdjustFinger", AdjustFinger(9, "="), "OpenHand");
     REFUSED("PushFinger", PushFinger(9, NanForce), "OpenHand");
     REFUSED("GetRecord", GetRecord(9, 99, &Record), "OpenHand");
@@ -130,6 +147,10 @@ static void small_structs(void)
     REFUSED("SendGroup", SendGroup(1, Command), "Size");
     REFUSED("NextEvent", NextEvent(&Event), "Size");
     REFUSED("WaitEvent", WaitEvent(&Event, -1), "Size");
+    REFUSED("GetJointTorques", GetJointTorques(9, &Torques), "Size");
+    REFUSED("GetPalmPose", GetPalmPose(9, &Pose), "Size");
+    Torques.Size = sizeof Torques;
+    Pose.Size = sizeof Pose;
     Command[0].Size = Command[1].Size = sizeof Command[0];
     Status.Size = sizeof Status;
     Timing.Size = sizeof Timing;
@@ -154,6 +175,13 @@ static void no_such_finger(void)
     REFUSED("SendDamping", SendDamping(9, NAN), NO_FINGER);
     Command[0].Finger = Command[1].Finger = 9;
     Command[0].Kx = three(Nan);
+    REFUSED("WaitFingers", WaitFingers(9, Fingers, 9, NAN), "and not 9");
+    REFUSED("WaitFingers", WaitFingers(1, Fingers, 9, NAN), NO_FINGER);
+    REFUSED("GetJacobian", GetJacobian(9, NanPos, J), NO_FINGER);
+    REFUSED("FindTip", FindTip(9, NanPos, Tip), NO_FINGER);
+    REFUSED("FindPos", FindPos(9, NanTip, Pos), NO_FINGER);
+    REFUSED("GetJointTorques", GetJointTorques(9, &Torques), NO_FINGER);
+    REFUSED("GetPalmPose", GetPalmPose(9, &Pose), NO_FINGER);
     REFUSED("SendGroup", SendGroup(9, Command), "and not 9");
     REFUSED("SendGroup", SendGroup(2, Command), NO_FINGER);
     REFUSED("AdjustFinger", AdjustFinger(9, "="), NO_FINGER);
@@ -166,25 +194,7 @@ static void no_such_finger(void)
     REFUSED("StopFinger", StopFinger(9), NO_FINGER);
 }
 
-static void wrong_groups(void)
-{
-    Command[0].Finger = Command[1].Finger = 1;
-    REFUSED("SendGroup", SendGroup(2, Command), "two commands");
-    Command[1].Finger = 2;
-    Command[0].Pos = FarPos;
-    Command[0].Tip = FarTip;
-    REFUSED("SendGroup", SendGroup(2, Command), "Pos and Tip");
-    Command[0].Tip = NULL;
-    Command[0].Pos = NanPos;
-    REFUSED("SendGroup", SendGroup(2, Command), "NaN");
-    Command[0].Pos = Pos;
-    Command[0].Kx = three(Skew);
-    REFUSED("SendGroup", SendGroup(2, Command), "symmetric");
-    Command[0].Kx = three(Stiff);
-    REFUSED("SendGroup", SendGroup(2, Command), "bound");
-    Command[0].Kx = three(Soft);
-    REFUSED("SendGroup", SendGroup(2, Command), "stop");
-}
+#include "order_groups.h"
 
 static void wrong_values_on_a_faulted_finger(void)
 {
@@ -211,6 +221,7 @@ static void wrong_values_on_a_faulted_finger(void)
     REFUSED("SendDamping", SendDamping(1, NAN), "NaN");
     REFUSED("SendDamping", SendDamping(1, 99), "stop");
     wrong_groups();
+    wrong_kinematics();
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\"\n="), "line 3");
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\""), "`port`");
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]"), "minimum_degrees");

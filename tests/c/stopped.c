@@ -25,7 +25,7 @@ static void stop_one_finger(void)
 
     CHECK(StopFinger(0) == -1 && errno == EINVAL);
     CHECK(StopFinger(2) == 0);
-    for (wait = 0; fault_of(2) != FAULT_FINGER_STOP_CALL; wait++) {
+    for (wait = 0; fault_of(2) != FAULT_STOP_CALL; wait++) {
         CHECK(wait < 1000);
         PAUSE_MS(2);
     }

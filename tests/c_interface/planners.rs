@@ -162,6 +162,11 @@ fn a_group_of_fingers_is_commanded_as_a_whole_or_not_at_all() {
 }
 
 #[test]
+fn the_kinematics_of_a_finger_are_read() {
+    succeed(&strict(&["-ansi"]), &["kinematics.c"]);
+}
+
+#[test]
 fn a_fingertip_is_sent_read_and_made_a_contact() {
     succeed(&strict(&["-ansi"]), &["tip.c"]);
 }

@@ -14,6 +14,7 @@ const NOT_TRIED: &[(&str, &[&str])] = &[
     ("SendGroup", &["EBUSY"]),
     ("OnEvent", &["EAGAIN"]),
     ("EventDescriptor", &["EMFILE", "ENFILE", "EAGAIN"]),
+    ("WaitFingers", &["EBUSY", "ETIMEDOUT"]),
     ("ZeroFinger", &["EBUSY", "ECANCELED", "ETIMEDOUT", "EACCES", "ENOSPC"]),
     ("RecoverHand", &["EIO", "ENOENT", "EACCES", "ETIMEDOUT"]),
     ("WriteBlackBox", &["EACCES", "ENOSPC"]),

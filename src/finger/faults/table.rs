@@ -218,7 +218,7 @@ faults! {
         "the boards at two ports report the same unique number, so they cannot be distinguished",
         "their firmware gives every board the same number",
         "Give every board its own number in its firmware", [];
-    50 FingerStopCall "FINGER_STOP_CALL" Fault Finger Nothing "stop of the finger, call",
+    50 FingerStopCall "STOP_CALL" Fault Finger Nothing "stop of the finger, call",
         "the program requested that this finger stop",
         "the program or its user wants this finger to be at rest, or detected a danger",
         "Make sure that the finger can move safely, then recover it", [Recover];

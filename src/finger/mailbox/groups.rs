@@ -44,7 +44,8 @@ impl GroupGate {
     pub fn send(&self, mut group: [Option<PreparedSetPoint<'_>>; FINGERS]) {
         let number = self.number();
         for PreparedSetPoint { planners, set_point } in group.iter_mut().flatten() {
-            let sent = SentSetPoint { group: number, set_point: *set_point, ..planners.sent };
+            let count = planners.sent.number.wrapping_add(1);
+            let sent = SentSetPoint { group: number, number: count, set_point: *set_point, ..planners.sent };
             // The push succeeds, because the finger has room, and only its servo has made more room since.
             if planners.grouped.push(sent).is_ok() {
                 planners.sent = sent;
@@ -61,10 +62,10 @@ impl ServoEnd {
         self.gate = gate;
     }
 
-    /// Returns the set point of the newest group that takes effect in this period, if one does. `spring` is the number
-    /// of the spring phase; a set point of another phase is discarded. `now` returns the number of the present period,
-    /// which is later than `period` if the servo is late.
-    pub fn new_group(&mut self, spring: u32, period: u64, now: impl Fn() -> u64) -> Option<SetPoint> {
+    /// Returns the set point, with its number, of the newest group that takes effect in this period, if one does.
+    /// `spring` is the number of the spring phase; a set point of another phase is discarded. `now` returns the number
+    /// of the present period, which is later than `period` if the servo is late.
+    pub fn new_group(&mut self, spring: u32, period: u64, now: impl Fn() -> u64) -> Option<(SetPoint, u32)> {
         let mut newest = None;
         while let Some(next) = self.next_group.or_else(|| self.grouped.pop()) {
             if self.gate.period(next.group, &now).is_none_or(|from| from > period) {
@@ -73,7 +74,7 @@ impl ServoEnd {
             }
             self.next_group = None;
             self.in_effect = next.group;
-            newest = (next.spring == spring).then_some(next.set_point);
+            newest = (next.spring == spring).then_some((next.set_point, next.number));
         }
         newest
     }

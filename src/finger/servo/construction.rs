@@ -111,7 +111,6 @@ impl FingerServo {
             supervision: Supervision::new(hand.rate, link.most(), identity.gauge_bits),
             link,
             alarm: StopSignal::new(false, stop_calls()),
-            stops_seen: 0,
             sampled_at: None,
             sample_age: 0,
             limits: Limits::new(hand),

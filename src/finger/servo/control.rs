@@ -56,10 +56,10 @@ impl FingerServo {
         }
         // `running` is the state before the order. If a set point and an order to calibrate arrive in the same cycle,
         // the set point still takes effect. The finger moves to it, and the routine must detect the motion.
-        if let Some(set_point) = self.mailbox.new_set_point(self.report.springs)
+        if let Some((set_point, number)) = self.mailbox.new_set_point(self.report.springs)
             && running
         {
-            self.follow(set_point);
+            self.follow(set_point, number);
         }
         if self.mailbox.closing() && self.report.stage != Stage::Closing {
             self.enter(Stage::Closing);

@@ -19,10 +19,10 @@ impl FingerServo {
             return;
         }
         let set_point = self.mailbox.new_group(self.report.springs, period, now);
-        if let Some(set_point) = set_point
+        if let Some((set_point, number)) = set_point
             && self.report.stage == Stage::Running
         {
-            self.follow(set_point);
+            self.follow(set_point, number);
         }
     }
 }

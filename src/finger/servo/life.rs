@@ -1,6 +1,7 @@
 //! The stages of a finger from open to close, and the transitions between them.
 
 use super::{FingerServo, STOPS_AFTER_FAULT};
+use crate::control::events::Arrival;
 use crate::control::{Activity, Feedback, MotorCommand, SetPoint};
 use crate::finger::{Fault, FaultKind, Order, RestoredBoard, Stage};
 use crate::model::Part;
@@ -52,7 +53,7 @@ impl FingerServo {
                     }
                     let joints = self.report.cycle.joints;
                     self.report.springs += 1;
-                    self.follow(SetPoint { joints, ..self.initial });
+                    self.follow(SetPoint { joints, ..self.initial }, self.report.set_point_number);
                     self.supervision.begin();
                     self.events.restart_detectors(self.report.set_point);
                     self.enter(Stage::Running);
@@ -87,8 +88,13 @@ impl FingerServo {
         });
     }
 
-    /// Makes the finger follow a set point from this cycle on.
-    pub(super) fn follow(&mut self, set_point: SetPoint) {
+    /// Makes the finger follow a set point from this cycle on. `number` is the number of the set point.
+    pub(super) fn follow(&mut self, set_point: SetPoint, number: u32) {
+        if set_point != self.report.set_point {
+            // The detectors compare the measurements with the new set point only after the next reply.
+            self.report.arrival = Arrival::default();
+        }
+        self.report.set_point_number = number;
         self.report.set_point = set_point;
         self.report.set_point_period = self.report.period;
         self.activity = Activity::Follow(set_point);
@@ -104,7 +110,7 @@ impl FingerServo {
     pub(in crate::finger) fn recover(&mut self, restored: &RestoredBoard) {
         let RestoredBoard { configured, stops } = restored;
         self.alarm.forget(stops.calls);
-        self.stops_seen = stops.of_finger;
+        self.mailbox.forget_stops(stops.of_finger);
         self.feedback = Feedback { motor_counts: configured.encoders, gauge_counts: configured.gauges };
         self.status = configured.status;
         self.sampled_at = None;

@@ -18,7 +18,9 @@ impl HandError {
             Self::System { source, .. } | Self::SimulatedPort(source) => source.raw_os_error().unwrap_or(libc::EIO),
             Self::NotRealTime { missing } => missing.errno(),
             Self::Link { source, .. } => source.errno(),
-            Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. } | Self::NoAnswer(_) => libc::ETIMEDOUT,
+            Self::Calibration { obstacle: Obstacle::TimeLimit { .. }, .. }
+            | Self::NoAnswer(_)
+            | Self::NotThereInTime(_) => libc::ETIMEDOUT,
             Self::Calibration { .. } | Self::Interrupted(_) => libc::ECANCELED,
             Self::SameNumber { .. } => libc::ENOTUNIQ,
             Self::NotOpened(_) => libc::ENODEV,

@@ -101,6 +101,12 @@ pub enum SetPointError {
     /// The number of commands of a group is not possible.
     #[error("a group has 0 to 3 commands, and not {0}")]
     GroupSize(i32),
+    /// The condition to wait for does not exist.
+    #[error("there is no condition {0} to wait for: 1 is arrived, and 2 is settled")]
+    NoSuchCondition(i32),
+    /// A time limit is negative or NaN.
+    #[error("the time limit {0} s is not zero or positive")]
+    NoSuchLimit(f64),
     /// A command of a group has joint angles and a position of the tip.
     #[error("the command for finger {0} has Pos and Tip: set one of them to null")]
     TwoPoses(i32),
@@ -139,7 +145,7 @@ impl SetPointError {
     pub fn errno(&self) -> i32 {
         match self {
             Self::NotFinite { .. } | Self::NoSuchContact(_) | Self::TwiceInGroup(_) => libc::EINVAL,
-            Self::GroupSize(_) | Self::TwoPoses(_) => libc::EINVAL,
+            Self::GroupSize(_) | Self::TwoPoses(_) | Self::NoSuchCondition(_) | Self::NoSuchLimit(_) => libc::EINVAL,
             Self::GroupsWaiting(_) => libc::EBUSY,
             Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
             Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,

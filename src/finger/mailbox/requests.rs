@@ -1,0 +1,38 @@
+//! Requests to stop and to close, which wait for no lock.
+
+use super::{Mailbox, ServoEnd};
+use crate::realtime::atomics::Ordering;
+
+impl Mailbox {
+    /// Requests that the servo bring the finger to its end state.
+    pub fn close(&self) {
+        self.requests.closing.store(true, Ordering::Release);
+    }
+
+    /// Requests that the finger fault at the beginning of its next cycle, so that its board enters its end state.
+    pub fn stop(&self) {
+        self.requests.stops.fetch_add(1, Ordering::AcqRel);
+    }
+
+    /// Returns the number of requests to stop so far.
+    pub fn stops(&self) -> u32 {
+        self.requests.stops.load(Ordering::Acquire)
+    }
+}
+
+impl ServoEnd {
+    /// Returns whether a planner has requested the end state of the finger.
+    pub fn closing(&self) -> bool {
+        self.requests.closing.load(Ordering::Acquire)
+    }
+
+    /// Returns whether a planner has requested to stop the finger.
+    pub fn stop_requested(&self) -> bool {
+        self.requests.stops.load(Ordering::Acquire) != self.stops_seen
+    }
+
+    /// Ignores the first `stops` requests to stop.
+    pub fn forget_stops(&mut self, stops: u32) {
+        self.stops_seen = stops;
+    }
+}

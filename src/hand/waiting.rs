@@ -1,0 +1,94 @@
+//! Waiting until fingers have arrived at their set points, or have come to rest.
+
+use crate::control::events::Arrival;
+use crate::finger::Stage;
+use crate::hand::{Hand, HandError};
+use crate::model::FingerNumber;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Interval at which the fingers are polled.
+const POLL_INTERVAL: Duration = Duration::from_millis(1);
+
+/// A condition to wait for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// Every joint has been within `finger.events.arrived_degrees` of the set point that was sent last.
+    Arrived,
+    /// Since the set point that was sent last took effect, no joint has moved by more than
+    /// `finger.events.settled_degrees` for `finger.events.settled_ms`. A finger that an object blocks settles without
+    /// arriving.
+    Settled,
+}
+
+/// A wait in progress. It does not need the hand between two polls.
+#[derive(Clone, Debug)]
+pub struct Waiting {
+    fingers: Vec<FingerNumber>,
+    until: Until,
+    /// End of the wait; none if it has no end.
+    deadline: Option<Instant>,
+}
+
+impl Waiting {
+    /// Begins to wait for these fingers, 1 to 3. A limit that is too long for the clock is no limit.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger.
+    pub fn begin(hand: &Hand, fingers: &[i32], until: Until, limit: Duration) -> Result<Self, HandError> {
+        let deadline = Instant::now().checked_add(limit);
+        let fingers: Vec<_> = fingers.iter().map(|&finger| finger.try_into()).collect::<Result<_, _>>()?;
+        fingers.iter().try_for_each(|&finger| hand.dispatcher.member(finger).map(drop))?;
+        Ok(Self { fingers, until, deadline })
+    }
+
+    /// Returns whether the condition holds for every finger.
+    ///
+    /// # Errors
+    /// Returns an error if a finger is faulted, if it is limp, calibrated or closed, so that set points have no effect,
+    /// or if the time limit is over.
+    pub fn poll(&self, hand: &Hand) -> Result<bool, HandError> {
+        let late = self.deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        let mut waiting_for = None;
+        for &finger in &self.fingers {
+            let (in_force, report) = hand.dispatcher.member(finger)?.mailbox.newest_in_force();
+            let holds = match report.stage {
+                Stage::Faulted(fault) => return Err(HandError::Faulted { finger, fault }),
+                Stage::Limp | Stage::Calibrating | Stage::Closing | Stage::Closed => {
+                    return Err(HandError::Busy(finger));
+                }
+                Stage::Opening => false,
+                Stage::Running => in_force && self.holds(report.arrival),
+            };
+            if !holds {
+                waiting_for = waiting_for.or(Some(finger));
+            }
+        }
+        match waiting_for {
+            Some(finger) if late => Err(HandError::NotThereInTime(finger)),
+            waiting_for => Ok(waiting_for.is_none()),
+        }
+    }
+
+    fn holds(&self, arrival: Arrival) -> bool {
+        match self.until {
+            Until::Arrived => arrival.arrived,
+            Until::Settled => arrival.settled,
+        }
+    }
+}
+
+impl Hand {
+    /// Waits until the condition holds for every one of these fingers at the same time, for the set points that were
+    /// sent last. Returns at once if it holds already.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Waiting::begin`] and [`Waiting::poll`].
+    pub fn wait(&self, fingers: &[i32], until: Until, limit: Duration) -> Result<(), HandError> {
+        let waiting = Waiting::begin(self, fingers, until, limit)?;
+        while !waiting.poll(self)? {
+            sleep(POLL_INTERVAL);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,139 @@
+//! Groups of fingers, waiting for them, and their kinematics, on a hand with simulated boards in real time.
+
+#[allow(dead_code)]
+#[path = "common/pauses.rs"]
+mod pauses;
+
+use nalgebra::{Matrix3, Vector3};
+use std::time::{Duration, Instant};
+use sun2xp::finger::Stage;
+use sun2xp::groups::{FingerCommand, Until};
+use sun2xp::hand::{Hand, HandError, SetPointError};
+use sun2xp::model::FingerNumber;
+use sun2xp::model::configuration::Configuration;
+
+const LIMIT: Duration = Duration::from_secs(20);
+
+fn open() -> Hand {
+    pauses::name_pauses();
+    Hand::open(Configuration::default()).unwrap_or_else(|error| panic!("open: {error}"))
+}
+
+fn sent(hand: &Hand, commands: &[FingerCommand]) {
+    hand.send_group(commands).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn a_planner_waits_until_a_group_has_arrived_and_settled() {
+    let hand = open();
+    let poses = [[0.2, 0.6, 1.1], [-0.2, 0.3, 0.9], [0.1, 0.8, 0.7]];
+    for turn in 0..3 {
+        let commands = [0, 1, 2].map(|index| FingerCommand::new(index as i32 + 1).joints(poses[(index + turn) % 3]));
+        sent(&hand, &commands);
+        hand.wait(&[1, 2, 3], Until::Arrived, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+        for index in 0..3 {
+            let position = Vector3::from(hand.position(index as i32 + 1).expect("a position"));
+            let off = (position - Vector3::from(poses[(index + turn) % 3])).amax();
+            // The finger may move beyond its set point after it has arrived.
+            assert!(off < 0.15, "turn {turn}, finger {}: off by {off} rad", index + 1);
+        }
+        hand.wait(&[3, 1], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    }
+    // A wait for fingers that are there returns at once, even without any time.
+    hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    hand.wait(&[1, 2, 3], Until::Settled, Duration::ZERO).unwrap_or_else(|error| panic!("{error}"));
+    hand.wait(&[], Until::Arrived, Duration::ZERO).unwrap_or_else(|error| panic!("{error}"));
+    hand.close();
+}
+
+#[test]
+fn a_wait_ends_with_its_time_limit_or_with_a_fault() {
+    let hand = open();
+    hand.push_simulated(2, [0.0, 3.0, 0.0]).expect("pushed");
+    sent(&hand, &[FingerCommand::new(2).joints([0.2, 0.6, 1.1])]);
+    // The finger comes to rest somewhere else.
+    hand.wait(&[2], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    let began = Instant::now();
+    let error = hand.wait(&[1, 2, 3], Until::Arrived, Duration::from_millis(300)).expect_err("pushed away");
+    assert!(matches!(error, HandError::NotThereInTime(FingerNumber::TWO)), "{error}");
+    assert!(error.errno() == libc::ETIMEDOUT && began.elapsed() >= Duration::from_millis(300), "{error}");
+    hand.stop(3).expect("a finger");
+    let error = hand.wait(&[2, 3], Until::Arrived, LIMIT).expect_err("stopped");
+    assert!(error.errno() == libc::EIO && error.to_string().contains("finger 3"), "{error}");
+    assert_eq!(hand.wait(&[4], Until::Arrived, LIMIT).expect_err("no finger").errno(), libc::EINVAL);
+    hand.close();
+}
+
+#[test]
+fn a_group_with_a_refused_command_changes_no_finger() {
+    let hand = open();
+    let before = [1, 2, 3].map(|finger| hand.report(finger).expect("a report").set_point);
+    let good = FingerCommand::new(1).joints([0.2, 0.6, 1.1]).stiffness([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0; 3]]);
+    for (bad, word) in [
+        (FingerCommand::new(3).joints([9.0, 0.6, 1.1]), "limits"),
+        (FingerCommand::new(3).damping(99.0), "damping"),
+        (FingerCommand::new(3).tip([f64::NAN, 0.0, 0.0]), "NaN"),
+        (FingerCommand::new(1), "two commands"),
+        (FingerCommand::new(4), "no finger 4"),
+    ] {
+        let error = hand.send_group(&[good, bad]).expect_err(word);
+        assert!(error.to_string().contains(word), "{error}");
+    }
+    assert!(matches!(
+        hand.send_group(&[good, good]).expect_err("twice"),
+        HandError::SetPoint(SetPointError::TwiceInGroup(_))
+    ));
+    hand.stop(2).expect("a finger");
+    while !matches!(hand.report(2).expect("a report").stage, Stage::Faulted(_)) {
+        std::thread::yield_now();
+    }
+    hand.send_group(&[good, FingerCommand::new(2)]).expect_err("faulted");
+    let cycles = hand.report(1).expect("a report").losses.cycles;
+    while hand.report(1).expect("a report").losses.cycles < cycles + 10 {
+        std::thread::yield_now();
+    }
+    for finger in [1, 3] {
+        let report = hand.report(finger).expect("a report");
+        assert_eq!(report.set_point, before[finger as usize - 1], "finger {finger}");
+    }
+    sent(&hand, &[good]);
+    hand.wait(&[1], Until::Arrived, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    hand.close();
+}
+
+#[test]
+fn kinematics_agree_with_each_other_and_with_the_tip() {
+    let hand = open();
+    let joints = [0.2, 0.6, 1.1];
+    sent(&hand, &[1, 2, 3].map(|finger| FingerCommand::new(finger).joints(joints)));
+    hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    let tip = hand.tip_at(1, joints).expect("a tip");
+    let found = hand.joints_at(1, tip).expect("joints");
+    assert!((Vector3::from(found) - Vector3::from(joints)).amax() < 1e-9, "{found:?}");
+    assert_eq!(hand.joints_at(1, [0.0, 0.0, 99.0]).expect_err("too far").errno(), libc::ERANGE);
+    let jacobian = hand.jacobian(1, Some(joints)).expect("a Jacobian");
+    for joint in 0..3 {
+        let mut moved = joints;
+        moved[joint] += 1e-6;
+        let to = Vector3::from(hand.tip_at(1, moved).expect("a tip"));
+        let slope = (to - Vector3::from(tip)) * 1e6;
+        let column = Vector3::from_fn(|row, _| jacobian[row][joint]);
+        assert!((slope - column).amax() < 1e-4, "joint {joint}: {slope} {column}");
+    }
+    for finger in 1..=3 {
+        let (pose, now) = (hand.palm_pose(finger).expect("a pose"), hand.fingertip(finger).expect("a tip"));
+        let rotation = Matrix3::from_fn(|row, column| pose.rotation[row][column]);
+        let tip = Vector3::from(pose.base) + rotation * Vector3::from(now.tip);
+        assert!((tip - Vector3::from(pose.tip)).amax() < 0.05, "finger {finger}: {tip}");
+        let turned = Matrix3::from_fn(|row, column| pose.tip_rotation[row][column]);
+        assert!((turned * turned.transpose() - Matrix3::identity()).amax() < 1e-9);
+        let torques = hand.joint_torques(finger).expect("torques");
+        let difference = (Vector3::from(torques.measured) - Vector3::from(torques.commanded)).amax();
+        assert!(difference < 3.0, "finger {finger} at rest: {torques:?}");
+    }
+    // The thumb is opposite to the fingers.
+    let tips = [1, 2, 3].map(|finger| hand.palm_pose(finger).expect("a pose").base);
+    assert!(tips[0] != tips[1] && tips[1] != tips[2]);
+    assert_eq!(hand.jacobian(1, Some([f64::NAN, 0.0, 0.0])).expect_err("NaN").errno(), libc::EINVAL);
+    hand.close();
+}
