@@ -41,7 +41,8 @@ pub(super) fn close(in_callback: bool) {
 
 /// The queue of the open hand.
 pub(super) fn queue() -> Result<Arc<EventQueue>, Refusal> {
-    QUEUE.read().clone().ok_or(Refusal::NoHand)
+    // A hand that is being closed no longer counts as open.
+    QUEUE.read().clone().filter(|queue| !queue.is_closed()).ok_or(Refusal::NoHand)
 }
 
 /// Waits until there is an event. Returns false after the limit.
@@ -80,6 +81,7 @@ pub(super) fn in_callback() -> bool {
     IN_CALLBACK.try_with(Cell::get).unwrap_or(false)
 }
 
+/// Returns a function that makes a call of the planner's callback known to [`in_callback`] and [`end`].
 fn guarded(mut callback: impl FnMut(&Event, u64)) -> impl FnMut(&Event, u64) {
     move |event, lost| {
         let _calling = CALLING.lock();

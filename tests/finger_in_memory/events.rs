@@ -67,6 +67,24 @@ fn a_joint_at_its_limit_and_a_tension_beyond_its_bound_are_events() {
 }
 
 #[test]
+fn a_contact_a_force_beyond_its_bound_and_the_end_of_the_contact_are_events() {
+    let mut bench = Bench::with(|configuration| configuration.fingers[0].events.force_above = Some(0.5));
+    // The contact estimate learns the error of the model first.
+    assert_eq!(kinds(&events(&mut bench, 2500)), []);
+    let push = |bench: &Bench, force: f64| {
+        bench.with_finger(|finger| finger.plant().set_external_force(Vector3::new(0.0, force, 0.0)));
+    };
+    push(&bench, 1.0);
+    let found = events(&mut bench, 300);
+    assert_eq!(kinds(&found), [EventKind::Contact, EventKind::ForceBound]);
+    let (bound, report) = found[1];
+    assert_eq!(bound.values[..3], *report.cycle.contact.force.as_slice());
+    assert!(bound.values[1] > 0.4 && bound.values[3] == 0.5, "{bound:?}");
+    push(&bench, 0.0);
+    assert_eq!(kinds(&events(&mut bench, 300)), [EventKind::ContactLost]);
+}
+
+#[test]
 fn a_fault_and_a_warning_are_events_with_their_numbers() {
     let mut bench = Bench::new();
     let found = events(&mut bench, 100);

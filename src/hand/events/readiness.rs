@@ -31,6 +31,8 @@ struct Shared {
 struct State {
     /// Whether the descriptor is readable.
     readable: bool,
+    /// Whether the hand is closed. The descriptor then stays readable.
+    closed: bool,
     stop: bool,
 }
 
@@ -52,7 +54,7 @@ impl Readiness {
     /// Makes the descriptor unreadable until the next event. The caller has found no event in the queue.
     pub fn queue_is_empty(&self) {
         let mut state = self.shared.state.lock();
-        if state.readable {
+        if state.readable && !state.closed {
             self.shared.make_unreadable();
             state.readable = false;
             self.shared.changed.notify_one();
@@ -89,8 +91,8 @@ impl Shared {
             }
             self.make_readable();
             state.readable = true;
-            if !ready {
-                // The hand is closed, and the descriptor stays readable.
+            state.closed = !ready;
+            if state.closed {
                 return;
             }
             while state.readable && !state.stop {
