@@ -14,7 +14,7 @@ fn events(bench: &mut Bench, periods: usize) -> Vec<(Event, FingerReport)> {
     for _ in 0..periods {
         bench.cycles(1);
         let report = bench.report();
-        while let Some(event) = bench.events.next() {
+        while let Some(event) = bench.events.take() {
             assert_eq!((event.cycle, event.time), (report.losses.cycles, report.last), "{event:?}");
             assert_eq!(event.finger, FingerNumber::ONE);
             found.push((event, report));

@@ -28,7 +28,7 @@ fn touches(bench: &mut Bench) -> Vec<Event> {
         EventKind::TouchPressure,
         EventKind::TouchInvalid,
     ];
-    std::iter::from_fn(|| bench.events.next()).filter(|event| touch.contains(&event.kind)).collect()
+    std::iter::from_fn(|| bench.events.take()).filter(|event| touch.contains(&event.kind)).collect()
 }
 
 #[test]

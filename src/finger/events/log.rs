@@ -134,7 +134,7 @@ impl Drop for EventWriter {
 impl EventReader {
     /// Takes the oldest event that this reader has not taken and that the log still holds. Returns none if there is no
     /// such event.
-    pub fn next(&mut self) -> Option<Event> {
+    pub fn take(&mut self) -> Option<Event> {
         let published = self.log.published.load(Ordering::Acquire);
         let oldest = published.saturating_sub(CAPACITY as u64);
         if self.position < oldest {
@@ -158,7 +158,7 @@ impl EventReader {
         self.lost
     }
 
-    /// Returns a time, ns. No event that [`EventReader::next`] has not returned when it is called after this function
+    /// Returns a time, ns. No event that [`EventReader::take`] has not returned when it is called after this function
     /// and returns none has an earlier time.
     pub fn horizon(&self) -> u64 {
         self.log.horizon.load(Ordering::Acquire)
@@ -202,17 +202,17 @@ mod tests {
         writer.begin_cycle(7, 1000);
         writer.write(occurrence(1));
         writer.write(occurrence(2));
-        assert_eq!(first.next(), None);
+        assert_eq!(first.take(), None);
         assert!(writer.publish(2000));
         assert!(!writer.publish(3000));
         for reader in [&mut first, &mut second] {
             assert_eq!(reader.horizon(), 3000);
             for number in [1.0, 2.0] {
-                let event = reader.next().expect("published");
+                let event = reader.take().expect("published");
                 assert_eq!((event.finger, event.cycle, event.time), (FingerNumber::TWO, 7, 1000));
                 assert_eq!((event.kind, event.values), (EventKind::Contact, [number; 4]));
             }
-            assert_eq!((reader.next(), reader.lost()), (None, 0));
+            assert_eq!((reader.take(), reader.lost()), (None, 0));
         }
         drop(writer);
         assert_eq!(first.horizon(), u64::MAX);
@@ -227,16 +227,16 @@ mod tests {
             writer.write(occurrence(number));
         }
         writer.publish(0);
-        assert_eq!(reader.next().map(|event| event.values[0]), Some(excess as f64));
+        assert_eq!(reader.take().map(|event| event.values[0]), Some(excess as f64));
         // These events overwrite places that the reader still has to read, and are not published yet.
         for number in 0..5 {
             writer.write(occurrence(number));
         }
-        assert_eq!(reader.next().map(|event| event.values[0]), Some(excess as f64 + 5.0));
+        assert_eq!(reader.take().map(|event| event.values[0]), Some(excess as f64 + 5.0));
         assert_eq!(reader.lost(), excess + 4);
-        assert_eq!(log.reader().next().map(|event| event.values[0]), Some(excess as f64 + 5.0));
+        assert_eq!(log.reader().take().map(|event| event.values[0]), Some(excess as f64 + 5.0));
         reader.skip();
-        assert_eq!(reader.next(), None);
+        assert_eq!(reader.take(), None);
     }
 
     #[test]
@@ -256,7 +256,7 @@ mod tests {
         });
         let (mut last, mut arrived) = (0, 0);
         while last < LAST {
-            let Some(event) = reader.next() else {
+            let Some(event) = reader.take() else {
                 thread::yield_now();
                 continue;
             };

@@ -43,7 +43,7 @@ impl MergedEvents {
             if finger.next.is_none() {
                 // The horizon is read first. An event that is published after this has a later time.
                 finger.horizon = finger.reader.horizon();
-                finger.next = finger.reader.next();
+                finger.next = finger.reader.take();
             }
         }
         let earliest = self.fingers.iter().enumerate().filter_map(|(place, finger)| Some((finger.next?.time, place)));
