@@ -27,15 +27,17 @@ pub fn count(hand: &Hand, contact: &ConfiguredContact, seconds: f64, seed: u64) 
     let mut run = Finger::new(&finger, &own, hand.gravity)?;
     let mut motion = Motion::new(seed, finger.joint_limits(), start);
     let (mut count, mut touched, mut touching, mut first) = (0, 0, false, None);
+    // The stops, with half a degree for their elasticity.
     let margin = (finger.simulation.stop_margin_degrees - 0.5).to_radians();
     let (low, high) = finger.joint_limits();
     let (low, high) = (low.add_scalar(-margin), high.add_scalar(margin));
     let cycles = (seconds * RATE) as usize;
     for cycle in 0..cycles {
         let speed = SPEEDS[cycle * SPEEDS.len() / cycles];
-        let contact = run.cycle(motion.next(speed, 1.0 / RATE)).contact;
-        let stopped =
-            run.plant.joints().sup(&low) != run.plant.joints() || run.plant.joints().inf(&high) != run.plant.joints();
+        let contact = run.cycle(motion.set_point(speed, 1.0 / RATE)).contact;
+        // A joint that reaches its mechanical stop touches something.
+        let joints = run.plant.joints();
+        let stopped = joints.sup(&low).inf(&high) != joints;
         if contact.touching && !touching && !stopped {
             count += 1;
             first = first.or(Some(cycle as f64 / RATE));

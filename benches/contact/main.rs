@@ -3,6 +3,7 @@
 //!     cargo bench --bench contact                       all tables of docs/contact.md
 //!     cargo bench --bench contact -- nominal            the hands with this word in their name
 //!     cargo bench --bench contact -- --minutes 1        shorter runs for false alarms
+//!     cargo bench --bench contact -- --alarms           only the table of false alarms
 //!     cargo bench --bench contact -- --keys 'force = 0.2'   other values of [finger.contact]
 
 mod false_alarms;
@@ -10,6 +11,7 @@ mod finger;
 mod hands;
 mod motion;
 mod noticed;
+#[allow(dead_code, reason = "what the other benchmark needs of it")]
 #[path = "../stiffness/parallel.rs"]
 mod parallel;
 

@@ -31,8 +31,8 @@ impl Motion {
         self.random.next_u32() as f64 / f64::from(u32::MAX)
     }
 
-    /// Returns the set point of the next cycle. `speed` is the fastest joint rate of new lines, rad/s.
-    pub fn next(&mut self, speed: f64, period: f64) -> Vector3<f64> {
+    /// Returns the joint angles of the next cycle, rad. `speed` is the fastest joint rate of new lines, rad/s.
+    pub fn set_point(&mut self, speed: f64, period: f64) -> Vector3<f64> {
         if self.rest > 0 {
             self.rest -= 1;
         } else if self.joints == self.target {

@@ -47,10 +47,6 @@ impl Pushes {
             self.error = worst([self.error, push.error]);
         }
     }
-
-    pub fn all(&self) -> bool {
-        self.noticed == self.pushes
-    }
 }
 
 struct Push {
@@ -90,13 +86,13 @@ pub fn in_motion(hand: &Hand, contact: &ConfiguredContact, seeds: u64) -> Result
         let mut run = Finger::new(&finger, &own, hand.gravity).map_err(|error| error.to_string())?;
         let mut motion = Motion::new(seed, finger.joint_limits(), start).without_rests();
         let mut directions = Motion::new(seed + 1000, finger.joint_limits(), start);
-        wait(&mut run, SETTLING, || motion.next(SPEED, 1.0 / RATE));
+        wait(&mut run, SETTLING, || motion.set_point(SPEED, 1.0 / RATE));
         let mut pushes = Vec::new();
         for _ in 0..6 {
             for (level, force) in FORCES.into_iter().enumerate() {
                 let direction = Vector3::from_fn(|_, _| directions.uniform() - 0.5).normalize();
-                wait(&mut run, directions.uniform(), || motion.next(SPEED, 1.0 / RATE));
-                pushes.push((level, push_once(&mut run, direction * force, || motion.next(SPEED, 1.0 / RATE))));
+                wait(&mut run, directions.uniform(), || motion.set_point(SPEED, 1.0 / RATE));
+                pushes.push((level, push_once(&mut run, direction * force, || motion.set_point(SPEED, 1.0 / RATE))));
             }
         }
         Ok(pushes)
