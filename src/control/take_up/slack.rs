@@ -26,8 +26,9 @@ const ACCELERATION: f64 = 0.0003;
 /// Gauge noise, as a fraction of t_min, above which the winding is faster in proportion to the noise.
 const QUIET: f64 = 0.006;
 
-/// A tendon with more than this fraction of t_min is taut before its motor moves.
-const TAUT: f64 = 0.06;
+/// A tendon with more than this fraction of t_min is taut before its motor moves. The zero of a gauge that was not
+/// calibrated may be off by almost as much.
+const TAUT: f64 = 0.12;
 /// The same fraction where gravity acts, because such a tendon may hold the finger. It is not lower, because the zero
 /// of a gauge drifts.
 const HOLDS: f64 = 0.012;
@@ -93,7 +94,19 @@ impl SlackTakeUp {
 
     pub fn start(&self, now: &Slackness) -> Slack {
         let Slackness { travel, tensions, .. } = *now;
-        let mut slack = Slack {
+        let mut slack = Self::taring(travel, tensions);
+        if tensions.min() > ALL_TAUT * self.minimum {
+            slack.phase = Phase::Tightening;
+            slack.common = self.common_part(&tensions);
+            slack.taut_at = travel - self.stretch * slack.common;
+            slack.waits_at = slack.taut_at.add_scalar(-GAP);
+        }
+        slack
+    }
+
+    /// Returns the state in which the motors hold their travel, m, and the gauges are read.
+    fn taring(travel: Vector4<f64>, tensions: Vector4<f64>) -> Slack {
+        Slack {
             phase: Phase::Taring,
             // The motors hold the tensions that tendons already have.
             targets: Targets { travel, speed: Vector4::zeros(), integral: tensions.map(|tension| tension.max(0.0)) },
@@ -110,14 +123,7 @@ impl SlackTakeUp {
             common: 0.0,
             unopposed: 0.0,
             steady: false,
-        };
-        if tensions.min() > ALL_TAUT * self.minimum {
-            slack.phase = Phase::Tightening;
-            slack.common = self.common_part(&tensions);
-            slack.taut_at = travel - self.stretch * slack.common;
-            slack.waits_at = slack.taut_at.add_scalar(-GAP);
         }
-        slack
     }
 
     /// Returns the tendon that is farthest from being under tension, 0 to 3.

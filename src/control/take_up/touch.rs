@@ -22,6 +22,9 @@ const MOST_NOISE: f64 = 0.05;
 const CLIPPED: f64 = 0.3;
 /// Standard deviation of Gaussian noise divided by that of its positive part.
 const UNCLIPPED: f64 = 1.75;
+/// Standard deviation of Gaussian noise divided by the one that remains when a fraction of the samples below
+/// [`CLIPPED`] is clipped: 1 plus this multiple of the fraction.
+const PARTLY_CLIPPED: f64 = 1.1;
 
 /// The tare falls to a smoothed tension that is lower by this multiple of the noise.
 const LOWER: f64 = 0.8;
@@ -57,9 +60,9 @@ impl Gauge {
         self.sum_of_squares += tension * tension;
         self.tare = self.sum / self.samples;
         let deviation = (self.sum_of_squares / self.samples - self.tare * self.tare).max(0.0).sqrt();
-        let clipped = self.at_lowest > CLIPPED * self.samples;
-        let noise = if clipped { deviation * UNCLIPPED } else { deviation };
-        self.noise = noise.clamp(LEAST_NOISE * minimum, MOST_NOISE * minimum);
+        let clipped = self.at_lowest / self.samples;
+        let ratio = if clipped > CLIPPED { UNCLIPPED } else { 1.0 + PARTLY_CLIPPED * clipped };
+        self.noise = (deviation * ratio).clamp(LEAST_NOISE * minimum, MOST_NOISE * minimum);
     }
 
     /// Reads a sample while the motor winds in. `smoothed` is the low-pass filtered tension, `travel` that of the
@@ -79,9 +82,14 @@ impl Gauge {
         smoothed - self.tare > self.noise
     }
 
-    /// Starts a new detection with the same tare.
-    pub fn restart(&mut self) {
-        self.sum_above = 0.0;
+    /// Returns whether the tare and the noise are known.
+    pub fn is_tared(&self) -> bool {
+        self.samples > 0.0
+    }
+
+    /// Starts a new detection with the same tare. `travel` is that of the motor, m.
+    pub fn restart(&mut self, travel: f64) {
+        (self.sum_above, self.onset) = (0.0, travel);
     }
 }
 
@@ -105,14 +113,17 @@ mod tests {
     #[test]
     fn noise_is_not_a_taut_tendon() {
         let mut random = Pcg64::seed_from_u64(3);
-        for (noise, negative) in [(0.0, false), (0.01, false), (0.03, false), (0.09, false), (0.03, true), (0.09, true)]
-        {
+        let quiet = [(0.0, 0.0), (0.01, 0.0), (0.03, 0.0), (0.09, 0.0), (0.1, 0.05), (0.1, 0.1), (0.1, 0.2)];
+        let negative = [(0.03, 0.0), (0.09, 0.0)];
+        let cases = quiet.map(|case| (case, false)).into_iter().chain(negative.map(|case| (case, true)));
+        for ((noise, offset), negative) in cases {
             for _ in 0..50 {
                 let mut gauge = Gauge::default();
-                (0..100).for_each(|_| gauge.tare(shown(0.0, noise, negative, &mut random), MINIMUM));
+                (0..100).for_each(|_| gauge.tare(shown(offset, noise, negative, &mut random), MINIMUM));
                 for _ in 0..5000 {
-                    let tension = shown(0.0, noise, negative, &mut random);
-                    assert!(gauge.taut_at(tension, 0.0, 0.0).is_none(), "{noise} N, {negative}: {gauge:?}");
+                    let tension = shown(offset, noise, negative, &mut random);
+                    let taut = gauge.taut_at(tension, offset, 0.0);
+                    assert!(taut.is_none(), "{noise} N about {offset} N, {negative}: {gauge:?}");
                 }
             }
         }

@@ -59,15 +59,20 @@ impl SlackTakeUp {
         let rise = steps.component_div(&self.stretch).max();
         slack.unopposed = if slack_remains && pulls { slack.unopposed + rise } else { 0.0 };
         if slack_remains && (slack.unopposed > LARGEST_UNOPPOSED || slack.common > LARGEST_COMMON) {
-            self.touch_again(slack, taut);
+            self.touch_again(slack, taut, travel);
         }
     }
 
     /// Winds the tendons in again that are slack although they seemed to have been taut.
-    fn touch_again(&self, slack: &mut Slack, taut: [bool; 4]) {
+    fn touch_again(&self, slack: &mut Slack, taut: [bool; 4], travel: &Vector4<f64>) {
+        if !slack.gauges.iter().all(Gauge::is_tared) {
+            // All tendons seemed to be taut at the start, so the gauges were not read.
+            *slack = Self::taring(*travel, slack.tensions);
+            return;
+        }
         slack.touched = taut;
         slack.holds = [false; 4];
-        slack.gauges.iter_mut().for_each(Gauge::restart);
+        slack.gauges.iter_mut().zip(travel).for_each(|(gauge, &travel)| gauge.restart(travel));
         slack.targets.integral = Vector4::zeros();
         slack.targets.travel = slack.waits_at;
         (slack.phase, slack.seconds) = (Phase::Touching, 0.0);
