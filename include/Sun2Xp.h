@@ -59,13 +59,14 @@
        EFAULT     an argument is a null pointer
        ENODEV     no hand is open
        EBUSY      a hand is open already, or is being opened or closed; the finger is being
-                  calibrated or recovered, or another finger on its port runs; the key cannot change
-                  while a hand is open
+                  calibrated or recovered; 16 groups of a finger wait; the key cannot change while a
+                  hand is open
        EINVAL     no such finger; NaN or infinity; an unusable configuration
        ERANGE     angles outside the joint limits; a tip out of reach; Kx stiffer than the bound;
                   damping outside its range
        EDOM       Kx not symmetric, or with a negative eigenvalue; a normal of length zero
        EIO        the finger is faulted: it has stopped by itself
+       ETIMEDOUT  the time limit of a wait is over
        ENOTSUP    not for a finger on a real port
        ESHUTDOWN  the process is exiting, and the hand is closed (chapter 6)
        others     errno of the system, or the nearest: configuration file, port, enforced real time
@@ -179,10 +180,10 @@
    waits, ports or pseudo-terminals need, OpenHand is refused with the errno of the sandbox.
 
    Slow calls: OpenHand, CloseHand, RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger,
-   WriteBlackBox, OnEvent, EventDescriptor and WaitEvent (while there is no event) run in a thread of
-   the library, and the planner's thread waits for it. A signal handler may jump out of that wait
-   (siglongjmp). The call then continues to its end; until then OpenHand is refused with EBUSY, and
-   CloseHand waits. A WaitEvent that is left takes no event.
+   WriteBlackBox, WaitFingers, OnEvent, EventDescriptor and WaitEvent (while there is no event) run
+   in a thread of the library, and the planner's thread waits for it. A signal handler may jump out
+   of that wait (siglongjmp). The call then continues to its end; until then OpenHand is refused
+   with EBUSY, and CloseHand waits. A WaitEvent that is left takes no event.
 
    Undefined behaviour: the behaviour is undefined if a signal handler jumps out of any other call
    (longjmp, siglongjmp). The same holds if a handler that interrupted a call calls pthread_exit or,
@@ -190,13 +191,13 @@
 
    Memory: OpenHand allocates the memory for the servos, for CloseHand and for all calls that are
    not slow. These calls work even if malloc later returns NULL. OpenHand (12 MiB), RecoverHand,
-   ZeroFinger, IdentifyFinger, AdjustFinger and WriteBlackBox (4 MiB), OnEvent, EventDescriptor and
-   WaitEvent (64 KiB) are refused with ENOMEM if that much memory is not free. If memory runs out
-   while one of them runs, the process is aborted, and the boards' watchdogs end the motion. If less
-   than 4 MiB are free when a finger faults, the fault is reported but no black box is written, and
-   a line on standard error says so. If the library was loaded with dlopen, the first call of a
-   thread needs memory for its thread-local data. If there is none, the C library aborts the
-   process.
+   ZeroFinger, IdentifyFinger, AdjustFinger and WriteBlackBox (4 MiB), WaitFingers, OnEvent,
+   EventDescriptor and WaitEvent (64 KiB) are refused with ENOMEM if that much memory is not free.
+   If memory runs out while one of them runs, the process is aborted, and the boards' watchdogs end
+   the motion. If less than 4 MiB are free when a finger faults, the fault is reported but no black
+   box is written, and a line on standard error says so. If the library was loaded with dlopen, the
+   first call of a thread needs memory for its thread-local data. If there is none, the C library
+   aborts the process.
 
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the planner's next
    cancellation point or, with asynchronous cancellation, when the call returns.
@@ -323,38 +324,45 @@
 #endif
 
 #ifdef SUN2XP_SETS_MACROS_ASIDE
-_Pragma("push_macro(\"AdjustFinger\")") _Pragma("push_macro(\"Answered\")") _Pragma("push_macro(\"Calibration\")")
-_Pragma("push_macro(\"CloseHand\")") _Pragma("push_macro(\"Computed\")") _Pragma("push_macro(\"CorruptReplies\")")
+_Pragma("push_macro(\"AdjustFinger\")") _Pragma("push_macro(\"Answered\")") _Pragma("push_macro(\"Base\")")
+_Pragma("push_macro(\"Calibration\")") _Pragma("push_macro(\"CloseHand\")") _Pragma("push_macro(\"Commanded\")")
+_Pragma("push_macro(\"Computed\")") _Pragma("push_macro(\"Contact\")") _Pragma("push_macro(\"CorruptReplies\")")
 _Pragma("push_macro(\"Count\")") _Pragma("push_macro(\"Cycle\")") _Pragma("push_macro(\"Cycles\")")
 _Pragma("push_macro(\"DamagedFrames\")") _Pragma("push_macro(\"Damping\")") _Pragma("push_macro(\"DuplicateReplies\")")
 _Pragma("push_macro(\"Event\")") _Pragma("push_macro(\"EventDescriptor\")") _Pragma("push_macro(\"Fault\")")
-_Pragma("push_macro(\"FaultText\")") _Pragma("push_macro(\"Felt\")") _Pragma("push_macro(\"Finger\")")
-_Pragma("push_macro(\"FingerCommand\")") _Pragma("push_macro(\"FingerRecord\")") _Pragma("push_macro(\"FingerStatus\")")
-_Pragma("push_macro(\"FingerTiming\")") _Pragma("push_macro(\"FingerTip\")") _Pragma("push_macro(\"FingerTouch\")")
-_Pragma("push_macro(\"Follows\")") _Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")")
-_Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetObject\")") _Pragma("push_macro(\"GetRecord\")")
-_Pragma("push_macro(\"GetStatus\")") _Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")")
-_Pragma("push_macro(\"GetTouch\")") _Pragma("push_macro(\"HandError\")") _Pragma("push_macro(\"IdentifyFinger\")")
-_Pragma("push_macro(\"Kind\")") _Pragma("push_macro(\"Kx\")") _Pragma("push_macro(\"LateReplies\")")
-_Pragma("push_macro(\"Lost\")") _Pragma("push_macro(\"LostEvents\")") _Pragma("push_macro(\"LostReplies\")")
-_Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")")
-_Pragma("push_macro(\"MemoryLocked\")") _Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")")
-_Pragma("push_macro(\"NextEvent\")") _Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"ObjectState\")")
-_Pragma("push_macro(\"Oldest\")") _Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OnEvent\")")
-_Pragma("push_macro(\"OpenHand\")") _Pragma("push_macro(\"Overruns\")") _Pragma("push_macro(\"P99\")")
-_Pragma("push_macro(\"P999\")") _Pragma("push_macro(\"Part\")") _Pragma("push_macro(\"Pos\")")
-_Pragma("push_macro(\"PosSent\")") _Pragma("push_macro(\"Position\")") _Pragma("push_macro(\"Pressed\")")
-_Pragma("push_macro(\"PushFinger\")") _Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")")
-_Pragma("push_macro(\"RecoverHand\")") _Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"Rotation\")")
-_Pragma("push_macro(\"SendContact\")") _Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendGroup\")")
-_Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")")
-_Pragma("push_macro(\"Spin\")") _Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")")
-_Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")")
+_Pragma("push_macro(\"FaultText\")") _Pragma("push_macro(\"Felt\")") _Pragma("push_macro(\"FindPos\")")
+_Pragma("push_macro(\"FindTip\")") _Pragma("push_macro(\"Finger\")") _Pragma("push_macro(\"FingerCommand\")")
+_Pragma("push_macro(\"FingerRecord\")") _Pragma("push_macro(\"FingerStatus\")") _Pragma("push_macro(\"FingerTiming\")")
+_Pragma("push_macro(\"FingerTip\")") _Pragma("push_macro(\"FingerTouch\")") _Pragma("push_macro(\"Follows\")")
+_Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")") _Pragma("push_macro(\"GetFault\")")
+_Pragma("push_macro(\"GetJacobian\")") _Pragma("push_macro(\"GetJointTorques\")") _Pragma("push_macro(\"GetObject\")")
+_Pragma("push_macro(\"GetPalmPose\")") _Pragma("push_macro(\"GetRecord\")") _Pragma("push_macro(\"GetStatus\")")
+_Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")") _Pragma("push_macro(\"GetTouch\")")
+_Pragma("push_macro(\"HandError\")") _Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"IsTip\")")
+_Pragma("push_macro(\"JointTorques\")") _Pragma("push_macro(\"Kind\")") _Pragma("push_macro(\"Kx\")")
+_Pragma("push_macro(\"LateReplies\")") _Pragma("push_macro(\"Lost\")") _Pragma("push_macro(\"LostEvents\")")
+_Pragma("push_macro(\"LostReplies\")") _Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"Measured\")")
+_Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")")
+_Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"NextEvent\")")
+_Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"ObjectState\")") _Pragma("push_macro(\"Oldest\")")
+_Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OnEvent\")") _Pragma("push_macro(\"OpenHand\")")
+_Pragma("push_macro(\"Overruns\")") _Pragma("push_macro(\"P99\")") _Pragma("push_macro(\"P999\")")
+_Pragma("push_macro(\"PalmPose\")") _Pragma("push_macro(\"Part\")") _Pragma("push_macro(\"PathPose\")")
+_Pragma("push_macro(\"Place\")") _Pragma("push_macro(\"Pos\")") _Pragma("push_macro(\"PosSent\")")
+_Pragma("push_macro(\"Position\")") _Pragma("push_macro(\"Pressed\")") _Pragma("push_macro(\"PushFinger\")")
+_Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")")
+_Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"Rotation\")") _Pragma("push_macro(\"SendContact\")")
+_Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendGroup\")") _Pragma("push_macro(\"SendPath\")")
+_Pragma("push_macro(\"SendPosFor\")") _Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"Size\")")
+_Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Slide\")") _Pragma("push_macro(\"Spin\")")
+_Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")")
+_Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")") _Pragma("push_macro(\"StopFinger\")")
 _Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"TareTouch\")") _Pragma("push_macro(\"Tension\")")
 _Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")")
-_Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")")
-_Pragma("push_macro(\"Touching\")") _Pragma("push_macro(\"Valid\")") _Pragma("push_macro(\"Value\")")
-_Pragma("push_macro(\"Values\")") _Pragma("push_macro(\"Velocity\")") _Pragma("push_macro(\"WaitEvent\")")
+_Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"TipRotation\")") _Pragma("push_macro(\"Torque\")")
+_Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Touching\")") _Pragma("push_macro(\"Unused\")")
+_Pragma("push_macro(\"Valid\")") _Pragma("push_macro(\"Value\")") _Pragma("push_macro(\"Values\")")
+_Pragma("push_macro(\"Velocity\")") _Pragma("push_macro(\"WaitEvent\")") _Pragma("push_macro(\"WaitFingers\")")
 _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")") _Pragma("push_macro(\"WakeUpMedian\")")
 _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")") _Pragma("push_macro(\"WarningValue\")")
 _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pragma("push_macro(\"ZeroFinger\")")
@@ -366,9 +374,12 @@ _Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")") _Pragma("p
 _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("push_macro(\"volatile\")")
 #undef AdjustFinger
 #undef Answered
+#undef Base
 #undef Calibration
 #undef CloseHand
+#undef Commanded
 #undef Computed
+#undef Contact
 #undef CorruptReplies
 #undef Count
 #undef Cycle
@@ -381,6 +392,8 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Fault
 #undef FaultText
 #undef Felt
+#undef FindPos
+#undef FindTip
 #undef Finger
 #undef FingerCommand
 #undef FingerRecord
@@ -392,7 +405,10 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Force
 #undef ForeignFrames
 #undef GetFault
+#undef GetJacobian
+#undef GetJointTorques
 #undef GetObject
+#undef GetPalmPose
 #undef GetRecord
 #undef GetStatus
 #undef GetTiming
@@ -400,6 +416,8 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef GetTouch
 #undef HandError
 #undef IdentifyFinger
+#undef IsTip
+#undef JointTorques
 #undef Kind
 #undef Kx
 #undef LateReplies
@@ -407,6 +425,7 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef LostEvents
 #undef LostReplies
 #undef Maximum
+#undef Measured
 #undef MeasuredRate
 #undef Median
 #undef MemoryLocked
@@ -422,7 +441,10 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Overruns
 #undef P99
 #undef P999
+#undef PalmPose
 #undef Part
+#undef PathPose
+#undef Place
 #undef Pos
 #undef PosSent
 #undef Position
@@ -436,15 +458,19 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef SendContact
 #undef SendDamping
 #undef SendGroup
+#undef SendPath
+#undef SendPosFor
 #undef SendTip
 #undef Size
 #undef SkippedPeriods
+#undef Slide
 #undef Spin
 #undef Stage
 #undef State
 #undef StatusBits
 #undef Stiffness
 #undef StiffnessScale
+#undef StopFinger
 #undef StopHand
 #undef TareTouch
 #undef Tension
@@ -452,14 +478,17 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef Tensions
 #undef Time
 #undef Tip
+#undef TipRotation
 #undef Torque
 #undef TorqueScale
 #undef Touching
+#undef Unused
 #undef Valid
 #undef Value
 #undef Values
 #undef Velocity
 #undef WaitEvent
+#undef WaitFingers
 #undef WakeUp99
 #undef WakeUpMaximum
 #undef WakeUpMedian
@@ -733,6 +762,8 @@ const char *HandError(void);
 #define FAULT_PORT_CLOSED            47 /* port closed */
 #define FAULT_OPENING_TIMED_OUT      48 /* opening timed out */
 #define FAULT_SAME_NUMBER            49 /* same number */
+#define FAULT_STOP_CALL              50 /* stop of the finger, call */
+#define FAULT_SET_POINT_EXPIRED      51 /* set point expired */
 
 /* The kinds of events (docs/events.md). Numbers never change. */
 #define EVENT_TOUCH_MADE              1 /* touch made */
@@ -856,6 +887,14 @@ struct FingerTip {
                                        that is in force, plus what joint limits, nearness to the axis of joint 0 and
                                        the rotational stiffness of a contact add. It is zero along directions that
                                        the joints cannot measure, and while the finger is not running. */
+    double Contact[3];              /* Force of the tip on the object that it touches: x, y, z, N, without friction,
+                                       weight and inertia of the finger, and without constant errors of the gauges.
+                                       It is zero while the finger is not running. */
+    double Slide;                   /* Speed of the tip perpendicular to Contact, cm/s, while Touching: the tip
+                                       slides on the object, or moves it. */
+    int Touching;                   /* 1: the finger touches something, as far as tensions and motion show it. 0: it
+                                       does not. */
+    int Unused;                     /* Always zero. */
 };
 
 /* Command to one finger of a group (SendGroup). */
@@ -896,6 +935,37 @@ struct FingerTouch {
     unsigned long LostEvents;       /* Tactile events of the finger that were lost since OpenHand, because they did
                                        not fit into the queue of the board or because their element is not
                                        configured. */
+};
+
+/* Result of GetJointTorques. */
+struct JointTorques {
+    unsigned int Size;              /* In: sizeof (struct JointTorques). Out: bytes written, at most that. */
+    double Measured[3];             /* Torques of joints 0, 1, 2 from the measured tensions, N cm. They include
+                                       friction, weight and inertia. */
+    double Commanded[3];            /* Torques that the servo commands, N cm, within the tension limits. */
+};
+
+/* Result of GetPalmPose. Positions and axes are in the palm's frame. */
+struct PalmPose {
+    unsigned int Size;              /* In: sizeof (struct PalmPose). Out: bytes written, at most that. */
+    double Base[3];                 /* Origin of the finger's frame: x, y, z, cm. */
+    double Rotation[3][3];          /* Axes of the finger's frame as columns, row by row. It turns a vector of the
+                                       finger's frame into one of the palm's. */
+    double Tip[3];                  /* Position of the tip, from the measured joint angles: x, y, z, cm. */
+    double TipRotation[3][3];       /* Axes of the last link as columns, row by row. Its z axis points from joint 2
+                                       to the tip. */
+};
+
+/* Pose of a path (SendPath). */
+struct PathPose {
+    unsigned int Size;              /* sizeof (struct PathPose), the same in every pose of the path. */
+    int IsTip;                      /* 0: Place holds joint angles. Otherwise: Place holds a position of the tip. The
+                                       same in every pose. */
+    double Time;                    /* Time since the beginning of the path, s. */
+    double Place[3];                /* Angles of joints 0, 1, 2, rad, or x, y, z of the tip in the finger's frame,
+                                       cm. */
+    const double *Kx;               /* Kx[9] of SendKx at this pose, row by row, always double. Null: the pose does
+                                       not affect the stiffness. */
 };
 
 /* Result of GetRecord: one cycle of a finger, from the black box. */
@@ -1273,6 +1343,42 @@ int PushFinger(int, const double *);
 int SendGroup(int, const struct FingerCommand *);
 
 /*
+ WaitFingers - wait until fingers have arrived or settled
+
+     int WaitFingers(int Count, const int *Fingers, int Until, double Limit);
+
+   Count     number of fingers, 0 to 3
+   Fingers   Fingers[Count]: the fingers, 1 to 3
+   Until     1: arrived. Every joint has been within finger.events.arrived_degrees of the set point sent
+             last. 2: settled. Since that set point took effect, no joint has moved by more than
+             finger.events.settled_degrees for finger.events.settled_ms
+   Limit     longest time to wait, s
+
+ Waits until the condition holds for every finger. Returns at once if it holds already. A finger
+ that an object blocks settles without arriving. With a set point of SendTip or a group, the joint
+ angles are those that the call has computed. Other calls work meanwhile. CloseHand works too, and
+ this call is then refused.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Fingers is null
+   ENODEV   no hand is open, or it was closed meanwhile
+   EINVAL   Count is not 0 to 3; no such finger; no such Until; Limit is negative or NaN
+   EIO      a finger is faulted
+   EBUSY    a finger is limp, calibrated or closed
+   ETIMEDOUT  Limit is over; HandError names a finger that has not arrived or settled
+
+ Threads: any.
+
+ Example:
+
+     int Fingers[2] = {1, 2};
+     if (WaitFingers(2, Fingers, 2, 5.0) != 0)
+         fprintf(stderr, "%s\n", HandError());
+ */
+int WaitFingers(int, const int *, int, double);
+
+/*
  GetObject - read pose and motion of the object in the simulated hand
 
      int GetObject(struct ObjectState *Object);
@@ -1351,6 +1457,211 @@ int GetTouch(int, int, struct FingerTouch *);
      TareTouch(1);
  */
 int TareTouch(int);
+
+/*
+ GetJacobian - compute the Jacobian of a fingertip
+
+     int GetJacobian(int i, const double *Pos, double *J);
+
+   i     finger, 1 to 3
+   Pos   Pos[3]: angles of joints 0, 1, 2, rad; always double. Null: the measured angles
+   J     result: J[3][3] or J[9], row by row; always double. J[row][column] is the motion of the tip
+         along axis row (x, y, z of the finger's frame) for joint column, cm/rad (eq. 8)
+
+ A force f on the tip acts on joint k as the sum over the axes of J[axis][k] f[axis], N cm.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   J is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an angle is NaN or infinite
+   EIO      Pos is null and the finger is faulted
+
+ Threads: any. Never waits for a servo.
+
+ Example:
+
+     double J[3][3];
+     if (GetJacobian(1, NULL, &J[0][0]) == 0)
+         printf("%g cm/rad\n", J[0][0]);
+ */
+int GetJacobian(int, const double *, double *);
+
+/*
+ FindTip - compute where a tip is at given joint angles
+
+     int FindTip(int i, const double *Pos, double *Tip);
+
+   i     finger, 1 to 3
+   Pos   Pos[3]: angles of joints 0, 1, 2, rad; they may be outside the joint limits. Always double
+   Tip   result: Tip[3]: x, y, z of the tip in the finger's frame, cm. Always double
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Pos or Tip is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an angle is NaN or infinite
+
+ Threads: any. Never waits for a servo.
+
+ Example:
+
+     double Pos[3] = {0.0, 0.5, 0.8}, Tip[3];
+     FindTip(1, Pos, Tip);
+ */
+int FindTip(int, const double *, double *);
+
+/*
+ FindPos - compute the joint angles at which a tip is at a position
+
+     int FindPos(int i, const double *Tip, double *Pos);
+
+   i     finger, 1 to 3
+   Tip   Tip[3]: x, y, z of the tip in the finger's frame, cm. Always double
+   Pos   result: Pos[3]: angles of joints 0, 1, 2, rad. Always double
+
+ If several joint solutions are within the joint limits, the result is the one nearest to the
+ present pose, as with SendTip.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Tip or Pos is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an entry is NaN or infinite
+   ERANGE   Tip is too far, too near, or outside the joint limits
+
+ Threads: any. Never waits for a servo.
+
+ Example:
+
+     double Tip[3] = {0.0, -6.0, 8.0}, Pos[3];
+     if (FindPos(1, Tip, Pos) == 0)
+         printf("%g %g %g\n", Pos[0], Pos[1], Pos[2]);
+ */
+int FindPos(int, const double *, double *);
+
+/*
+ GetJointTorques - read the joint torques of a finger
+
+     int GetJointTorques(int i, struct JointTorques *Torques);
+
+   i         finger, 1 to 3
+   Torques   result, from the last cycle of the servo; set Torques->Size before the call
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Torques is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo.
+ */
+int GetJointTorques(int, struct JointTorques *);
+
+/*
+ GetPalmPose - read where a finger and its tip are in the palm
+
+     int GetPalmPose(int i, struct PalmPose *Pose);
+
+   i      finger, 1 to 3
+   Pose   result, from the last cycle of the servo; set Pose->Size before the call
+
+ Base and Rotation follow from the configuration, finger.base and finger.turn_degrees. By default
+ two fingers are side by side, and the thumb is opposite to them.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Pose is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo.
+ */
+int GetPalmPose(int, struct PalmPose *);
+
+/*
+ SendPath - send a timed path to a finger
+
+     int SendPath(int i, int Count, const struct PathPose *Poses, double ValidMs);
+
+   i         finger, 1 to 3
+   Count     number of poses, 1 to 128
+   Poses     Poses[Count], in the order of their times; set Size of every pose
+   ValidMs   how long the end of the path is valid, ms; 0 for finger.motion.valid_ms
+
+ The path begins at once where the anchor of the fingertip's spring is, continues its motion, passes
+ every pose at its time and rests at the last one. Between poses the joint angles, or the tip, follow
+ a spline. From rest to a single position of the tip, the tip moves along a straight line. Speed,
+ acceleration and jerk are continuous. Because they are fed forward, the finger follows without the
+ lag of SendPos. Kx changes linearly from the last pose that has a Kx, or from the beginning.
+
+ The whole path is checked before anything moves: against the joint limits, and against speed,
+ acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is
+ made slower as a whole instead. Another path, SendPos or SendTip replaces the path without a jump,
+ also while it runs. A Kx that is sent while a path runs takes effect at once, and the path no longer
+ changes Kx. After a refused call the finger continues as before.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Poses is null
+   ENOMEM   there is not enough memory for the computation
+   ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger; Count is not 1 to 128; a time is less than 1 ms later
+            than the one before; joint angles and tip positions are mixed; an entry is NaN or infinite
+   EDOM     a Kx is not symmetric, or has a negative eigenvalue
+   ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is
+            too stiff, or the path is too fast; HandError tells the pose, and how much slower it must be
+   EIO      the finger is faulted
+   EBUSY    the finger is being opened or calibrated, or is limp
+   EAGAIN   the finger has become a spring again during the call
+
+ Threads: any. Never waits for a servo. Takes about 1 ms, depending on the number of poses.
+
+ Example:
+
+     static struct PathPose Poses[2];
+
+     Poses[0].Size = Poses[1].Size = sizeof Poses[0];
+     Poses[0].Time = 0.5;
+     Poses[0].Place[1] = 0.5, Poses[0].Place[2] = 0.8;
+     Poses[1].Time = 1.0;
+     Poses[1].Place[1] = 0.7, Poses[1].Place[2] = 1.1;
+     if (SendPath(1, 2, Poses, 0) != 0)
+         fprintf(stderr, "%s\n", HandError());
+ */
+int SendPath(int, int, const struct PathPose *, double);
+
+/*
+ SendPosFor - send desired joint angles that expire
+
+     int SendPosFor(int i, const double *Pos, double ValidMs);
+
+   i         finger, 1 to 3
+   Pos       Pos[3]: desired angles of joints 0, 1, 2, rad, as for SendPos. Always double
+   ValidMs   how long the angles are valid, ms; 0 for finger.motion.valid_ms
+
+ Has the effect of SendPos. If no other command of the planner arrives within ValidMs, the finger no
+ longer follows the angles: by default it holds the pose in which it then is with the soft
+ finger.motion.expired_stiffness. With finger.motion.on_expiry = "end state" it faults.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Pos is null
+   ENODEV   no hand is open
+   EINVAL   ValidMs is NaN, negative or more than 3600000; no such finger; an angle is NaN or infinite
+   ERANGE   an angle is outside the joint limits (hand.out_of_range = "clamp" clamps it instead)
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo. Takes about 200 ns.
+
+ Example, from a planner that sends every 20 ms:
+
+     double Pos[3] = {0.0, 0.5, 0.8};
+     SendPosFor(1, Pos, 60.0);
+ */
+int SendPosFor(int, const double *, double);
 
 /*
  GetRecord - one cycle of the last two seconds of a finger
@@ -1570,6 +1881,28 @@ const char *FaultText(int);
 int StopHand(void);
 
 /*
+ StopFinger - stop one finger
+
+     int StopFinger(int i);
+
+   i        finger, 1 to 3
+
+ The finger faults (FAULT_STOP_CALL) at the start of its next cycle, and its board enters the
+ configured end state, as with StopHand. The other fingers continue, unless hand.on_fault is "hand".
+ The finger stays stopped until RecoverHand, or CloseHand and OpenHand. A finger that has faulted
+ already stays as it is. Like StopHand, this is not a safety function. Unlike StopHand, it must not be
+ called in a signal handler.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   ENODEV   no hand is open
+   EINVAL   no such finger
+
+ Threads: any. Never waits for a servo.
+ */
+int StopFinger(int);
+
+/*
  RecoverHand - make a faulted finger a spring again
 
      int RecoverHand(int i);
@@ -1578,9 +1911,10 @@ int StopHand(void);
 
  Queries the identity of the finger's board and configures the board again. If the port has failed
  and finger.reconnect is true, reopens the port first. Then brings the tendons under tension. The
- finger holds its present pose at the configured initial stiffness. Other faulted fingers on the
- same port recover with it. A finger that is not faulted continues unchanged. Remove the cause of
- the fault first: GetFault and FaultText name it.
+ finger holds its present pose at the configured initial stiffness. If another finger on the same
+ port runs, it continues unchanged, and only finger i recovers. Otherwise all fingers on the port
+ recover together. A finger that is not faulted continues unchanged. Remove the cause of the fault
+ first: GetFault and FaultText name it.
 
  Waits until the finger holds its pose or faults again, up to some seconds. Other calls work
  meanwhile. CloseHand works too, and this call is then refused.
@@ -1593,7 +1927,6 @@ int StopHand(void);
    EIO      the finger faults again; or its board is not the one found by OpenHand, or has lost its
             zero; or its servo thread has failed (FAULT_SERVO_PANIC), which only CloseHand and
             OpenHand remedy. HandError says which
-   EBUSY    another finger on the same port runs: stop it first (StopHand, CloseHand)
    ENOENT, EACCES, ETIMEDOUT and other errnos of a port or link: the port is not there yet, the board
             does not answer, or the servo does not run. Call again
 
@@ -1738,10 +2071,13 @@ int EventDescriptor(void);
 #ifdef __LP64__
 typedef char Sun2XpFingerStatusSize[sizeof(struct FingerStatus) == 120 ? 1 : -1];
 typedef char Sun2XpFingerTimingSize[sizeof(struct FingerTiming) == 120 ? 1 : -1];
-typedef char Sun2XpFingerTipSize[sizeof(struct FingerTip) == 160 ? 1 : -1];
+typedef char Sun2XpFingerTipSize[sizeof(struct FingerTip) == 200 ? 1 : -1];
 typedef char Sun2XpFingerCommandSize[sizeof(struct FingerCommand) == 40 ? 1 : -1];
 typedef char Sun2XpObjectStateSize[sizeof(struct ObjectState) == 232 ? 1 : -1];
 typedef char Sun2XpFingerTouchSize[sizeof(struct FingerTouch) == 32 ? 1 : -1];
+typedef char Sun2XpJointTorquesSize[sizeof(struct JointTorques) == 56 ? 1 : -1];
+typedef char Sun2XpPalmPoseSize[sizeof(struct PalmPose) == 200 ? 1 : -1];
+typedef char Sun2XpPathPoseSize[sizeof(struct PathPose) == 48 ? 1 : -1];
 typedef char Sun2XpFingerRecordSize[sizeof(struct FingerRecord) == 200 ? 1 : -1];
 typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
 typedef char Sun2XpEventSize[sizeof(struct Event) == 72 ? 1 : -1];
@@ -1893,38 +2229,45 @@ typedef struct Sun2XpNull Sun2XpNull;
 #endif
 
 #ifdef SUN2XP_SETS_MACROS_ASIDE
-_Pragma("pop_macro(\"AdjustFinger\")") _Pragma("pop_macro(\"Answered\")") _Pragma("pop_macro(\"Calibration\")")
-_Pragma("pop_macro(\"CloseHand\")") _Pragma("pop_macro(\"Computed\")") _Pragma("pop_macro(\"CorruptReplies\")")
+_Pragma("pop_macro(\"AdjustFinger\")") _Pragma("pop_macro(\"Answered\")") _Pragma("pop_macro(\"Base\")")
+_Pragma("pop_macro(\"Calibration\")") _Pragma("pop_macro(\"CloseHand\")") _Pragma("pop_macro(\"Commanded\")")
+_Pragma("pop_macro(\"Computed\")") _Pragma("pop_macro(\"Contact\")") _Pragma("pop_macro(\"CorruptReplies\")")
 _Pragma("pop_macro(\"Count\")") _Pragma("pop_macro(\"Cycle\")") _Pragma("pop_macro(\"Cycles\")")
 _Pragma("pop_macro(\"DamagedFrames\")") _Pragma("pop_macro(\"Damping\")") _Pragma("pop_macro(\"DuplicateReplies\")")
 _Pragma("pop_macro(\"Event\")") _Pragma("pop_macro(\"EventDescriptor\")") _Pragma("pop_macro(\"Fault\")")
-_Pragma("pop_macro(\"FaultText\")") _Pragma("pop_macro(\"Felt\")") _Pragma("pop_macro(\"Finger\")")
-_Pragma("pop_macro(\"FingerCommand\")") _Pragma("pop_macro(\"FingerRecord\")") _Pragma("pop_macro(\"FingerStatus\")")
-_Pragma("pop_macro(\"FingerTiming\")") _Pragma("pop_macro(\"FingerTip\")") _Pragma("pop_macro(\"FingerTouch\")")
-_Pragma("pop_macro(\"Follows\")") _Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")")
-_Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetObject\")") _Pragma("pop_macro(\"GetRecord\")")
-_Pragma("pop_macro(\"GetStatus\")") _Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")")
-_Pragma("pop_macro(\"GetTouch\")") _Pragma("pop_macro(\"HandError\")") _Pragma("pop_macro(\"IdentifyFinger\")")
-_Pragma("pop_macro(\"Kind\")") _Pragma("pop_macro(\"Kx\")") _Pragma("pop_macro(\"LateReplies\")")
-_Pragma("pop_macro(\"Lost\")") _Pragma("pop_macro(\"LostEvents\")") _Pragma("pop_macro(\"LostReplies\")")
-_Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")")
-_Pragma("pop_macro(\"MemoryLocked\")") _Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")")
-_Pragma("pop_macro(\"NextEvent\")") _Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"ObjectState\")")
-_Pragma("pop_macro(\"Oldest\")") _Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OnEvent\")")
-_Pragma("pop_macro(\"OpenHand\")") _Pragma("pop_macro(\"Overruns\")") _Pragma("pop_macro(\"P99\")")
-_Pragma("pop_macro(\"P999\")") _Pragma("pop_macro(\"Part\")") _Pragma("pop_macro(\"Pos\")")
-_Pragma("pop_macro(\"PosSent\")") _Pragma("pop_macro(\"Position\")") _Pragma("pop_macro(\"Pressed\")")
-_Pragma("pop_macro(\"PushFinger\")") _Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")")
-_Pragma("pop_macro(\"RecoverHand\")") _Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"Rotation\")")
-_Pragma("pop_macro(\"SendContact\")") _Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendGroup\")")
-_Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")")
-_Pragma("pop_macro(\"Spin\")") _Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")")
-_Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")")
+_Pragma("pop_macro(\"FaultText\")") _Pragma("pop_macro(\"Felt\")") _Pragma("pop_macro(\"FindPos\")")
+_Pragma("pop_macro(\"FindTip\")") _Pragma("pop_macro(\"Finger\")") _Pragma("pop_macro(\"FingerCommand\")")
+_Pragma("pop_macro(\"FingerRecord\")") _Pragma("pop_macro(\"FingerStatus\")") _Pragma("pop_macro(\"FingerTiming\")")
+_Pragma("pop_macro(\"FingerTip\")") _Pragma("pop_macro(\"FingerTouch\")") _Pragma("pop_macro(\"Follows\")")
+_Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")") _Pragma("pop_macro(\"GetFault\")")
+_Pragma("pop_macro(\"GetJacobian\")") _Pragma("pop_macro(\"GetJointTorques\")") _Pragma("pop_macro(\"GetObject\")")
+_Pragma("pop_macro(\"GetPalmPose\")") _Pragma("pop_macro(\"GetRecord\")") _Pragma("pop_macro(\"GetStatus\")")
+_Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")") _Pragma("pop_macro(\"GetTouch\")")
+_Pragma("pop_macro(\"HandError\")") _Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"IsTip\")")
+_Pragma("pop_macro(\"JointTorques\")") _Pragma("pop_macro(\"Kind\")") _Pragma("pop_macro(\"Kx\")")
+_Pragma("pop_macro(\"LateReplies\")") _Pragma("pop_macro(\"Lost\")") _Pragma("pop_macro(\"LostEvents\")")
+_Pragma("pop_macro(\"LostReplies\")") _Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"Measured\")")
+_Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")")
+_Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"NextEvent\")")
+_Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"ObjectState\")") _Pragma("pop_macro(\"Oldest\")")
+_Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OnEvent\")") _Pragma("pop_macro(\"OpenHand\")")
+_Pragma("pop_macro(\"Overruns\")") _Pragma("pop_macro(\"P99\")") _Pragma("pop_macro(\"P999\")")
+_Pragma("pop_macro(\"PalmPose\")") _Pragma("pop_macro(\"Part\")") _Pragma("pop_macro(\"PathPose\")")
+_Pragma("pop_macro(\"Place\")") _Pragma("pop_macro(\"Pos\")") _Pragma("pop_macro(\"PosSent\")")
+_Pragma("pop_macro(\"Position\")") _Pragma("pop_macro(\"Pressed\")") _Pragma("pop_macro(\"PushFinger\")")
+_Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")")
+_Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"Rotation\")") _Pragma("pop_macro(\"SendContact\")")
+_Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendGroup\")") _Pragma("pop_macro(\"SendPath\")")
+_Pragma("pop_macro(\"SendPosFor\")") _Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"Size\")")
+_Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Slide\")") _Pragma("pop_macro(\"Spin\")")
+_Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")")
+_Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")") _Pragma("pop_macro(\"StopFinger\")")
 _Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"TareTouch\")") _Pragma("pop_macro(\"Tension\")")
 _Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")")
-_Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")")
-_Pragma("pop_macro(\"Touching\")") _Pragma("pop_macro(\"Valid\")") _Pragma("pop_macro(\"Value\")")
-_Pragma("pop_macro(\"Values\")") _Pragma("pop_macro(\"Velocity\")") _Pragma("pop_macro(\"WaitEvent\")")
+_Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"TipRotation\")") _Pragma("pop_macro(\"Torque\")")
+_Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Touching\")") _Pragma("pop_macro(\"Unused\")")
+_Pragma("pop_macro(\"Valid\")") _Pragma("pop_macro(\"Value\")") _Pragma("pop_macro(\"Values\")")
+_Pragma("pop_macro(\"Velocity\")") _Pragma("pop_macro(\"WaitEvent\")") _Pragma("pop_macro(\"WaitFingers\")")
 _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")") _Pragma("pop_macro(\"WakeUpMedian\")")
 _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")") _Pragma("pop_macro(\"WarningValue\")")
 _Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")") _Pragma("pop_macro(\"ZeroFinger\")")

@@ -113,5 +113,11 @@ pub mod object {
     pub use crate::simulated::ObjectState;
 }
 
+/// Timed motion: paths, and the configuration of motion.
+pub mod motion {
+    pub use crate::hand::{PathError, PathPose, Pose};
+    pub use crate::model::configuration::{ConfiguredMotion, ExpiryReaction};
+}
+
 /// The matrix library of the public signatures.
 pub use nalgebra;

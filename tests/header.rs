@@ -20,6 +20,7 @@ const OTHER_CALLS: &[&str] = &[
     "object_calls.rs",
     "touch_calls.rs",
     "kinematics_calls.rs",
+    "path_calls.rs",
     "black_box_calls.rs",
     "calibration_calls.rs",
     "fault_calls.rs",

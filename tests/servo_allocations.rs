@@ -5,7 +5,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use sun2xp::events::Event;
 use sun2xp::groups::FingerCommand;
-use sun2xp::hand::Hand;
+use sun2xp::hand::{Hand, PathPose, Pose};
 use sun2xp::model::configuration::Configuration;
 
 static BY_SERVOS: AtomicU64 = AtomicU64::new(0);
@@ -62,6 +62,20 @@ fn note(_: &Event, _: u64) {
     EVENTS.fetch_add(1, Relaxed);
 }
 
+/// Sends paths, which replace each other while they run, until finger 1 has run so many cycles.
+fn send_paths(hand: &Hand, end: u64) {
+    for step in 0u32.. {
+        let joints = [0.1, 0.5, 1.0 + 0.1 * f64::from(step % 7)];
+        let pose = |time| PathPose { time, pose: Pose::Joints(joints), stiffness: None };
+        // A path that begins in motion may be too fast.
+        let _ = hand.send_path(1, &[pose(0.5), pose(0.9)], None);
+        if hand.report(1).expect("a report").losses.cycles >= end {
+            break;
+        }
+        std::thread::yield_now();
+    }
+}
+
 #[test]
 fn a_servo_thread_allocates_nothing_while_it_runs() {
     let hand = open();
@@ -103,6 +117,8 @@ fn a_servo_thread_allocates_nothing_while_it_runs() {
         std::thread::yield_now();
     }
     assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads while groups are sent");
+    send_paths(&hand, cycles(1) + 500);
+    assert_eq!(BY_SERVOS.load(Relaxed), before, "allocations in the servo threads while paths are sent");
     // The planner makes a new controller, and the servo only copies it.
     let end = cycles(1) + 200;
     for step in 0u32.. {

@@ -1,9 +1,9 @@
 //! Checks of `src/finger/group_gate.rs` and `src/finger/mailbox/groups.rs` with one planner and two servos.
 
-use super::Adjustable;
 use super::group_gate::GroupGate;
 use super::mailbox::mailbox;
 use super::mailbox_checks::running;
+use super::{Adjustable, Replaced};
 use crate::control::SetPoint;
 use crate::realtime::atomics::{AtomicU64, Ordering};
 use loom::sync::Arc;
@@ -36,15 +36,15 @@ pub fn a_posted_group_has_its_set_points() {
             set_point.damping = 7.0;
             Ok::<_, ()>(())
         };
-        let prepared = planner.prepare(change).expect("the finger is healthy").expect("not refused");
+        let prepared = planner.prepare(Replaced::Other, change).expect("the finger is healthy").expect("not refused");
         gate.send([Some(prepared), None, None]);
         (planner, gate)
     });
     let mut new = None;
     for period in 1..=2 {
-        new = new.or(servo.new_group(report.springs, period, || period));
+        new = new.or(servo.new_group(period, || period));
     }
     let _planner = thread.join().expect("no panic");
-    let new = new.or(servo.new_group(report.springs, 4, || 4)).or(servo.new_group(report.springs, 5, || 5));
-    assert_eq!(new.map(|set_point| set_point.0.damping), Some(7.0));
+    let new = new.or(servo.new_group(4, || 4)).or(servo.new_group(5, || 5));
+    assert_eq!(new.map(|sent| sent.set_point.damping), Some(7.0));
 }

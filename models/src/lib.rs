@@ -20,11 +20,11 @@ mod realtime {
     pub use memory::LockedMemory;
     pub use pages::{Pages, SharedPages};
     pub use ring::{Consumer, Producer, ring};
-    pub use triple_buffer::{Input, Output, triple_buffer};
+    pub use triple_buffer::{Input, Output, triple_buffer, triple_buffer_of};
 }
 
 mod control {
-    pub use sun2xp::control::SetPoint;
+    pub use sun2xp::control::{SetPoint, motion};
 }
 
 mod model {
@@ -40,17 +40,40 @@ mod finger {
     mod mailbox;
     #[path = "../../models/src/mailbox_checks.rs"]
     pub mod mailbox_checks;
+    mod sent;
     mod stop_signal;
     #[path = "../../models/src/stop_signal_checks.rs"]
     pub mod stop_signal_checks;
 
     pub use group_gate::GroupGate;
+    pub use sent::Replaced;
     pub use sun2xp::finger::{Fault, FaultKind, FingerReport, Stage};
 
     /// Takes the place of the controller, which is larger than the stack that loom gives a thread.
     #[derive(Clone)]
     pub struct Adjustable {
         pub number: u32,
+    }
+
+    /// Takes the place of the path, whose tables have pages of their own.
+    mod path_buffer {
+        use crate::control::motion::PathTable;
+        use crate::realtime::LockedMemory;
+
+        pub struct PathBuffer {
+            pub number: u32,
+            pub origin: u64,
+        }
+
+        impl PathBuffer {
+            pub fn new(_: &mut LockedMemory) -> Self {
+                Self { number: 0, origin: 0 }
+            }
+
+            pub fn fill(&mut self, number: u32, origin: u64, _: &PathTable) {
+                (self.number, self.origin) = (number, origin);
+            }
+        }
     }
 
     /// Takes the place of the orders, which contain controllers.

@@ -56,12 +56,12 @@ pub fn a_set_point_is_for_one_spring() {
     report.springs = 2;
     report.set_point.damping = 100.0;
     servo.publish(report);
-    let new = servo.new_set_point(report.springs);
+    let new = new_set_point(&mut servo, report.springs);
     let planner = thread.join().expect("no panic");
-    let new = new.or(servo.new_set_point(report.springs)).map(|(set_point, _)| set_point);
+    let new = new.or(new_set_point(&mut servo, report.springs));
     assert!(new.is_none_or(|new| new.damping == 101.0), "a set point of an earlier spring: {new:?}");
     planner.send(|set_point| set_point.damping += 1.0).expect("the finger is healthy");
-    let (newer, _) = servo.new_set_point(report.springs).expect("the set point arrives");
+    let newer = new_set_point(&mut servo, report.springs).expect("the set point arrives");
     assert_eq!(newer.damping, new.map_or(101.0, |new| new.damping + 1.0));
 }
 
@@ -80,4 +80,9 @@ pub fn a_request_to_close_is_answered() {
     planner.close();
     let _servo = thread.join().expect("no panic");
     assert_eq!(planner.ended(), Some(true));
+}
+
+/// Returns the set point that has arrived for this spring phase.
+fn new_set_point(servo: &mut ServoEnd, spring: u32) -> Option<SetPoint> {
+    servo.new_set_point().filter(|sent| sent.spring == spring).map(|sent| sent.set_point)
 }

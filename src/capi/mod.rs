@@ -26,6 +26,7 @@ mod group_calls;
 mod kinematics_calls;
 mod memory;
 mod object_calls;
+mod path_calls;
 mod process;
 mod recovery_calls;
 mod refusal;

@@ -7,12 +7,13 @@ mod spring;
 
 use crate::control::contact::{ContactObserver, ContactState};
 use crate::control::monitors::{Alarms, Monitors, Watch};
+use crate::control::motion::Motion;
 use crate::control::motors::motor_heating::{Heat, MotorHeating};
 use crate::control::motors::motor_torque::MotorTorque;
 use crate::control::sensing::joint_positions::JointPositions;
 use crate::control::sensing::sensors::SensorScales;
 use crate::control::sensing::stillness::Stillness;
-use crate::control::signals::{Activity, Feedback, Measured, MotorCommand, Report};
+use crate::control::signals::{Activity, Feedback, Measured, MotorCommand, Report, SetPoint};
 use crate::control::spring::admissible_stiffness::AdmissibleStiffness;
 use crate::control::spring::gravity_compensation::GravityCompensation;
 use crate::control::spring::joint_stiffness::JointStiffness;
@@ -235,6 +236,16 @@ impl Controller {
         // The cycle has already converted the counts to units.
         let measured = Measured { motor_angles: state.motor_angles, tensions: state.report.tensions };
         self.monitors.watch(watch, feedback, &measured, &state.report, &state.pulls, &heat, age, full_scale)
+    }
+
+    /// Returns the joint angles, rad, that the controller follows, and their motion. `set_point` is the set point of
+    /// the last cycle. A finger that is not a spring follows its measured pose.
+    pub fn reference(&self, state: &State, set_point: &SetPoint) -> (Vector3<f64>, Motion) {
+        match (&self.state_feedback, &state.state_feedback, &state.doing) {
+            (Some(law), Some(elastic), Doing::Following(_)) => law.reference(elastic),
+            (None, _, Doing::Following(anchor)) => (*anchor, set_point.motion.unwrap_or_default()),
+            _ => (state.report.joints, Motion::default()),
+        }
     }
 
     /// Updates the observers of state feedback, in every activity. Returns whether state feedback can compute a

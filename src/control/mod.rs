@@ -9,6 +9,7 @@ mod cycle;
 mod eigenvalues;
 pub mod events;
 pub mod monitors;
+pub mod motion;
 mod motors;
 mod number_checks;
 mod rate_table;
@@ -21,6 +22,7 @@ pub(crate) mod tendons;
 
 pub use contact::ContactEstimate;
 pub use cycle::{Controller, State};
+pub use motion::Motion;
 pub use signals::{Activity, Feedback, Law, Measured, MotorCommand, Report, SetPoint, spatial};
 pub use spring::admissible_damping::AdmissibleDamping;
 pub use spring::joint_springs::JointSprings;

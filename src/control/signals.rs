@@ -3,6 +3,7 @@
 pub use crate::model::configuration::Law;
 
 use crate::control::contact::ContactEstimate;
+use crate::control::motion::Motion;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +38,10 @@ pub struct SetPoint {
     /// Damping relative to the damping that the controller computes from the stiffness.
     /// [`AdmissibleDamping`](crate::control::AdmissibleDamping) defines the permitted range.
     pub damping: f64,
+    /// The motion of `joints`; none for a set point at rest, whose steps the controller itself smooths. The controller
+    /// follows a set point with a motion without a lag.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Motion>,
 }
 
 impl SetPoint {
@@ -44,7 +49,7 @@ impl SetPoint {
     /// law is the exact one, and the relative damping is 1.
     pub fn hard_finger(joints: Vector3<f64>, stiffness: Matrix3<f64>) -> Self {
         let stiffness = spatial(&stiffness);
-        Self { joints, law: Law::Exact, stiffness, damping: 1.0 }
+        Self { joints, law: Law::Exact, stiffness, damping: 1.0, motion: None }
     }
 }
 

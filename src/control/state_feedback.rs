@@ -14,6 +14,7 @@ mod observer;
 mod reference;
 mod tension_dither;
 
+use crate::control::motion::Motion;
 use crate::control::signals::Measured;
 use crate::control::spring::joint_stiffness::JointStiffness;
 use crate::control::spring::slew::Slew;
@@ -21,7 +22,7 @@ use crate::control::state_feedback::damping_design::DampingDesign;
 use crate::control::state_feedback::dither::{Dither, DitherState};
 use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
 use crate::control::state_feedback::observer::{TendonEstimate, TendonMotion, TendonObserver};
-use crate::control::state_feedback::reference::{Reference, ReferenceState};
+use crate::control::state_feedback::reference::{Reference, ReferenceMotion, ReferenceState};
 use crate::control::state_feedback::tension_dither::{TensionDither, TensionDitherState};
 use crate::control::tendons::bumpless_transfer::BumplessTransfer;
 use crate::model::LinkDynamics;
@@ -107,6 +108,9 @@ pub(super) struct StateFeedbackState {
     /// persist.
     transition: BumplessTransfer,
     reference: ReferenceState,
+    /// The stages of the reference that belong to the set point of the last cycle, if that set point had a motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    along: Option<ReferenceState>,
     /// Joint rates minus the rates of the reference, low-pass filtered, rad/s.
     drift: Vector3<f64>,
     dither: DitherState,
@@ -131,6 +135,7 @@ impl StateFeedback {
             anchor: joints,
             transition: BumplessTransfer::default(),
             reference: self.reference.start(&joints),
+            along: None,
             drift: Vector3::zeros(),
             dither: self.dither.start(),
             tension_dither: self.tension_dither.start(),
@@ -186,6 +191,12 @@ impl StateFeedback {
     /// Notes that the reference does not move: its jerk is zero.
     pub fn idle(&self, state: &mut StateFeedbackState) {
         state.jerk = Vector3::zeros();
+    }
+
+    /// Returns the joint angles of the reference, rad, and their motion.
+    pub fn reference(&self, state: &StateFeedbackState) -> (Vector3<f64>, Motion) {
+        let ReferenceMotion { joints, rates, accelerations, jerk, snap } = self.reference.motion(&state.reference);
+        (joints, Motion { rates, accelerations, jerk, snap })
     }
 
     fn motion(&self, state: &StateFeedbackState, tendon: usize) -> TendonMotion {

@@ -2,6 +2,7 @@
 
 use crate::control::Controller;
 use crate::control::events::Detectors;
+use crate::finger::motion_settings::MotionSettings;
 use nalgebra::Vector3;
 
 /// The data that a servo computes with and that a planner can change while the servo runs.
@@ -11,6 +12,8 @@ pub struct Adjustable {
     pub number: u32,
     /// The controller, which contains the boxes of Figure 9.
     pub controller: Controller,
+    /// What the servo does with the set points of its planner.
+    pub motion: MotionSettings,
     /// Lowest and highest joint angles that a finger under tension can have, rad.
     pub pose: (Vector3<f64>, Vector3<f64>),
     /// The detectors of events.

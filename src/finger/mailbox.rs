@@ -7,13 +7,18 @@
 //! effect in all of its fingers, even if a newer set point follows.
 
 pub(super) mod groups;
+mod paths;
 mod requests;
 
 use crate::control::SetPoint;
 use crate::finger::group_gate::GroupGate;
-use crate::finger::{Adjustable, Fault, FingerReport, Order, Stage};
+use crate::finger::path_buffer::PathBuffer;
+use crate::finger::sent::SentSetPoint;
+use crate::finger::{Adjustable, Fault, FingerReport, Order, Replaced, Stage};
 use crate::realtime::atomics::{AtomicBool, AtomicU32};
-use crate::realtime::{Consumer, Input, LockedMemory, Output, Pages, Producer, SharedPages, ring, triple_buffer};
+use crate::realtime::{
+    Consumer, Input, LockedMemory, Output, Pages, Producer, SharedPages, ring, triple_buffer, triple_buffer_of,
+};
 use parking_lot::Mutex;
 
 /// The planners' end.
@@ -34,26 +39,13 @@ struct PlannersEnd {
     sent: SentSetPoint,
     set_points: Input<SentSetPoint>,
     grouped: Producer<SentSetPoint>,
+    paths: Input<PathBuffer>,
+    /// Number of the last path.
+    path: u32,
     adjustments: Input<Adjustable>,
     orders: Input<Order>,
     ordered: u32,
     reports: Output<FingerReport>,
-}
-
-/// A set point. It is valid for one spring phase of a finger. A spring phase begins when the finger becomes a spring,
-/// and ends at a fault or a calibration. Planners change parts of a set point, so they must start from the set point
-/// that the servo holds. The servo replaces that set point at the beginning of a spring phase. Both sides identify the
-/// phases by number.
-#[derive(Clone, Copy)]
-struct SentSetPoint {
-    /// Number of the spring phase, [`FingerReport::springs`].
-    spring: u32,
-    /// Number of the finger's newest group, 0 if there is none. The set point includes the values of that group, so it
-    /// must not take effect before the group does.
-    group: u64,
-    /// Number of the set point, counted by the planners' end.
-    number: u32,
-    set_point: SetPoint,
 }
 
 /// Number of groups that can wait in a finger. Each of them takes effect within two periods.
@@ -70,6 +62,7 @@ pub(super) struct ServoEnd {
     /// Number of the newest group that has taken effect.
     in_effect: u64,
     gate: GroupGate,
+    paths: Output<PathBuffer>,
     adjustments: Output<Adjustable>,
     orders: Output<Order>,
     reports: Input<FingerReport>,
@@ -82,10 +75,12 @@ pub(super) struct ServoEnd {
 /// share.
 pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox, ServoEnd, LockedMemory) {
     let mut memory = LockedMemory::default();
-    let sent = SentSetPoint { spring: report.springs, group: 0, number: 0, set_point: report.set_point };
+    let sent = SentSetPoint::held(&report);
     let (set_points_in, set_points_out) = shared(&sent, &mut memory);
     let (grouped_in, grouped_out) = ring(WAITING_GROUPS);
     grouped_in.add_to(&mut memory);
+    let (paths_in, paths_out) = triple_buffer_of(|| PathBuffer::new(&mut memory));
+    paths_in.add_to(&mut memory);
     let (adjustments_in, adjustments_out) = shared(adjustable, &mut memory);
     let (reports_in, reports_out) = shared(&report, &mut memory);
     let (orders_in, orders_out) = shared(&Order::Nothing, &mut memory);
@@ -96,6 +91,8 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
         sent,
         set_points: set_points_in,
         grouped: grouped_in,
+        paths: paths_in,
+        path: 0,
         adjustments: adjustments_in,
         orders: orders_in,
         ordered: 0,
@@ -108,6 +105,7 @@ pub(super) fn mailbox(report: FingerReport, adjustable: &Adjustable) -> (Mailbox
         next_group: None,
         in_effect: 0,
         gate: GroupGate::new(),
+        paths: paths_out,
         adjustments: adjustments_out,
         orders: orders_out,
         reports: reports_in,
@@ -143,9 +141,9 @@ impl Mailbox {
         Some(matches!(planners.reports.read().stage, Stage::Closed | Stage::Faulted(_)))
     }
 
-    /// Changes the last set point and sends it as a whole, unless the finger is faulted. If none was sent since the
-    /// finger became a spring, the change starts from the set point that the servo holds. The new set point is valid
-    /// for this spring phase only: if the finger faults meanwhile, it is discarded.
+    /// Changes the last set point and sends it as a whole, unless the finger is faulted. A path ends. If none was sent
+    /// since the finger became a spring, the change starts from the set point that the servo holds. The new set point
+    /// is valid for this spring phase only: if the finger faults meanwhile, it is discarded.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. Nothing is sent in that case.
@@ -153,18 +151,23 @@ impl Mailbox {
         let planners = &mut *self.planners.lock();
         planners.begin()?;
         change(&mut planners.sent.set_point);
-        planners.sent.number = planners.sent.number.wrapping_add(1);
+        planners.sent.replace(Replaced::Place, None);
         planners.set_points.write(planners.sent);
         Ok(())
     }
 
     /// Like [`Mailbox::send`], for a change that may refuse the set point that it starts from. The change is made in a
-    /// copy, which takes longer.
+    /// copy, which takes longer. `replaced` is the part that changes, and `valid` is the time for which the set point
+    /// is valid, s; none for the configured time.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. The inner result is the refusal of `change`. Nothing is sent in
     /// these cases.
-    pub fn try_send<E>(&self, change: impl FnOnce(&mut SetPoint) -> Result<(), E>) -> Result<Result<(), E>, Fault> {
+    pub fn try_send<E>(
+        &self,
+        (replaced, valid): (Replaced, Option<f64>),
+        change: impl FnOnce(&mut SetPoint) -> Result<(), E>,
+    ) -> Result<Result<(), E>, Fault> {
         let planners = &mut *self.planners.lock();
         planners.begin()?;
         let next = planners.set_points.input_buffer_mut();
@@ -172,7 +175,7 @@ impl Mailbox {
         if let Err(refusal) = change(&mut next.set_point) {
             return Ok(Err(refusal));
         }
-        next.number = next.number.wrapping_add(1);
+        next.replace(replaced, valid);
         planners.sent = *next;
         planners.set_points.publish();
         Ok(Ok(()))
@@ -228,17 +231,6 @@ impl Mailbox {
     }
 }
 
-impl SentSetPoint {
-    /// Prepares the next change. If the finger has become a spring since the last change, the next change starts from
-    /// the set point that the servo holds.
-    fn begin_with(&mut self, report: &FingerReport) {
-        if report.springs != self.spring {
-            let number = report.set_point_number;
-            *self = Self { spring: report.springs, number, set_point: report.set_point, ..*self };
-        }
-    }
-}
-
 impl PlannersEnd {
     /// Prepares the next change of the set point.
     fn begin(&mut self) -> Result<(), Fault> {
@@ -269,9 +261,9 @@ impl PlannersEnd {
 }
 
 impl ServoEnd {
-    /// Returns the set point with its number, if a planner has sent one for this spring phase since the last call. A
-    /// set point that was sent after a group waits until the group is in effect.
-    pub fn new_set_point(&mut self, spring: u32) -> Option<(SetPoint, u32)> {
+    /// Returns the set point, if a planner has sent one since the last call. A set point that was sent after a group
+    /// waits until the group is in effect.
+    pub fn new_set_point(&mut self) -> Option<SentSetPoint> {
         self.held |= self.set_points.update();
         if !self.held {
             return None;
@@ -279,7 +271,7 @@ impl ServoEnd {
         let sent = self.set_points.output_buffer();
         self.held = sent.group > self.in_effect;
         // A group that was sent later and is in effect already includes this set point.
-        (sent.group == self.in_effect && sent.spring == spring).then_some((sent.set_point, sent.number))
+        (sent.group == self.in_effect).then_some(*sent)
     }
 
     /// Returns the data to compute with, if a planner has replaced it since the last call.

@@ -3,7 +3,7 @@
 use crate::calibration::Verdict;
 use crate::control::events::Arrival;
 use crate::control::{Report, SetPoint};
-use crate::finger::{Losses, Stage, Warnings};
+use crate::finger::{Losses, Reference, Stage, Warnings};
 
 /// The data that a servo reports about its finger after every cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,11 +19,14 @@ pub struct FingerReport {
     pub set_point_period: u64,
     /// Number of the period of the last cycle.
     pub period: u64,
-    /// Number of times that the finger has become a spring: at open, after a fault, or after a calibration. The spring
-    /// first holds the pose that the finger then has. Set points that were sent earlier are discarded.
+    /// Number of times that the finger has become a spring: at open, after a fault, after a calibration, or after its
+    /// set point has expired. The spring first holds the pose that the finger then has. Set points that were sent
+    /// earlier are discarded.
     pub springs: u32,
     /// The controller's report of the last cycle.
     pub cycle: Report,
+    /// The reference of the last cycle.
+    pub reference: Reference,
     /// Number of the newest controller that the servo has taken from planners. The servo computes with it now, or will
     /// do so after a calibration.
     pub controller: u32,
@@ -58,6 +61,7 @@ impl FingerReport {
             period: 0,
             springs: 0,
             cycle: Report::default(),
+            reference: Reference::default(),
             controller: 0,
             orders: 0,
             calibration: None,

@@ -10,6 +10,8 @@ mod events;
 mod exchange;
 mod groups;
 mod life;
+mod motion;
+mod set_point_motion;
 
 use crate::board::LinkCounters;
 use crate::board::protocol::{Identity, Status};
@@ -26,6 +28,7 @@ use crate::model::configuration::EndState;
 use crate::realtime::{self, CycleTiming, LockedMemory, Producer};
 use calibration::Calibrating;
 use event_output::EventOutput;
+use set_point_motion::SetPointMotion;
 
 /// Number of Stop frames that the board gets after a fault. There are several, because a line that has just failed may
 /// lose one.
@@ -63,6 +66,7 @@ pub struct FingerServo {
     /// Sequence number of the last reply that was accepted.
     last_answer: u8,
     link: LinkWatch,
+    motion: SetPointMotion,
     supervision: Supervision,
     alarm: StopSignal,
     /// The board's clock at the last measurement, us modulo 65 536; none before the first measurement.
@@ -93,6 +97,13 @@ struct Limits {
     ramp: u32,
     /// Time for which a warning is kept.
     warning: u32,
+}
+
+impl Limits {
+    /// Returns the period, s.
+    fn period(&self) -> f64 {
+        self.period_ms * 1e-3
+    }
 }
 
 impl FingerServo {

@@ -2,7 +2,7 @@
 //! the servo as a whole.
 
 use crate::control::SetPoint;
-use crate::finger::Adjustable;
+use crate::finger::{Adjustable, Replaced};
 use crate::hand::admission::Admission;
 use crate::hand::configuration_file::{Wrong, deserialize, overlay};
 use crate::hand::dispatcher::Member;
@@ -81,13 +81,15 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     let faulted = |fault| HandError::Faulted { finger, fault };
     member.mailbox.adjust(adjustable).map_err(faulted)?;
     if admitted != sent {
+        let replaced = if joints == sent.joints { Replaced::Stiffness } else { Replaced::Place };
         let clamp = |set_point: &mut SetPoint| {
             // If the set point differs, the finger has restarted meanwhile and holds the pose in which it was found.
             if *set_point == sent {
                 *set_point = admitted;
             }
+            Ok::<(), SetPointError>(())
         };
-        member.mailbox.send(clamp).map_err(faulted)?;
+        member.mailbox.try_send((replaced, None), clamp).map_err(faulted)??;
     }
     *admission = changed;
     Ok(())

@@ -1,7 +1,7 @@
 //! The checks of a planner's commands. A command that fails a check does not reach the servo.
 
 use crate::control::{AdmissibleDamping, JointSprings, SetPoint, spatial};
-use crate::hand::SetPointError;
+use crate::hand::{MotionLimits, SetPointError};
 use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Law, OutOfRange};
@@ -28,6 +28,8 @@ pub(super) struct Admission {
     pub damping: DampingAdmission,
     /// The stiffness law for set points in joint angles.
     pub law: Law,
+    /// The limits of the motion on a path.
+    pub motion_limits: MotionLimits,
     /// Refuse or clamp.
     pub out_of_range: OutOfRange,
 }

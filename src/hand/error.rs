@@ -4,11 +4,13 @@ mod actions;
 mod configuration;
 mod errno;
 mod kind;
+mod path;
 mod recovery;
 mod set_point;
 
 pub use configuration::ConfigurationError;
 pub(crate) use kind::ErrorKind;
+pub use path::PathError;
 pub use recovery::RecoveryError;
 pub use set_point::SetPointError;
 
@@ -51,6 +53,9 @@ pub enum HandError {
     /// A set point that the finger cannot take.
     #[error(transparent)]
     SetPoint(#[from] SetPointError),
+    /// A path that the finger cannot follow.
+    #[error(transparent)]
+    Path(#[from] PathError),
     /// A configuration that cannot be read, used, changed or stored.
     #[error(transparent)]
     Configuration(#[from] ConfigurationError),

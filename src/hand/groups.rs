@@ -1,7 +1,7 @@
 //! Groups: one call sends set points to several fingers, and all of them take effect in the same period.
 
 use crate::control::{Law, SetPoint};
-use crate::finger::PreparedSetPoint;
+use crate::finger::{PreparedSetPoint, Replaced};
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError, SetPointError};
 use crate::model::FingerNumber;
@@ -62,6 +62,14 @@ impl FingerCommand {
         Self { damping: Some(ratio), ..self }
     }
 
+    fn replaced(&self) -> Replaced {
+        match (self.pose, self.stiffness) {
+            (Some(_), _) => Replaced::Place,
+            (None, Some(_)) => Replaced::Stiffness,
+            (None, None) => Replaced::Other,
+        }
+    }
+
     /// Checks the command. Returns a change of the set point, which may still refuse the damping that results.
     /// `present` is the pose of the finger, rad.
     fn admit(
@@ -117,7 +125,7 @@ impl Hand {
             let admission = admissions[number.index()].insert(member.admission.read());
             let change = command.admit(admission, &member.mailbox.report().cycle.joints)?;
             let faulted = |fault| HandError::Faulted { finger: number, fault };
-            let set_point = member.mailbox.prepare(change).map_err(faulted)??;
+            let set_point = member.mailbox.prepare(command.replaced(), change).map_err(faulted)??;
             if !set_point.has_room() {
                 return Err(SetPointError::GroupsWaiting(number).into());
             }

@@ -15,7 +15,7 @@ use crate::hand::identities::Identities;
 use crate::hand::notice::print_notice;
 use crate::hand::port_repair::{KnownBoard, PortRepair};
 use crate::hand::simulated_hand::SimulatedHand;
-use crate::hand::{ConfigurationError, HandError, SetPointError};
+use crate::hand::{ConfigurationError, HandError, MotionLimits, SetPointError};
 use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Configuration, OnFault, Unusable};
@@ -238,6 +238,7 @@ pub(super) fn admission(configuration: &Configuration, number: FingerNumber) -> 
             out_of_range,
         },
         law: finger.controller.law,
+        motion_limits: MotionLimits([finger.motion.speed, finger.motion.acceleration, finger.motion.jerk]),
         out_of_range,
     }
 }

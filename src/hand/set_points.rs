@@ -1,10 +1,12 @@
 //! The calls that send set points. Each call checks the planner's arguments and writes to the mailbox of the finger.
 
 use crate::control::{Law, SetPoint};
+use crate::finger::Replaced;
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError, SetPointError};
 use crate::model::Contact;
 use crate::model::FingerNumber;
+use std::time::Duration;
 
 impl Hand {
     /// Sends theta_d of finger 1, 2 or 3: joints 0, 1 and 2, rad. The angles take effect within a cycle.
@@ -21,6 +23,22 @@ impl Hand {
         sent.map_err(|fault| HandError::Faulted { finger, fault })
     }
 
+    /// Sends theta_d as [`Hand::send_position`] does, with the time for which it is valid; none for the configured
+    /// time. If nothing else is sent within this time, the finger reacts as `[finger.motion]` says.
+    ///
+    /// # Errors
+    /// Returns the same errors.
+    pub fn send_position_for(&self, finger: i32, joints: [f64; 3], valid: Option<Duration>) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
+        self.send(finger, (Replaced::Place, valid.map(|valid| valid.as_secs_f64())), |admission| {
+            let (joints, law) = (admission.joints(joints)?, admission.law);
+            Ok(move |set_point: &mut SetPoint| {
+                (set_point.joints, set_point.law) = (joints, law);
+                Ok(())
+            })
+        })
+    }
+
     /// Sends Kx of finger 1, 2 or 3 in the finger's frame, N/cm: `rows[row][column]`. The whole matrix takes effect
     /// without a jump in torque; 95 % of the change is reached after 50 ms.
     ///
@@ -30,7 +48,7 @@ impl Hand {
     /// high for the damping that was sent last.
     pub fn send_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        self.send(finger, |admission| {
+        self.send(finger, (Replaced::Stiffness, None), |admission| {
             let (stiffness, damping) = (admission.stiffness(rows)?, admission.damping);
             Ok(move |set_point: &mut SetPoint| {
                 set_point.stiffness = stiffness;
@@ -51,7 +69,7 @@ impl Hand {
     pub fn send_tip(&self, finger: i32, tip: [f64; 3]) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
         let present = self.dispatcher.last_report(finger)?.cycle.joints;
-        self.send(finger, |admission| {
+        self.send(finger, (Replaced::Place, None), |admission| {
             let joints = admission.tip(tip, &present)?;
             Ok(move |set_point: &mut SetPoint| {
                 (set_point.joints, set_point.law) = (joints, Law::Exact);
@@ -71,7 +89,7 @@ impl Hand {
     /// as k / l2^2 N/cm, because the last joint moves the tip by l2 per rad.
     pub fn send_contact(&self, finger: i32, contact: Contact) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        self.send(finger, |admission| {
+        self.send(finger, (Replaced::Stiffness, None), |admission| {
             let (stiffness, damping) = (admission.contact(&contact)?, admission.damping);
             Ok(move |set_point: &mut SetPoint| {
                 set_point.stiffness = stiffness;
@@ -89,7 +107,7 @@ impl Hand {
     /// infinite or outside the range for the stiffness that was sent last.
     pub fn send_damping(&self, finger: i32, ratio: f64) -> Result<(), HandError> {
         let finger = FingerNumber::try_from(finger)?;
-        self.send(finger, |admission| {
+        self.send(finger, (Replaced::Other, None), |admission| {
             admission.finite("Ratio", &[ratio])?;
             let damping = admission.damping;
             Ok(move |set_point: &mut SetPoint| {
@@ -105,12 +123,13 @@ impl Hand {
     fn send<C: FnOnce(&mut SetPoint) -> Result<(), SetPointError>>(
         &self,
         finger: FingerNumber,
+        what: (Replaced, Option<f64>),
         admit: impl FnOnce(&Admission) -> Result<C, SetPointError>,
     ) -> Result<(), HandError> {
         let member = self.dispatcher.member(finger)?;
         let admission = member.admission.read();
         let change = admit(&admission)?;
-        member.mailbox.try_send(change).map_err(|fault| HandError::Faulted { finger, fault })??;
+        member.mailbox.try_send(what, change).map_err(|fault| HandError::Faulted { finger, fault })??;
         Ok(())
     }
 }

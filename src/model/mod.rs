@@ -10,6 +10,7 @@ mod kinematics;
 mod link_dynamics;
 mod link_momentum;
 mod part;
+pub mod path;
 mod shown;
 mod tendons;
 mod validation;

@@ -3,6 +3,7 @@
 mod contact;
 mod events;
 mod monitors;
+mod motion;
 mod object;
 mod ranges;
 mod sharing;
@@ -108,6 +109,7 @@ impl ConfiguredFinger {
         self.events.check()?;
         self.touch.check()?;
         self.contact.check()?;
+        self.motion.check()?;
         self.check_calibration()?;
         self.check_simulation()
     }

@@ -44,5 +44,5 @@ pub use signals::SignalsBlocked;
 pub use standard_error::print_line;
 pub use threads::{LockedStack, Priority, RealtimeRefusals, spawn, touch_stack};
 pub use timing::{CycleStage, CycleTiming, Distribution, Histograms};
-pub use triple_buffer::{Input, Output, triple_buffer};
+pub use triple_buffer::{Input, Output, triple_buffer, triple_buffer_of};
 pub use wake_up::{WakeUp, measure_wake_up};

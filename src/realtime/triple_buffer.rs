@@ -41,7 +41,12 @@ unsafe impl<T: Send> Sync for Places<T> {}
 
 /// Returns both ends, with the same value in every place.
 pub fn triple_buffer<T: Clone>(initial: &T) -> (Input<T>, Output<T>) {
-    let places = [(); 3].map(|()| Line(UnsafeCell::new(initial.clone())));
+    triple_buffer_of(|| initial.clone())
+}
+
+/// Returns both ends. `make` makes the value of each place.
+pub fn triple_buffer_of<T>(mut make: impl FnMut() -> T) -> (Input<T>, Output<T>) {
+    let places = [(); 3].map(|()| Line(UnsafeCell::new(make())));
     let places = SharedPages::from(Pages::new(Places { between: Line(AtomicU8::new(1)), places }));
     (Input { places: places.clone(), own: 0 }, Output { places, own: 2 })
 }

@@ -77,7 +77,13 @@ impl Rest {
     }
 
     pub(super) fn set_point(&self) -> SetPoint {
-        SetPoint { joints: self.anchor(), law: self.law, stiffness: self.stiffness, damping: self.damping }
+        SetPoint {
+            joints: self.anchor(),
+            law: self.law,
+            stiffness: self.stiffness,
+            damping: self.damping,
+            motion: None,
+        }
     }
 
     /// Returns the forces of the spring with its stiffness scaled by `scale`.

@@ -5,30 +5,7 @@
 #include <string.h>
 #include "Sun2Xp.h"
 #include "check.h"
-
-static const char *name_of(int number)
-{
-    switch (number) {
-    case EBUSY: return "EBUSY";
-    case EDOM: return "EDOM";
-    case EFAULT: return "EFAULT";
-    case EINVAL: return "EINVAL";
-    case EIO: return "EIO";
-    case ENODEV: return "ENODEV";
-    case ENOENT: return "ENOENT";
-    case ENOTSUP: return "ENOTSUP";
-    case ERANGE: return "ERANGE";
-    default: return strerror(number);
-    }
-}
-
-/* Checks that the call is refused for the reason that has this word in its text. */
-#define REFUSED(Call, Result, Word) \
-    do { \
-        CHECK((Result) == -1); \
-        printf("%s %s\n", (Call), name_of(errno)); \
-        CHECK(strstr(HandError(), (Word)) != NULL); \
-    } while (0)
+#include "order_refused.h"
 
 static double Nan[4][4], Skew[4][4], Stiff[4][4], Soft[4][4];
 static double NoNormal[3], NanNormal[3], Normal[3] = {0, -1, 0};
@@ -71,6 +48,8 @@ static double *three(double K[4][4])
     return Kx;
 }
 
+#include "order_paths.h"
+
 static void null_pointers(void)
 {
     REFUSED("SendPos", SendPos(9, NULL), "Pos");
@@ -91,6 +70,8 @@ static void null_pointers(void)
     REFUSED("FindPos", FindPos(9, NULL, Pos), "Tip");
     REFUSED("GetJointTorques", GetJointTorques(9, NULL), "Torques");
     REFUSED("GetPalmPose", GetPalmPose(9, NULL), "Pose");
+    REFUSED("SendPath", SendPath(9, 999, NULL, NAN), "Poses");
+    REFUSED("SendPosFor", SendPosFor(9, NULL, NAN), "Pos");
     REFUSED("AdjustFinger", AdjustFinger(9, NULL), "Keys");
     REFUSED("PushFinger", PushFinger(9, NULL), "Force");
     REFUSED("GetRecord", GetRecord(9, 99, NULL), "Record");
@@ -120,6 +101,8 @@ static void without_hand(void)
     REFUSED("FindPos", FindPos(9, NanTip, Pos), "OpenHand");
     REFUSED("GetJointTorques", GetJointTorques(9, &Torques), "OpenHand");
     REFUSED("GetPalmPose", GetPalmPose(9, &Pose), "OpenHand");
+    REFUSED("SendPath", SendPath(9, 999, Path, NAN), "OpenHand");
+    REFUSED("SendPosFor", SendPosFor(9, NanPos, NAN), "OpenHand");
     REFUSED("AdjustFinger", AdjustFinger(9, "="), "OpenHand");
     REFUSED("PushFinger", PushFinger(9, NanForce), "OpenHand");
     REFUSED("GetRecord", GetRecord(9, 99, &Record), "OpenHand");
@@ -151,6 +134,8 @@ static void small_structs(void)
     REFUSED("GetPalmPose", GetPalmPose(9, &Pose), "Size");
     Torques.Size = sizeof Torques;
     Pose.Size = sizeof Pose;
+    REFUSED("SendPath", SendPath(9, 2, Path, NAN), "Size");
+    Path[0].Size = Path[1].Size = sizeof Path[0];
     Command[0].Size = Command[1].Size = sizeof Command[0];
     Status.Size = sizeof Status;
     Timing.Size = sizeof Timing;
@@ -184,6 +169,11 @@ static void no_such_finger(void)
     REFUSED("GetPalmPose", GetPalmPose(9, &Pose), NO_FINGER);
     REFUSED("SendGroup", SendGroup(9, Command), "and not 9");
     REFUSED("SendGroup", SendGroup(2, Command), NO_FINGER);
+    REFUSED("SendPath", SendPath(9, 999, Path, NAN), "999 poses");
+    REFUSED("SendPath", SendPath(9, 2, Path, NAN), "valid");
+    REFUSED("SendPath", SendPath(9, 2, Path, 0), NO_FINGER);
+    REFUSED("SendPosFor", SendPosFor(9, NanPos, NAN), "valid");
+    REFUSED("SendPosFor", SendPosFor(9, NanPos, 0), NO_FINGER);
     REFUSED("AdjustFinger", AdjustFinger(9, "="), NO_FINGER);
     REFUSED("PushFinger", PushFinger(9, NanForce), NO_FINGER);
     REFUSED("GetRecord", GetRecord(9, 99999999, &Record), NO_FINGER);
@@ -198,6 +188,10 @@ static void no_such_finger(void)
 
 static void wrong_values_on_a_faulted_finger(void)
 {
+    wrong_paths();
+    REFUSED("SendPosFor", SendPosFor(1, NanPos, 0), "NaN");
+    REFUSED("SendPosFor", SendPosFor(1, FarPos, 0), "limits");
+    REFUSED("SendPosFor", SendPosFor(1, Pos, 0), "stop");
     REFUSED("SendPos", SendPos(1, NanPos), "NaN");
     REFUSED("SendPos", SendPos(1, FarPos), "limits");
     REFUSED("SendPos", SendPos(1, Pos), "stop");

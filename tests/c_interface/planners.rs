@@ -167,6 +167,11 @@ fn the_kinematics_of_a_finger_are_read() {
 }
 
 #[test]
+fn a_path_is_followed_as_a_whole_or_not_at_all() {
+    succeed(&strict(&["-ansi"]), &["path.c"]);
+}
+
+#[test]
 fn a_fingertip_is_sent_read_and_made_a_contact() {
     succeed(&strict(&["-ansi"]), &["tip.c"]);
 }

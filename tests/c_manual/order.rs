@@ -15,6 +15,7 @@ const NOT_TRIED: &[(&str, &[&str])] = &[
     ("OnEvent", &["EAGAIN"]),
     ("EventDescriptor", &["EMFILE", "ENFILE", "EAGAIN"]),
     ("WaitFingers", &["EBUSY", "ETIMEDOUT"]),
+    ("SendPath", &["ENOMEM", "EBUSY", "EAGAIN"]),
     ("ZeroFinger", &["EBUSY", "ECANCELED", "ETIMEDOUT", "EACCES", "ENOSPC"]),
     ("RecoverHand", &["EIO", "ENOENT", "EACCES", "ETIMEDOUT"]),
     ("WriteBlackBox", &["EACCES", "ENOSPC"]),

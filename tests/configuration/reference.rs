@@ -44,7 +44,7 @@ fn every_key_of_every_table_is_in_it() {
         .filter(|(key, item)| item.is_table() && !fingers.contains(*key))
         .map(|(key, _)| format!("finger.{key}"))
         .collect();
-    assert_eq!(tables.len(), 16, "{tables:?}");
+    assert_eq!(tables.len(), 17, "{tables:?}");
     for path in tables {
         assert_eq!(named(&path), expected_keys(&path), "[{path}]");
     }

@@ -6,7 +6,7 @@ use crate::control::spring::soft_limits::Push;
 use crate::control::spring::spring_transition::Spring;
 use crate::control::state_feedback::decision::Decision;
 use crate::control::tendons::tension_distribution::DistributedTensions;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 /// With Figures 9, 10 and 11 a damper acts at the soft limits. This is its damping divided by the stiffness of the
 /// limits, s.
@@ -24,10 +24,14 @@ impl Controller {
             Doing::Following(anchor) => (anchor, false),
             _ => (state.report.joints, true),
         };
-        self.slew.advance(&mut anchor, &set_point.joints);
+        let rates = set_point.motion.map_or_else(Vector3::zeros, |motion| motion.rates);
+        // The slew limit acts on the distance from where the set point was in the last cycle.
+        let way = rates * self.period;
+        self.slew.advance(&mut anchor, &(set_point.joints - way));
+        anchor += way;
         state.doing = Doing::Following(anchor);
         let Report { joints, joint_rates, .. } = &state.report;
-        let torques = spring.torques(&anchor) - spring.damper(joint_rates);
+        let torques = spring.torques(&anchor) - spring.damper(&(joint_rates - rates));
         let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
         let torques = torques + push.torque - damped + self.gravity.torques(joints);
         let limit = self.heating.limit(&state.heat);
@@ -53,7 +57,7 @@ impl Controller {
         state.doing = Doing::Following(elastic.joints);
         let distribution = self.reachable(&(limit - law.upper_reserve));
         let Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale } =
-            law.decide(elastic, spring, begins, &self.soft_limits, &self.gravity, &distribution);
+            law.decide(elastic, (spring, &set_point.motion), begins, &self.soft_limits, &self.gravity, &distribution);
         state.against_friction = against_friction;
         self.command_pulls(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;

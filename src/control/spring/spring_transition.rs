@@ -21,7 +21,7 @@ pub struct Spring {
 }
 
 impl From<SetPoint> for Spring {
-    fn from(SetPoint { joints, law, stiffness, damping }: SetPoint) -> Self {
+    fn from(SetPoint { joints, law, stiffness, damping, .. }: SetPoint) -> Self {
         Self { joints, exact: share(law), stiffness, damping }
     }
 }

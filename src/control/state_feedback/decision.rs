@@ -1,6 +1,7 @@
 //! Computes the pull of every motor in a cycle of state feedback, from the estimated state and the spring.
 
 use super::{StateFeedback, StateFeedbackState};
+use crate::control::motion::Motion;
 use crate::control::spring::gravity_compensation::GravityCompensation;
 use crate::control::spring::soft_limits::SoftLimits;
 use crate::control::spring::spring_transition::Spring;
@@ -24,7 +25,7 @@ pub(in crate::control) struct Decision {
 }
 
 /// The motion of all tendons and joints at the next sample, SI units.
-struct Motion {
+struct FingerMotion {
     tensions: Vector4<f64>,
     motor_speeds: Vector4<f64>,
     /// Speeds of the joint side of each tendon.
@@ -41,12 +42,12 @@ struct Shake {
 }
 
 impl StateFeedback {
-    /// Returns the pulls that make the fingertip the spring `spring` from the next sample on. If `begins` is true, the
-    /// spring starts without deflection.
+    /// Returns the pulls that make the fingertip the spring `spring` from the next sample on. The anchor of the spring
+    /// has the motion `motion`. If `begins` is true, the spring starts without deflection.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
-        spring: &Spring,
+        (spring, motion): (&Spring, &Option<Motion>),
         begins: bool,
         limits: &SoftLimits,
         gravity: &GravityCompensation,
@@ -55,8 +56,8 @@ impl StateFeedback {
         if begins {
             self.begin_without_deflection(state);
         }
-        let now = self.motion_at_next_sample(state);
-        let reference = self.follow(state, &spring.joints);
+        let now = self.at_next_sample(state);
+        let reference = self.follow(state, &spring.joints, motion);
         let spring = Spring { joints: reference.joints, ..*spring };
         let inertia = self.dynamics.inertia(&state.joints);
         let joint_torques = self.joint_torques(state, &now, &spring, &reference, &inertia, (limits, gravity)) * 100.0;
@@ -76,16 +77,17 @@ impl StateFeedback {
     fn begin_without_deflection(&self, state: &mut StateFeedbackState) {
         state.anchor = state.joints;
         state.reference = self.reference.start(&state.joints);
+        state.along = None;
         state.drift = Vector3::zeros();
         state.dither = self.dither.start();
         state.tension_dither = self.tension_dither.start();
     }
 
-    fn motion_at_next_sample(&self, state: &StateFeedbackState) -> Motion {
+    fn at_next_sample(&self, state: &StateFeedbackState) -> FingerMotion {
         let motion: [TendonMotion; 4] = std::array::from_fn(|tendon| self.motion(state, tendon));
         let of = |part: fn(&TendonMotion) -> f64| Vector4::from_fn(|tendon, _| part(&motion[tendon]));
         let speeds = of(|motion| motion.speed);
-        Motion {
+        FingerMotion {
             tensions: of(|motion| motion.tension),
             motor_speeds: of(|motion| motion.motor_speed),
             speeds,
@@ -95,10 +97,21 @@ impl StateFeedback {
         }
     }
 
-    /// Advances the reference toward the set point, rad.
-    fn follow(&self, state: &mut StateFeedbackState, set_point: &Vector3<f64>) -> ReferenceMotion {
-        self.slew.advance(&mut state.anchor, set_point);
-        let reference = self.reference.advance(&mut state.reference, &state.anchor);
+    /// Advances the reference toward the set point, rad, or along with the motion of the set point.
+    fn follow(
+        &self,
+        state: &mut StateFeedbackState,
+        set_point: &Vector3<f64>,
+        motion: &Option<Motion>,
+    ) -> ReferenceMotion {
+        let StateFeedbackState { reference, anchor, along, .. } = state;
+        let reference = if let Some(motion) = motion {
+            self.reference.advance_along(reference, anchor, along, &self.slew, (set_point, motion))
+        } else {
+            *along = None;
+            self.slew.advance(anchor, set_point);
+            self.reference.advance(reference, anchor)
+        };
         state.jerk = reference.jerk;
         reference
     }
@@ -108,7 +121,7 @@ impl StateFeedback {
     fn joint_torques(
         &self,
         state: &mut StateFeedbackState,
-        now: &Motion,
+        now: &FingerMotion,
         spring: &Spring,
         reference: &ReferenceMotion,
         inertia: &Matrix3<f64>,
@@ -162,7 +175,7 @@ impl StateFeedback {
     /// that the reference and the dither need is fed forward.
     fn forces(
         &self,
-        now: &Motion,
+        now: &FingerMotion,
         error: &Vector4<f64>,
         reference: &ReferenceMotion,
         inertia: &Matrix3<f64>,

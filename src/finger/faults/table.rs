@@ -222,6 +222,11 @@ faults! {
         "the program requested that this finger stop",
         "the program or its user wants this finger to be at rest, or detected a danger",
         "Make sure that the finger can move safely, then recover it", [Recover];
+    51 SetPointExpired "SET_POINT_EXPIRED" Fault Finger Time "set point expired",
+        "the planner has sent nothing for longer than its last set point was valid, and finger.motion.on_expiry is \
+         \"end state\"",
+        "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid",
+        "Recover the finger and send set points in time, or raise finger.motion.valid_ms", [Recover];
 }
 
 #[cfg(test)]

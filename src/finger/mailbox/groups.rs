@@ -2,7 +2,7 @@
 
 use super::{Mailbox, PlannersEnd, SentSetPoint, ServoEnd};
 use crate::control::SetPoint;
-use crate::finger::{Fault, GroupGate};
+use crate::finger::{Fault, GroupGate, Replaced};
 use crate::model::configuration::FINGERS;
 use crate::realtime::LockedMemory;
 use parking_lot::MutexGuard;
@@ -11,23 +11,26 @@ use parking_lot::MutexGuard;
 /// meanwhile. Dropping this value changes nothing.
 pub struct PreparedSetPoint<'a> {
     planners: MutexGuard<'a, PlannersEnd>,
+    replaced: Replaced,
     set_point: SetPoint,
 }
 
 impl Mailbox {
-    /// Prepares a change of the last set point, as [`Mailbox::try_send`] makes it, for a group. A caller that prepares
-    /// several fingers must do this in the order of their numbers, so that two callers cannot wait for each other.
+    /// Prepares a change of the last set point, as [`Mailbox::try_send`] makes it, for a group. `replaced` is the part
+    /// that changes. A caller that prepares several fingers must do this in the order of their numbers, so that two
+    /// callers cannot wait for each other.
     ///
     /// # Errors
     /// Returns the fault if the finger is faulted. The inner result is the refusal of `change`.
     pub fn prepare<E>(
         &self,
+        replaced: Replaced,
         change: impl FnOnce(&mut SetPoint) -> Result<(), E>,
     ) -> Result<Result<PreparedSetPoint<'_>, E>, Fault> {
         let mut planners = self.planners.lock();
         planners.begin()?;
         let mut set_point = planners.sent.set_point;
-        Ok(change(&mut set_point).map(|()| PreparedSetPoint { planners, set_point }))
+        Ok(change(&mut set_point).map(|()| PreparedSetPoint { planners, replaced, set_point }))
     }
 }
 
@@ -43,9 +46,9 @@ impl GroupGate {
     /// servos of the fingers must have this gate.
     pub fn send(&self, mut group: [Option<PreparedSetPoint<'_>>; FINGERS]) {
         let number = self.number();
-        for PreparedSetPoint { planners, set_point } in group.iter_mut().flatten() {
-            let count = planners.sent.number.wrapping_add(1);
-            let sent = SentSetPoint { group: number, number: count, set_point: *set_point, ..planners.sent };
+        for PreparedSetPoint { planners, replaced, set_point } in group.iter_mut().flatten() {
+            let mut sent = SentSetPoint { group: number, set_point: *set_point, ..planners.sent };
+            sent.replace(*replaced, None);
             // The push succeeds, because the finger has room, and only its servo has made more room since.
             if planners.grouped.push(sent).is_ok() {
                 planners.sent = sent;
@@ -62,10 +65,9 @@ impl ServoEnd {
         self.gate = gate;
     }
 
-    /// Returns the set point, with its number, of the newest group that takes effect in this period, if one does.
-    /// `spring` is the number of the spring phase; a set point of another phase is discarded. `now` returns the number
-    /// of the present period, which is later than `period` if the servo is late.
-    pub fn new_group(&mut self, spring: u32, period: u64, now: impl Fn() -> u64) -> Option<(SetPoint, u32)> {
+    /// Returns the set point of the newest group that takes effect in this period, if one does. `now` returns the
+    /// number of the present period, which is later than `period` if the servo is late.
+    pub fn new_group(&mut self, period: u64, now: impl Fn() -> u64) -> Option<SentSetPoint> {
         let mut newest = None;
         while let Some(next) = self.next_group.or_else(|| self.grouped.pop()) {
             if self.gate.period(next.group, &now).is_none_or(|from| from > period) {
@@ -74,7 +76,7 @@ impl ServoEnd {
             }
             self.next_group = None;
             self.in_effect = next.group;
-            newest = (next.spring == spring).then_some((next.set_point, next.number));
+            newest = Some(next);
         }
         newest
     }

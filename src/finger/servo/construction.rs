@@ -1,6 +1,7 @@
 //! Construction of a finger's servo from the configuration and the board's answers.
 
 use super::event_output::EventOutput;
+use super::set_point_motion::SetPointMotion;
 use super::{FingerServo, Limits, STOPS_AFTER_FAULT};
 use crate::board::protocol::{Configured, Identity};
 use crate::control::events::Detectors;
@@ -8,6 +9,7 @@ use crate::control::{Activity, Controller, Feedback, MotorCommand, SetPoint};
 use crate::finger::Adjustable;
 use crate::finger::link_watch::LinkWatch;
 use crate::finger::mailbox::{Mailbox, mailbox};
+use crate::finger::motion_settings::MotionSettings;
 use crate::finger::supervision::Supervision;
 use crate::finger::touch::{Elements, TouchFetching};
 use crate::finger::{FingerReport, Recorder, StopSignal, stop_calls};
@@ -37,7 +39,8 @@ impl Adjustable {
         let pose = (low.add_scalar(-BEYOND_LIMITS), high.add_scalar(BEYOND_LIMITS));
         let controller = Controller::in_gravity(finger, &configuration.gravity(number), configuration.hand.rate)?;
         let detectors = Detectors::new(finger, configuration.hand.rate);
-        Ok(Self { number: 0, controller, pose, detectors })
+        let motion = MotionSettings::new(finger, configuration.hand.rate);
+        Ok(Self { number: 0, controller, motion, pose, detectors })
     }
 }
 
@@ -83,7 +86,6 @@ impl FingerServo {
         memory.append(&black_box.memory());
         timings.add_to(&mut memory);
         let events = EventOutput::new(number, initial, &mut memory);
-        let touch = TouchFetching::new(Elements::new(&finger.touch), identity.capabilities, &mut memory);
         let this = Self {
             state: adjustable.controller.start(&feedback),
             adjustable,
@@ -97,7 +99,7 @@ impl FingerServo {
             timing: CycleTiming::default(),
             timings,
             black_box,
-            touch,
+            touch: TouchFetching::new(Elements::new(&finger.touch), identity.capabilities, &mut memory),
             events,
             record: None,
             recording: false,
@@ -110,6 +112,7 @@ impl FingerServo {
             last_answer: 0,
             supervision: Supervision::new(hand.rate, link.most(), identity.gauge_bits),
             link,
+            motion: SetPointMotion::new(),
             alarm: StopSignal::new(false, stop_calls()),
             sampled_at: None,
             sample_age: 0,

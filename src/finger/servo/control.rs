@@ -10,6 +10,7 @@ impl FingerServo {
     pub(super) fn control(&mut self, skipped: u64) -> ControlRecord {
         let previous = self.take_commands();
         let previous = self.calibrate().or(previous);
+        self.move_set_point();
         let input = ControlInput {
             anew_from: std::mem::take(&mut self.restart).then_some(self.feedback),
             activity: self.activity,
@@ -27,6 +28,7 @@ impl FingerServo {
         (self.command, self.report.cycle) = (command, report);
         let previous = previous.map_or(*number, |previous| previous.number);
         let record = ControlRecord { controller: *number, previous, input, command, report };
+        self.note_reference(input.skipped);
         self.watch(adjusted);
         self.observe();
         self.move_on();
@@ -56,10 +58,10 @@ impl FingerServo {
         }
         // `running` is the state before the order. If a set point and an order to calibrate arrive in the same cycle,
         // the set point still takes effect. The finger moves to it, and the routine must detect the motion.
-        if let Some((set_point, number)) = self.mailbox.new_set_point(self.report.springs)
+        if let Some(sent) = self.mailbox.new_set_point()
             && running
         {
-            self.follow(set_point, number);
+            self.take_set_point(&sent);
         }
         if self.mailbox.closing() && self.report.stage != Stage::Closing {
             self.enter(Stage::Closing);

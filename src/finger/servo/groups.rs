@@ -18,11 +18,10 @@ impl FingerServo {
         if !self.under_control() {
             return;
         }
-        let set_point = self.mailbox.new_group(self.report.springs, period, now);
-        if let Some((set_point, number)) = set_point
+        if let Some(sent) = self.mailbox.new_group(period, now)
             && self.report.stage == Stage::Running
         {
-            self.follow(set_point, number);
+            self.take_set_point(&sent);
         }
     }
 }

@@ -23,6 +23,7 @@ fn admission(out_of_range: OutOfRange) -> Admission {
             out_of_range,
         },
         law: Law::default(),
+        motion_limits: crate::hand::MotionLimits([5.0, 100.0, 5000.0]),
         out_of_range,
     }
 }

@@ -11,6 +11,7 @@ impl HandError {
         match self {
             Self::NoSuchFinger(_) | Self::NoSuchStage(_) | Self::NoSuchElement { .. } => libc::EINVAL,
             Self::SetPoint(error) => error.errno(),
+            Self::Path(error) => error.errno(),
             Self::Configuration(error) => error.errno(),
             Self::Recovery(error) => error.errno(),
             Self::TooMuchForce { .. } => libc::ERANGE,

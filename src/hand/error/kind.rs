@@ -1,6 +1,6 @@
 //! The kind of an error, without the values in it.
 
-use super::{ConfigurationError, HandError, RecoveryError, SetPointError};
+use super::{ConfigurationError, HandError, PathError, RecoveryError, SetPointError};
 use std::mem::{Discriminant, discriminant};
 
 /// The kind of a [`HandError`]. Two errors that differ only in their values have the same kind.
@@ -16,6 +16,7 @@ pub(crate) struct ErrorKind {
 enum Cause {
     None,
     SetPoint(Discriminant<SetPointError>),
+    Path(Discriminant<PathError>),
     Configuration(Discriminant<ConfigurationError>),
     Recovery(Discriminant<RecoveryError>),
 }
@@ -25,6 +26,7 @@ impl HandError {
     pub(crate) fn kind(&self) -> ErrorKind {
         let cause = match self {
             Self::SetPoint(error) => Cause::SetPoint(discriminant(error)),
+            Self::Path(error) => Cause::Path(discriminant(error)),
             Self::Configuration(error) => Cause::Configuration(discriminant(error)),
             Self::Recovery(error) => Cause::Recovery(discriminant(error)),
             _ => Cause::None,

@@ -14,6 +14,7 @@ mod hand;
 mod joints;
 mod links;
 mod monitors;
+mod motion;
 mod motor;
 mod named_hand;
 mod named_values;
@@ -35,6 +36,7 @@ pub use hand::{ConfiguredHand, EndState, OnFault, OutOfRange, PeriodClock, RealT
 pub use joints::ConfiguredJoints;
 pub use links::ConfiguredLinks;
 pub use monitors::ConfiguredMonitors;
+pub use motion::{ConfiguredMotion, ExpiryReaction};
 pub use motor::ConfiguredMotor;
 pub use named_hand::NamedHand;
 pub use object::{ConfiguredObject, ObjectShape};
@@ -123,6 +125,8 @@ pub struct ConfiguredFinger {
     pub stiffness: ConfiguredStiffness,
     /// `[finger.controller]`
     pub controller: ConfiguredController,
+    /// `[finger.motion]`
+    pub motion: ConfiguredMotion,
     /// `[finger.simulation]`
     pub simulation: ConfiguredSimulation,
 }
@@ -203,6 +207,7 @@ impl Default for ConfiguredFinger {
             zeroing: Default::default(),
             stiffness: Default::default(),
             controller: Default::default(),
+            motion: Default::default(),
             simulation: Default::default(),
         }
     }

@@ -1,0 +1,185 @@
+//! Makes smooth motion of set points that arrive at a low rate.
+//!
+//! Each new set point adds a smooth step to the motion, and the steps overlap. The rate of a step is a quadratic
+//! B-spline, whose three parts each last as long as a period of the planner. The sum of the steps is therefore
+//! continuous up to its acceleration, and set points that come at equal times and distances give a constant rate.
+//! Nothing overshoots: the sum stays between the set points that were sent. The price is a delay of one and a half
+//! periods of the planner.
+//!
+//! A polynomial to each new set point with an estimated final rate would have a smaller delay. It was rejected, because
+//! it overshoots the last set point before a planner stops sending.
+
+use crate::control::motion::Motion;
+use crate::control::spring::slew::Slew;
+use nalgebra::Vector3;
+
+/// Smallest distance of two steps, as a fraction of the planner's period. Set points that come faster are combined.
+const SPACING: f64 = 0.25;
+
+/// A step lasts for three periods of the planner, so no more steps overlap.
+const MOST_STEPS: usize = 13;
+
+/// The constant part of the interpolation.
+#[derive(Clone, Debug)]
+pub struct Interpolation {
+    /// Period of the servo, s.
+    period: f64,
+    /// Period of the planner, s.
+    time: f64,
+    /// Smallest distance of two steps, cycles.
+    spacing: u32,
+    /// Limits a step to the distance that the speed limit of set points permits.
+    slew: Slew,
+}
+
+/// The steps that have not ended.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct InterpolationState {
+    /// Set point before the steps, rad.
+    base: Vector3<f64>,
+    /// Set point after the steps, rad.
+    admitted: Vector3<f64>,
+    steps: [Step; MOST_STEPS],
+    count: usize,
+    /// Cycles until the next step may begin.
+    wait: u32,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Step {
+    way: Vector3<f64>,
+    /// Time since the step began, s.
+    age: f64,
+}
+
+impl Interpolation {
+    /// Constructs the interpolation for a planner that sends a set point every `time` s. `speed` is the limit of the
+    /// joint rates, rad/s, and `rate` is in Hz.
+    pub fn new(time: f64, speed: f64, rate: f64) -> Self {
+        // Rounding up keeps the number of steps that overlap below `MOST_STEPS`.
+        let spacing = (time * rate * SPACING).ceil().max(1.0);
+        Self { period: 1.0 / rate, time, spacing: spacing as u32, slew: Slew::new(speed, rate / spacing) }
+    }
+
+    /// Advances by one cycle toward `target`, rad. Returns the joint angles, and their motion unless they rest.
+    pub fn advance(&self, state: &mut InterpolationState, target: &Vector3<f64>) -> (Vector3<f64>, Option<Motion>) {
+        state.wait = state.wait.saturating_sub(1);
+        if state.wait == 0 && state.admitted != *target && state.count < MOST_STEPS {
+            let before = state.admitted;
+            self.slew.advance(&mut state.admitted, target);
+            state.steps[state.count] = Step { way: state.admitted - before, age: 0.0 };
+            state.count += 1;
+            state.wait = self.spacing;
+        }
+        if state.count == 0 {
+            return (state.admitted, None);
+        }
+        let (mut joints, mut motion) = (state.base, Motion::default());
+        let mut ended = 0;
+        for step in &mut state.steps[..state.count] {
+            step.age += self.period;
+            let part = step.age / self.time;
+            if part >= 3.0 {
+                ended += 1;
+            }
+            let [place, rate, acceleration, jerk] = smooth_step(part);
+            joints += step.way * place;
+            motion.rates += step.way * (rate / self.time);
+            motion.accelerations += step.way * (acceleration / self.time.powi(2));
+            motion.jerk += step.way * (jerk / self.time.powi(3));
+        }
+        // Steps end in the order in which they began.
+        for step in &state.steps[..ended] {
+            state.base += step.way;
+        }
+        state.steps.copy_within(ended..state.count, 0);
+        state.count -= ended;
+        if state.count == 0 {
+            // Rounding errors of the sum must not accumulate.
+            state.base = state.admitted;
+        }
+        (joints, Some(motion))
+    }
+}
+
+impl InterpolationState {
+    /// Returns the state of a set point that rests at `joints`, rad.
+    pub fn at_rest(joints: Vector3<f64>) -> Self {
+        Self { base: joints, admitted: joints, ..Self::default() }
+    }
+}
+
+/// Returns a step from 0 to 1 and its first three derivatives, at a time in planner's periods from 0 to 3.
+fn smooth_step(time: f64) -> [f64; 4] {
+    let left = 3.0 - time;
+    if time < 1.0 {
+        [time.powi(3) / 6.0, 0.5 * time.powi(2), time, 1.0]
+    } else if time < 2.0 {
+        let rate = (3.0 - time) * time - 1.5;
+        [0.5 - ((time / 3.0 - 1.5) * time + 1.5) * time, rate, 3.0 - 2.0 * time, -2.0]
+    } else if left > 0.0 {
+        [1.0 - left.powi(3) / 6.0, 0.5 * left.powi(2), -left, 1.0]
+    } else {
+        [1.0, 0.0, 0.0, 0.0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const RATE: f64 = 1000.0;
+
+    /// Runs the interpolation of a planner with a period of 0.1 s. `send` returns the set point of each cycle.
+    fn run(cycles: u32, send: impl Fn(u32) -> Vector3<f64>) -> Vec<(Vector3<f64>, Motion)> {
+        let interpolation = Interpolation::new(0.1, 5.0, RATE);
+        let mut state = InterpolationState::at_rest(Vector3::zeros());
+        let next = |cycle| {
+            let (joints, motion) = interpolation.advance(&mut state, &send(cycle));
+            (joints, motion.unwrap_or_default())
+        };
+        (0..cycles).map(next).collect()
+    }
+
+    #[test]
+    fn equal_steps_give_a_constant_rate() {
+        let all = run(2000, |cycle| Vector3::x() * (f64::from(cycle / 100) * 0.05));
+        assert!(all[400..].iter().all(|(_, motion)| (motion.rates.x - 0.5).abs() < 1e-9));
+        // One and a half periods of delay, and half a period that a set point rests on average.
+        assert!((all[1499].0.x - 0.5 * (1.5 - 0.15 - 0.05)).abs() < 1e-3, "{}", all[1499].0.x);
+    }
+
+    #[test]
+    fn a_far_step_keeps_to_the_speed_limit() {
+        let target = Vector3::new(1.0, -2.0, 0.0);
+        let all = run(1500, |_| target);
+        assert!(all.iter().all(|(_, motion)| motion.rates.amax() < 5.0 * (1.0 + 1e-9)));
+        assert!((all[1499].0 - target).amax() < 1e-12 && all[1499].1 == Motion::default());
+    }
+
+    proptest! {
+        #[test]
+        fn any_stream_is_smooth_and_stays_within_its_set_points(
+            places in prop::collection::vec(-1.0..1.0f64, 1..40), every in 1u32..150,
+        ) {
+            let send = |cycle: u32| {
+                let index = (cycle / every) as usize;
+                Vector3::x() * places[index.min(places.len() - 1)]
+            };
+            let all = run(40 * every + 2000, send);
+            let most = places.iter().fold(0.0f64, |most, place| most.max(place.abs()));
+            for pair in all.windows(2) {
+                let [(before, motion), (after, next)] = pair else { unreachable!("pairs") };
+                prop_assert!(after.x.abs() <= most + 1e-9);
+                let rate = (after.x - before.x) * RATE;
+                prop_assert!((rate - 0.5 * (motion.rates.x + next.rates.x)).abs() < 0.01);
+                let acceleration = (next.rates.x - motion.rates.x) * RATE;
+                let expected = 0.5 * (motion.accelerations.x + next.accelerations.x);
+                prop_assert!((acceleration - expected).abs() < 5.0, "{acceleration} {expected}");
+                prop_assert!((next.accelerations.x - motion.accelerations.x).abs() < 50.0);
+            }
+            prop_assert!((all[all.len() - 1].0.x - places[places.len() - 1]).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! The path that a planner sends to a servo. The tables are large, so they have pages of their own: only the struct
+//! moves through the stack.
+
+use crate::control::motion::{PathTable, TimedStiffness};
+use crate::model::path::Piece;
+use crate::realtime::{LockedMemory, Pages};
+use nalgebra::Vector3;
+
+/// Largest number of pieces of a path.
+pub const MOST_PIECES: usize = 256;
+
+/// Largest number of poses of a path.
+pub const MOST_POSES: usize = 128;
+
+/// A path with its number and its beginning.
+pub(super) struct PathBuffer {
+    /// Number of the path, from 1.
+    pub number: u32,
+    /// The period of the servo in which the path begins, as in [`Reference::period`](crate::finger::Reference::period).
+    pub origin: u64,
+    pieces: Pages<[Piece]>,
+    piece_count: usize,
+    stiffness: Pages<[TimedStiffness]>,
+    stiffness_count: usize,
+}
+
+impl PathBuffer {
+    /// Constructs a path that rests, and adds its pages to `memory`.
+    pub fn new(memory: &mut LockedMemory) -> Self {
+        let pieces = Pages::from_fn(MOST_PIECES, |_| Piece::at_rest(Vector3::zeros()));
+        let stiffness = Pages::from_fn(MOST_POSES, |_| TimedStiffness::default());
+        memory.add(&pieces);
+        memory.add(&stiffness);
+        Self { number: 0, origin: 0, pieces, piece_count: 1, stiffness, stiffness_count: 0 }
+    }
+
+    /// Replaces the path. Entries beyond the largest numbers are ignored; the caller must have refused such a path.
+    pub fn fill(&mut self, number: u32, origin: u64, path: &PathTable) {
+        (self.number, self.origin) = (number, origin);
+        self.piece_count = path.pieces.len().min(MOST_PIECES);
+        self.pieces[..self.piece_count].copy_from_slice(&path.pieces[..self.piece_count]);
+        self.stiffness_count = path.stiffness.len().min(MOST_POSES);
+        self.stiffness[..self.stiffness_count].copy_from_slice(&path.stiffness[..self.stiffness_count]);
+    }
+
+    /// Returns the path.
+    pub fn table(&self) -> PathTable<'_> {
+        PathTable { pieces: &self.pieces[..self.piece_count], stiffness: &self.stiffness[..self.stiffness_count] }
+    }
+}

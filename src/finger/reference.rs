@@ -1,0 +1,15 @@
+//! The reference of a finger: where its set point is on its way, and how it moves.
+
+use crate::control::Motion;
+use nalgebra::Vector3;
+
+/// The reference that the controller follows. The reference of a finger that is not a spring is the measured pose.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reference {
+    /// Number of the period: the cycles since open in which the controller ran, plus the periods that it skipped.
+    pub period: u64,
+    /// Joint angles, rad.
+    pub joints: Vector3<f64>,
+    /// Derivatives of the joint angles.
+    pub motion: Motion,
+}

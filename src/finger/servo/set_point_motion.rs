@@ -1,0 +1,60 @@
+//! State of the motion of a set point: its path, its interpolation and its expiry.
+
+use crate::control::motion::{Follower, InterpolationState};
+use nalgebra::Vector3;
+
+/// State of the motion of one finger's set point.
+pub(super) struct SetPointMotion {
+    /// Number of the period of the next cycle.
+    pub next_period: u64,
+    pub path: Following,
+    /// The place to which set points are interpolated, rad.
+    pub target: Vector3<f64>,
+    pub interpolation: InterpolationState,
+    pub expiry: Option<Expiry>,
+    /// The spring phase that ended when the last set point expired. A set point that a planner sent before it could
+    /// know of that is still valid.
+    pub expired_phase: Option<u32>,
+}
+
+/// The path that is followed, or that was followed last.
+pub(super) struct Following {
+    /// Number of the path; 0 before the first one.
+    pub number: u32,
+    pub follower: Option<Follower>,
+    /// Whether the path changes the stiffness.
+    pub stiffness: bool,
+}
+
+/// When the set point expires, in periods.
+pub(super) struct Expiry {
+    pub sent: u64,
+    pub expires: u64,
+}
+
+impl SetPointMotion {
+    pub fn new() -> Self {
+        Self {
+            next_period: 1,
+            path: Following { number: 0, follower: None, stiffness: false },
+            target: Vector3::zeros(),
+            interpolation: InterpolationState::default(),
+            expiry: None,
+            expired_phase: None,
+        }
+    }
+
+    /// Begins a spring phase with a set point that rests at `joints`, rad.
+    pub fn begin(&mut self, joints: Vector3<f64>) {
+        self.rest(joints);
+        self.expiry = None;
+        self.expired_phase = None;
+    }
+
+    /// Ends a path and an interpolation. The set point rests at `joints`, rad.
+    pub fn rest(&mut self, joints: Vector3<f64>) {
+        self.path.follower = None;
+        self.target = joints;
+        self.interpolation = InterpolationState::at_rest(joints);
+    }
+}

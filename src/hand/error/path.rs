@@ -1,0 +1,136 @@
+//! The errors of a path.
+
+use crate::hand::SetPointError;
+use crate::model::FingerNumber;
+use thiserror::Error;
+
+/// The reason why a finger refuses a path. Poses are numbered from 0.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PathError {
+    /// The path has no pose, or too many.
+    #[error("a path of {count} poses: send 1 to {most} poses, and further ones as another path")]
+    Count {
+        /// Number of poses.
+        count: usize,
+        /// The largest number of poses.
+        most: usize,
+    },
+    /// The time for which a set point is valid is not usable.
+    #[error("a set point cannot be valid for {0} ms: send 0 for the configured time, or up to 3600000")]
+    Valid(f64),
+    /// A time is not later than the one before.
+    #[error(
+        "the time of pose {pose} of the path of finger {finger} is {time} s after {before} s: times count from the \
+         beginning of the path, and each must be at least {least} s later than the one before and at most {most} s"
+    )]
+    Time {
+        /// The finger.
+        finger: FingerNumber,
+        /// The pose.
+        pose: usize,
+        /// Its time, s.
+        time: f64,
+        /// The time of the pose before, or 0, s.
+        before: f64,
+        /// Smallest distance of two times, s.
+        least: f64,
+        /// Largest time, s.
+        most: f64,
+    },
+    /// The path mixes joint angles and tip positions.
+    #[error(
+        "pose {pose} of the path of finger {finger} is of another kind than pose 0: send joint angles or tip positions \
+         in all poses"
+    )]
+    Mixed {
+        /// The finger.
+        finger: FingerNumber,
+        /// The first pose of another kind.
+        pose: usize,
+    },
+    /// The finger cannot take a pose, or a place on the way to it.
+    #[error("{} pose {pose} of the path: {source}", if *on_the_way { "on the way to" } else { "in" })]
+    Pose {
+        /// The pose.
+        pose: usize,
+        /// Whether the place is between this pose and the one before.
+        on_the_way: bool,
+        /// The reason.
+        source: SetPointError,
+    },
+    /// The path leaves the joint limits between two poses.
+    #[error(
+        "on the way to pose {pose}, joint {joint} of finger {finger} would go to {value:.4} rad, outside its limits, \
+         {low:.4} to {high:.4} rad: add poses, or move more slowly at this pose"
+    )]
+    BeyondJointLimit {
+        /// The finger.
+        finger: FingerNumber,
+        /// The pose.
+        pose: usize,
+        /// Number of the joint, 0 to 2.
+        joint: usize,
+        /// The largest excursion, rad.
+        value: f64,
+        /// Lower limit, rad.
+        low: f64,
+        /// Upper limit, rad.
+        high: f64,
+    },
+    /// The path is too fast.
+    #[error(
+        "on the way to pose {pose}, the {quantity} of joint {joint} of finger {finger} would reach {value:.1} {unit}, \
+         above `finger.motion.{quantity}` = {limit}: multiply all times by {factor:.2}, begin and end more gently, or \
+         set `hand.out_of_range = \"clamp\"`, which does so"
+    )]
+    TooFast {
+        /// The finger.
+        finger: FingerNumber,
+        /// The pose.
+        pose: usize,
+        /// Number of the joint, 0 to 2.
+        joint: usize,
+        /// `speed`, `acceleration` or `jerk`.
+        quantity: &'static str,
+        /// The unit of the quantity.
+        unit: &'static str,
+        /// The largest value on the path.
+        value: f64,
+        /// The configured limit.
+        limit: f64,
+        /// The factor by which the whole path must be slower.
+        factor: f64,
+    },
+    /// A tip path cannot be followed exactly.
+    #[error(
+        "on the way to pose {pose}, the tip of finger {finger} would leave the path by {deviation:.3} cm, because the \
+         path is long for a table of {pieces} pieces: send it in two parts"
+    )]
+    Coarse {
+        /// The finger.
+        finger: FingerNumber,
+        /// The pose.
+        pose: usize,
+        /// The largest distance from the path, cm.
+        deviation: f64,
+        /// Size of the table.
+        pieces: usize,
+    },
+    /// The finger has become a spring again while the path was computed.
+    #[error("finger {0} has left its pose while the path was computed, and holds another one: send the path again")]
+    Moved(FingerNumber),
+}
+
+impl PathError {
+    /// Returns the errno that describes the error best.
+    #[must_use]
+    pub fn errno(&self) -> i32 {
+        match self {
+            Self::Count { .. } | Self::Valid(_) | Self::Time { .. } | Self::Mixed { .. } => libc::EINVAL,
+            Self::Pose { source, .. } => source.errno(),
+            Self::BeyondJointLimit { .. } | Self::TooFast { .. } | Self::Coarse { .. } => libc::ERANGE,
+            Self::Moved(_) => libc::EAGAIN,
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Timed paths: poses with times, which a finger passes in smooth motion.
+
+mod limits;
+mod plan;
+mod tips;
+
+pub use plan::{Plan, plan_path};
+
+use crate::finger::Stage;
+use crate::hand::{Hand, HandError, PathError, Pose};
+use crate::model::FingerNumber;
+use std::time::Duration;
+
+/// A pose of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPose {
+    /// Time since the beginning of the path, s.
+    pub time: f64,
+    /// Where the finger is at this time. All poses of a path are of one kind. Between the poses the joint angles, or
+    /// the tip, follow a spline. From rest to a single position of the tip, the tip moves along a straight line.
+    pub pose: Pose,
+    /// Kx in the finger's frame, N/cm: `rows[row][column]`. Kx reaches this value at the time of the pose. It changes
+    /// linearly from the last pose with a Kx, or from the beginning of the path. Without it the pose does not affect
+    /// Kx.
+    pub stiffness: Option<[[f64; 3]; 3]>,
+}
+
+impl Hand {
+    /// Sends a path to finger 1, 2 or 3. The path begins at once where the set point is, continues its motion, passes
+    /// every pose at its time, and rests at the last one. Joint angles, rates, accelerations and jerk are continuous.
+    /// The finger follows without the lag of a set point that is sent by itself.
+    ///
+    /// The whole path is checked against the joint limits and the limits of `[finger.motion]` before anything moves. A
+    /// later path, or a later place for the finger, replaces the path without a jump. A later Kx takes effect at once,
+    /// and the path no longer changes Kx.
+    ///
+    /// `valid` is how long the end of the path is valid after the finger has arrived; none for the configured time.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger, if the finger is faulted or is not a spring, or if the path is
+    /// refused ([`PathError`]). Then the finger continues with the last set point or path.
+    pub fn send_path(&self, finger: i32, poses: &[PathPose], valid: Option<Duration>) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
+        let member = self.dispatcher.member(finger)?;
+        // The lock is held throughout, so that the limits do not change between the check and the sending.
+        let admission = member.admission.read();
+        let report = self.dispatcher.last_report(finger)?;
+        let plan = admission.path(&report.reference, poses)?;
+        match report.stage {
+            Stage::Running => {}
+            Stage::Faulted(fault) => return Err(HandError::Faulted { finger, fault }),
+            _ => return Err(HandError::Busy(finger)),
+        }
+        let (damping, law) = (admission.damping, plan.law);
+        let (stiffest, end) = (plan.stiffest(), plan.end());
+        let sent = member.mailbox.send_path(
+            (report.springs, report.reference.period, valid.map(|valid| valid.as_secs_f64())),
+            &plan.table(),
+            |set_point| {
+                (set_point.joints, set_point.law) = (end, law);
+                for stiffness in stiffest {
+                    set_point.stiffness = stiffness;
+                    damping.admit(set_point)?;
+                }
+                Ok(())
+            },
+        );
+        match sent.map_err(|fault| HandError::Faulted { finger, fault })? {
+            Ok(Some(_)) => Ok(()),
+            Ok(None) => Err(PathError::Moved(finger).into()),
+            Err(refusal) => Err(HandError::SetPoint(refusal)),
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! Computes a path from its poses.
+
+use super::PathPose;
+use super::limits::Excess;
+use crate::control::motion::{PathTable, TimedStiffness};
+use crate::control::{Law, spatial};
+use crate::finger::{MOST_POSES, Reference};
+use crate::hand::admission::Admission;
+use crate::hand::opening::admission;
+use crate::hand::{PathError, Pose, SetPointError};
+use crate::model::FingerNumber;
+use crate::model::configuration::{Configuration, OutOfRange};
+use crate::model::path::{Knot, Piece, Start, spline};
+use nalgebra::{Matrix6, Vector3};
+
+/// Smallest distance of the times of two poses, s.
+const LEAST_STEP: f64 = 1e-3;
+
+/// Longest path, s.
+const LONGEST: f64 = 3600.0;
+
+/// Margin by which a path that is too fast is made slower than necessary. Its limits are then met despite rounding.
+const MARGIN: f64 = 1.001;
+
+/// Largest number of attempts to make a path slower. From rest one attempt is enough. A path that begins in motion has
+/// another shape after each.
+const ATTEMPTS: usize = 30;
+
+/// Computes the path that finger `number` of a hand with this configuration would follow, and checks it. For tools,
+/// which have no hand.
+///
+/// # Errors
+/// Returns the reason why the finger would refuse the path.
+pub fn plan_path(
+    configuration: &Configuration,
+    number: FingerNumber,
+    reference: &Reference,
+    poses: &[PathPose],
+) -> Result<Plan, PathError> {
+    admission(configuration, number).path(reference, poses)
+}
+
+/// A path that has been computed and checked.
+pub struct Plan {
+    pieces: Vec<Piece>,
+    stiffness: Vec<TimedStiffness>,
+    /// The law of the path.
+    pub law: Law,
+}
+
+impl Plan {
+    /// Returns the path as a servo follows it.
+    pub fn table(&self) -> PathTable<'_> {
+        PathTable { pieces: &self.pieces, stiffness: &self.stiffness }
+    }
+
+    /// Returns the joint angles at the end of the path, rad.
+    pub fn end(&self) -> Vector3<f64> {
+        self.pieces.last().map_or_else(Vector3::zeros, |last| last.at(last.end()).place)
+    }
+
+    /// Returns the stiffest Kx of the path, and then the last one. There is none if the path does not change Kx.
+    pub fn stiffest(&self) -> impl Iterator<Item = Matrix6<f64>> {
+        let largest = |one: &TimedStiffness| one.kx.symmetric_eigenvalues().max();
+        let stiffest = self.stiffness.iter().max_by(|one, other| largest(one).total_cmp(&largest(other)));
+        stiffest
+            .into_iter()
+            .chain(self.stiffness.last())
+            .map(|timed| spatial(&timed.kx))
+            .collect::<Vec<_>>()
+            .into_iter()
+    }
+}
+
+impl Admission {
+    /// Computes the path from `reference` through `poses`, and checks it.
+    pub fn path(&self, reference: &Reference, poses: &[PathPose]) -> Result<Plan, PathError> {
+        if !(1..=MOST_POSES).contains(&poses.len()) {
+            return Err(PathError::Count { count: poses.len(), most: MOST_POSES });
+        }
+        let times = self.times(poses)?;
+        self.check_kinds(poses)?;
+        let mut stiffness = self.stiffness_along(poses)?;
+        let start = Start {
+            place: reference.joints,
+            rates: reference.motion.rates,
+            accelerations: reference.motion.accelerations,
+            jerk: reference.motion.jerk,
+        };
+        let law = if matches!(poses[0].pose, Pose::Tip(_)) { Law::Exact } else { self.law };
+        let mut scale = 1.0;
+        for _ in 0..ATTEMPTS {
+            let scaled: Vec<f64> = times.iter().map(|time| time * scale).collect();
+            let (pieces, per_pose) = self.pieces(&start, poses, &scaled)?;
+            self.check_joint_limits(&pieces, per_pose, &start.place)?;
+            match self.excess(&pieces, &start) {
+                None => {
+                    stiffness.iter_mut().for_each(|timed| timed.time *= scale);
+                    return Ok(Plan { pieces, stiffness, law });
+                }
+                Some(excess) if self.out_of_range == OutOfRange::Refuse => {
+                    return Err(self.too_fast(&excess, per_pose));
+                }
+                Some(Excess { factor, .. }) => scale *= factor * MARGIN,
+            }
+        }
+        let (pieces, per_pose) = self.pieces(&start, poses, &times)?;
+        match self.excess(&pieces, &start) {
+            Some(excess) => Err(self.too_fast(&excess, per_pose)),
+            None => Ok(Plan { pieces, stiffness, law }),
+        }
+    }
+
+    /// Checks the times of the poses and returns them, s.
+    fn times(&self, poses: &[PathPose]) -> Result<Vec<f64>, PathError> {
+        let mut before = 0.0;
+        for (pose, &PathPose { time, .. }) in poses.iter().enumerate() {
+            // This form of the comparison rejects NaN.
+            if !(time >= before + LEAST_STEP && time <= LONGEST) {
+                let (least, most) = (LEAST_STEP, LONGEST);
+                return Err(PathError::Time { finger: self.finger, pose, time, before, least, most });
+            }
+            before = time;
+        }
+        Ok(poses.iter().map(|pose| pose.time).collect())
+    }
+
+    /// Refuses numbers that are not finite, and a mixture of joint angles and tip positions.
+    fn check_kinds(&self, poses: &[PathPose]) -> Result<(), PathError> {
+        let is_tip = |pose: &PathPose| matches!(pose.pose, Pose::Tip(_));
+        for (index, pose) in poses.iter().enumerate() {
+            let (Pose::Joints(place) | Pose::Tip(place)) = pose.pose;
+            self.finite("Place", &place).map_err(|source| in_pose(index, source))?;
+            if is_tip(pose) != is_tip(&poses[0]) {
+                return Err(PathError::Mixed { finger: self.finger, pose: index });
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the stiffness along the path. It is empty if no pose has a stiffness.
+    fn stiffness_along(&self, poses: &[PathPose]) -> Result<Vec<TimedStiffness>, PathError> {
+        let mut along: Vec<TimedStiffness> = Vec::new();
+        for (index, pose) in poses.iter().enumerate() {
+            let given = pose.stiffness.map(|rows| self.kx(rows));
+            let given = given.transpose().map_err(|source| in_pose(index, source))?;
+            along.extend(given.map(|kx| TimedStiffness { time: pose.time, kx }));
+        }
+        Ok(along)
+    }
+
+    /// Computes the pieces, and the number of pieces for each pose.
+    fn pieces(&self, start: &Start, poses: &[PathPose], times: &[f64]) -> Result<(Vec<Piece>, usize), PathError> {
+        let (mut joints, mut tips) = (Vec::new(), Vec::new());
+        for (pose, (given, &time)) in poses.iter().zip(times).enumerate() {
+            match given.pose {
+                Pose::Joints(angles) => {
+                    let place = self.joints(angles).map_err(|source| in_pose(pose, source))?;
+                    joints.push(Knot { time, place });
+                }
+                Pose::Tip(tip) => tips.push(Knot { time, place: tip.into() }),
+            }
+        }
+        if tips.is_empty() { Ok((spline(start, &joints), 1)) } else { self.tip_pieces(start, &tips) }
+    }
+}
+
+pub(super) fn in_pose(pose: usize, source: SetPointError) -> PathError {
+    PathError::Pose { pose, on_the_way: false, source }
+}

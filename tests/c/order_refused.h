@@ -1,0 +1,25 @@
+/* How order.c reports a refusal. */
+
+static const char *name_of(int number)
+{
+    switch (number) {
+    case EBUSY: return "EBUSY";
+    case EDOM: return "EDOM";
+    case EFAULT: return "EFAULT";
+    case EINVAL: return "EINVAL";
+    case EIO: return "EIO";
+    case ENODEV: return "ENODEV";
+    case ENOENT: return "ENOENT";
+    case ENOTSUP: return "ENOTSUP";
+    case ERANGE: return "ERANGE";
+    default: return strerror(number);
+    }
+}
+
+/* Checks that the call is refused for the reason that has this word in its text. */
+#define REFUSED(Call, Result, Word) \
+    do { \
+        CHECK((Result) == -1); \
+        printf("%s %s\n", (Call), name_of(errno)); \
+        CHECK(strstr(HandError(), (Word)) != NULL); \
+    } while (0)

@@ -1,0 +1,51 @@
+//! Paths that a finger refuses, and paths that it makes slower.
+
+use crate::motion::{configuration, joints};
+use crate::rig::TARGET;
+use sun2xp::finger::Reference;
+use sun2xp::hand::{PathError, PathPose, Pose, plan_path};
+use sun2xp::model::FingerNumber;
+use sun2xp::model::configuration::OutOfRange;
+
+#[test]
+fn refused_paths_name_the_pose_and_the_remedy() {
+    let rest = Reference { joints: TARGET, ..Reference::default() };
+    let refused = |poses: &[PathPose]| match plan_path(&configuration(), FingerNumber::ONE, &rest, poses) {
+        Ok(_) => panic!("accepted"),
+        Err(error) => (error.to_string(), error.errno()),
+    };
+    let tip = |time: f64, tip: [f64; 3]| PathPose { time, pose: Pose::Tip(tip), stiffness: None };
+    let soft = Some([[9.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    for (poses, words, errno) in [
+        (vec![], "0 poses", libc::EINVAL),
+        (vec![joints(0.5, [0.2, 0.6, 1.1]); 2], "time of pose 1", libc::EINVAL),
+        (vec![joints(f64::NAN, [0.2, 0.6, 1.1])], "time of pose 0", libc::EINVAL),
+        (vec![joints(0.5, [0.2, 0.6, 1.1]), tip(1.0, [0.0, 0.0, 9.0])], "another kind", libc::EINVAL),
+        (vec![joints(0.5, [0.2, f64::NAN, 1.1])], "NaN", libc::EINVAL),
+        (vec![joints(0.5, [0.2, 2.6, 1.1])], "outside the limits", libc::ERANGE),
+        (vec![joints(0.05, [0.3, 0.7, 1.2])], "multiply all times by", libc::ERANGE),
+        (vec![joints(0.8, [0.2, 1.74, 1.1]), joints(1.6, [0.2, 1.74, 1.2])], "outside its limits", libc::ERANGE),
+        (vec![tip(1.0, [0.0, 0.0, 20.0])], "pose 0", libc::ERANGE),
+        (vec![PathPose { stiffness: soft, ..joints(1.0, [0.3, 0.7, 1.2]) }], "eigenvalue of Kx", libc::ERANGE),
+    ] {
+        let (text, number) = refused(&poses);
+        assert!(text.contains(words) && number == errno, "{number}: {text}");
+    }
+}
+
+#[test]
+fn a_path_that_is_too_fast_is_made_slower_if_commands_are_clamped() {
+    let mut clamping = configuration();
+    clamping.hand.out_of_range = OutOfRange::Clamp;
+    let rest = Reference { joints: TARGET, ..Reference::default() };
+    let poses = [joints(0.05, [0.4, 0.7, 1.2]), joints(0.1, [0.2, 0.6, 1.1])];
+    let plan = plan_path(&clamping, FingerNumber::ONE, &rest, &poses).unwrap_or_else(|error| panic!("{error}"));
+    let pieces = plan.table().pieces;
+    assert!(pieces[1].end() > 0.1);
+    for (order, limit) in [(1, 5.0), (2, 100.0), (3, 5000.0)] {
+        let most = pieces.iter().map(|piece| piece.bounds(order).1.amax()).fold(0.0, f64::max);
+        assert!(most <= limit, "{most} of derivative {order}");
+    }
+    let again = plan_path(&configuration(), FingerNumber::ONE, &rest, &poses);
+    assert!(matches!(again, Err(PathError::TooFast { .. })));
+}
