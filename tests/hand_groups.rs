@@ -137,3 +137,36 @@ fn kinematics_agree_with_each_other_and_with_the_tip() {
     assert_eq!(hand.jacobian(1, Some([f64::NAN, 0.0, 0.0])).expect_err("NaN").errno(), libc::EINVAL);
     hand.close();
 }
+
+/// The planner turns the palm a little in every call, as an arm does. The fingers keep their poses, because they
+/// compensate the gravity that acts on them, and their recordings can be replayed.
+#[test]
+fn gravity_turns_while_the_hand_is_open() {
+    let hand = open();
+    let joints = [0.2, 0.6, 1.1];
+    sent(&hand, &[1, 2, 3].map(|finger| FingerCommand::new(finger).joints(joints)));
+    hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    let at = |hand: &Hand, finger| Vector3::from(hand.position(finger).expect("a position"));
+    let before = [1, 2, 3].map(|finger| at(&hand, finger));
+    let unloaded = Vector3::from(hand.joint_torques(1).expect("torques").commanded);
+    for step in 0..100 {
+        let angle = f64::from(step) * 0.02;
+        hand.set_gravity([9.81 * angle.sin(), 0.0, 9.81 * angle.cos()]).expect("a gravity");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    hand.set_gravity([0.0, 9.81, 0.0]).expect("a gravity");
+    hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    std::thread::sleep(Duration::from_millis(300));
+    for finger in 1..=3 {
+        let moved = (at(&hand, finger) - before[finger as usize - 1]).amax();
+        assert!(moved < 0.03, "finger {finger} moved by {moved} rad");
+        let replayed = hand.recording(finger).expect("a recording").replay().expect("replayable");
+        assert!(replayed.different == 0 && replayed.cycles > 500, "{replayed:?}");
+    }
+    let loaded = Vector3::from(hand.joint_torques(1).expect("torques").commanded);
+    assert!((loaded - unloaded).amax() > 1.0, "the finger carries its weight: {unloaded} {loaded}");
+    for gravity in [[f64::NAN, 0.0, 0.0], [0.0, 0.0, 101.0]] {
+        assert_eq!(hand.set_gravity(gravity).expect_err("refused").errno(), libc::EINVAL);
+    }
+    hand.close();
+}

@@ -1,9 +1,9 @@
-//! The exported functions for the kinematics of a finger. Their doc comments are the C manual, as in `calls.rs`.
+//! The exported functions for the kinematics of a finger and for gravity. Their doc comments are the C manual, as in `calls.rs`.
 
 // The exported names are those of the header.
 #![allow(non_snake_case)]
 
-use crate::capi::boundary::guarded;
+use crate::capi::boundary::{MEMORY_OF_CALL, delegated, guarded};
 use crate::capi::default_hand;
 use crate::capi::memory::{fill, load, non_null, size_up_to};
 use crate::capi::refusal::{Refusal, Wanted};
@@ -190,6 +190,39 @@ pub unsafe extern "C" fn GetPalmPose(i: c_int, Pose: *mut PalmPose) -> c_int {
         };
         // SAFETY: by the contract in the manual, `Pose` is null or points to as many bytes as its Size gives.
         unsafe { fill(Pose, "Pose", least, read) }
+    })
+}
+
+/// SetGravity - set gravity in the palm's frame, for a hand on a moving arm
+///
+///     int SetGravity(const double *Gravity);
+///
+///   Gravity   Gravity[3]: gravity along x, y, z of the palm's frame, m/s^2. Always double
+///
+/// Replaces hand.gravity until CloseHand. Every finger compensates the new gravity within a cycle and
+/// without a jump in torque. Simulated fingers feel it too; a simulated object does not. The monitors
+/// begin again with every change, so a planner should not change gravity more often than it needs.
+///
+/// Returns 0, or -1 with
+///   EPERM    forked child
+///   EFAULT   Gravity is null
+///   ENODEV   no hand is open
+///   EINVAL   an entry is NaN, infinite or beyond 100 m/s^2
+///   EIO      a finger is faulted; the other fingers have the new gravity, and this finger needs another
+///            call after RecoverHand
+///
+/// Threads: any. Never waits for a servo. Takes some hundred us, and allocates memory.
+///
+/// Example, a palm whose x axis points down:
+///
+///     double Gravity[3] = {9.81, 0, 0};
+///     SetGravity(Gravity);
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn SetGravity(Gravity: *const f64) -> c_int {
+    delegated("SetGravity", MEMORY_OF_CALL, || {
+        // SAFETY: by the contract in the manual, the pointer is null or points to the array of the synopsis.
+        let gravity = unsafe { load::<f64, 3>(Gravity, "Gravity") }?;
+        Ok(move || default_hand::command(|hand| hand.set_gravity(gravity)))
     })
 }
 

@@ -15,6 +15,7 @@ mod faults;
 mod fingers;
 mod fingertip;
 mod found;
+mod gravity;
 mod groups;
 mod identities;
 mod kinematics;

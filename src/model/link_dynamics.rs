@@ -55,6 +55,11 @@ impl LinkDynamics {
         Self { length, link, tip_mass: mass[3], gravity, centres }
     }
 
+    /// Sets gravity in the finger's frame, m/s^2.
+    pub fn set_gravity(&mut self, gravity: Vector3<f64>) {
+        self.gravity = gravity;
+    }
+
     /// Returns H(theta), kg m^2.
     pub fn inertia(&self, theta: &Vector3<f64>) -> Matrix3<f64> {
         self.inertia_at(&Pose::new(self, theta), self.coupling() * theta[2].cos())

@@ -221,6 +221,11 @@ impl Plant {
         self.links
     }
 
+    /// Sets gravity in the finger's frame, m/s^2.
+    pub fn set_gravity(&mut self, gravity: Vector3<f64>) {
+        self.dynamics.set_gravity(gravity);
+    }
+
     /// Applies a constant force to the fingertip, N, in the finger's frame.
     pub fn set_external_force(&mut self, force: Vector3<f64>) {
         self.external_force = force;

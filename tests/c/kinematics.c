@@ -6,7 +6,7 @@
 
 int main(void)
 {
-    static double Pos[3] = {0.2, 0.6, 1.1}, Far[3] = {0, 0, 99};
+    static double Pos[3] = {0.2, 0.6, 1.1}, Far[3] = {0, 0, 999}, Down[3] = {9.81, 0, 0};
     double Tip[3], Found[3], J[3][3], Moved[3], Other[3];
     struct JointTorques Torques;
     struct PalmPose Pose;
@@ -20,7 +20,7 @@ int main(void)
     CHECK(FindPos(1, Tip, Found) == 0);
     for (joint = 0; joint < 3; joint++)
         CHECK(APART(Found[joint], Pos[joint]) < 1e-9);
-    REFUSED(FindPos(1, Far, Found), ERANGE, "99");
+    REFUSED(FindPos(1, Far, Found), ERANGE, "999");
     CHECK(GetJacobian(1, Pos, &J[0][0]) == 0);
     for (joint = 0; joint < 3; joint++) {
         memcpy(Moved, Pos, sizeof Moved);
@@ -45,6 +45,8 @@ int main(void)
     }
     REFUSED(WaitFingers(1, Fingers, 3, 1.0), EINVAL, "condition 3");
     REFUSED(WaitFingers(1, Fingers, 1, -1.0), EINVAL, "limit");
+    CHECK(SetGravity(Down) == 0);
+    REFUSED(SetGravity(Far), EINVAL, "gravity");
     CHECK(SendPosD(1, Found) == 0);
     CHECK(WaitFingers(0, Fingers, 1, 0.0) == 0);
     CHECK(CloseHand() == 0);

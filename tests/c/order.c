@@ -73,6 +73,7 @@ static void null_pointers(void)
     REFUSED("SendPath", SendPath(9, 999, NULL, NAN), "Poses");
     REFUSED("SendPosFor", SendPosFor(9, NULL, NAN), "Pos");
     REFUSED("AdjustFinger", AdjustFinger(9, NULL), "Keys");
+    REFUSED("SetGravity", SetGravity(NULL), "Gravity");
     REFUSED("PushFinger", PushFinger(9, NULL), "Force");
     REFUSED("GetRecord", GetRecord(9, 99, NULL), "Record");
     REFUSED("WriteBlackBox", WriteBlackBox(9, NULL), "Path");
@@ -115,6 +116,7 @@ static void without_hand(void)
     REFUSED("OnEvent", OnEvent(NULL, NULL), "OpenHand");
     REFUSED("EventDescriptor", EventDescriptor(), "OpenHand");
     REFUSED("StopFinger", StopFinger(9), "OpenHand");
+    REFUSED("SetGravity", SetGravity(NanForce), "OpenHand");
 }
 
 static void small_structs(void)

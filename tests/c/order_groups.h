@@ -23,6 +23,8 @@ static void wrong_groups(void)
 static void wrong_kinematics(void)
 {
     Fingers[0] = 1;
+    REFUSED("SetGravity", SetGravity(StrongForce), "gravity");
+    REFUSED("SetGravity", SetGravity(Force), "stop");
     REFUSED("WaitFingers", WaitFingers(1, Fingers, 9, NAN), "condition 9");
     REFUSED("WaitFingers", WaitFingers(1, Fingers, 1, NAN), "limit");
     REFUSED("WaitFingers", WaitFingers(1, Fingers, 1, 1.0), "stop");
