@@ -15,8 +15,8 @@ use std::thread::{Builder, JoinHandle};
 /// this size.
 const STACK_BYTES: usize = 256 * 1024;
 
-/// Stack of a thread that runs a call on behalf of the planner's thread. Opening a hand needs 290 KiB.
-const CALL_STACK_BYTES: usize = 512 * 1024;
+/// Stack of a thread that runs a call on behalf of the planner's thread. Opening a hand needs more than 512 KiB.
+const CALL_STACK_BYTES: usize = 1024 * 1024;
 
 /// Thread numbers of the running threads that this library has started.
 static OWN: Mutex<Vec<libc::pid_t>> = Mutex::new(Vec::new());
