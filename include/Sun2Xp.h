@@ -180,10 +180,10 @@
    waits, ports or pseudo-terminals need, OpenHand is refused with the errno of the sandbox.
 
    Slow calls: OpenHand, CloseHand, RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger,
-   WriteBlackBox, WaitFingers, OnEvent, EventDescriptor and WaitEvent (while there is no event) run
-   in a thread of the library, and the planner's thread waits for it. A signal handler may jump out
-   of that wait (siglongjmp). The call then continues to its end; until then OpenHand is refused
-   with EBUSY, and CloseHand waits. A WaitEvent that is left takes no event.
+   SetGravity, WriteBlackBox, WaitFingers, OnEvent, EventDescriptor and WaitEvent (while there is no
+   event) run in a thread of the library, and the planner's thread waits for it. A signal handler may
+   jump out of that wait (siglongjmp). The call then continues to its end; until then OpenHand is
+   refused with EBUSY, and CloseHand waits. A WaitEvent that is left takes no event.
 
    Undefined behaviour: the behaviour is undefined if a signal handler jumps out of any other call
    (longjmp, siglongjmp). The same holds if a handler that interrupted a call calls pthread_exit or,
@@ -191,8 +191,9 @@
 
    Memory: OpenHand allocates the memory for the servos, for CloseHand and for all calls that are
    not slow. These calls work even if malloc later returns NULL. OpenHand (12 MiB), RecoverHand,
-   ZeroFinger, IdentifyFinger, AdjustFinger and WriteBlackBox (4 MiB), WaitFingers, OnEvent,
-   EventDescriptor and WaitEvent (64 KiB) are refused with ENOMEM if that much memory is not free.
+   ZeroFinger, IdentifyFinger, AdjustFinger, SetGravity and WriteBlackBox (4 MiB), WaitFingers,
+   OnEvent, EventDescriptor and WaitEvent (64 KiB) are refused with ENOMEM if that much memory is
+   not free.
    If memory runs out while one of them runs, the process is aborted, and the boards' watchdogs end
    the motion. If less than 4 MiB are free when a finger faults, the fault is reported but no black
    box is written, and a line on standard error says so. If the library was loaded with dlopen, the
@@ -353,25 +354,26 @@ _Pragma("push_macro(\"Position\")") _Pragma("push_macro(\"Pressed\")") _Pragma("
 _Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")")
 _Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"Rotation\")") _Pragma("push_macro(\"SendContact\")")
 _Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendGroup\")") _Pragma("push_macro(\"SendPath\")")
-_Pragma("push_macro(\"SendPosFor\")") _Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"Size\")")
-_Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Slide\")") _Pragma("push_macro(\"Spin\")")
-_Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")")
-_Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")") _Pragma("push_macro(\"StopFinger\")")
-_Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"TareTouch\")") _Pragma("push_macro(\"Tension\")")
-_Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")")
-_Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"TipRotation\")") _Pragma("push_macro(\"Torque\")")
-_Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Touching\")") _Pragma("push_macro(\"Unused\")")
-_Pragma("push_macro(\"Valid\")") _Pragma("push_macro(\"Value\")") _Pragma("push_macro(\"Values\")")
-_Pragma("push_macro(\"Velocity\")") _Pragma("push_macro(\"WaitEvent\")") _Pragma("push_macro(\"WaitFingers\")")
-_Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")") _Pragma("push_macro(\"WakeUpMedian\")")
-_Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")") _Pragma("push_macro(\"WarningValue\")")
-_Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")") _Pragma("push_macro(\"ZeroFinger\")")
-_Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")") _Pragma("push_macro(\"const\")")
-_Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")") _Pragma("push_macro(\"float\")")
-_Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")") _Pragma("push_macro(\"long\")")
-_Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")") _Pragma("push_macro(\"sizeof\")")
-_Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")") _Pragma("push_macro(\"typedef\")")
-_Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("push_macro(\"volatile\")")
+_Pragma("push_macro(\"SendPosFor\")") _Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"SetGravity\")")
+_Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Slide\")")
+_Pragma("push_macro(\"Spin\")") _Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")")
+_Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")")
+_Pragma("push_macro(\"StopFinger\")") _Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"TareTouch\")")
+_Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")")
+_Pragma("push_macro(\"Time\")") _Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"TipRotation\")")
+_Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Touching\")")
+_Pragma("push_macro(\"Unused\")") _Pragma("push_macro(\"Valid\")") _Pragma("push_macro(\"Value\")")
+_Pragma("push_macro(\"Values\")") _Pragma("push_macro(\"Velocity\")") _Pragma("push_macro(\"WaitEvent\")")
+_Pragma("push_macro(\"WaitFingers\")") _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")")
+_Pragma("push_macro(\"WakeUpMedian\")") _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")")
+_Pragma("push_macro(\"WarningValue\")") _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")")
+_Pragma("push_macro(\"ZeroFinger\")") _Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")")
+_Pragma("push_macro(\"const\")") _Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")")
+_Pragma("push_macro(\"float\")") _Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")")
+_Pragma("push_macro(\"long\")") _Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")")
+_Pragma("push_macro(\"sizeof\")") _Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")")
+_Pragma("push_macro(\"typedef\")") _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")")
+_Pragma("push_macro(\"volatile\")")
 #undef AdjustFinger
 #undef Answered
 #undef Base
@@ -461,6 +463,7 @@ _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")") _Pragma("pus
 #undef SendPath
 #undef SendPosFor
 #undef SendTip
+#undef SetGravity
 #undef Size
 #undef SkippedPeriods
 #undef Slide
@@ -1582,6 +1585,34 @@ int GetJointTorques(int, struct JointTorques *);
 int GetPalmPose(int, struct PalmPose *);
 
 /*
+ SetGravity - set gravity in the palm's frame, for a hand on a moving arm
+
+     int SetGravity(const double *Gravity);
+
+   Gravity   Gravity[3]: gravity along x, y, z of the palm's frame, m/s^2. Always double
+
+ Replaces hand.gravity until CloseHand. Every finger compensates the new gravity within a cycle and
+ without a jump in torque. Simulated fingers feel it too; a simulated object does not. The monitors
+ begin again with every change, so a planner should not change gravity more often than it needs.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Gravity is null
+   ENODEV   no hand is open
+   EINVAL   an entry is NaN, infinite or beyond 100 m/s^2
+   EIO      a finger is faulted; the other fingers have the new gravity, and this finger needs another
+            call after RecoverHand
+
+ Threads: any. Never waits for a servo. Takes some hundred us, and allocates memory.
+
+ Example, a palm whose x axis points down:
+
+     double Gravity[3] = {9.81, 0, 0};
+     SetGravity(Gravity);
+ */
+int SetGravity(const double *);
+
+/*
  SendPath - send a timed path to a finger
 
      int SendPath(int i, int Count, const struct PathPose *Poses, double ValidMs);
@@ -2258,25 +2289,26 @@ _Pragma("pop_macro(\"Position\")") _Pragma("pop_macro(\"Pressed\")") _Pragma("po
 _Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")")
 _Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"Rotation\")") _Pragma("pop_macro(\"SendContact\")")
 _Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendGroup\")") _Pragma("pop_macro(\"SendPath\")")
-_Pragma("pop_macro(\"SendPosFor\")") _Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"Size\")")
-_Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Slide\")") _Pragma("pop_macro(\"Spin\")")
-_Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")")
-_Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")") _Pragma("pop_macro(\"StopFinger\")")
-_Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"TareTouch\")") _Pragma("pop_macro(\"Tension\")")
-_Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")")
-_Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"TipRotation\")") _Pragma("pop_macro(\"Torque\")")
-_Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Touching\")") _Pragma("pop_macro(\"Unused\")")
-_Pragma("pop_macro(\"Valid\")") _Pragma("pop_macro(\"Value\")") _Pragma("pop_macro(\"Values\")")
-_Pragma("pop_macro(\"Velocity\")") _Pragma("pop_macro(\"WaitEvent\")") _Pragma("pop_macro(\"WaitFingers\")")
-_Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")") _Pragma("pop_macro(\"WakeUpMedian\")")
-_Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")") _Pragma("pop_macro(\"WarningValue\")")
-_Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")") _Pragma("pop_macro(\"ZeroFinger\")")
-_Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")") _Pragma("pop_macro(\"const\")")
-_Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")") _Pragma("pop_macro(\"float\")")
-_Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")") _Pragma("pop_macro(\"long\")")
-_Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")") _Pragma("pop_macro(\"sizeof\")")
-_Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")") _Pragma("pop_macro(\"typedef\")")
-_Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")") _Pragma("pop_macro(\"volatile\")")
+_Pragma("pop_macro(\"SendPosFor\")") _Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"SetGravity\")")
+_Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Slide\")")
+_Pragma("pop_macro(\"Spin\")") _Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")")
+_Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")")
+_Pragma("pop_macro(\"StopFinger\")") _Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"TareTouch\")")
+_Pragma("pop_macro(\"Tension\")") _Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")")
+_Pragma("pop_macro(\"Time\")") _Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"TipRotation\")")
+_Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Touching\")")
+_Pragma("pop_macro(\"Unused\")") _Pragma("pop_macro(\"Valid\")") _Pragma("pop_macro(\"Value\")")
+_Pragma("pop_macro(\"Values\")") _Pragma("pop_macro(\"Velocity\")") _Pragma("pop_macro(\"WaitEvent\")")
+_Pragma("pop_macro(\"WaitFingers\")") _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")")
+_Pragma("pop_macro(\"WakeUpMedian\")") _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")")
+_Pragma("pop_macro(\"WarningValue\")") _Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")")
+_Pragma("pop_macro(\"ZeroFinger\")") _Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")")
+_Pragma("pop_macro(\"const\")") _Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")")
+_Pragma("pop_macro(\"float\")") _Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")")
+_Pragma("pop_macro(\"long\")") _Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")")
+_Pragma("pop_macro(\"sizeof\")") _Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")")
+_Pragma("pop_macro(\"typedef\")") _Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")")
+_Pragma("pop_macro(\"volatile\")")
 #endif
 
 #endif
