@@ -23,10 +23,10 @@ use closed_loop::{ClosedLoop, Held, Senses};
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 use stability::Sample;
 use sun2xp::control::Controller;
-use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
+use sun2xp::model::configuration::{ConfiguredFinger, Law, Scheme};
 
 fn case(scheme: Scheme) -> Case {
-    Case { scheme, rate: 1000.0, poses: 3, seed: 3 }
+    Case { scheme, rate: 1000.0, poses: 3, seed: 3, law: Law::Exact, numbers: None }
 }
 
 #[test]

@@ -5,6 +5,7 @@ use rand_distr::{Distribution, UnitSphere};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use serde::Serialize;
+use sun2xp::control::{Law, Numbers};
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 use toml_edit::ser::ValueSerializer;
 
@@ -15,6 +16,9 @@ pub struct Case {
     pub rate: f64,
     pub poses: usize,
     pub seed: u64,
+    pub law: Law,
+    /// The numbers of state feedback. None: those of the library.
+    pub numbers: Option<Numbers>,
 }
 
 /// The friction of a finger.

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use sun2xp::control::monitors::{Alarm, Watch};
-use sun2xp::control::{Activity, Controller, Feedback, Law, Measured, MotorCommand, Report, SetPoint, State};
+use sun2xp::control::{Activity, Controller, Feedback, Measured, MotorCommand, Report, SetPoint, State};
 use sun2xp::model::InverseKinematics;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::plant::{PLANT_STEP_SECONDS, Plant, Sensors};
@@ -66,13 +66,16 @@ impl ClosedLoop {
         let &Held { case, finger, belief, pose, kx, senses } = held;
         let mut plant = Plant::new(finger, Vector3::zeros()).expect("the default finger");
         let mut sensors = Sensors::new(finger);
-        let controller = Controller::new(belief, case.rate).expect("the default controller");
+        let controller = match &case.numbers {
+            Some(numbers) => Controller::with_numbers(belief, case.rate, numbers),
+            None => Controller::new(belief, case.rate),
+        };
+        let controller = controller.expect("the default controller");
         let state = controller.start(&read(&mut sensors, &plant));
         plant.release_brake();
         let radius = Vector4::from(finger.geometry.motor_radius);
         let motor_torques = plant.tensions().component_mul(&radius);
-        // The exact law, because the accuracy of the spring is measured.
-        let set_point = SetPoint { law: Law::Exact, ..SetPoint::hard_finger(*pose, *kx) };
+        let set_point = SetPoint { law: case.law, ..SetPoint::hard_finger(*pose, *kx) };
         let mut this = Self {
             plant,
             report: Report::default(),

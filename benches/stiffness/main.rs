@@ -3,6 +3,8 @@
 //!     cargo bench --bench stiffness -- [--quick] [--poses N] [--seed N] [--rates 500,1000,2000]
 //!                                      [--controllers "figure 9,state feedback"] [--only TEXT] [--out FOLDER]
 //!                                      [--write docs/stiffness.md]
+//!     cargo bench --bench stiffness -- --truths [TEXT] [--identified] [--law report] [--seeds N] [--short]
+//!     cargo bench --bench stiffness -- --search [TEXT] [--numbers TOML]
 //!
 //! The control core runs against the simulated finger, in memory and in simulated time. One cycle passes between a
 //! sample and its torque.
@@ -13,9 +15,11 @@ mod contact;
 mod fits;
 mod identification;
 mod motion;
+mod overlay;
 mod parallel;
 mod plots;
 mod robustness;
+mod search;
 mod stability;
 mod statics;
 mod table;
@@ -25,12 +29,11 @@ mod truths_table;
 
 use cases::Case;
 use clap::Parser;
-use serde::Deserialize;
-use serde::de::IntoDeserializer;
+use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::error::Error;
 use std::path::PathBuf;
 use std::time::Instant;
-use sun2xp::model::configuration::Scheme;
+use sun2xp::model::configuration::{Law, Scheme};
 
 #[derive(Parser)]
 #[command(about = "Measures how accurately a finger behaves as the commanded spring")]
@@ -49,7 +52,8 @@ struct Arguments {
     rates: Option<Vec<f64>>,
     /// Tendon controllers, as in the configuration, separated by commas. Figure 10 is always measured first, as the
     /// reference.
-    #[arg(long, value_delimiter = ',', value_parser = scheme, default_values = ["figure 10", "state feedback"])]
+    #[arg(long, value_delimiter = ',', value_parser = named::<Scheme>)]
+    #[arg(default_values = ["figure 10", "state feedback"])]
     controllers: Vec<Scheme>,
     /// Only rows whose names contain this text, or one of several texts separated by semicolons.
     #[arg(long, default_value = "")]
@@ -67,9 +71,18 @@ struct Arguments {
     /// With --truths: no walls and no bumps.
     #[arg(long)]
     short: bool,
+    /// Searches better numbers of state feedback for these fingers (see --truths), from those of --numbers on.
+    #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "")]
+    search: Option<String>,
     /// With --truths: keys of the finger that differ, as TOML.
     #[arg(long, default_value = "")]
     keys: String,
+    /// With --truths and --search: numbers of state feedback that differ, as TOML.
+    #[arg(long, default_value = "")]
+    numbers: String,
+    /// The law of the spring: exact or report.
+    #[arg(long, value_parser = named::<Law>, default_value = "exact")]
+    law: Law,
     /// Folder for the plots of step responses and ellipsoids.
     #[arg(long, default_value = concat!(env!("CARGO_TARGET_TMPDIR"), "/stiffness"))]
     out: PathBuf,
@@ -81,9 +94,9 @@ struct Arguments {
     bench: bool,
 }
 
-fn scheme(name: &str) -> Result<Scheme, String> {
+fn named<Named: DeserializeOwned>(name: &str) -> Result<Named, String> {
     let name: serde::de::value::StrDeserializer<serde::de::value::Error> = name.into_deserializer();
-    Scheme::deserialize(name).map_err(|error| error.to_string())
+    Named::deserialize(name).map_err(|error| error.to_string())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -94,13 +107,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     arguments.controllers.retain(|&scheme| scheme != Scheme::Figure10);
     arguments.controllers.insert(0, Scheme::Figure10);
     let begun = Instant::now();
+    if let Some(only) = &arguments.search {
+        return search::run(&arguments, only);
+    }
     if let Some(only) = &arguments.truths {
         return truths_table::run(&arguments, only, begun);
     }
     let mut columns = Vec::new();
     for &rate in &rates {
         for &scheme in &arguments.controllers {
-            let case = Case { scheme, rate, poses, seed: arguments.seed };
+            let case = Case { scheme, rate, poses, seed: arguments.seed, law: arguments.law, numbers: None };
             eprintln!("{}", case.name());
             columns.push(table::Column::measure(&case, &arguments.only));
         }

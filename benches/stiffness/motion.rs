@@ -25,13 +25,20 @@ pub const STEP: f64 = 0.5;
 const ROOM: f64 = 1.2 * STEP;
 /// Duration of a step, s. A step that has not settled by then counts with this time.
 const WATCHED: f64 = 1.5;
+/// The last part of this duration, in which the tip is averaged, s.
+const ENDING: f64 = 0.2;
 
 /// The result of one step.
 pub struct Step {
-    /// Time until the tip stays within 5 % of the step, s.
+    /// Time until the tip stays within 5 % of the step from its target, s.
     pub time: f64,
-    /// Overshoot, as a part of the step.
+    /// Time until the tip stays within 5 % of the step from where it ends, s.
+    pub to_its_end: f64,
+    /// Distance of this end from the target, as a part of the step.
+    pub off: f64,
+    /// Overshoot beyond the target and beyond the end, as parts of the step.
     pub overshoot: f64,
+    pub beyond_its_end: f64,
     least_true: f64,
     least_commanded: f64,
 }
@@ -68,17 +75,25 @@ pub fn steps_of(case: &Case, stiffness: f64, loss: f64, differ: impl Fn(&mut Con
 pub fn step(finger: &mut ClosedLoop, direction: &Vector3<f64>) -> Step {
     let target = finger.anchor() + direction * STEP;
     assert!(finger.move_anchor(&target), "a direction with room");
-    let (mut time, mut overshoot) = (0.0, f64::NEG_INFINITY);
-    for cycle in 1..=finger.cycles(WATCHED) {
-        finger.cycle();
-        let error = finger.plant.tip() - target;
-        // The comparison treats NaN as not settled.
-        if error.norm().is_nan() || error.norm() > 0.05 * STEP {
-            time = cycle as f64 / finger.rate;
-        }
-        overshoot = worst([overshoot, error.dot(direction) / STEP]);
+    let tips = finger.tips(WATCHED);
+    let last = &tips[tips.len() - finger.cycles(ENDING)..];
+    let end = last.iter().sum::<Vector3<f64>>() / last.len() as f64;
+    Step {
+        time: settling_time(&tips, &target, finger.rate),
+        to_its_end: settling_time(&tips, &end, finger.rate),
+        off: (end - target).norm() / STEP,
+        overshoot: worst(tips.iter().map(|tip| (tip - target).dot(direction) / STEP)),
+        beyond_its_end: worst(tips.iter().map(|tip| (tip - end).dot(direction) / STEP)),
+        least_true: finger.least_true,
+        least_commanded: finger.least_commanded,
     }
-    Step { time, overshoot, least_true: finger.least_true, least_commanded: finger.least_commanded }
+}
+
+/// Returns the time from which the tip stays within 5 % of the step from `target`, s.
+fn settling_time(tips: &[Vector3<f64>], target: &Vector3<f64>, rate: f64) -> f64 {
+    // NaN counts as not settled.
+    let settled = |tip: &Vector3<f64>| (tip - target).norm() <= 0.05 * STEP;
+    tips.iter().rposition(|tip| !settled(tip)).map_or(0.0, |last| (last + 1) as f64 / rate)
 }
 
 /// Returns the motion of the tip along one step, as a part of the step over time in s, for the first direction of every

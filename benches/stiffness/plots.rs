@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use plotters::prelude::*;
 use std::error::Error;
 use std::path::Path;
-use sun2xp::model::configuration::Scheme;
+use sun2xp::model::configuration::{Law, Scheme};
 
 const RATE: f64 = 1000.0;
 const POSES: usize = 6;
@@ -17,7 +17,10 @@ const FONT: &str = "sans-serif";
 /// Draws `step-response.svg` and `stiffness-ellipses.svg` in `folder`, one panel per controller, at 1000 Hz.
 pub fn draw(folder: &Path, schemes: &[Scheme], seed: u64) -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(folder)?;
-    let cases: Vec<Case> = schemes.iter().map(|&scheme| Case { scheme, rate: RATE, poses: POSES, seed }).collect();
+    let cases: Vec<Case> = schemes
+        .iter()
+        .map(|&scheme| Case { scheme, rate: RATE, poses: POSES, seed, law: Law::Exact, numbers: None })
+        .collect();
     step_responses(&folder.join("step-response.svg"), &cases)?;
     ellipses(&folder.join("stiffness-ellipses.svg"), &cases)
 }

@@ -18,6 +18,9 @@ pub const SPRINGS: [f64; 2] = [3.0, 6.0];
 /// Deflection of the pushes, cm.
 const PUSHED: f64 = 0.2;
 
+/// A sixth of the period of the dither, s, rounded to cycles.
+const PHASE: f64 = 0.004;
+
 /// The results of one pose.
 #[derive(Clone, Debug, Default)]
 pub struct Trial {
@@ -25,9 +28,12 @@ pub struct Trial {
     pub error: [f64; 2],
     /// Motion at rest, cm rms, at each of [`SPRINGS`].
     pub rest: [f64; 2],
-    /// Settling time of a step of 5 mm at 3 N/cm, s, and overshoot as a part of the step.
+    /// Settling time of a step of 5 mm at 3 N/cm, s, and overshoot as a part of the step. Both are relative to where
+    /// the tip ends.
     pub settling: f64,
     pub overshoot: f64,
+    /// Distance of this end from the target, as a part of the step.
+    pub off: f64,
     /// Largest motion at a wall, cm rms.
     pub wall: f64,
     /// Time after a bump until every tension is above half of t_min again, s: the longer of two bumps.
@@ -41,32 +47,43 @@ pub struct Trial {
 /// Which trials run.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Extent {
+    /// Few and short trials of every kind, for a search.
+    Search,
     /// Pushes, rest and steps.
     Short,
     /// Walls and bumps too.
     All,
 }
 
-/// Runs the trials at every pose of a case.
+/// Runs the trials at every pose of each case. Returns the results of each case.
 pub fn trials(
-    case: &Case,
+    cases: &[Case],
     truth: &Truth,
     identified: bool,
     extent: Extent,
     adjust: &(dyn Fn(&mut ConfiguredFinger) + Sync),
-) -> Vec<Trial> {
-    let belief = identified.then(|| {
-        let mut finger = case.finger(&start(), Friction::Default);
-        (truth.differ)(&mut finger);
-        adjust(&mut finger);
-        identification::identified(case, &finger)
+) -> Vec<Vec<Trial>> {
+    let beliefs = each(cases, |_, case| {
+        identified.then(|| {
+            let mut finger = case.finger(&start(), Friction::Default);
+            adjust(&mut finger);
+            (truth.differ)(&mut finger);
+            identification::identified(case, &finger)
+        })
     });
-    each(&case.poses(), |number, pose| {
+    let poses: Vec<_> = cases
+        .iter()
+        .zip(&beliefs)
+        .flat_map(|(case, belief)| {
+            case.poses().into_iter().enumerate().map(move |(number, pose)| (case, belief, number, pose))
+        })
+        .collect();
+    let mut all = each(&poses, |_, (case, belief, number, pose)| {
         let mut finger = case.finger(pose, Friction::Default);
         adjust(&mut finger);
         let mut known = finger.clone();
         (truth.differ)(&mut finger);
-        match &belief {
+        match belief {
             Some(Err(obstacle)) => return Trial { refused: Some(obstacle.to_string()), ..Trial::default() },
             Some(Ok(found)) => {
                 (known.tendon, known.friction, known.gauge, known.geometry) =
@@ -74,8 +91,9 @@ pub fn trials(
             }
             None => {}
         }
-        at_pose(case, number, pose, &finger, &known, extent)
-    })
+        at_pose(case, *number, pose, &finger, &known, extent)
+    });
+    cases.iter().map(|case| all.drain(..case.poses).collect()).collect()
 }
 
 fn start() -> Vector3<f64> {
@@ -91,49 +109,36 @@ fn at_pose(
     extent: Extent,
 ) -> Trial {
     let mut trial = Trial::default();
-    let held = |stiffness: f64| {
+    let held = SPRINGS.map(|stiffness| {
         let kx = Matrix3::identity() * stiffness;
         ClosedLoop::new(&Held { case, finger, belief, pose, kx: &kx, senses: Senses::Counts })
-    };
-    for (index, stiffness) in SPRINGS.into_iter().enumerate() {
-        let rest = held(stiffness);
-        let mut tip = |force: Vector3<f64>| {
-            let mut run = rest.clone();
-            run.push(force);
-            run.run(1.0);
-            let mean = run.mean_tip(0.5);
-            trial.note(&run, "push");
-            mean
-        };
-        let (forces, deflections): (Vec<_>, Vec<_>) = [Vector3::x(), Vector3::y(), Vector3::z()]
-            .into_iter()
-            .map(|axis| {
-                let force = axis * (stiffness * PUSHED);
-                (force, (tip(force) - tip(-force)) / 2.0)
-            })
-            .unzip();
-        let kx = Matrix3::identity() * (stiffness * rest.report.stiffness_scale);
-        trial.error[index] = fits::spring_error(&forces, &deflections, &kx);
-        let mut run = rest.clone();
-        run.run(0.7);
-        trial.rest[index] = residual(&run.tips(1.5));
+    });
+    for (index, held) in held.iter().enumerate() {
+        trial.pushed(held, index, extent);
+        let mut run = held.clone();
+        run.run(0.5);
+        trial.rest[index] = residual(&run.tips(if extent == Extent::Search { 0.5 } else { 1.0 }));
         trial.note(&run, "rest");
     }
     let mut random = Pcg64::seed_from_u64(case.seed + 100 + number as u64);
     let directions = (0..20).map(|_| direction(&mut random));
     for way in directions.filter(|way| has_room(finger, pose, way, 0.6)).take(2) {
-        let mut run = held(3.0);
+        let mut run = held[0].clone();
         let step = motion::step(&mut run, &way);
-        trial.settling = worst([trial.settling, step.time]);
-        trial.overshoot = worst([trial.overshoot, step.overshoot]);
+        trial.settling = worst([trial.settling, step.to_its_end]);
+        trial.overshoot = worst([trial.overshoot, step.beyond_its_end]);
+        trial.off = worst([trial.off, step.off]);
         trial.note(&run, "step");
     }
-    if extent == Extent::All {
+    if extent != Extent::Short {
         trial.against_walls(&held);
-        trial.bumped(&held);
+        trial.bumped(&held[0], extent);
     }
     trial
 }
+
+/// The springs (index into [`SPRINGS`]) and the stiffnesses of the walls, N/cm.
+const WALLS: [(usize, f64); 4] = [(0, 30.0), (0, 300.0), (1, 100.0), (1, 1000.0)];
 
 impl Trial {
     fn note(&mut self, run: &ClosedLoop, what: &str) {
@@ -142,31 +147,57 @@ impl Trial {
         }
     }
 
-    fn against_walls(&mut self, held: &impl Fn(f64) -> ClosedLoop) {
-        for (stiffness, wall) in [(3.0, 30.0), (3.0, 300.0), (6.0, 100.0), (6.0, 1000.0)] {
-            for outward in axes() {
-                let mut run = held(stiffness);
+    /// Pushes the tip both ways along every axis.
+    fn pushed(&mut self, held: &ClosedLoop, index: usize, extent: Extent) {
+        let (settled, averaged) = if extent == Extent::Search { (0.5, 0.3) } else { (0.8, 0.4) };
+        let mut tip = |force: Vector3<f64>| {
+            let mut run = held.clone();
+            run.push(force);
+            run.run(settled);
+            let mean = run.mean_tip(averaged);
+            self.note(&run, "push");
+            mean
+        };
+        let (forces, deflections): (Vec<_>, Vec<_>) = [Vector3::x(), Vector3::y(), Vector3::z()]
+            .into_iter()
+            .map(|axis| {
+                let force = axis * (SPRINGS[index] * PUSHED);
+                (force, (tip(force) - tip(-force)) / 2.0)
+            })
+            .unzip();
+        let kx = Matrix3::identity() * (SPRINGS[index] * held.report.stiffness_scale);
+        self.error[index] = fits::spring_error(&forces, &deflections, &kx);
+    }
+
+    /// Moves the anchor into walls. Each kind of wall is on three of the six sides of the tip.
+    fn against_walls(&mut self, held: &[ClosedLoop; 2]) {
+        for (number, (spring, wall)) in WALLS.into_iter().enumerate() {
+            for outward in axes().skip(number % 2).step_by(2) {
+                let mut run = held[spring].clone();
                 let tip = run.anchor();
                 run.plant.set_surface(Some(contact::wall_off(&tip, &outward, wall)));
                 if run.move_anchor(&(tip - outward * contact::INTO)) {
-                    run.run(1.2);
-                    self.wall = worst([self.wall, residual(&run.tips(0.4))]);
+                    run.run(0.8);
+                    self.wall = worst([self.wall, residual(&run.tips(0.3))]);
                     self.note(&run, "wall");
                 }
             }
         }
     }
 
-    fn bumped(&mut self, held: &impl Fn(f64) -> ClosedLoop) {
-        for force in [4.0, 8.0] {
-            for axis in axes() {
-                let mut run = held(3.0);
+    fn bumped(&mut self, held: &ClosedLoop, extent: Extent) {
+        let forces: &[f64] = if extent == Extent::Search { &[8.0] } else { &[4.0, 8.0] };
+        for &force in forces {
+            for (number, axis) in axes().enumerate() {
+                let mut run = held.clone();
+                // The bumps begin at six phases of the dither.
+                run.run(PHASE * number as f64);
                 run.push(axis * force);
                 run.run(0.02);
                 run.push(Vector3::zeros());
                 let low = 0.5 * run.finger.tendon.minimum;
                 let mut last = 0.0;
-                for cycle in 1..=run.cycles(0.5) {
+                for cycle in 1..=run.cycles(0.3) {
                     run.reset_extremes();
                     run.cycle();
                     if run.least_true < low {

@@ -2,7 +2,7 @@
 //! designed.
 
 use crate::cases::stiffen;
-use sun2xp::model::configuration::ConfiguredFinger;
+use sun2xp::model::configuration::{ConfiguredFinger, ConfiguredSimulation};
 
 /// A difference between a finger and its configuration.
 pub struct Truth {
@@ -43,8 +43,18 @@ fn gauges(finger: &mut ConfiguredFinger, part: f64) {
     finger.simulation.gauge_gain_ratio = ALTERNATING.map(|sign| 1.0 + part * sign);
 }
 
-pub static TRUTHS: [Truth; 34] = [
-    truth("nothing", |_| {}),
+/// Makes the finger one of the simulated hand with this name.
+fn named(finger: &mut ConfiguredFinger, name: &str) {
+    let (start_degrees, seed) = (finger.simulation.start_degrees, finger.simulation.seed);
+    let named = ConfiguredSimulation::named(name).expect("a named hand");
+    finger.simulation = ConfiguredSimulation { start_degrees, seed, ..named };
+}
+
+pub static TRUTHS: [Truth; 37] = [
+    truth("hand: nominal", |_| {}),
+    truth("hand: worn", |finger| named(finger, "worn")),
+    truth("hand: sheathed", |finger| named(finger, "sheathed")),
+    truth("hand: cheap", |finger| named(finger, "cheap")),
     truth("everything slightly, 10 % conduit, 2 % pulleys", |finger| {
         links(finger, 1.2);
         rotors(finger, 1.2);

@@ -28,4 +28,5 @@ pub use spring::admissible_damping::AdmissibleDamping;
 pub use spring::joint_springs::JointSprings;
 pub use spring::joint_stiffness::JointStiffness;
 pub use spring::spring_transition::Spring;
+pub use state_feedback::Numbers;
 pub use tendons::tension_distribution::{BoundedDistribution, DistributedTensions, TensionDistribution};

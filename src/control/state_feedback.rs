@@ -11,8 +11,11 @@ mod dither;
 mod friction_feed_forward;
 mod numbers;
 mod observer;
+mod pulley_feed_forward;
 mod reference;
 mod tension_dither;
+
+pub use numbers::Numbers;
 
 use crate::control::motion::Motion;
 use crate::control::signals::Measured;
@@ -22,6 +25,7 @@ use crate::control::state_feedback::damping_design::DampingDesign;
 use crate::control::state_feedback::dither::{Dither, DitherState};
 use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
 use crate::control::state_feedback::observer::{TendonEstimate, TendonMotion, TendonObserver};
+use crate::control::state_feedback::pulley_feed_forward::PulleyFeedForward;
 use crate::control::state_feedback::reference::{Reference, ReferenceMotion, ReferenceState};
 use crate::control::state_feedback::tension_dither::{TensionDither, TensionDitherState};
 use crate::control::tendons::bumpless_transfer::BumplessTransfer;
@@ -48,6 +52,7 @@ pub(super) struct StateFeedback {
     dither: Dither,
     tension_dither: TensionDither,
     friction: FrictionFeedForward,
+    pulleys: Option<PulleyFeedForward>,
     /// R, m.
     r: Matrix3x4<f64>,
     /// R^T (R R^T)^-1, 1/m. Its transpose converts the travel of the tendons to joint angles. It converts a stretch

@@ -14,7 +14,7 @@ use crate::control::spring::joint_stiffness::JointStiffness;
 use crate::control::spring::slew::Slew;
 use crate::control::spring::soft_limits::SoftLimits;
 use crate::control::spring::spring_transition::SpringTransition;
-use crate::control::state_feedback::StateFeedback;
+use crate::control::state_feedback::{Numbers, StateFeedback};
 use crate::control::take_up::slack::SlackTakeUp;
 use crate::control::take_up::tightening::Tightening;
 use crate::control::tendons::gains::Gains;
@@ -37,6 +37,21 @@ impl Controller {
     /// Constructs a controller of `finger` that compensates `gravity`, m/s^2 in the finger's frame. Otherwise it equals
     /// the controller that [`Controller::new`] constructs.
     pub fn in_gravity(finger: &ConfiguredFinger, gravity: &Vector3<f64>, rate: f64) -> Result<Self, Unusable> {
+        Self::construct(finger, gravity, rate, None)
+    }
+
+    /// Constructs a controller whose state feedback has these numbers, without gravity. The search of the numbers uses
+    /// it.
+    pub fn with_numbers(finger: &ConfiguredFinger, rate: f64, numbers: &Numbers) -> Result<Self, Unusable> {
+        Self::construct(finger, &Vector3::zeros(), rate, Some(*numbers))
+    }
+
+    fn construct(
+        finger: &ConfiguredFinger,
+        gravity: &Vector3<f64>,
+        rate: f64,
+        numbers: Option<Numbers>,
+    ) -> Result<Self, Unusable> {
         positive("rate", &[rate])?;
         let tendons = finger.tendons().map_err(|error| Unusable { key: "geometry.r", reason: error.to_string() })?;
         let gains = Gains::new(&finger.controller, rate)?;
@@ -47,7 +62,8 @@ impl Controller {
         let scheme = finger.controller.scheme(rate);
         let state_feedback = match scheme {
             Scheme::StateFeedback => {
-                Some(StateFeedback::new(finger, &tendons, &strongest, gains.set_point_speed, rate)?)
+                let numbers = numbers.map_or_else(|| Numbers::new(&finger.controller, rate), Ok)?;
+                Some(StateFeedback::new(finger, &numbers, &tendons, &strongest, gains.set_point_speed, rate)?)
             }
             Scheme::Figure9 | Scheme::Figure10 | Scheme::Figure11 => None,
         };

@@ -10,6 +10,7 @@ use crate::control::state_feedback::damping_design::DampingDesign;
 use crate::control::state_feedback::dither::Dither;
 use crate::control::state_feedback::friction_feed_forward::FrictionFeedForward;
 use crate::control::state_feedback::observer::{ElasticTendon, ObserverDesign, TendonObserver};
+use crate::control::state_feedback::pulley_feed_forward::PulleyFeedForward;
 use crate::control::state_feedback::reference::Reference;
 use crate::control::state_feedback::tension_dither::TensionDither;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
@@ -28,10 +29,6 @@ const NOISE_RESERVE: f64 = 14.0;
 /// were simulated with each of 24 seeds. Without this distance, the tensions of a finger at a stop exceeded t_max by up
 /// to 0.39 N. With it, they stayed at least 0.46 N below t_max.
 const FRICTION_RESERVE: f64 = 0.2;
-
-/// Bandwidth of the low-pass filter on the drift, rad/s. The drift is the joint rates minus the rates of the reference.
-/// Dither and noise are above this bandwidth, and the motion under a push is below it.
-const DRIFT_BANDWIDTH: f64 = 60.0;
 
 /// The motors and their tendons as masses on springs, in SI units at the tendon.
 struct Drives {
@@ -97,6 +94,16 @@ impl Drives {
         TendonObserver::new(tendon, &design, 1.0 / rate).ok_or_else(too_far)
     }
 
+    fn observers(
+        &self,
+        finger: &ConfiguredFinger,
+        numbers: &Numbers,
+        rate: f64,
+    ) -> Result<[TendonObserver; 4], Unusable> {
+        let observer = |index| self.observer(index, finger, numbers, rate);
+        Ok([observer(0)?, observer(1)?, observer(2)?, observer(3)?])
+    }
+
     /// Returns the damping c of the motion of the motors relative to the links, N s/m, for a finger that is bent as in
     /// its homing pose. `r` is in m.
     fn relative_damping(&self, numbers: &Numbers, dynamics: &LinkDynamics, r: &Matrix3x4<f64>) -> f64 {
@@ -138,44 +145,43 @@ fn tension_dither(
     rate: f64,
 ) -> TensionDither {
     let pulley = Vector4::from(finger.friction.pulley);
-    TensionDither::new(common, numbers.tension_dither, &pulley, highest, finger.tendon.minimum, rate)
+    TensionDither::new(common, numbers, &pulley, highest, finger.tendon.minimum, rate)
 }
 
 impl StateFeedback {
-    /// Constructs the controller. `maximum` is the largest permitted tension of each tendon, N. `set_point_speed` is in
-    /// rad/s, and `rate` is in Hz.
+    /// Constructs the controller with these numbers. `maximum` is the largest permitted tension of each tendon, N.
+    /// `set_point_speed` is in rad/s, and `rate` is in Hz.
     pub fn new(
         finger: &ConfiguredFinger,
+        numbers: &Numbers,
         tendons: &Tendons,
         maximum: &Vector4<f64>,
         set_point_speed: f64,
         rate: f64,
     ) -> Result<Self, Unusable> {
-        let numbers = Numbers::new(&finger.controller, rate)?;
         let drives = Drives::new(finger, tendons)?;
         positive("links.masses", &finger.links.masses)?;
         positive("links.radii", &finger.links.radii)?;
         let r = tendons.r * 0.01;
         let pseudo_inverse = right_inverse(&r)?;
-        let observer = |index| drives.observer(index, finger, &numbers, rate);
         let dynamics = LinkDynamics::new(finger.links(), finger.links.masses, finger.links.radii, Vector3::zeros());
-        let relative_damping = drives.relative_damping(&numbers, &dynamics, &r);
+        let relative_damping = drives.relative_damping(numbers, &dynamics, &r);
         let joint_coulomb = Vector3::from(finger.friction.joint_coulomb) * 0.01;
         let shaken = joint_coulomb * numbers.dither;
-        let apparent_motors = drives.apparent_inertia(&numbers, &r);
+        let apparent_motors = drives.apparent_inertia(numbers, &r);
         let friction = MotorFriction::new(finger, tendons);
         let lower_reserve = (pseudo_inverse.abs() * shaken).max() + NOISE_RESERVE * GAUGE_NOISE;
         let upper_reserve =
             Vector4::from_fn(|motor, _| lower_reserve + FRICTION_RESERVE * friction.at(motor, maximum[motor]));
         let common = tendons.pretension(1.0).normalize();
         let highest = maximum - upper_reserve;
-        let tension_dither = tension_dither(finger, &numbers, common, highest, rate);
+        let tension_dither = tension_dither(finger, numbers, common, highest, rate);
         Ok(Self {
             period: 1.0 / rate,
-            observers: [observer(0)?, observer(1)?, observer(2)?, observer(3)?],
+            observers: drives.observers(finger, numbers, rate)?,
             joint_stiffness: JointStiffness::new(finger.links(), 0.0),
             dynamics,
-            damping: damping_design(&numbers, relative_damping, drives.stiffness.mean()),
+            damping: damping_design(numbers, relative_damping, drives.stiffness.mean()),
             reference: Reference::new(numbers.reference_time, rate),
             slew: Slew::new(set_point_speed, rate),
             dither: Dither::new(shaken, numbers.dither_frequency, rate),
@@ -183,6 +189,7 @@ impl StateFeedback {
             upper_reserve,
             tension_dither,
             friction: FrictionFeedForward { friction, share: numbers.friction_share },
+            pulleys: PulleyFeedForward::new(&finger.friction.pulley.into(), numbers.pulley_share, numbers.pulley_creep),
             r,
             pseudo_inverse,
             common,
@@ -197,7 +204,7 @@ impl StateFeedback {
             common_damping: numbers.common_damping,
             joint_viscous: Vector3::from(finger.friction.joint_viscous) * 0.01,
             joint_coulomb,
-            drift_gain: -(-DRIFT_BANDWIDTH / rate).exp_m1(),
+            drift_gain: -(-numbers.drift_bandwidth / rate).exp_m1(),
             friction_slope: numbers.friction_slope,
             sample_offset: numbers.sample_offset / rate,
             radius: drives.radius,

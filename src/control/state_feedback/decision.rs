@@ -117,7 +117,7 @@ impl StateFeedback {
     }
 
     /// Returns the joint torques, N m. They are the sum of the torques of the spring, the soft limits, gravity
-    /// compensation and the damper, and of the feed-forward for joint friction and for the motion of the reference.
+    /// compensation and the damper, and of the feed-forward for friction and for the motion of the reference.
     fn joint_torques(
         &self,
         state: &mut StateFeedbackState,
@@ -135,7 +135,11 @@ impl StateFeedback {
         let damping = self.damping.damping(&damped, inertia, &k_theta, spring.damping);
         let joint_friction = self.joint_friction(state, &now.rates, &reference.rates, &damping);
         let held = posed.torques(&spring.joints) + push.torque + gravity.torques(&now.joints);
+        let rubbing = self.pulleys.as_ref().map_or_else(Vector3::zeros, |pulleys| {
+            self.r * pulleys.tensions(&self.r.tr_mul(&reference.rates), &now.tensions)
+        });
         held * 0.01 - damping * (now.rates - reference.rates)
+            + rubbing
             + apparent * reference.accelerations
             + self.dynamics.coriolis(&now.joints, &reference.rates)
             + self.joint_viscous.component_mul(&reference.rates)

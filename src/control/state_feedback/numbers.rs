@@ -4,15 +4,17 @@
 //! The masses follow from the configured rotor inertias, and the gains of the observers follow from the size of a count
 //! and a bandwidth. The other numbers are tuned. Most of them are dimensionless, or their unit is cycles or radians per
 //! cycle. They were found by a search on the eigenvalues of the exact one-cycle map of the default finger. No number
-//! was tuned for a single pose.
+//! was tuned for a single pose. `cargo bench --bench stiffness -- --search` searches numbers for a set of fingers.
 
 use crate::control::number_checks::{not_negative, positive};
 use crate::control::rate_table::{Row, Tuned, at};
 use crate::model::configuration::{ConfiguredController, Unusable};
+use serde::{Deserialize, Serialize};
 
-/// The parameters of a finger at its servo rate.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Numbers {
+/// The parameters of state feedback for a finger at its servo rate.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Numbers {
     /// alpha: the gain from the tension error to the pull of a motor. The motors appear to have 1/alpha of their
     /// inertia.
     pub inertia_gain: f64,
@@ -55,18 +57,58 @@ pub(super) struct Numbers {
     /// Frequency of the dither, Hz. With a lower frequency the motors need less torque for the dither, and the tip
     /// moves more.
     pub dither_frequency: f64,
+    /// Amplitude of the dither of the tensions, divided by the configured pulley friction p t.
+    pub pulley_excess: f64,
+    /// Distance of the tensions from t_min that makes room for the dither of the tensions, per amplitude, as a fraction
+    /// of t_min.
+    pub dither_reserve: f64,
+    /// Largest amplitude of the dither of the tensions, divided by its amplitude at t_min without joint torque. The
+    /// limit applies if the configured pulley friction does not require a larger dither. The motors of a loaded finger
+    /// follow the dither differently, because friction grows with the tension. The difference moves the joints.
+    pub dither_rise: f64,
+    /// Bandwidth of the low-pass filter on the drift, rad/s. The drift is the joint rates minus the rates of the
+    /// reference. Dither and noise are above this bandwidth, and the motion under a push is below it.
+    pub drift_bandwidth: f64,
+    /// The part of the pulleys' friction that is fed forward while the reference moves.
+    pub pulley_share: f64,
+    /// Speed of a tendon of the reference from which this part is fed forward in full, m/s.
+    pub pulley_creep: f64,
 }
 
 /// Lowest frequency for which the damping is designed, rad/s. It determines the damping of a finger without stiffness.
 /// With 12 rad/s, a finger without stiffness oscillates at its joint limits.
 const LEAST_FREQUENCY: f64 = 4.0;
 
-/// Frequency of the dither, Hz.
+/// Frequency of the dither, Hz. With 44 Hz, an amplitude of 1.6 and a rise of 2, fingers that differ from their
+/// configuration move less at rest, but a jammed motor is reported later (`docs/stiffness.md`).
 const DITHER_FREQUENCY: f64 = 40.0;
+
+/// See [`Numbers::dither`].
+const DITHER: f64 = 2.0;
 
 /// See [`Numbers::tension_dither`]. With 0.06 fingers rest whose motors have no friction, or static friction of twice
 /// the Coulomb friction. With 0.1, the tensions of a finger with rotors of half the inertia oscillate.
 const TENSION_DITHER: f64 = 0.06;
+
+/// See [`Numbers::pulley_excess`]. An amplitude of p t would suffice at rest. More of it lets the tendons slide so fast
+/// that a push or a step has settled after some periods.
+const PULLEY_EXCESS: f64 = 5.0;
+
+/// See [`Numbers::dither_reserve`]. With more pretension the tensions also differ less from each other, relative to the
+/// null vector.
+const DITHER_RESERVE: f64 = 16.0 / 3.0;
+
+/// See [`Numbers::dither_rise`]. No tension is so large that this limit applies.
+const DITHER_RISE: f64 = 1000.0;
+
+/// See [`Numbers::drift_bandwidth`].
+const DRIFT_BANDWIDTH: f64 = 60.0;
+
+/// See [`Numbers::pulley_share`]. With the whole friction, steps overshoot by 12 % with pulley friction of 5 %.
+const PULLEY_SHARE: f64 = 0.5;
+
+/// See [`Numbers::pulley_creep`].
+const PULLEY_CREEP: f64 = 0.002;
 
 /// See [`Numbers::friction_share`]. With half of the configured friction, no finger hunted whose friction was 0 to 3
 /// times the configured one.
@@ -182,10 +224,16 @@ impl Numbers {
             friction_slope: FRICTION_SLOPE,
             least_frequency: LEAST_FREQUENCY,
             reference_time: configured.set_point_time.unwrap_or(tuned.reference_time / (rate / TABLE[0].0).min(1.0)),
-            dither: configured.dither.unwrap_or(2.0),
+            dither: configured.dither.unwrap_or(DITHER),
             tension_dither: configured.tension_dither.unwrap_or(TENSION_DITHER),
             friction_share: configured.friction_share.unwrap_or(FRICTION_SHARE),
             dither_frequency: DITHER_FREQUENCY.min(rate / 12.0),
+            pulley_excess: PULLEY_EXCESS,
+            dither_reserve: DITHER_RESERVE,
+            dither_rise: DITHER_RISE,
+            drift_bandwidth: DRIFT_BANDWIDTH,
+            pulley_share: PULLEY_SHARE,
+            pulley_creep: PULLEY_CREEP,
         };
         positive("controller.inertia_gain", &[numbers.inertia_gain])?;
         positive("controller.damping_ratio", &[numbers.damping_ratio])?;

@@ -6,12 +6,9 @@
 //! more than p t, the tendon slides in both directions in every period, and the mean tension at the joint is that at
 //! the gauge. The oscillation is along the null vector n of R, so that it does not move the joints.
 
+use super::numbers::Numbers;
 use nalgebra::{Vector2, Vector4};
 use serde::{Deserialize, Serialize};
-
-/// Amplitude divided by the pulley friction p t. An amplitude of p t would suffice at rest. More of it lets the tendons
-/// slide so fast that a push or a step has settled after some periods.
-const EXCESS: f64 = 5.0;
 
 /// Largest amplitude as a fraction of each tension, so that no tendon becomes slack.
 const LARGEST: f64 = 0.4;
@@ -28,9 +25,6 @@ const ADJUSTING: f64 = 0.25;
 /// Range of the adjustment.
 const SCALES: [f64; 2] = [0.2, 3.0];
 
-/// Distance of the tensions from t_min that makes room for the dither, per amplitude, as a fraction of t_min. With more
-/// pretension the tensions also differ less from each other, relative to the null vector.
-const RESERVE: f64 = 16.0 / 3.0;
 /// Largest reserve, as a fraction of t_min.
 const MOST_RESERVE: f64 = 1.5;
 /// Largest fraction of t_max that a tendon may have at zero joint torque because of the reserve.
@@ -55,6 +49,10 @@ pub(crate) struct TensionDither {
     low: f64,
     measuring: f64,
     adjusting: f64,
+    /// See [`Numbers::dither_reserve`].
+    reserve: f64,
+    /// Largest b, N. See [`Numbers::dither_rise`].
+    risen: f64,
 }
 
 /// The measured amplitude and its adjustment.
@@ -67,27 +65,34 @@ pub(crate) struct TensionDitherState {
 }
 
 impl TensionDither {
-    /// Constructs the dither. `common` is n. `least` is the smallest amplitude as a fraction of the tension; 0 means no
-    /// dither. `pulley` is the friction of the pulleys. `most` is the largest tension of each tendon, and `minimum` is
-    /// t_min, N.
+    /// Constructs the dither. `common` is n. `pulley` is the friction of the pulleys. `most` is the largest tension of
+    /// each tendon, and `minimum` is t_min, N.
     pub fn new(
         common: Vector4<f64>,
-        least: f64,
+        numbers: &Numbers,
         pulley: &Vector4<f64>,
         most: Vector4<f64>,
         minimum: f64,
         rate: f64,
     ) -> Self {
         let inverse_common = common.map(f64::recip);
-        let wanted = |friction: f64| if least > 0.0 { (EXCESS * friction).clamp(least, LARGEST) } else { 0.0 };
+        let least = numbers.tension_dither.min(LARGEST);
+        let wanted =
+            |friction: f64| if least > 0.0 { (numbers.pulley_excess * friction).clamp(least, LARGEST) } else { 0.0 };
+        let part = pulley.map(wanted).component_mul(&inverse_common);
+        // Tensions without joint torque are proportional to n, and the lowest of them is t_min.
+        let unloaded = part.component_mul(&common).max() * minimum / common.min();
+        let rubs = numbers.pulley_excess * pulley.max() > least;
         Self {
             common,
             inverse_common,
-            part: pulley.map(wanted).component_mul(&inverse_common),
+            part,
+            risen: if rubs { f64::INFINITY } else { numbers.dither_rise * unloaded },
             most,
             low: LOW * minimum,
             measuring: 1.0 / (MEASURING * rate),
             adjusting: 1.0 / (ADJUSTING * rate),
+            reserve: numbers.dither_reserve,
         }
     }
 
@@ -97,7 +102,7 @@ impl TensionDither {
         let amplitude = self.part.component_mul(&self.common).max();
         // Tensions without joint torque are proportional to n.
         let fits = RESERVED * maximum.component_div(&self.common).min() * self.common.min() - minimum;
-        ((RESERVE * amplitude).min(MOST_RESERVE) * minimum).min(fits).max(0.0)
+        ((self.reserve * amplitude).min(MOST_RESERVE) * minimum).min(fits).max(0.0)
     }
 
     pub fn start(&self) -> TensionDitherState {
@@ -115,7 +120,7 @@ impl TensionDither {
     ) -> Vector4<f64> {
         let wanted = self.part.component_mul(desired).max();
         let room = (desired * LARGEST).inf(&(self.most - desired)).component_mul(&self.inverse_common).min();
-        let wanted = wanted.min(room);
+        let wanted = wanted.min(room).min(self.risen);
         if wanted <= 0.0 {
             return Vector4::zeros();
         }
@@ -134,7 +139,7 @@ impl TensionDither {
 mod tests {
     use super::*;
     use crate::control::state_feedback::dither::Dither;
-    use crate::model::configuration::ConfiguredFinger;
+    use crate::model::configuration::{ConfiguredController, ConfiguredFinger};
     use nalgebra::Vector3;
 
     const RATE: f64 = 1000.0;
@@ -144,7 +149,9 @@ mod tests {
     }
 
     fn dither(least: f64, pulley: f64) -> TensionDither {
-        TensionDither::new(home().normalize(), least, &Vector4::repeat(pulley), Vector4::repeat(60.0), 5.0, RATE)
+        let configured = ConfiguredController { tension_dither: Some(least), ..ConfiguredController::default() };
+        let numbers = Numbers::new(&configured, RATE).expect("usable numbers");
+        TensionDither::new(home().normalize(), &numbers, &Vector4::repeat(pulley), Vector4::repeat(60.0), 5.0, RATE)
     }
 
     /// Runs the dither for two seconds on tensions that follow it by `response`. Returns the largest amplitude of the

@@ -1,0 +1,29 @@
+//! Replaces keys of a configuration, or numbers of state feedback, by those of a TOML text.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::error::Error;
+use toml_edit::{DocumentMut, Table};
+
+/// Returns `whole` with the keys of `text` replaced.
+pub fn overlaid<Whole: Serialize + DeserializeOwned>(whole: &Whole, text: &str) -> Result<Whole, Box<dyn Error>> {
+    let above: DocumentMut = text.parse()?;
+    let mut document = toml_edit::ser::to_document(whole)?;
+    overlay(document.as_table_mut(), above.as_table());
+    Ok(toml_edit::de::from_document(document)?)
+}
+
+fn overlay(below: &mut Table, above: &Table) {
+    for (key, item) in above {
+        match (below.get_mut(key).and_then(|item| item.as_table_like_mut()), item.as_table_like()) {
+            (Some(below), Some(above)) => {
+                for (key, item) in above.iter() {
+                    below.insert(key, item.clone());
+                }
+            }
+            _ => {
+                below.insert(key, item.clone());
+            }
+        }
+    }
+}
