@@ -3,8 +3,9 @@
 use crate::rig::{START, TARGET, close, goes, on_boards, on_one_port, open, three_boards, turn, wait_until};
 use std::fs::read_dir;
 use sun2xp::board::protocol::Status;
+use sun2xp::calibration::Task;
 use sun2xp::finger::{FaultKind, Stage};
-use sun2xp::hand::{Hand, HandError, Recovering, stop_all};
+use sun2xp::hand::{Calibrating, Hand, HandError, Recovering, stop_all};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, OnFault};
 use sun2xp::realtime::Priority;
@@ -228,6 +229,27 @@ fn recovering_a_finger_that_was_just_repaired_does_not_report_a_shared_port() {
         recovers(&hand, 2);
         assert_eq!(hand.report(2).expect("a report").recoveries, round + 1);
     }
+    close(hand);
+}
+
+/// A planner's thread that does not run for a while misses the fault and the recovery.
+#[test]
+fn a_calibration_ends_if_its_finger_faults_and_recovers_between_two_polls() {
+    let _turn = turn();
+    let (_board, hand) = one_port();
+    let mut calibrating = Calibrating::begin(&hand, 1, Task::Zero).expect("begun");
+    wait_until("calibrating", || hand.report(1).expect("a report").stage == Stage::Calibrating);
+    stop_all();
+    (1..=3).for_each(|finger| assert_eq!(faults(&hand, finger), FaultKind::EmergencyStopCall));
+    recovers(&hand, 1);
+    let error = calibrating.poll(&hand).expect_err("no verdict will come");
+    assert!(matches!(error, HandError::Interrupted(FingerNumber::ONE)), "{error}");
+    // The end of the hand is the other end without a verdict.
+    let mut calibrating = Calibrating::begin(&hand, 2, Task::Zero).expect("begun");
+    wait_until("calibrating", || hand.report(2).expect("a report").stage == Stage::Calibrating);
+    hand.end();
+    let error = calibrating.poll(&hand).expect_err("no verdict will come");
+    assert!(matches!(error, HandError::Interrupted(FingerNumber::TWO)), "{error}");
     close(hand);
 }
 
