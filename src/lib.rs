@@ -107,6 +107,18 @@ pub mod events {
     pub use crate::model::configuration::ConfiguredEvents;
 }
 
+/// Reflexes: rules that a servo carries out by itself. [`Hand::install_reflex`] installs them.
+pub mod reflexes {
+    pub use crate::finger::{Condition, MOST_RULES, Reaction, Reflex};
+    pub use crate::hand::ReflexError;
+}
+
+/// The newest readings of the tactile elements ([`Hand::touch`]).
+pub mod touch {
+    pub use crate::finger::TouchReading;
+    pub use crate::model::configuration::{ConfiguredTouch, MOST_ELEMENTS, TouchElement};
+}
+
 /// An object that all fingers of a simulated hand touch.
 pub mod object {
     pub use crate::model::configuration::{ConfiguredObject, ObjectShape};

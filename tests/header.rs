@@ -25,6 +25,7 @@ const OTHER_CALLS: &[&str] = &[
     "calibration_calls.rs",
     "fault_calls.rs",
     "recovery_calls.rs",
+    "reflex_calls.rs",
     "event_calls.rs",
 ];
 
@@ -42,6 +43,8 @@ const COMMENT_COLUMN: usize = 36;
 /// Headings of the two groups of constants.
 const HEADINGS: &[(&str, &str)] = &[
     ("FINGER_", "State of a finger (FingerStatus.State, FingerRecord.State)"),
+    ("WHEN_", "Condition of a reflex (Reflex.Condition)"),
+    ("THEN_", "Reaction of a reflex (Reflex.Reaction)"),
     ("TIMING_", "Stage of a cycle (GetTiming, FingerTiming.Stage)"),
 ];
 

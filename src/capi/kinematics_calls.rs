@@ -1,4 +1,5 @@
-//! The exported functions for the kinematics of a finger and for gravity. Their doc comments are the C manual, as in `calls.rs`.
+//! The exported functions for the kinematics of a finger and for gravity. Their doc comments are the C manual, as in
+//! `calls.rs`.
 
 // The exported names are those of the header.
 #![allow(non_snake_case)]

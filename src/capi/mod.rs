@@ -29,6 +29,7 @@ mod object_calls;
 mod path_calls;
 mod process;
 mod recovery_calls;
+mod reflex_calls;
 mod refusal;
 mod remedy_calls;
 mod status_calls;

@@ -2,6 +2,7 @@
 
 use crate::control::Controller;
 use crate::control::events::Detectors;
+use crate::finger::ReactionLimits;
 use crate::finger::motion_settings::MotionSettings;
 use nalgebra::Vector3;
 
@@ -14,6 +15,8 @@ pub struct Adjustable {
     pub controller: Controller,
     /// What the servo does with the set points of its planner.
     pub motion: MotionSettings,
+    /// The limits of the reactions of reflexes.
+    pub reactions: ReactionLimits,
     /// Lowest and highest joint angles that a finger under tension can have, rad.
     pub pose: (Vector3<f64>, Vector3<f64>),
     /// The detectors of events.

@@ -16,6 +16,7 @@ mod order;
 mod path_buffer;
 mod recording;
 mod reference;
+mod reflexes;
 mod relay;
 #[cfg(feature = "internals")]
 mod replay;
@@ -46,6 +47,9 @@ pub use order::{CalibrationRun, Order};
 pub use path_buffer::{MOST_PIECES, MOST_POSES};
 pub use recording::{Origin, Recording, RecordingError};
 pub use reference::Reference;
+pub use reflexes::{
+    Bulletin, Condition, MOST_RULES, Reaction, ReactionLimits, Reflex, ReflexServer, Reflexes, reflexes,
+};
 pub use relay::Relay;
 #[cfg(feature = "internals")]
 pub use replay::{Difference, NotReplayable, Replayed};

@@ -11,6 +11,8 @@ mod exchange;
 mod groups;
 mod life;
 mod motion;
+mod reflexes;
+mod reflexive;
 mod set_point_motion;
 
 use crate::board::LinkCounters;
@@ -28,6 +30,7 @@ use crate::model::configuration::EndState;
 use crate::realtime::{self, CycleTiming, LockedMemory, Producer};
 use calibration::Calibrating;
 use event_output::EventOutput;
+use reflexive::Reflexive;
 use set_point_motion::SetPointMotion;
 
 /// Number of Stop frames that the board gets after a fault. There are several, because a line that has just failed may
@@ -50,6 +53,7 @@ pub struct FingerServo {
     timing: CycleTiming,
     timings: Producer<CycleTiming>,
     black_box: Recorder,
+    reflexes: Reflexive,
     touch: TouchFetching,
     events: EventOutput,
     /// The black box record of this cycle; none if the finger was already faulted or closed.
@@ -220,6 +224,7 @@ impl FingerServo {
         self.mailbox.publish(self.report);
         // A planner that has read an event of a cycle therefore finds the report and the record of this cycle.
         self.events.publish(self.report.next);
+        self.note_events();
         // The timing comes after the report, so that a reader never counts more timings than cycles. The ring is full
         // only if no thread collects the timings. Then the timing is dropped, because the cycle is more important.
         let _ = self.timings.push(timing);

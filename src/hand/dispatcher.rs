@@ -5,7 +5,7 @@ mod collected;
 mod collecting;
 
 use crate::finger::{
-    self, Adjustable, BlackBox, Elements, FingerReport, GroupGate, KeptRecord, Losses, Mailbox, Recording,
+    self, Adjustable, BlackBox, Elements, FingerReport, GroupGate, KeptRecord, Losses, Mailbox, Recording, Reflexes,
 };
 use crate::hand::HandError;
 use crate::hand::admission::Admission;
@@ -31,6 +31,7 @@ pub(super) struct Member {
     pub admission: RwLock<Admission>,
     pub mailbox: Mailbox,
     pub touch: Elements,
+    pub reflexes: Reflexes,
     /// Whether a caller has the right to calibrate the finger.
     pub calibrated: Arc<AtomicBool>,
 }
@@ -54,6 +55,7 @@ impl Dispatcher {
                 admission: RwLock::new(finger.admission),
                 mailbox: finger.mailbox,
                 touch: finger.touch,
+                reflexes: finger.reflexes,
                 calibrated: Arc::default(),
             });
             collected.push(Mutex::new(Collected {

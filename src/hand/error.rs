@@ -6,12 +6,14 @@ mod errno;
 mod kind;
 mod path;
 mod recovery;
+mod reflex;
 mod set_point;
 
 pub use configuration::ConfigurationError;
 pub(crate) use kind::ErrorKind;
 pub use path::PathError;
 pub use recovery::RecoveryError;
+pub use reflex::ReflexError;
 pub use set_point::SetPointError;
 
 use crate::board::LinkError;
@@ -62,6 +64,9 @@ pub enum HandError {
     /// A faulted finger that cannot recover.
     #[error(transparent)]
     Recovery(#[from] RecoveryError),
+    /// A reflex that cannot be installed or removed.
+    #[error(transparent)]
+    Reflex(#[from] ReflexError),
     /// The finger has stopped because of a fault.
     #[error("finger {finger} is faulted (fault {}): {fault}", fault.kind.number())]
     Faulted {
@@ -137,8 +142,8 @@ pub enum HandError {
     },
     /// A calibration has ended without a result.
     #[error(
-        "the calibration of finger {0} ended without a result, because the finger faulted and recovered, or because the \
-         hand is being closed. Its previous calibration is in force: calibrate it again"
+        "the calibration of finger {0} ended without a result, because the finger faulted and recovered, or because \
+         the hand is being closed. Its previous calibration is in force: calibrate it again"
     )]
     Interrupted(FingerNumber),
     /// The finger is busy.

@@ -6,7 +6,8 @@ use crate::board::{Link, Port, Terms, capacity, tactile_requests};
 use crate::control::{AdmissibleDamping, JointSprings};
 use crate::finger::events::EventLog;
 use crate::finger::{
-    BlackBox, Elements, FingerServo, GroupGate, Mailbox, ServedPort, StopSignal, link_handover, stop_calls,
+    BlackBox, Bulletin, Elements, FingerServo, GroupGate, Mailbox, Reflexes, ServedPort, StopSignal, link_handover,
+    stop_calls,
 };
 use crate::hand::admission::{Admission, DampingAdmission};
 use crate::hand::events::EventSource;
@@ -42,6 +43,8 @@ pub(super) struct Reached {
     pub events: EventLog,
     /// The finger's tactile elements.
     pub touch: Elements,
+    /// The rules of the finger.
+    pub reflexes: Reflexes,
 }
 
 /// A hand after the handshakes.
@@ -105,7 +108,7 @@ pub(super) fn reach(
 ) -> Result<Connected, HandError> {
     // The hand reacts to every emergency stop call that is made after this line.
     let alarm = StopSignal::new(configuration.hand.on_fault == OnFault::Hand, stop_calls());
-    let gate = GroupGate::new();
+    let (gate, bulletin) = (GroupGate::new(), Bulletin::new());
     let (mut lines, mut reached, mut repairs) = (Vec::new(), Vec::new(), Vec::new());
     let mut identities = Identities::default();
     let readers = SharedPages::from(Pages::new(EventCount::default()));
@@ -116,7 +119,7 @@ pub(super) fn reach(
         warn_of_latency(link.transport());
         let (mut servos, mut boards) = (Vec::new(), Vec::new());
         for &number in &sharing {
-            let (servo, finger, board) = shake_hands(configuration, number, &mut link)?;
+            let (servo, finger, board) = shake_hands(configuration, number, &bulletin, &mut link)?;
             identities.add(board.finger, &path, &board.identity)?;
             let servo = servo.with(alarm.clone()).in_groups(gate.clone()).with_readers(readers.clone());
             servos.push(if limp { servo.limp() } else { servo });
@@ -190,6 +193,7 @@ fn longer_watchdog(finger: FingerNumber, configured_ms: u16, agreed_ms: u16) -> 
 fn shake_hands(
     configuration: &Configuration,
     number: FingerNumber,
+    bulletin: &Bulletin,
     link: &mut Link<Port>,
 ) -> Result<(FingerServo, Reached, KnownBoard), HandError> {
     let (hand, finger) = (&configuration.hand, &configuration.fingers[number.index()]);
@@ -216,7 +220,8 @@ fn shake_hands(
     let board = KnownBoard { finger: number, address, terms, identity, zero_valid };
     let (admission, events) = (admission(configuration, number), servo.event_log().clone());
     let touch = servo.touch().clone();
-    Ok((servo, Reached { number, mailbox, admission, timings, black_box, events, touch }, board))
+    let (servo, reflexes) = servo.with_reflexes(number, bulletin);
+    Ok((servo, Reached { number, mailbox, admission, timings, black_box, events, touch, reflexes }, board))
 }
 
 pub(super) fn admission(configuration: &Configuration, number: FingerNumber) -> Admission {

@@ -68,6 +68,11 @@ fn events_are_taken_and_waited_for_in_every_way() {
 }
 
 #[test]
+fn reflexes_fire_and_are_refused_and_removed() {
+    succeed(&strict(&["-std=c99"]), &["reflex.c"]);
+}
+
+#[test]
 fn null_pointers_are_refused() {
     succeed(&strict(&["-ansi"]), &["null.c"]);
 }

@@ -5,7 +5,9 @@ use std::rc::Rc;
 use sun2xp::board::protocol::Identity;
 use sun2xp::board::{Link, PortError, Terms, Transport};
 use sun2xp::finger::events::EventLog;
-use sun2xp::finger::{BlackBox, Elements, FingerServo, LinkRepairEnd, Mailbox, ServedPort, Servo, link_handover};
+use sun2xp::finger::{
+    BlackBox, Bulletin, Elements, FingerServo, LinkRepairEnd, Mailbox, Reflexes, ServedPort, Servo, link_handover,
+};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::realtime::{Clock, Consumer, CycleTiming, Schedule, ring};
@@ -105,6 +107,7 @@ pub struct ServedFinger<W> {
     pub black_box: BlackBox,
     pub identity: Identity,
     pub touch: Elements,
+    pub reflexes: Reflexes,
     pub events: EventLog,
 }
 
@@ -142,10 +145,11 @@ impl<W: Transport + Clock + Clone> ServedFinger<W> {
         let (finger, mailbox) =
             FingerServo::new(belief, FingerNumber::ONE, stiffness, &identity, &configured, producer, recorder)
                 .expect("a finger");
+        let (finger, reflexes) = finger.with_reflexes(FingerNumber::ONE, &Bulletin::new());
         let (touch, events) = (finger.touch().clone(), finger.event_log().clone());
         let (handover, repair_end) = link_handover();
         let ports = vec![ServedPort::new(link, vec![change(finger)]).with_handover(handover).with_requests(1)];
         let servo = Servo::new(world.clone(), schedule, ports);
-        Self { servo, mailbox, repair_end, timings, black_box, identity, touch, events }
+        Self { servo, mailbox, repair_end, timings, black_box, identity, touch, reflexes, events }
     }
 }

@@ -12,6 +12,7 @@ mod kinds;
 mod motion;
 mod named_hands;
 mod opening;
+mod reflexes;
 mod refused_paths;
 mod rig;
 mod set_points;

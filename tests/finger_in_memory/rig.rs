@@ -7,8 +7,8 @@ use sun2xp::board::protocol::{Frame, Message, WireFrame};
 use sun2xp::board::{PortError, Terms, Transport};
 use sun2xp::finger::events::EventReader;
 use sun2xp::finger::{
-    BlackBox, Elements, Fault, FaultKind, FingerReport, LinkRepairEnd, Mailbox, RepairedLink, RestoredBoard, Servo,
-    Stage, StopCounts, stop_calls,
+    BlackBox, Elements, Fault, FaultKind, FingerReport, LinkRepairEnd, Mailbox, Reflexes, RepairedLink, RestoredBoard,
+    Servo, Stage, StopCounts, stop_calls,
 };
 use sun2xp::model::configuration::Configuration;
 use sun2xp::simulated::{SimulatedCable, SimulatedFinger};
@@ -67,6 +67,7 @@ pub struct Bench {
     pub servo: Servo<World<Line>, World<Line>>,
     pub mailbox: Mailbox,
     pub touch: Elements,
+    pub reflexes: Reflexes,
     pub black_box: BlackBox,
     pub events: EventReader,
     repair_end: LinkRepairEnd<World<Line>>,
@@ -97,9 +98,9 @@ impl Bench {
         let mut belief = configuration.clone();
         believed(&mut belief);
         let world = World::new(&configuration, Line::default());
-        let ServedFinger { servo, mailbox, repair_end, touch, events, black_box, .. } =
+        let ServedFinger { servo, mailbox, repair_end, touch, reflexes, events, black_box, .. } =
             ServedFinger::believing(&world, &configuration, &belief);
-        Self { world, servo, mailbox, black_box, touch, events: events.reader(), repair_end, configuration }
+        Self { world, servo, mailbox, black_box, touch, reflexes, events: events.reader(), repair_end, configuration }
     }
 
     pub fn report(&self) -> FingerReport {

@@ -227,6 +227,10 @@ faults! {
          \"end state\"",
         "the planner hangs, is stopped in a debugger, or plans for longer than its set points are valid",
         "Recover the finger and send set points in time, or raise finger.motion.valid_ms", [Recover];
+    52 ReflexStop "REFLEX_STOP" Fault Finger Nothing "stopped by a reflex",
+        "the condition of a reflex was true, and its reaction stops the finger",
+        "the planner installed the reflex for this case; the last event \"reflex fired\" has the number of the rule",
+        "Remove the cause, or remove the reflex, then recover the finger", [Recover];
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Construction of a finger's servo from the configuration and the board's answers.
 
 use super::event_output::EventOutput;
+use super::reflexive::Reflexive;
 use super::set_point_motion::SetPointMotion;
 use super::{FingerServo, Limits, STOPS_AFTER_FAULT};
 use crate::board::protocol::{Configured, Identity};
@@ -12,7 +13,7 @@ use crate::finger::mailbox::{Mailbox, mailbox};
 use crate::finger::motion_settings::MotionSettings;
 use crate::finger::supervision::Supervision;
 use crate::finger::touch::{Elements, TouchFetching};
-use crate::finger::{FingerReport, Recorder, StopSignal, stop_calls};
+use crate::finger::{FingerReport, ReactionLimits, Recorder, StopSignal, stop_calls};
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredHand, Unusable};
 use crate::realtime::{CycleTiming, Producer};
@@ -40,7 +41,8 @@ impl Adjustable {
         let controller = Controller::in_gravity(finger, &configuration.gravity(number), configuration.hand.rate)?;
         let detectors = Detectors::new(finger, configuration.hand.rate);
         let motion = MotionSettings::new(finger, configuration.hand.rate);
-        Ok(Self { number: 0, controller, motion, pose, detectors })
+        let reactions = ReactionLimits::new(finger, configuration.hand.rate);
+        Ok(Self { number: 0, controller, motion, pose, detectors, reactions })
     }
 }
 
@@ -85,7 +87,6 @@ impl FingerServo {
         let (planners, servo, mut memory) = mailbox(report, &adjustable);
         memory.append(&black_box.memory());
         timings.add_to(&mut memory);
-        let events = EventOutput::new(number, initial, &mut memory);
         let this = Self {
             state: adjustable.controller.start(&feedback),
             adjustable,
@@ -99,8 +100,9 @@ impl FingerServo {
             timing: CycleTiming::default(),
             timings,
             black_box,
+            reflexes: Reflexive::new(number, &mut memory),
             touch: TouchFetching::new(Elements::new(&finger.touch), identity.capabilities, &mut memory),
-            events,
+            events: EventOutput::new(number, initial, &mut memory),
             record: None,
             recording: false,
             report,

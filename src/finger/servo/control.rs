@@ -11,6 +11,7 @@ impl FingerServo {
         let previous = self.take_commands();
         let previous = self.calibrate().or(previous);
         self.move_set_point();
+        self.react();
         let input = ControlInput {
             anew_from: std::mem::take(&mut self.restart).then_some(self.feedback),
             activity: self.activity,

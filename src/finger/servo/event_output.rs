@@ -11,6 +11,9 @@ pub(super) struct EventOutput {
     writer: EventWriter,
     log: EventLog,
     detectors: DetectorState,
+    /// The kinds of the events that have been written since the last call of [`EventOutput::take_kinds`]: a bit for the
+    /// number of each kind.
+    kinds: u32,
     /// Whether the last cycle has published events.
     published: bool,
     /// The threads that wait for events.
@@ -22,7 +25,7 @@ impl EventOutput {
     pub fn new(finger: FingerNumber, initial: SetPoint, memory: &mut LockedMemory) -> Self {
         let (writer, log) = event_log(finger);
         writer.add_to(memory);
-        Self { writer, log, detectors: DetectorState::holding(initial), published: false, readers: None }
+        Self { writer, log, detectors: DetectorState::holding(initial), kinds: 0, published: false, readers: None }
     }
 
     /// Begins a cycle. Later events get its number and its time, ns.
@@ -32,7 +35,13 @@ impl EventOutput {
 
     /// Writes an event of this cycle.
     pub fn write(&mut self, occurrence: Occurrence) {
+        self.kinds |= 1 << occurrence.kind.number();
         self.writer.write(occurrence);
+    }
+
+    /// Returns the kinds of the events that have been written since the last call: a bit for the number of each kind.
+    pub fn take_kinds(&mut self) -> u32 {
+        std::mem::take(&mut self.kinds)
     }
 
     /// Publishes the events of this cycle. `next` is the scheduled beginning of the next one, ns.
@@ -48,7 +57,7 @@ impl EventOutput {
     /// Runs the detectors after a cycle, and writes their observations to the log.
     pub fn observe(&mut self, detectors: &Detectors, report: &Report, set_point: &SetPoint) -> Arrival {
         let observations = detectors.observe(&mut self.detectors, report, set_point);
-        observations.iter().for_each(|observation| self.writer.write(observation.into()));
+        observations.iter().for_each(|observation| self.write(observation.into()));
         self.detectors.arrival()
     }
 

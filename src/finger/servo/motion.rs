@@ -16,6 +16,10 @@ impl FingerServo {
         if sent.spring != self.report.springs && self.motion.expired_phase != Some(sent.spring) {
             return;
         }
+        self.reflexes.hear(self.motion.next_period);
+        if self.reflexes.inhibits() {
+            return;
+        }
         let held = self.report.set_point;
         let mut set_point = sent.set_point;
         let motion = &mut self.motion;

@@ -14,6 +14,7 @@ impl HandError {
             Self::Path(error) => error.errno(),
             Self::Configuration(error) => error.errno(),
             Self::Recovery(error) => error.errno(),
+            Self::Reflex(error) => error.errno(),
             Self::TooMuchForce { .. } => libc::ERANGE,
             Self::Faulted { .. } | Self::FaultedAtOpening { .. } => libc::EIO,
             Self::System { source, .. } | Self::SimulatedPort(source) => source.raw_os_error().unwrap_or(libc::EIO),

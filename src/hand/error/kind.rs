@@ -1,6 +1,6 @@
 //! The kind of an error, without the values in it.
 
-use super::{ConfigurationError, HandError, PathError, RecoveryError, SetPointError};
+use super::{ConfigurationError, HandError, PathError, RecoveryError, ReflexError, SetPointError};
 use std::mem::{Discriminant, discriminant};
 
 /// The kind of a [`HandError`]. Two errors that differ only in their values have the same kind.
@@ -19,6 +19,7 @@ enum Cause {
     Path(Discriminant<PathError>),
     Configuration(Discriminant<ConfigurationError>),
     Recovery(Discriminant<RecoveryError>),
+    Reflex(Discriminant<ReflexError>),
 }
 
 impl HandError {
@@ -29,6 +30,7 @@ impl HandError {
             Self::Path(error) => Cause::Path(discriminant(error)),
             Self::Configuration(error) => Cause::Configuration(discriminant(error)),
             Self::Recovery(error) => Cause::Recovery(discriminant(error)),
+            Self::Reflex(error) => Cause::Reflex(discriminant(error)),
             _ => Cause::None,
         };
         ErrorKind { error: discriminant(self), cause }

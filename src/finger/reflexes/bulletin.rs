@@ -1,0 +1,49 @@
+//! What the fingers of a hand tell each other: how often each kind of event has occurred. A servo reads the counters of
+//! the others without waiting.
+
+use crate::finger::events::EventKind;
+use crate::model::FingerNumber;
+use crate::model::configuration::FINGERS;
+use crate::realtime::atomics::{AtomicU32, Ordering};
+use crate::realtime::{LockedMemory, Pages, SharedPages};
+
+/// Number of kinds for which there is room. Kinds have numbers from 1.
+const KINDS: usize = 32;
+const _: () = assert!(EventKind::ALL.len() < KINDS, "a kind has no place");
+
+/// The counters. Clones are the same counters.
+#[derive(Clone)]
+pub struct Bulletin(SharedPages<[[AtomicU32; KINDS]; FINGERS]>);
+
+impl Bulletin {
+    /// Creates counters of a hand.
+    pub fn new() -> Self {
+        let counters = std::array::from_fn(|_| std::array::from_fn(|_| AtomicU32::new(0)));
+        Self(Pages::new(counters).into())
+    }
+
+    /// Adds the pages of the counters to `memory`.
+    pub(super) fn add_to(&self, memory: &mut LockedMemory) {
+        memory.add_shared(&self.0);
+    }
+
+    /// Counts events of a finger. `kinds` has a bit for the number of each kind.
+    pub(super) fn count(&self, finger: FingerNumber, mut kinds: u32) {
+        while kinds != 0 {
+            let number = kinds.trailing_zeros();
+            self.0[finger.index()][number as usize].fetch_add(1, Ordering::Release);
+            kinds &= kinds - 1;
+        }
+    }
+
+    /// Returns how often an event of this kind has occurred, modulo 2^32.
+    pub(super) fn counted(&self, finger: FingerNumber, kind: EventKind) -> u32 {
+        self.0[finger.index()][usize::from(kind.number())].load(Ordering::Acquire)
+    }
+}
+
+impl Default for Bulletin {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,133 @@
+//! The set points that reactions lead to. Each of them is within the limits of the finger's configuration.
+
+use super::rule::Reaction;
+use crate::control::{AdmissibleDamping, Report, SetPoint, spatial};
+use crate::model::configuration::ConfiguredFinger;
+use crate::model::{Contact, Links};
+use nalgebra::{Matrix3, Matrix6, Vector3};
+
+/// Force below which the spring of a tip has no direction in which it presses, N.
+const NO_DIRECTION: f64 = 0.05;
+
+/// The limits of a finger, which no reaction exceeds.
+#[derive(Clone, Debug)]
+pub struct ReactionLimits {
+    links: Links,
+    /// Lower and upper joint limits, rad.
+    joints: (Vector3<f64>, Vector3<f64>),
+    damping: AdmissibleDamping,
+}
+
+impl ReactionLimits {
+    /// Constructs the limits of a finger at a rate, Hz.
+    pub fn new(finger: &ConfiguredFinger, rate: f64) -> Self {
+        Self { links: finger.links(), joints: finger.joint_limits(), damping: AdmissibleDamping::new(finger, rate) }
+    }
+
+    /// Returns the set point after a reaction. Returns none if the reaction changes no set point. `report` is that of
+    /// the last cycle, and `followed` the set point that the finger follows.
+    pub(in crate::finger) fn react(
+        &self,
+        reaction: &Reaction,
+        report: &Report,
+        followed: &SetPoint,
+    ) -> Option<SetPoint> {
+        let rest = SetPoint { motion: None, ..*followed };
+        match *reaction {
+            Reaction::Stop => None,
+            Reaction::Hold => Some(SetPoint { joints: self.within(&report.joints), ..rest }),
+            Reaction::Soften(kx) => Some(SetPoint { stiffness: spatial(&kx), damping: 1.0, ..rest }),
+            Reaction::Retract(joints) => Some(SetPoint { joints: self.within(&joints), ..rest }),
+            Reaction::Grip { by, most } => Some(SetPoint { joints: self.grip(by, most, report, followed)?, ..rest }),
+            Reaction::Damp(ratio) => Some(SetPoint { damping: self.damping(ratio, followed), ..rest }),
+        }
+    }
+
+    fn within(&self, joints: &Vector3<f64>) -> Vector3<f64> {
+        let (low, high) = self.joints;
+        Vector3::from_fn(|joint, _| joints[joint].clamp(low[joint], high[joint]))
+    }
+
+    /// Returns the anchor, rad, with which the tip presses harder in the direction F / |F| of the spring's force
+    /// F = Kx (x_d - x). The anchor moves by Kx^-1 dF. Returns none if there is no such direction, or if Kx has no
+    /// inverse.
+    fn grip(&self, by: f64, most: f64, report: &Report, followed: &SetPoint) -> Option<Vector3<f64>> {
+        let kx: Matrix3<f64> = followed.stiffness.fixed_view::<3, 3>(0, 0).into();
+        let anchor = self.links.tip(&followed.joints);
+        let force = kx * (anchor - self.links.tip(&report.joints));
+        let strength = force.norm();
+        if strength < NO_DIRECTION {
+            return None;
+        }
+        let more = by.min(most - strength).max(0.0);
+        let change = kx.try_inverse()? * force * (more / strength);
+        let turn = self.links.jacobian(&followed.joints).try_inverse()? * change;
+        let joints = followed.joints + turn;
+        joints.iter().all(|joint| joint.is_finite()).then(|| self.within(&joints))
+    }
+
+    /// Returns the admitted damping ratio that is nearest to `ratio`.
+    fn damping(&self, ratio: f64, followed: &SetPoint) -> f64 {
+        // Every set point that was admitted is a contact.
+        let contact = Contact::general(&followed.stiffness, &Matrix6::identity());
+        let largest = contact.map_or(f64::INFINITY, |contact| contact.largest_eigenvalue(self.links.0[2]));
+        let (least, most) = self.damping.range(largest);
+        ratio.clamp(least, most)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn limits() -> ReactionLimits {
+        ReactionLimits::new(&ConfiguredFinger::default(), 1000.0)
+    }
+
+    fn follows(joints: Vector3<f64>, kx: f64) -> SetPoint {
+        SetPoint::hard_finger(joints, Matrix3::identity() * kx)
+    }
+
+    #[test]
+    fn a_grip_presses_harder_in_the_same_direction() {
+        let (limits, tip_at) = (limits(), Vector3::new(0.1, 0.5, 1.0));
+        let followed = follows(tip_at + Vector3::new(0.0, 0.05, 0.05), 3.0);
+        let report = Report { joints: tip_at, ..Report::default() };
+        let force = |joints: &Vector3<f64>| 3.0 * (limits.links.tip(joints) - limits.links.tip(&tip_at));
+        let before = force(&followed.joints);
+        let grip = Reaction::Grip { by: 0.2, most: 5.0 };
+        let after = force(&limits.react(&grip, &report, &followed).expect("a set point").joints);
+        assert!((after.norm() - before.norm() - 0.2).abs() < 0.01, "{} to {} N", before.norm(), after.norm());
+        assert!(after.normalize().dot(&before.normalize()) > 0.9999);
+        // The largest force is not exceeded, and a larger force is not reduced.
+        let most = Reaction::Grip { by: 0.2, most: before.norm() - 0.1 };
+        assert_eq!(limits.react(&most, &report, &followed).expect("a set point").joints, followed.joints);
+        // A spring at rest presses in no direction.
+        let at_rest = Report { joints: followed.joints, ..Report::default() };
+        assert_eq!(limits.react(&grip, &at_rest, &followed), None);
+    }
+
+    proptest! {
+        #[test]
+        fn no_reaction_leaves_the_limits(
+            joints in prop::array::uniform3(-4.0..4.0f64), is in prop::array::uniform3(-4.0..4.0f64),
+            kx in 0.0..6.0f64, by in 0.0..50.0f64, ratio in 0.0..9.0f64, reaction in 0..4,
+        ) {
+            let limits = limits();
+            let followed = follows(limits.within(&joints.into()), kx);
+            let report = Report { joints: is.into(), ..Report::default() };
+            let reaction = match reaction {
+                0 => Reaction::Hold,
+                1 => Reaction::Retract(joints.into()),
+                2 => Reaction::Grip { by, most: 100.0 },
+                _ => Reaction::Damp(ratio),
+            };
+            if let Some(next) = limits.react(&reaction, &report, &followed) {
+                prop_assert_eq!(limits.within(&next.joints), next.joints);
+                let (least, most) = limits.damping.range(kx);
+                prop_assert!((least..=most).contains(&next.damping) || next.damping == 1.0);
+            }
+        }
+    }
+}

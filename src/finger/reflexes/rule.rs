@@ -1,0 +1,85 @@
+//! A reflex: a condition, and the reaction to it.
+
+use crate::finger::events::EventKind;
+use crate::model::FingerNumber;
+use nalgebra::{Matrix3, Vector3};
+
+/// A rule of a finger. It acts while the finger is a spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reflex {
+    /// What the rule reacts to.
+    pub condition: Condition,
+    /// What the finger does.
+    pub reaction: Reaction,
+    /// If several rules fire in one cycle, the one with the highest priority is first, and the others wait.
+    pub priority: u8,
+    /// Time after a reaction in which the rule does not fire again, s, 0 to 3600. A rule whose condition stays true
+    /// fires again after this time. If the time is 0, the condition must become false before the rule fires again.
+    pub refractory: f64,
+    /// Time after a reaction in which the finger does not follow set points of its planner, s, 0 to 3600.
+    pub inhibition: f64,
+}
+
+/// What a rule reacts to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Condition {
+    /// An event of this finger.
+    Event(EventKind),
+    /// An event of another finger of the hand.
+    OtherFinger {
+        /// The other finger.
+        finger: FingerNumber,
+        /// The event.
+        event: EventKind,
+    },
+    /// The force of the surroundings on the tip is above this value, N.
+    ForceAbove(f64),
+    /// The tension of any tendon is above this value, N.
+    TensionAbove(f64),
+    /// The tension of any tendon is below this value, N.
+    TensionBelow(f64),
+    /// The angle of a joint, 0 to 2, is above a value, rad.
+    JointAbove {
+        /// The joint.
+        joint: usize,
+        /// The angle.
+        angle: f64,
+    },
+    /// The angle of a joint, 0 to 2, is below a value, rad.
+    JointBelow {
+        /// The joint.
+        joint: usize,
+        /// The angle.
+        angle: f64,
+    },
+    /// The board has not replied for this time, s.
+    LinkLost(f64),
+    /// The planner has sent no set point that the finger followed for this time, s.
+    PlannerSilent(f64),
+}
+
+/// What a finger does when a rule fires. A set point that a reaction changes is in force until the planner sends
+/// another one. A path or a motion ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Reaction {
+    /// The finger stops with a fault: its board goes to its end state.
+    Stop,
+    /// The anchor of the spring goes where the joints are.
+    Hold,
+    /// The spring gets this Kx, N/cm, and the damping ratio 1.
+    Soften(Matrix3<f64>),
+    /// The anchor of the spring goes to these joint angles, rad.
+    Retract(Vector3<f64>),
+    /// The tip presses harder in the direction in which its spring presses now. Nothing happens while the spring
+    /// presses with less than 0.05 N.
+    Grip {
+        /// Increase of the force, N.
+        by: f64,
+        /// Largest force, N.
+        most: f64,
+    },
+    /// The spring gets this damping ratio, or the nearest one that its stiffness admits.
+    Damp(f64),
+}

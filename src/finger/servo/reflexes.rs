@@ -1,0 +1,75 @@
+//! The reflexes of a finger in its servo: the reactions of the rules, and the time without following the planner.
+
+use super::FingerServo;
+use crate::control::Activity;
+use crate::finger::events::{EventKind, Occurrence};
+use crate::finger::reflexes::{Bulletin, Facts, Fired};
+use crate::finger::{Fault, FaultKind, Reaction, Reflexes, Stage, reflexes};
+use crate::model::{FingerNumber, Part};
+
+impl FingerServo {
+    /// Gives the finger the rules that planners install with the returned value. Its rules read the events of all
+    /// fingers with clones of `bulletin`.
+    pub fn with_reflexes(mut self, finger: FingerNumber, bulletin: &Bulletin) -> (Self, Reflexes) {
+        let (planners, server) = reflexes(finger, bulletin);
+        self.memory.append(server.memory());
+        self.reflexes.server = server;
+        (self, planners)
+    }
+
+    /// Notes the events of this cycle for the rules of this finger and of the others.
+    pub(super) fn note_events(&mut self) {
+        let kinds = self.events.take_kinds();
+        self.reflexes.server.note(kinds);
+    }
+
+    /// Evaluates the rules of a finger that is a spring, and carries out the reaction of one that has fired.
+    pub(super) fn react(&mut self) {
+        let period = self.motion.next_period;
+        // Tactile events of this cycle have arrived before this point.
+        self.note_events();
+        if self.report.stage != Stage::Running {
+            self.reflexes.server.idle();
+            (self.reflexes.inhibited_until, self.reflexes.heard) = (None, period);
+            return;
+        }
+        if self.reflexes.inhibited_until.is_some_and(|until| period >= until) {
+            self.reflexes.inhibited_until = None;
+            // Later changes start from the set point that is held, and not from one that was not followed.
+            self.report.springs += 1;
+        }
+        let seconds = self.limits.period();
+        let facts = Facts {
+            cycle: period,
+            period: seconds,
+            report: &self.report.cycle,
+            link_lost: self.sample_age as f64 * seconds,
+            planner_silent: period.saturating_sub(self.reflexes.heard) as f64 * seconds,
+        };
+        if let Some(fired) = self.reflexes.server.run(&facts) {
+            self.carry_out_reaction(&fired);
+        }
+    }
+
+    fn carry_out_reaction(&mut self, fired: &Fired) {
+        let &Fired { rule, reaction, inhibited_until } = fired;
+        self.events.write(Occurrence {
+            kind: EventKind::ReflexFired,
+            part: Part::Finger,
+            values: [rule.into(), 0.0, 0.0, 0.0],
+        });
+        if reaction == Reaction::Stop {
+            return self.fault(Fault::new(FaultKind::ReflexStop));
+        }
+        let Activity::Follow(followed) = &self.activity else { return };
+        if let Some(next) = self.adjustable.reactions.react(&reaction, &self.report.cycle, followed) {
+            self.follow(next, self.report.set_point_number);
+            self.motion.rest(next.joints);
+            // Later changes of planners start from this set point.
+            self.report.springs += 1;
+        }
+        if inhibited_until > self.motion.next_period {
+            self.reflexes.inhibited_until = Some(inhibited_until);
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Reflexes in the servo: how fast the command changes, what a reaction leaves behind, and its limits.
+
+use crate::rig::Bench;
+use nalgebra::{Matrix3, Vector3};
+use sun2xp::control::spatial;
+use sun2xp::finger::events::EventKind;
+use sun2xp::finger::{Condition, FaultKind, Reaction, Reflex, Stage};
+use sun2xp::model::configuration::{Configuration, TouchElement};
+
+fn rule(condition: Condition, reaction: Reaction) -> Reflex {
+    Reflex { condition, reaction, priority: 0, refractory: 0.0, inhibition: 0.0 }
+}
+
+fn an_element(configuration: &mut Configuration) {
+    let element = TouchElement { position: [0.0; 3], normal: [0.0, 0.0, 1.0], newton_per_count: 0.001, zero: 200 };
+    configuration.fingers[0].touch.elements = vec![element];
+}
+
+fn push(bench: &Bench, force: [f64; 3]) {
+    bench.with_finger(|finger| {
+        let turn = finger.plant().links().tip_rotation(&finger.plant().joints());
+        finger.plant().set_external_force(turn * Vector3::from(force));
+    });
+}
+
+/// The rules that have fired.
+fn fired(bench: &mut Bench) -> Vec<u32> {
+    let events = std::iter::from_fn(|| bench.events.take());
+    events.filter(|event| event.kind == EventKind::ReflexFired).map(|event| event.values[0] as u32).collect()
+}
+
+/// A board samples as a Command arrives, and the Command that answers this sample is sent in the next period. So the
+/// touch in one period changes the Command of the next one.
+#[test]
+fn a_touch_changes_the_next_command() {
+    let mut bench = Bench::with(an_element);
+    bench.goes(Vector3::new(0.1, 0.5, 1.0));
+    let soft = Matrix3::identity() * 0.5;
+    let number = bench.reflexes.install(rule(Condition::Event(EventKind::TouchMade), Reaction::Soften(soft)));
+    bench.cycles(5);
+    assert!(fired(&mut bench).is_empty());
+    push(&bench, [0.0, 0.0, -0.3]);
+    // The element is pressed in the physics before the second of these periods, which fetches the event.
+    bench.cycles(2);
+    assert_eq!(fired(&mut bench), [number.expect("a place")]);
+    assert_eq!(bench.report().set_point.stiffness, spatial(&soft));
+    // The force stays, so the reflex does not fire again.
+    bench.cycles(20);
+    assert!(fired(&mut bench).is_empty());
+}
+
+#[test]
+fn a_guarded_move_ends_at_the_contact() {
+    let mut bench = Bench::new();
+    bench.goes(Vector3::new(0.1, 0.5, 1.0));
+    bench.reflexes.install(rule(Condition::ForceAbove(0.4), Reaction::Hold)).expect("a place");
+    bench.mailbox.send(|set_point| set_point.joints = Vector3::new(0.1, 0.9, 1.4)).expect("not faulted");
+    bench.cycles(40);
+    let moving = bench.report().set_point.joints;
+    push(&bench, [0.0, 0.0, -1.0]);
+    bench.until("held", |bench| bench.report().set_point.joints != moving);
+    assert_eq!(fired(&mut bench).len(), 1);
+    let (held, springs) = (bench.report().set_point.joints, bench.report().springs);
+    push(&bench, [0.0; 3]);
+    bench.cycles(1000);
+    assert!((bench.report().cycle.joints - held).amax() < 0.01);
+    // A later change of the stiffness keeps the pose that is held.
+    bench.mailbox.send(|set_point| set_point.stiffness = spatial(&Matrix3::identity())).expect("not faulted");
+    bench.cycles(5);
+    assert_eq!((bench.report().set_point.joints, bench.report().springs), (held, springs));
+}
+
+#[test]
+fn an_inhibited_planner_is_not_followed_for_a_time() {
+    let mut bench = Bench::new();
+    bench.goes(Vector3::new(0.1, 0.5, 1.0));
+    let back = Vector3::new(0.0, 0.4, 0.9);
+    let reflex = rule(Condition::JointAbove { joint: 2, angle: 1.1 }, Reaction::Retract(back));
+    bench.reflexes.install(Reflex { inhibition: 0.1, ..reflex }).expect("a place");
+    let ahead = Vector3::new(0.1, 0.6, 1.3);
+    let mut sent = 0;
+    // The planner sends the same pose in every period, as planners do.
+    while fired(&mut bench).is_empty() {
+        bench.mailbox.send(|set_point| set_point.joints = ahead).expect("not faulted");
+        bench.cycles(1);
+        sent += 1;
+        assert!(sent < 2000, "the reflex has not fired");
+    }
+    for _ in 0..99 {
+        bench.mailbox.send(|set_point| set_point.joints = ahead).expect("not faulted");
+        bench.cycles(1);
+        assert_eq!(bench.report().set_point.joints, back);
+    }
+    bench.cycles(3);
+    // A change of the damping starts from the pose of the reflex.
+    bench.mailbox.send(|set_point| set_point.damping = 1.1).expect("not faulted");
+    bench.cycles(2);
+    assert_eq!((bench.report().set_point.joints, bench.report().set_point.damping), (back, 1.1));
+}
+
+#[test]
+fn silence_of_the_planner_and_a_stop() {
+    let mut bench = Bench::new();
+    bench.goes(Vector3::new(0.1, 0.5, 1.0));
+    bench.reflexes.install(rule(Condition::PlannerSilent(0.05), Reaction::Stop)).expect("a place");
+    for _ in 0..100 {
+        bench.mailbox.send(|set_point| set_point.damping = 1.0).expect("not faulted");
+        bench.cycles(10);
+        assert_eq!(bench.stage(), Stage::Running);
+    }
+    bench.cycles(60);
+    assert_eq!(bench.fault().expect("stopped").kind, FaultKind::ReflexStop);
+}
+
+#[test]
+fn a_rule_sleeps_while_the_finger_is_no_spring() {
+    let mut bench = Bench::new();
+    bench.reflexes.install(rule(Condition::LinkLost(0.002), Reaction::Hold)).expect("a place");
+    bench.reflexes.install(rule(Condition::Event(EventKind::Fault), Reaction::Hold)).expect("a place");
+    bench.with_cable(|cable| cable.inject(sun2xp::simulated::LineFault::Drop, 1.0, u64::MAX, 1));
+    bench.cycles(4);
+    assert_eq!(fired(&mut bench).len(), 1);
+    bench.until("faulted", |bench| bench.fault().is_some());
+    bench.cycles(10);
+    assert!(fired(&mut bench).is_empty());
+}
