@@ -326,32 +326,36 @@
 
 #ifdef SUN2XP_SETS_MACROS_ASIDE
 _Pragma("push_macro(\"AdjustFinger\")") _Pragma("push_macro(\"Answered\")") _Pragma("push_macro(\"Base\")")
-_Pragma("push_macro(\"Calibration\")") _Pragma("push_macro(\"CloseHand\")") _Pragma("push_macro(\"Commanded\")")
-_Pragma("push_macro(\"Computed\")") _Pragma("push_macro(\"Contact\")") _Pragma("push_macro(\"CorruptReplies\")")
-_Pragma("push_macro(\"Count\")") _Pragma("push_macro(\"Cycle\")") _Pragma("push_macro(\"Cycles\")")
-_Pragma("push_macro(\"DamagedFrames\")") _Pragma("push_macro(\"Damping\")") _Pragma("push_macro(\"DuplicateReplies\")")
-_Pragma("push_macro(\"Event\")") _Pragma("push_macro(\"EventDescriptor\")") _Pragma("push_macro(\"Fault\")")
-_Pragma("push_macro(\"FaultText\")") _Pragma("push_macro(\"Felt\")") _Pragma("push_macro(\"FindPos\")")
-_Pragma("push_macro(\"FindTip\")") _Pragma("push_macro(\"Finger\")") _Pragma("push_macro(\"FingerCommand\")")
-_Pragma("push_macro(\"FingerRecord\")") _Pragma("push_macro(\"FingerStatus\")") _Pragma("push_macro(\"FingerTiming\")")
-_Pragma("push_macro(\"FingerTip\")") _Pragma("push_macro(\"FingerTouch\")") _Pragma("push_macro(\"Follows\")")
-_Pragma("push_macro(\"Force\")") _Pragma("push_macro(\"ForeignFrames\")") _Pragma("push_macro(\"GetFault\")")
-_Pragma("push_macro(\"GetJacobian\")") _Pragma("push_macro(\"GetJointTorques\")") _Pragma("push_macro(\"GetObject\")")
-_Pragma("push_macro(\"GetPalmPose\")") _Pragma("push_macro(\"GetRecord\")") _Pragma("push_macro(\"GetStatus\")")
-_Pragma("push_macro(\"GetTiming\")") _Pragma("push_macro(\"GetTip\")") _Pragma("push_macro(\"GetTouch\")")
-_Pragma("push_macro(\"HandError\")") _Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"IsTip\")")
-_Pragma("push_macro(\"JointTorques\")") _Pragma("push_macro(\"Kind\")") _Pragma("push_macro(\"Kx\")")
-_Pragma("push_macro(\"LateReplies\")") _Pragma("push_macro(\"Lost\")") _Pragma("push_macro(\"LostEvents\")")
-_Pragma("push_macro(\"LostReplies\")") _Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"Measured\")")
-_Pragma("push_macro(\"MeasuredRate\")") _Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")")
-_Pragma("push_macro(\"Minimum\")") _Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"NextEvent\")")
+_Pragma("push_macro(\"Bound\")") _Pragma("push_macro(\"Calibration\")") _Pragma("push_macro(\"CloseHand\")")
+_Pragma("push_macro(\"Commanded\")") _Pragma("push_macro(\"Computed\")") _Pragma("push_macro(\"Condition\")")
+_Pragma("push_macro(\"Contact\")") _Pragma("push_macro(\"CorruptReplies\")") _Pragma("push_macro(\"Count\")")
+_Pragma("push_macro(\"Cycle\")") _Pragma("push_macro(\"Cycles\")") _Pragma("push_macro(\"DamagedFrames\")")
+_Pragma("push_macro(\"Damping\")") _Pragma("push_macro(\"DuplicateReplies\")") _Pragma("push_macro(\"Event\")")
+_Pragma("push_macro(\"EventDescriptor\")") _Pragma("push_macro(\"Fault\")") _Pragma("push_macro(\"FaultText\")")
+_Pragma("push_macro(\"Felt\")") _Pragma("push_macro(\"FindPos\")") _Pragma("push_macro(\"FindTip\")")
+_Pragma("push_macro(\"Finger\")") _Pragma("push_macro(\"FingerCommand\")") _Pragma("push_macro(\"FingerRecord\")")
+_Pragma("push_macro(\"FingerStatus\")") _Pragma("push_macro(\"FingerTiming\")") _Pragma("push_macro(\"FingerTip\")")
+_Pragma("push_macro(\"FingerTouch\")") _Pragma("push_macro(\"Follows\")") _Pragma("push_macro(\"Force\")")
+_Pragma("push_macro(\"ForeignFrames\")") _Pragma("push_macro(\"GetFault\")") _Pragma("push_macro(\"GetJacobian\")")
+_Pragma("push_macro(\"GetJointTorques\")") _Pragma("push_macro(\"GetObject\")") _Pragma("push_macro(\"GetPalmPose\")")
+_Pragma("push_macro(\"GetRecord\")") _Pragma("push_macro(\"GetStatus\")") _Pragma("push_macro(\"GetTiming\")")
+_Pragma("push_macro(\"GetTip\")") _Pragma("push_macro(\"GetTouch\")") _Pragma("push_macro(\"HandError\")")
+_Pragma("push_macro(\"IdentifyFinger\")") _Pragma("push_macro(\"Inhibition\")") _Pragma("push_macro(\"InstallReflex\")")
+_Pragma("push_macro(\"IsTip\")") _Pragma("push_macro(\"Joint\")") _Pragma("push_macro(\"JointTorques\")")
+_Pragma("push_macro(\"Kind\")") _Pragma("push_macro(\"Kx\")") _Pragma("push_macro(\"LateReplies\")")
+_Pragma("push_macro(\"Lost\")") _Pragma("push_macro(\"LostEvents\")") _Pragma("push_macro(\"LostReplies\")")
+_Pragma("push_macro(\"Maximum\")") _Pragma("push_macro(\"Measured\")") _Pragma("push_macro(\"MeasuredRate\")")
+_Pragma("push_macro(\"Median\")") _Pragma("push_macro(\"MemoryLocked\")") _Pragma("push_macro(\"Minimum\")")
+_Pragma("push_macro(\"Most\")") _Pragma("push_macro(\"Newest\")") _Pragma("push_macro(\"NextEvent\")")
 _Pragma("push_macro(\"Number\")") _Pragma("push_macro(\"ObjectState\")") _Pragma("push_macro(\"Oldest\")")
 _Pragma("push_macro(\"OnCore\")") _Pragma("push_macro(\"OnEvent\")") _Pragma("push_macro(\"OpenHand\")")
 _Pragma("push_macro(\"Overruns\")") _Pragma("push_macro(\"P99\")") _Pragma("push_macro(\"P999\")")
 _Pragma("push_macro(\"PalmPose\")") _Pragma("push_macro(\"Part\")") _Pragma("push_macro(\"PathPose\")")
 _Pragma("push_macro(\"Place\")") _Pragma("push_macro(\"Pos\")") _Pragma("push_macro(\"PosSent\")")
-_Pragma("push_macro(\"Position\")") _Pragma("push_macro(\"Pressed\")") _Pragma("push_macro(\"PushFinger\")")
-_Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")")
+_Pragma("push_macro(\"Position\")") _Pragma("push_macro(\"Pressed\")") _Pragma("push_macro(\"Priority\")")
+_Pragma("push_macro(\"PushFinger\")") _Pragma("push_macro(\"Rate\")") _Pragma("push_macro(\"Reaction\")")
+_Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")") _Pragma("push_macro(\"Reflex\")")
+_Pragma("push_macro(\"Refractory\")") _Pragma("push_macro(\"RemoveReflex\")") _Pragma("push_macro(\"Reserved\")")
 _Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"Rotation\")") _Pragma("push_macro(\"SendContact\")")
 _Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendGroup\")") _Pragma("push_macro(\"SendPath\")")
 _Pragma("push_macro(\"SendPosFor\")") _Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"SetGravity\")")
@@ -377,10 +381,12 @@ _Pragma("push_macro(\"volatile\")")
 #undef AdjustFinger
 #undef Answered
 #undef Base
+#undef Bound
 #undef Calibration
 #undef CloseHand
 #undef Commanded
 #undef Computed
+#undef Condition
 #undef Contact
 #undef CorruptReplies
 #undef Count
@@ -418,7 +424,10 @@ _Pragma("push_macro(\"volatile\")")
 #undef GetTouch
 #undef HandError
 #undef IdentifyFinger
+#undef Inhibition
+#undef InstallReflex
 #undef IsTip
+#undef Joint
 #undef JointTorques
 #undef Kind
 #undef Kx
@@ -432,6 +441,7 @@ _Pragma("push_macro(\"volatile\")")
 #undef Median
 #undef MemoryLocked
 #undef Minimum
+#undef Most
 #undef Newest
 #undef NextEvent
 #undef Number
@@ -451,10 +461,16 @@ _Pragma("push_macro(\"volatile\")")
 #undef PosSent
 #undef Position
 #undef Pressed
+#undef Priority
 #undef PushFinger
 #undef Rate
+#undef Reaction
 #undef Realtime
 #undef RecoverHand
+#undef Reflex
+#undef Refractory
+#undef RemoveReflex
+#undef Reserved
 #undef ResetTiming
 #undef Rotation
 #undef SendContact
@@ -767,6 +783,7 @@ const char *HandError(void);
 #define FAULT_SAME_NUMBER            49 /* same number */
 #define FAULT_STOP_CALL              50 /* stop of the finger, call */
 #define FAULT_SET_POINT_EXPIRED      51 /* set point expired */
+#define FAULT_REFLEX_STOP            52 /* stopped by a reflex */
 
 /* The kinds of events (docs/events.md). Numbers never change. */
 #define EVENT_TOUCH_MADE              1 /* touch made */
@@ -813,6 +830,25 @@ const char *HandError(void);
 #define TIMING_CYCLE 6              /* From the scheduled start of a cycle to the end of its computation. */
 #define TIMING_AGE 7                /* Age of the newest measurement when the command computed from it takes effect,
                                        by the board's clock. One period if nothing is late. */
+
+/* Condition of a reflex (Reflex.Condition) */
+#define WHEN_EVENT 1                /* An event of the finger: Event. */
+#define WHEN_OTHER_FINGER 2         /* An event of another finger: Event and Finger. */
+#define WHEN_FORCE_ABOVE 3          /* The force of the surroundings on the tip is above Bound, N. */
+#define WHEN_TENSION_ABOVE 4        /* The tension of any tendon is above Bound, N. */
+#define WHEN_TENSION_BELOW 5        /* The tension of any tendon is below Bound, N. */
+#define WHEN_JOINT_ABOVE 6          /* The angle of Joint is above Bound, rad. */
+#define WHEN_JOINT_BELOW 7          /* The angle of Joint is below Bound, rad. */
+#define WHEN_LINK_LOST 8            /* The board has not replied for Bound s. */
+#define WHEN_PLANNER_SILENT 9       /* The planner has sent no set point for Bound s. */
+
+/* Reaction of a reflex (Reflex.Reaction) */
+#define THEN_STOP 1                 /* The finger stops with a fault. */
+#define THEN_HOLD 2                 /* The finger stays where it is. */
+#define THEN_SOFTEN 3               /* The tip gets the stiffness Kx. */
+#define THEN_RETRACT 4              /* The finger goes to Pos. */
+#define THEN_GRIP 5                 /* The tip presses harder by Value, N, but not harder than Most, N. */
+#define THEN_DAMP 6                 /* The tip gets the damping ratio Value. */
 
 /* Result of GetStatus. */
 struct FingerStatus {
@@ -1004,6 +1040,28 @@ struct Fault {
                                        (docs/faults.md). */
     double WarningValue;            /* Value of the warning. */
     unsigned long Warnings;         /* Warnings since OpenHand. A warning that persists counts once. */
+};
+
+/* A rule for InstallReflex. Members that its condition and its reaction do not use are ignored. */
+struct Reflex {
+    unsigned int Size;              /* sizeof (struct Reflex). */
+    int Condition;                  /* WHEN_EVENT to WHEN_PLANNER_SILENT. */
+    int Event;                      /* EVENT_ constant for WHEN_EVENT and WHEN_OTHER_FINGER. */
+    int Finger;                     /* The other finger for WHEN_OTHER_FINGER. */
+    int Joint;                      /* Joint, 0 to 2, for WHEN_JOINT_ABOVE and WHEN_JOINT_BELOW. */
+    int Reaction;                   /* THEN_STOP to THEN_DAMP. */
+    int Priority;                   /* If several rules fire in one cycle, the one with the highest priority is
+                                       first; 0 to 255. */
+    int Reserved;                   /* 0. */
+    double Bound;                   /* N, rad or s, as the condition says. */
+    double Value;                   /* THEN_GRIP: increase of the force, N. THEN_DAMP: ratio. */
+    double Most;                    /* THEN_GRIP: largest force, N. */
+    double Refractory;              /* Time after a reaction in which the rule does not fire again, s, 0 to 3600. 0:
+                                       the rule fires again only after its condition was false. */
+    double Inhibition;              /* Time after a reaction in which the finger ignores set points of the planner,
+                                       s, 0 to 3600. */
+    double Pos[3];                  /* THEN_RETRACT: joint angles, rad. */
+    double Kx[3][3];                /* THEN_SOFTEN: stiffness, N/cm, row by row. */
 };
 
 /* An event: something that happened to a finger in one cycle of its servo. */
@@ -1974,6 +2032,69 @@ int StopFinger(int);
 int RecoverHand(int);
 
 /*
+ InstallReflex - let a finger react by itself
+
+     int InstallReflex(int i, const struct Reflex *Reflex);
+
+   i        finger, 1 to 3
+   Reflex   the rule; set Reflex->Size before the call
+
+ The servo evaluates the rules of a finger in every cycle while the finger is a spring. If the
+ condition becomes true, the command changes within two cycles, and within three cycles for
+ WHEN_OTHER_FINGER. At most one rule reacts in a cycle; the others wait. Each reaction is an event
+ EVENT_REFLEX_FIRED with the number of the rule.
+
+ A reaction replaces the set point. A path ends. Set points that were sent before are discarded, and
+ later calls that change a part of a set point start from the new one. The next SendPos moves the
+ finger again; Inhibition delays that. A rule stays until RemoveReflex or CloseHand.
+
+ Returns the number of the rule, above 0, or -1 with
+   EPERM    forked child
+   EFAULT   Reflex is null
+   ENODEV   no hand is open
+   EINVAL   Size is too small; no such finger, joint, condition, reaction or event; a number is NaN
+   ERANGE   a value is outside its range
+   EDOM, ERANGE  as SendPos for Pos, and as SendKx for Kx
+   ENOSPC   the finger has 16 rules
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example, a guarded move:
+
+     static struct Reflex Guard;
+     int Number;
+
+     Guard.Size = sizeof Guard;
+     Guard.Condition = WHEN_EVENT;
+     Guard.Event = EVENT_CONTACT;
+     Guard.Reaction = THEN_HOLD;
+     Number = InstallReflex(1, &Guard);
+ */
+int InstallReflex(int, const struct Reflex *);
+
+/*
+ RemoveReflex - remove a rule
+
+     int RemoveReflex(int i, int Number);
+
+   i        finger, 1 to 3
+   Number   number of the rule, from InstallReflex; 0 for all rules of the finger
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   ENODEV   no hand is open
+   EINVAL   no such finger
+   ENOENT   the finger has no rule with this number
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example:
+
+     RemoveReflex(1, 0);
+ */
+int RemoveReflex(int, int);
+
+/*
  NextEvent - take the next event
 
      int NextEvent(struct Event *Event);
@@ -2112,6 +2233,7 @@ typedef char Sun2XpPalmPoseSize[sizeof(struct PalmPose) == 200 ? 1 : -1];
 typedef char Sun2XpPathPoseSize[sizeof(struct PathPose) == 48 ? 1 : -1];
 typedef char Sun2XpFingerRecordSize[sizeof(struct FingerRecord) == 200 ? 1 : -1];
 typedef char Sun2XpFaultSize[sizeof(struct Fault) == 48 ? 1 : -1];
+typedef char Sun2XpReflexSize[sizeof(struct Reflex) == 168 ? 1 : -1];
 typedef char Sun2XpEventSize[sizeof(struct Event) == 72 ? 1 : -1];
 #endif
 
@@ -2262,32 +2384,36 @@ typedef struct Sun2XpNull Sun2XpNull;
 
 #ifdef SUN2XP_SETS_MACROS_ASIDE
 _Pragma("pop_macro(\"AdjustFinger\")") _Pragma("pop_macro(\"Answered\")") _Pragma("pop_macro(\"Base\")")
-_Pragma("pop_macro(\"Calibration\")") _Pragma("pop_macro(\"CloseHand\")") _Pragma("pop_macro(\"Commanded\")")
-_Pragma("pop_macro(\"Computed\")") _Pragma("pop_macro(\"Contact\")") _Pragma("pop_macro(\"CorruptReplies\")")
-_Pragma("pop_macro(\"Count\")") _Pragma("pop_macro(\"Cycle\")") _Pragma("pop_macro(\"Cycles\")")
-_Pragma("pop_macro(\"DamagedFrames\")") _Pragma("pop_macro(\"Damping\")") _Pragma("pop_macro(\"DuplicateReplies\")")
-_Pragma("pop_macro(\"Event\")") _Pragma("pop_macro(\"EventDescriptor\")") _Pragma("pop_macro(\"Fault\")")
-_Pragma("pop_macro(\"FaultText\")") _Pragma("pop_macro(\"Felt\")") _Pragma("pop_macro(\"FindPos\")")
-_Pragma("pop_macro(\"FindTip\")") _Pragma("pop_macro(\"Finger\")") _Pragma("pop_macro(\"FingerCommand\")")
-_Pragma("pop_macro(\"FingerRecord\")") _Pragma("pop_macro(\"FingerStatus\")") _Pragma("pop_macro(\"FingerTiming\")")
-_Pragma("pop_macro(\"FingerTip\")") _Pragma("pop_macro(\"FingerTouch\")") _Pragma("pop_macro(\"Follows\")")
-_Pragma("pop_macro(\"Force\")") _Pragma("pop_macro(\"ForeignFrames\")") _Pragma("pop_macro(\"GetFault\")")
-_Pragma("pop_macro(\"GetJacobian\")") _Pragma("pop_macro(\"GetJointTorques\")") _Pragma("pop_macro(\"GetObject\")")
-_Pragma("pop_macro(\"GetPalmPose\")") _Pragma("pop_macro(\"GetRecord\")") _Pragma("pop_macro(\"GetStatus\")")
-_Pragma("pop_macro(\"GetTiming\")") _Pragma("pop_macro(\"GetTip\")") _Pragma("pop_macro(\"GetTouch\")")
-_Pragma("pop_macro(\"HandError\")") _Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"IsTip\")")
-_Pragma("pop_macro(\"JointTorques\")") _Pragma("pop_macro(\"Kind\")") _Pragma("pop_macro(\"Kx\")")
-_Pragma("pop_macro(\"LateReplies\")") _Pragma("pop_macro(\"Lost\")") _Pragma("pop_macro(\"LostEvents\")")
-_Pragma("pop_macro(\"LostReplies\")") _Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"Measured\")")
-_Pragma("pop_macro(\"MeasuredRate\")") _Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")")
-_Pragma("pop_macro(\"Minimum\")") _Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"NextEvent\")")
+_Pragma("pop_macro(\"Bound\")") _Pragma("pop_macro(\"Calibration\")") _Pragma("pop_macro(\"CloseHand\")")
+_Pragma("pop_macro(\"Commanded\")") _Pragma("pop_macro(\"Computed\")") _Pragma("pop_macro(\"Condition\")")
+_Pragma("pop_macro(\"Contact\")") _Pragma("pop_macro(\"CorruptReplies\")") _Pragma("pop_macro(\"Count\")")
+_Pragma("pop_macro(\"Cycle\")") _Pragma("pop_macro(\"Cycles\")") _Pragma("pop_macro(\"DamagedFrames\")")
+_Pragma("pop_macro(\"Damping\")") _Pragma("pop_macro(\"DuplicateReplies\")") _Pragma("pop_macro(\"Event\")")
+_Pragma("pop_macro(\"EventDescriptor\")") _Pragma("pop_macro(\"Fault\")") _Pragma("pop_macro(\"FaultText\")")
+_Pragma("pop_macro(\"Felt\")") _Pragma("pop_macro(\"FindPos\")") _Pragma("pop_macro(\"FindTip\")")
+_Pragma("pop_macro(\"Finger\")") _Pragma("pop_macro(\"FingerCommand\")") _Pragma("pop_macro(\"FingerRecord\")")
+_Pragma("pop_macro(\"FingerStatus\")") _Pragma("pop_macro(\"FingerTiming\")") _Pragma("pop_macro(\"FingerTip\")")
+_Pragma("pop_macro(\"FingerTouch\")") _Pragma("pop_macro(\"Follows\")") _Pragma("pop_macro(\"Force\")")
+_Pragma("pop_macro(\"ForeignFrames\")") _Pragma("pop_macro(\"GetFault\")") _Pragma("pop_macro(\"GetJacobian\")")
+_Pragma("pop_macro(\"GetJointTorques\")") _Pragma("pop_macro(\"GetObject\")") _Pragma("pop_macro(\"GetPalmPose\")")
+_Pragma("pop_macro(\"GetRecord\")") _Pragma("pop_macro(\"GetStatus\")") _Pragma("pop_macro(\"GetTiming\")")
+_Pragma("pop_macro(\"GetTip\")") _Pragma("pop_macro(\"GetTouch\")") _Pragma("pop_macro(\"HandError\")")
+_Pragma("pop_macro(\"IdentifyFinger\")") _Pragma("pop_macro(\"Inhibition\")") _Pragma("pop_macro(\"InstallReflex\")")
+_Pragma("pop_macro(\"IsTip\")") _Pragma("pop_macro(\"Joint\")") _Pragma("pop_macro(\"JointTorques\")")
+_Pragma("pop_macro(\"Kind\")") _Pragma("pop_macro(\"Kx\")") _Pragma("pop_macro(\"LateReplies\")")
+_Pragma("pop_macro(\"Lost\")") _Pragma("pop_macro(\"LostEvents\")") _Pragma("pop_macro(\"LostReplies\")")
+_Pragma("pop_macro(\"Maximum\")") _Pragma("pop_macro(\"Measured\")") _Pragma("pop_macro(\"MeasuredRate\")")
+_Pragma("pop_macro(\"Median\")") _Pragma("pop_macro(\"MemoryLocked\")") _Pragma("pop_macro(\"Minimum\")")
+_Pragma("pop_macro(\"Most\")") _Pragma("pop_macro(\"Newest\")") _Pragma("pop_macro(\"NextEvent\")")
 _Pragma("pop_macro(\"Number\")") _Pragma("pop_macro(\"ObjectState\")") _Pragma("pop_macro(\"Oldest\")")
 _Pragma("pop_macro(\"OnCore\")") _Pragma("pop_macro(\"OnEvent\")") _Pragma("pop_macro(\"OpenHand\")")
 _Pragma("pop_macro(\"Overruns\")") _Pragma("pop_macro(\"P99\")") _Pragma("pop_macro(\"P999\")")
 _Pragma("pop_macro(\"PalmPose\")") _Pragma("pop_macro(\"Part\")") _Pragma("pop_macro(\"PathPose\")")
 _Pragma("pop_macro(\"Place\")") _Pragma("pop_macro(\"Pos\")") _Pragma("pop_macro(\"PosSent\")")
-_Pragma("pop_macro(\"Position\")") _Pragma("pop_macro(\"Pressed\")") _Pragma("pop_macro(\"PushFinger\")")
-_Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")")
+_Pragma("pop_macro(\"Position\")") _Pragma("pop_macro(\"Pressed\")") _Pragma("pop_macro(\"Priority\")")
+_Pragma("pop_macro(\"PushFinger\")") _Pragma("pop_macro(\"Rate\")") _Pragma("pop_macro(\"Reaction\")")
+_Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")") _Pragma("pop_macro(\"Reflex\")")
+_Pragma("pop_macro(\"Refractory\")") _Pragma("pop_macro(\"RemoveReflex\")") _Pragma("pop_macro(\"Reserved\")")
 _Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"Rotation\")") _Pragma("pop_macro(\"SendContact\")")
 _Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendGroup\")") _Pragma("pop_macro(\"SendPath\")")
 _Pragma("pop_macro(\"SendPosFor\")") _Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"SetGravity\")")
