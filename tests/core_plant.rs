@@ -1,5 +1,6 @@
 //! Tests the physics of the simulated finger against results that do not depend on its code.
 
+#[allow(dead_code)]
 mod core_lagrange;
 #[path = "common/energy.rs"]
 mod energy;

@@ -1,9 +1,8 @@
 //! What the configuration says about the motion of a finger's set points.
 
 use crate::control::motion::Interpolation;
-use crate::control::spatial;
 use crate::model::configuration::{ConfiguredFinger, ExpiryReaction};
-use nalgebra::{Matrix3, Matrix6};
+use nalgebra::Matrix3;
 
 /// What a servo does with the set points of its planner.
 #[derive(Clone, Debug)]
@@ -19,8 +18,8 @@ pub struct MotionSettings {
 /// The reaction to a set point that has expired.
 #[derive(Clone, Copy, Debug)]
 pub enum AfterExpiry {
-    /// The finger holds its present pose with this stiffness, as in [`SetPoint::stiffness`](crate::control::SetPoint).
-    Hold(Matrix6<f64>),
+    /// The finger holds its present pose with this Kx, N/cm.
+    Hold(Matrix3<f64>),
     /// The finger faults, and its board goes to the end state.
     Fault,
 }
@@ -36,7 +35,7 @@ impl MotionSettings {
                 .map(|milliseconds| Interpolation::new(milliseconds * 1e-3, configured.speed, rate)),
             valid: configured.valid_ms.map(|milliseconds| milliseconds * 1e-3),
             after_expiry: match configured.on_expiry {
-                ExpiryReaction::Hold => AfterExpiry::Hold(spatial(&(Matrix3::identity() * held))),
+                ExpiryReaction::Hold => AfterExpiry::Hold(Matrix3::identity() * held),
                 ExpiryReaction::EndState => AfterExpiry::Fault,
             },
         }

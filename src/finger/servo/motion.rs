@@ -3,7 +3,7 @@
 use super::FingerServo;
 use super::set_point_motion::{Expiry, Following};
 use crate::control::motion::{Follower, InterpolationState, PathTable};
-use crate::control::{Activity, Law, SetPoint};
+use crate::control::{Activity, SetPoint};
 use crate::finger::events::{EventKind, Occurrence};
 use crate::finger::motion_settings::{AfterExpiry, MotionSettings};
 use crate::finger::sent::SentSetPoint;
@@ -119,9 +119,9 @@ impl FingerServo {
         let MotionSettings { after_expiry, .. } = self.adjustable.motion;
         match after_expiry {
             AfterExpiry::Fault => self.fault(Fault::of(FaultKind::SetPointExpired, age_ms)),
-            AfterExpiry::Hold(stiffness) => {
+            AfterExpiry::Hold(kx) => {
                 let joints = self.report.cycle.joints;
-                let held = SetPoint { joints, law: Law::Exact, stiffness, damping: 1.0, motion: None };
+                let held = SetPoint::hard_finger(joints, kx);
                 self.follow(held, self.report.set_point_number);
                 self.motion.rest(joints);
                 // Later changes of planners start from the pose that is held.

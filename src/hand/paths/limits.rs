@@ -49,11 +49,11 @@ impl Admission {
         let begins = [start.rates, start.accelerations, start.jerk];
         let mut worst: Option<Excess> = None;
         for (index, piece) in pieces.iter().enumerate() {
-            for quantity in 0..3 {
+            for (quantity, begin) in begins.iter().enumerate() {
                 let (least, most) = piece.bounds(quantity + 1);
                 for joint in 0..3 {
                     let value = most[joint].max(-least[joint]);
-                    let limit = self.motion_limits.0[quantity].max(begins[quantity][joint].abs() * (1.0 + 1e-9));
+                    let limit = self.motion_limits.0[quantity].max(begin[joint].abs() * (1.0 + 1e-9));
                     // Slower by a factor, the n-th derivative shrinks by the n-th power of the factor.
                     let factor = (value / limit).powf(1.0 / (quantity + 1) as f64);
                     if factor > 1.0 && worst.as_ref().is_none_or(|worst| factor > worst.factor) {
