@@ -33,8 +33,8 @@ proctype Stopper()
 /* Recovering in src/hand/recovery.rs, and `recover` in src/capi/default_hand.rs. */
 proctype Recoverer(byte f)
 {
-    byte p = PORT_OF(f), mine, i, recoveries, before[FINGERS];
-    bool waits, limited;
+    byte p = PORT_OF(f), mine, i, before[FINGERS];
+    bool waits, limited, beside_others, sent;
     mtype:stage seen[FINGERS];
     /* Recovering::begin */
     atomic {
@@ -42,11 +42,14 @@ proctype Recoverer(byte f)
         mine = generation;
         if
         :: CLOSED_MEANWHILE || report[f].stage != FAULTED -> unread(hand); goto returned
-        :: else -> recoveries = report[f].recoveries
+        :: else
         fi
     };
     atomic {
-        for (i : 0 .. FINGERS - 1) { before[i] = report[i].recoveries };
+        for (i : 0 .. FINGERS - 1) {
+            before[i] = report[i].recoveries;
+            beside_others = beside_others || (ON(p, i) && report[i].stage != FAULTED)
+        };
         i = 0;
         unread(hand)
     };
@@ -59,7 +62,7 @@ proctype Recoverer(byte f)
            :: else
            fi;
            if
-           :: repairs[p] != recoveries -> unlock(repair[p]); break
+           :: repairs[f] != before[f] -> unlock(repair[p]); break
            :: else -> take_link(p)
            fi
        };
@@ -68,17 +71,27 @@ proctype Recoverer(byte f)
        :: atomic {
               have_link[p] ->
               assert(!repaired[p]);
-              repairs[p]++;
+              for (i : 0 .. FINGERS - 1) { if :: ON(p, i) -> repairs[i]++ :: else fi };
+              i = 0;
               have_link[p] = false;
               repaired[p] = true;
               unlock(repair[p]);
               break
           }
-       :: atomic { !have_link[p] -> unlock(repair[p]) }
+       :: atomic { !have_link[p] && sent && !restored[f] -> repairs[f]++; unlock(repair[p]); break }
+       :: atomic {
+              /* The handshake beside other fingers needs a finger at rest. */
+              !have_link[p] && beside_others && !sent && AT_REST(f) && link_held[p] ->
+              restored[f] = true;
+              sent = true;
+              unlock(repair[p])
+          }
+       :: atomic { !have_link[p] && !(sent && !restored[f]) -> unlock(repair[p]) }
        fi;
        if
        :: goto returned                                                     /* time limit */
-       :: released[p] || have_link[p] || repairs[p] != recoveries || repair_gone[p] || servo_dropped[p] || over
+       :: released[p] || have_link[p] || repairs[f] != before[f] || repair_gone[p] || servo_dropped[p] || over ||
+          (sent && !restored[f])
        fi
     od;
     /* Recovering::poll */
@@ -94,8 +107,9 @@ proctype Recoverer(byte f)
            limited = false;
            for (i : 0 .. FINGERS - 1) {
                seen[i] = report[i].stage;
-               limited = limited || (ON(p, i) && seen[i] == FAULTED);
-               waits = waits || (ON(p, i) && seen[i] == OPENING)
+               /* Only the fingers that were repaired. */
+               limited = limited || (ON(p, i) && seen[i] == FAULTED && repairs[i] != before[i]);
+               waits = waits || (ON(p, i) && seen[i] == OPENING && repairs[i] != before[i])
            };
            i = 0;
            unread(hand)

@@ -79,8 +79,10 @@ Report own[FINGERS];
 bool stops_sent[FINGERS];
 bool fault_recorded[FINGERS];
 
-/* src/finger/link_handover.rs: two rings with one place. */
+/* src/finger/link_handover.rs: rings with one place. */
 bool released[PORTS], repaired[PORTS];
+/* A finger whose handshake was relayed, while the servo has kept the link. */
+bool restored[FINGERS];
 bool link_held[PORTS];
 bool servo_dropped[PORTS];
 
@@ -88,7 +90,7 @@ bool servo_dropped[PORTS];
 bool repair[PORTS];
 bool repair_gone[PORTS];
 bool have_link[PORTS], checked[PORTS];
-byte repairs[PORTS];
+byte repairs[FINGERS];
 
 /* src/hand/servo_threads.rs: the channels `report` and `begin`. */
 byte ready;
@@ -117,7 +119,9 @@ byte callers;
 #define FOR_ONE(p, what) ((ON(p, 0) && what(0)) || (ON(p, 1) && what(1)))
 #define FINISHED(p) FOR_ALL(p, FINISHED_FINGER)
 #define RELEASES(p) (link_held[p] && FOR_ALL(p, AT_REST))
-#define WORK(p) (FOR_ONE(p, BUSY) || RELEASES(p) || repaired[p])
+#define RESTORED(f) (restored[f])
+#define TAKES(p) (link_held[p] && FOR_ONE(p, RESTORED))
+#define WORK(p) (FOR_ONE(p, BUSY) || RELEASES(p) || repaired[p] || TAKES(p))
 
 #include "servo.pml"
 #include "threads.pml"

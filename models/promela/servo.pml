@@ -31,6 +31,18 @@ inline recover_finger(f) {
 
 /* ServedPort::exchange in src/finger/servo_thread.rs. */
 inline exchange(p) {
+    for (f : 0 .. FINGERS - 1) {
+        if
+        :: ON(p, f) && link_held[p] && restored[f] ->
+           restored[f] = false;
+           assert(AT_REST(f) || closing[f]);
+           if
+           :: AT_REST(f) -> recover_finger(f)
+           :: else
+           fi
+        :: else
+        fi
+    };
     if
     :: RELEASES(p) ->
        assert(!released[p]);
@@ -41,7 +53,7 @@ inline exchange(p) {
        link_held[p] = true;
        for (f : 0 .. FINGERS - 1) {
            if
-           :: ON(p, f) -> recover_finger(f)
+           :: ON(p, f) -> restored[f] = false; recover_finger(f)
            :: else
            fi
        }

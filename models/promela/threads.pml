@@ -108,11 +108,12 @@ inline new_hand() {
         own[i].stage = OPENING; own[i].verdict = NONE; own[i].orders = 0; own[i].recoveries = 0;
         report[i].stage = OPENING; report[i].verdict = NONE; report[i].orders = 0; report[i].recoveries = 0;
         order[i] = NOTHING; ordered[i] = 0; closing[i] = false; claimed[i] = false;
-        calls_seen[i] = stop_calls; faults_seen[i] = shared_faults; stops_sent[i] = false; fault_recorded[i] = false
+        calls_seen[i] = stop_calls; faults_seen[i] = shared_faults; stops_sent[i] = false; fault_recorded[i] = false;
+        restored[i] = false; repairs[i] = 0
     };
     for (i : 0 .. PORTS - 1) {
         released[i] = false; repaired[i] = false; link_held[i] = true; servo_dropped[i] = false;
-        repair_gone[i] = false; have_link[i] = false; checked[i] = false; repairs[i] = 0
+        repair_gone[i] = false; have_link[i] = false; checked[i] = false
     };
     ready = 0; begun = false; begin_dropped = false; stop_collector = false; stop_ports = false;
     i = 0

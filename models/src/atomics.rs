@@ -24,6 +24,13 @@ fn ordering(intended: Ordering) -> Ordering {
     if WEAKENED.get() { Ordering::Relaxed } else { intended }
 }
 
+/// A fence. There is none if every access is relaxed.
+pub fn fence(intended: Ordering) {
+    if !WEAKENED.get() {
+        atomic::fence(intended);
+    }
+}
+
 macro_rules! atomic {
     ($name:ident, $value:ty) => {
         pub struct $name(atomic::$name);

@@ -28,12 +28,52 @@ mod control {
 }
 
 mod model {
-    pub use sun2xp::model::configuration;
+    pub use sun2xp::model::{FingerNumber, configuration};
 }
 
 #[allow(missing_docs, dead_code)]
 #[path = "../../src/finger"]
 mod finger {
+    pub mod events {
+        #[path = "../../../models/src/event_log_checks.rs"]
+        pub mod event_log_checks;
+        mod log;
+
+        mod words {
+            pub const WORDS: usize = 2;
+        }
+
+        use crate::model::FingerNumber;
+        use words::WORDS;
+
+        /// Takes the place of the event, whose many words would take loom too long.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Event {
+            pub finger: FingerNumber,
+            pub cycle: u64,
+            pub time: u64,
+            pub kind: (),
+            pub part: (),
+            pub values: (),
+        }
+
+        /// Takes the place of an event without its stamp.
+        pub struct Occurrence {
+            pub kind: (),
+            pub part: (),
+            pub values: (),
+        }
+
+        impl Event {
+            fn to_words(self) -> [u64; WORDS] {
+                [self.cycle, self.time]
+            }
+
+            fn from_words(&[cycle, time]: &[u64; WORDS]) -> Option<Self> {
+                Some(Self { finger: FingerNumber::ONE, cycle, time, kind: (), part: (), values: () })
+            }
+        }
+    }
     #[path = "../../models/src/group_checks.rs"]
     pub mod group_checks;
     mod group_gate;
@@ -87,6 +127,7 @@ pub mod ring_checks;
 mod tracked;
 pub mod triple_buffer_checks;
 
+pub use finger::events::event_log_checks;
 pub use finger::{group_checks, mailbox_checks, stop_signal_checks};
 pub use realtime::atomics::weakened;
 

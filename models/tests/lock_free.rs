@@ -3,15 +3,21 @@
 use std::process::Command;
 use std::sync::{Arc, Mutex};
 use sun2xp_models::{
-    explore, group_checks, mailbox_checks, ring_checks, stop_signal_checks, triple_buffer_checks, weakened,
+    event_log_checks, explore, group_checks, mailbox_checks, ring_checks, stop_signal_checks, triple_buffer_checks,
+    weakened,
 };
 
 /// Environment variable of a process that runs one test with weakened orderings.
 const WEAKENED: &str = "SUN2XP_TEST_WEAKENED";
 
-/// Runs a check, and runs it again without the orderings of the code. The second run must find a data race. It is a
-/// process of its own, because a data race in a destructor ends the process.
+/// Runs a check, and runs it again without the orderings of the code. The second run must find a data race.
 fn holds_and_needs_its_orderings(check: impl Fn() + Send + Sync + 'static) {
+    holds_and_fails_without_its_orderings("Causality violation", check);
+}
+
+/// Runs a check, and runs it again without the orderings of the code. The second run must fail with this message. It is
+/// a process of its own, because a data race in a destructor ends the process.
+fn holds_and_fails_without_its_orderings(message: &str, check: impl Fn() + Send + Sync + 'static) {
     if std::env::var_os(WEAKENED).is_some() {
         return weakened(|| explore(check));
     }
@@ -21,7 +27,7 @@ fn holds_and_needs_its_orderings(check: impl Fn() + Send + Sync + 'static) {
     let mut test = Command::new(std::env::current_exe().expect("the test's own program"));
     let run = test.args(["--exact", name, "--nocapture"]).env(WEAKENED, "1").output().expect("the test starts");
     let output = String::from_utf8_lossy(&run.stderr);
-    assert!(!run.status.success() && output.contains("Causality violation"), "no ordering is checked: {output}");
+    assert!(!run.status.success() && output.contains(message), "no ordering is checked: {output}");
 }
 
 #[test]
@@ -57,6 +63,19 @@ fn an_order_has_its_data() {
 #[test]
 fn a_set_point_is_valid_for_one_spring() {
     holds_and_needs_its_orderings(mailbox_checks::a_set_point_is_for_one_spring);
+}
+
+/// The places of the log are atomic, so a missing ordering shows in what the reader gets.
+#[test]
+fn a_log_passes_whole_events_and_counts_the_lost_ones() {
+    let check = event_log_checks::events_are_whole_and_lost_events_are_counted;
+    holds_and_fails_without_its_orderings("parts of different events", check);
+}
+
+#[test]
+fn a_log_has_no_later_event_before_its_horizon() {
+    let check = event_log_checks::no_later_event_is_before_the_horizon;
+    holds_and_fails_without_its_orderings("before the horizon", check);
 }
 
 /// The gate passes the decision itself, and no other data.

@@ -1,7 +1,7 @@
 //! The atomic types and the cell of the lock-free code. The package in `models/` compiles the lock-free files again
 //! with the types of the model checker loom in place of this file. So the code that is checked is the code that runs.
 
-pub use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicU64, AtomicUsize, Ordering};
+pub use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicU64, AtomicUsize, Ordering, fence};
 
 /// Memory that two threads access in turns. It has the interface of loom's cell, which detects an access that another
 /// thread's access does not precede.

@@ -7,8 +7,8 @@
 use super::words::WORDS;
 use super::{Event, Occurrence};
 use crate::model::FingerNumber;
+use crate::realtime::atomics::{AtomicU64, Ordering, fence};
 use crate::realtime::{LockedMemory, Pages, SharedPages};
-use std::sync::atomic::{AtomicU64, Ordering, fence};
 
 /// Number of events that the log holds.
 pub const CAPACITY: usize = 4096;
@@ -57,14 +57,23 @@ struct Place {
 }
 
 impl Log {
+    fn capacity(&self) -> u64 {
+        self.places.len() as u64
+    }
+
     fn place(&self, position: u64) -> &Place {
-        &self.places[(position % CAPACITY as u64) as usize]
+        &self.places[(position % self.capacity()) as usize]
     }
 }
 
 /// Returns an empty log and its servo's end.
 pub fn event_log(finger: FingerNumber) -> (EventWriter, EventLog) {
-    let places = Pages::from_fn(CAPACITY, |_| Place {
+    event_log_of(finger, CAPACITY)
+}
+
+/// Returns an empty log for `capacity` events, and its servo's end.
+pub(super) fn event_log_of(finger: FingerNumber, capacity: usize) -> (EventWriter, EventLog) {
+    let places = Pages::from_fn(capacity, |_| Place {
         sequence: AtomicU64::new(NO_EVENT),
         words: std::array::from_fn(|_| AtomicU64::new(0)),
     });
@@ -79,7 +88,7 @@ impl EventLog {
     /// longer holds.
     pub fn reader(&self) -> EventReader {
         let published = self.0.published.load(Ordering::Acquire);
-        EventReader { log: self.0.clone(), position: published.saturating_sub(CAPACITY as u64), lost: 0 }
+        EventReader { log: self.0.clone(), position: published.saturating_sub(self.0.capacity()), lost: 0 }
     }
 }
 
@@ -136,7 +145,7 @@ impl EventReader {
     /// such event.
     pub fn take(&mut self) -> Option<Event> {
         let published = self.log.published.load(Ordering::Acquire);
-        let oldest = published.saturating_sub(CAPACITY as u64);
+        let oldest = published.saturating_sub(self.log.capacity());
         if self.position < oldest {
             self.lost += oldest - self.position;
             self.position = oldest;
