@@ -9,6 +9,7 @@ mod events;
 mod finger_on_a_cable;
 mod floods;
 mod kinds;
+mod limits;
 mod motion;
 mod named_hands;
 mod opening;

@@ -27,6 +27,13 @@ pub fn send(bench: &Bench, poses: &[PathPose]) {
     deliver(bench, &report, &plan(&report.reference, poses));
 }
 
+/// Does the same as [`send`], unless the path is refused. Returns whether it was sent.
+pub fn send_if_possible(bench: &Bench, poses: &[PathPose]) -> bool {
+    let report = bench.report();
+    let plan = plan_path(&configuration(), FingerNumber::ONE, &report.reference, poses);
+    plan.map(|plan| deliver(bench, &report, &plan)).is_ok()
+}
+
 /// Sends a path that was computed for the reference of `report`.
 fn deliver(bench: &Bench, report: &FingerReport, plan: &Plan) {
     let end = plan.end();
@@ -210,11 +217,7 @@ fn random_paths_stay_within_their_limits() {
         let step = 0.25 + 0.2 * part();
         let mut pose = || [1.6 * part() - 0.8, 1.8 * part() - 0.3, 1.6 * part() + 0.3];
         let poses: Vec<PathPose> = (1..=count).map(|index| joints(step * f64::from(index), pose())).collect();
-        let report = bench.report();
-        if let Ok(plan) = plan_path(&configuration(), FingerNumber::ONE, &report.reference, &poses) {
-            deliver(&bench, &report, &plan);
-            accepted += 1;
-        }
+        accepted += usize::from(send_if_possible(&bench, &poses));
         let periods = 20 + (700.0 * part()) as usize;
         track.run(&mut bench, periods);
     }

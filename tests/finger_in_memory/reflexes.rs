@@ -1,11 +1,15 @@
 //! Reflexes in the servo: how fast the command changes, what a reaction leaves behind, and its limits.
 
-use crate::rig::Bench;
+use crate::finger_on_a_cable::{ServedFinger, World};
+use crate::rig::{Bench, Line};
 use nalgebra::{Matrix3, Vector3};
+use sun2xp::board::Transport;
 use sun2xp::control::spatial;
-use sun2xp::finger::events::EventKind;
-use sun2xp::finger::{Condition, FaultKind, Reaction, Reflex, Stage};
+use sun2xp::finger::events::{EventKind, EventReader};
+use sun2xp::finger::{Bulletin, Condition, FaultKind, Reaction, Reflex, Stage};
+use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, TouchElement};
+use sun2xp::realtime::{Clock, Schedule};
 
 fn rule(condition: Condition, reaction: Reaction) -> Reflex {
     Reflex { condition, reaction, priority: 0, refractory: 0.0, inhibition: 0.0 }
@@ -123,4 +127,86 @@ fn a_rule_sleeps_while_the_finger_is_no_spring() {
     bench.until("faulted", |bench| bench.fault().is_some());
     bench.cycles(10);
     assert!(fired(&mut bench).is_empty());
+}
+
+/// Contacts at any time between two Commands: the event belongs to the next sample, and the Command after it has
+/// changed, so no contact waits longer than two periods.
+#[test]
+fn no_contact_waits_longer_than_two_periods() {
+    let mut bench = Bench::with(an_element);
+    bench.goes(Vector3::new(0.1, 0.5, 1.0));
+    let reflex = rule(Condition::Event(EventKind::TouchMade), Reaction::Hold);
+    bench.reflexes.install(reflex).expect("a place");
+    for contact in 0..1000_u64 {
+        push(&bench, [0.0; 3]);
+        bench.cycles(3);
+        assert!(fired(&mut bench).is_empty());
+        bench.with_cable(|cable| cable.advance_to(cable.now() + contact * 997 % 900_000));
+        push(&bench, [0.0, 0.0, -0.3]);
+        let springs = bench.report().springs;
+        // The physics advances in steps of 0.1 ms, so a contact just before a sample may miss it.
+        bench.cycles(1);
+        let at_once = fired(&mut bench).len();
+        bench.cycles(1 - at_once);
+        assert_eq!((at_once + fired(&mut bench).len(), bench.report().springs), (1, springs + 1), "contact {contact}");
+    }
+}
+
+/// Two fingers in two threads. Finger 1 reacts to the touch of finger 2 in the period after the one in which finger 2
+/// notices the touch, whichever of them runs first in a period.
+#[test]
+fn a_finger_reacts_to_the_touch_of_another_one_period_later() {
+    let mut configuration = Configuration::default();
+    configuration.fingers[0].port = "in memory".into();
+    an_element(&mut configuration);
+    let bulletin = Bulletin::new();
+    let mut fingers = [FingerNumber::ONE, FingerNumber::TWO].map(|number| {
+        let world = World::new(&configuration, Line::default());
+        let period = 1_000_000;
+        let schedule = Schedule::new(Clock::now(&world) + period, period);
+        let mut rules = None;
+        let served = ServedFinger::in_thread(&world, &configuration, &configuration, schedule, |finger| {
+            let (finger, installed) = finger.with_reflexes(number, &bulletin);
+            rules = Some(installed);
+            finger
+        });
+        (world, served, rules.expect("installed"))
+    });
+    let condition = Condition::OtherFinger { finger: FingerNumber::TWO, event: EventKind::TouchMade };
+    fingers[0].2.install(rule(condition, Reaction::Hold)).expect("a place");
+    let mut touched = fingers[1].1.events.reader();
+    let mut reacted = fingers[0].1.events.reader();
+    for _ in 0..3000 {
+        fingers.iter_mut().for_each(|(_, served, _)| served.servo.cycle());
+    }
+    for contact in 0..200 {
+        let first = contact % 2;
+        let push = |force: f64| {
+            let mut place = fingers[1].0.place();
+            let finger = place.cable.board().finger(1).expect("the board's finger");
+            let turn = finger.plant().links().tip_rotation(&finger.plant().joints());
+            finger.plant().set_external_force(turn * Vector3::new(0.0, 0.0, force));
+        };
+        push(-0.3);
+        let mut cycles = [None; 2];
+        for cycle in 0..5 {
+            for place in [first, 1 - first] {
+                fingers[place].1.servo.cycle();
+            }
+            let of_kind = |reader: &mut EventReader, kind| {
+                std::iter::from_fn(|| reader.take()).any(|event| event.kind == kind).then_some(cycle)
+            };
+            cycles[0] = cycles[0].or(of_kind(&mut touched, EventKind::TouchMade));
+            cycles[1] = cycles[1].or(of_kind(&mut reacted, EventKind::ReflexFired));
+        }
+        let [Some(touch), Some(reaction)] = cycles else { panic!("contact {contact}: {cycles:?}") };
+        assert!(touch <= 1 && reaction <= touch + 1, "contact {contact}: {cycles:?}");
+        let mut place = fingers[1].0.place();
+        place.cable.board().finger(1).expect("the board's finger").plant().set_external_force(Vector3::zeros());
+        drop(place);
+        for _ in 0..5 {
+            fingers.iter_mut().for_each(|(_, served, _)| served.servo.cycle());
+        }
+        while touched.take().is_some() || reacted.take().is_some() {}
+    }
 }
