@@ -126,4 +126,5 @@ byte callers;
 #include "servo.pml"
 #include "threads.pml"
 #include "calls.pml"
+#include "recovery.pml"
 #include "scenes.pml"
