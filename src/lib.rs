@@ -88,7 +88,7 @@ pub mod contact {
     pub use crate::model::configuration::ConfiguredContact;
 }
 
-/// Commands to several fingers that take effect in the same cycle, and waiting until several fingers are there.
+/// Commands to several fingers that take effect in the same cycle, and waiting until fingers have arrived or settled.
 pub mod groups {
     pub use crate::hand::{FingerCommand, Pose, Until, Waiting};
 }

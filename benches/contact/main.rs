@@ -1,4 +1,4 @@
-//! Contact without sensors: the forces that simulated fingers notice, how fast, and their false alarms.
+//! Contact without sensors: the forces that simulated fingers detect, how fast, and their false alarms.
 //!
 //!     cargo bench --bench contact                       all tables of docs/contact.md
 //!     cargo bench --bench contact -- nominal            the hands with this word in their name
@@ -29,7 +29,7 @@ struct Arguments {
     /// Limit of the simulated time for false alarms, minutes.
     #[arg(long, default_value_t = 60.0)]
     minutes: f64,
-    /// Seeds for the forces that are noticed.
+    /// Seeds for the detected forces.
     #[arg(long, default_value_t = 10)]
     seeds: u64,
     /// Keys of [finger.contact], as TOML.
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     for (title, measure) in [("At rest", noticed::at_rest as Measure), ("In motion", noticed::in_motion)] {
         println!("\n{title}:\n");
-        println!("| hand | force, N | noticed | time, ms: median, worst | lost after, ms: median, worst | error, N |");
+        println!("| hand | force, N | detected | time, ms: median, worst | lost after, ms: median, worst | error, N |");
         println!("|---|---|---|---|---|---|");
         for hand in &hands {
             for (force, pushes) in FORCES.into_iter().zip(measure(hand, &contact, arguments.seeds)?) {

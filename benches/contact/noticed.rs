@@ -1,4 +1,4 @@
-//! The forces that are noticed, at rest and in motion, and how fast.
+//! The detected forces, at rest and in motion, and the time until they are detected.
 
 use crate::finger::{Finger, RATE};
 use crate::hands::Hand;

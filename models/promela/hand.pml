@@ -1,8 +1,8 @@
 /* Root, Dispatcher, servos, recovery, calibration and shutdown of a hand with two fingers. docs/deadlock.md explains
  * the model. Each process names the code that it stands for.
  *
- * A wait that polls until something has happened is a statement that waits for it, so a call that polls without end is
- * an invalid end state. A wait with a time limit may end at any time, so it never blocks. A servo waits here until it
+ * A loop that polls a condition is one statement that waits for the condition, so a call that polls without end is an
+ * invalid end state. A wait with a time limit may end at any time, so it never blocks. A servo waits here until it
  * has something to do, instead of beginning a cycle every period. Faults and calls are limited in number. So every run
  * ends, and it must end with every process at its end.
  *

@@ -12,7 +12,7 @@ use loom::thread;
 /// Two servos that see a group take effect in the same period, whatever the times at which they see it.
 pub fn a_group_takes_effect_in_one_period() {
     let gate = GroupGate::new();
-    // The number of the present period. Time goes on while threads wait.
+    // The number of the present period. It increases while threads wait.
     let clock = Arc::new(AtomicU64::new(1));
     let group = gate.number();
     let (other, others_clock) = (gate.clone(), clock.clone());

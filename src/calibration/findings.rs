@@ -82,7 +82,7 @@ pub struct IdentifiedArms {
     pub encoder_zero: [i32; 4],
 }
 
-/// How well friction, moment arms and gauges are known after an identification. The residuals of its fits show it.
+/// Uncertainty of friction, moment arms and gauges after an identification, from the residuals of its fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerances {
     /// `monitors.friction_tolerance`.

@@ -47,8 +47,8 @@ use std::ffi::c_int;
 ///              dead, a joint meets no stop or meets it too early ...). No zero has changed, and
 ///              HandError gives the remedy. The finger is then limp. Exception: if it moved while it
 ///              was read, or if its counts were not valid, the calibration had not changed anything
-///              yet, and the finger is in its former state. Also if another thread has recovered the
-///              finger from a fault during the calibration: then it holds its pose, with its former zeros
+///              yet, and the finger is in its former state. If another thread has recovered the finger
+///              from a fault during the calibration, the finger holds its pose, with its former zeros
 ///   ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
 ///   EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
 ///              CloseHand

@@ -38,7 +38,7 @@ pub struct FingerTip {
     pub Contact: [f64; 3],
     /// Speed of the tip perpendicular to Contact, cm/s, while Touching: the tip slides on the object, or moves it.
     pub Slide: f64,
-    /// 1: the finger touches something, as far as tensions and motion show it. 0: it does not.
+    /// 1: according to tensions and motion, the finger touches something. 0: it does not.
     pub Touching: c_int,
     /// Always zero.
     pub Unused: c_int,

@@ -50,7 +50,7 @@ pub struct PathPose {
 /// The whole path is checked before anything moves: against the joint limits, and against speed,
 /// acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is
 /// made slower as a whole instead. Another path, SendPos or SendTip replaces the path without a jump,
-/// also while it runs. A Kx that is sent while a path runs takes effect at once, and the path no longer
+/// even while the finger follows it. A Kx that is sent while a path runs takes effect at once, and the path no longer
 /// changes Kx. After a refused call the finger continues as before.
 ///
 /// Returns 0, or -1 with
@@ -62,7 +62,8 @@ pub struct PathPose {
 ///            than the one before; joint angles and tip positions are mixed; an entry is NaN or infinite
 ///   EDOM     a Kx is not symmetric, or has a negative eigenvalue
 ///   ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is
-///            too stiff, or the path is too fast; HandError tells the pose, and how much slower it must be
+///            too stiff, or the path is too fast; HandError names the pose, and the factor by which the
+///            path must be slower
 ///   EIO      the finger is faulted
 ///   EBUSY    the finger is being opened or calibrated, or is limp
 ///   EAGAIN   the finger has become a spring again during the call

@@ -77,7 +77,7 @@ pub struct Reflex {
     pub Reaction: c_int,
     /// If several rules fire in one cycle, the one with the highest priority is first; 0 to 255.
     pub Priority: c_int,
-    /// 0.
+    /// Set it to 0.
     pub Reserved: c_int,
     /// N, rad or s, as the condition says.
     pub Bound: c_double,
@@ -104,7 +104,7 @@ pub struct Reflex {
 ///   Reflex   the rule; set Reflex->Size before the call
 ///
 /// The servo evaluates the rules of a finger in every cycle while the finger is a spring. If the
-/// condition becomes true, the command changes within two cycles, and within three cycles for
+/// condition becomes true, the command changes within two cycles, or within three cycles for
 /// WHEN_OTHER_FINGER. At most one rule reacts in a cycle; the others wait. Each reaction is an event
 /// EVENT_REFLEX_FIRED with the number of the rule.
 ///

@@ -6,8 +6,8 @@ use crate::model::configuration::Unusable;
 
 impl Hand {
     /// Sets gravity in the palm's frame, m/s^2: `hand.gravity` for the time until the hand is closed. Every finger
-    /// compensates the new gravity within a cycle and without a jump in torque. Simulated fingers feel it too; a
-    /// simulated object does not. The black box of every finger stores the gravity with the controller that
+    /// compensates the new gravity within a cycle and without a jump in torque. It also acts on simulated fingers, but
+    /// not on a simulated object. The black box of every finger stores the gravity with the controller that
     /// compensates it, so that a recording can be replayed.
     ///
     /// The call constructs new controllers, as [`Hand::adjust`] does, and takes some hundred microseconds. The monitors

@@ -1,4 +1,4 @@
-//! An event count: ordinary threads wait until a servo has something for them, and the servo never waits.
+//! An event count: ordinary threads wait until a servo notifies them, and the servo never waits.
 //!
 //! The servo makes a system call only if a thread waits, and wakes one thread, so that the duration of the call does
 //! not depend on the number of threads. That thread wakes the others.

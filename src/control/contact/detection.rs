@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Time constant with which the recent motion is forgotten, s. It exceeds the delay of the residual.
 const CALMING: f64 = 0.1;
 
-/// Duration of the first average of the error, s. Nothing is touched until it has ended.
+/// Duration of the first average of the error, s. No contact is reported before its end.
 const FIRST: f64 = 0.2;
 
 /// The constant part of the detection.
@@ -30,7 +30,7 @@ pub(super) struct DetectionState {
     rate: f64,
     /// Largest inertial torque of each joint in the recent past, N cm.
     inertial: Vector3<f64>,
-    /// Time since the start, s. It stops at the learning time.
+    /// Time since the start, s, without contacts. It does not exceed the learning time.
     time: f64,
     pub touching: bool,
 }

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct ContactEstimate {
     /// Torques of the surroundings on the joints, N cm, relative to the slowly varying error of the model.
     pub torques: Vector3<f64>,
-    /// The force of the surroundings on the fingertip with these torques, N, in the finger's frame. The component in a
-    /// direction that the joints do not feel, near a singular pose, is reduced toward zero.
+    /// The force of the surroundings on the fingertip with these torques, N, in the finger's frame. Near a singular
+    /// pose, the component in the direction that causes no joint torques is reduced toward zero.
     pub force: Vector3<f64>,
     /// Whether the finger touches something. The force has exceeded the threshold, and has not fallen below the lower
     /// threshold since.

@@ -11,7 +11,7 @@
 //! r = K (p - integral of (R t + C^T theta_dot + g - friction + r)).
 //!
 //! The joint rates are the differences of the joint angles. Tensions and rates first pass a low-pass filter with the
-//! bandwidth K. Without this filter, the noise of the rates would exceed the torques that are to be noticed.
+//! bandwidth K. Without this filter, the noise of the rates would exceed the torques that must be detected.
 //!
 //! The tensions are measured between motors and joints, so the friction and the inertia of the motors do not matter.
 
@@ -52,7 +52,7 @@ pub(super) struct MomentumState {
     momentum: Vector3<f64>,
     /// r, N cm.
     pub residual: Vector3<f64>,
-    /// p_dot with the delay of r, N cm.
+    /// p_dot with the same low-pass filter as r, N cm.
     pub inertial: Vector3<f64>,
 }
 

@@ -11,7 +11,7 @@ use nalgebra::{Matrix3x4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
 /// Time between two samples of the estimate, s. It is short compared with the delay of the residual. With every sample
-/// of the servo, the estimate would need four times the computing time at 1000 Hz and notice the same forces.
+/// of the servo, the estimate would need four times the computing time at 1000 Hz and detect the same forces.
 const INTERVAL: f64 = 0.005;
 
 /// Number of samples after which the quantities that depend only on the pose are computed again, one of them at each

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector4;
 
-/// share p t sat(v / creep).
+/// Feeds share p t sat(v / creep) forward, N, where p is the friction of the pulleys and t the tension.
 ///
 /// v is the speed of a tendon at the joints, if they follow the reference. If v were the observed speed, the
 /// feed-forward would act against a person who pushes the finger. Only configured friction is fed forward: on a finger
 /// without this friction, a feed-forward makes steps overshoot.
 ///
-/// The dither of the tensions makes the mean friction proportional to the speed of a slow tendon, so the sign of v
-/// would be too much near the end of a motion.
+/// The dither of the tensions makes the mean friction of a slow tendon proportional to its speed. Feed-forward of the
+/// full friction with the sign of v would therefore be too much near the end of a motion.
 #[derive(Clone, Debug)]
 pub(crate) struct PulleyFeedForward {
     /// The fraction of each tension that is fed forward.

@@ -42,7 +42,7 @@ kinds! {
     2 TouchLost "TOUCH_LOST" None, [Element, Pressure], "touch lost",
         "a tactile element of the fingertip is no longer pressed";
     3 TouchSlip "TOUCH_SLIP" None, [Element, Pressure], "touch slips",
-        "what presses a tactile element slips";
+        "the object that presses a tactile element slips";
     4 TouchPressure "TOUCH_PRESSURE" None, [Element, Pressure], "touch pressure",
         "the force on a tactile element has changed";
     5 Contact "CONTACT" None, [Force], "contact",

@@ -1,5 +1,5 @@
-//! What the fingers of a hand tell each other: how often each kind of event has occurred. A servo reads the counters of
-//! the others without waiting.
+//! Counters of the events of every finger, one counter for each kind. A servo reads the counters of the other fingers
+//! without waiting.
 
 use crate::finger::events::EventKind;
 use crate::model::FingerNumber;

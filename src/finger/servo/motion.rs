@@ -16,7 +16,7 @@ impl FingerServo {
         if sent.spring != self.report.springs && self.motion.expired_phase != Some(sent.spring) {
             return;
         }
-        self.reflexes.hear(self.motion.next_period);
+        self.reflexes.note_set_point(self.motion.next_period);
         if self.reflexes.inhibits() {
             return;
         }
@@ -27,7 +27,7 @@ impl FingerServo {
         motion.target = set_point.joints;
         match &sent.path {
             Some(path) if path.number != motion.path.number => {
-                // If the buffer has a later path, the set point that belongs to it is about to arrive.
+                // The buffer may already have a later path, whose set point is not published yet.
                 let taken = self.mailbox.take_path();
                 motion.path = Following {
                     number: taken.number,

@@ -30,7 +30,7 @@ impl FingerServo {
         self.note_events();
         if self.report.stage != Stage::Running {
             self.reflexes.server.idle();
-            (self.reflexes.inhibited_until, self.reflexes.heard) = (None, period);
+            (self.reflexes.inhibited_until, self.reflexes.last_set_point) = (None, period);
             return;
         }
         if self.reflexes.inhibited_until.is_some_and(|until| period >= until) {
@@ -44,7 +44,7 @@ impl FingerServo {
             period: seconds,
             report: &self.report.cycle,
             link_lost: self.sample_age as f64 * seconds,
-            planner_silent: period.saturating_sub(self.reflexes.heard) as f64 * seconds,
+            planner_silent: period.saturating_sub(self.reflexes.last_set_point) as f64 * seconds,
         };
         if let Some(fired) = self.reflexes.server.run(&facts) {
             self.carry_out_reaction(&fired);

@@ -5,13 +5,13 @@ use crate::finger::{ReflexServer, reflexes};
 use crate::model::FingerNumber;
 use crate::realtime::LockedMemory;
 
-/// The rules of a finger, and what their last reactions have left behind.
+/// The rules of a finger, and when it follows its planner.
 pub(super) struct Reflexive {
     pub server: ReflexServer,
-    /// The period from which on the finger follows its planner again; none if it does.
+    /// The period from which on the finger follows its planner again; none if it follows its planner now.
     pub inhibited_until: Option<u64>,
     /// The period of the last set point of the planner.
-    pub heard: u64,
+    pub last_set_point: u64,
 }
 
 impl Reflexive {
@@ -19,7 +19,7 @@ impl Reflexive {
     pub fn new(finger: FingerNumber, memory: &mut LockedMemory) -> Self {
         let (_, server) = reflexes(finger, &Bulletin::new());
         memory.append(server.memory());
-        Self { server, inhibited_until: None, heard: 0 }
+        Self { server, inhibited_until: None, last_set_point: 0 }
     }
 
     /// Returns whether the finger does not follow set points of its planner.
@@ -28,7 +28,7 @@ impl Reflexive {
     }
 
     /// Notes a set point of the planner in this period.
-    pub fn hear(&mut self, period: u64) {
-        self.heard = period;
+    pub fn note_set_point(&mut self, period: u64) {
+        self.last_set_point = period;
     }
 }

@@ -12,8 +12,8 @@ pub(super) struct SetPointMotion {
     pub target: Vector3<f64>,
     pub interpolation: InterpolationState,
     pub expiry: Option<Expiry>,
-    /// The spring phase that ended when the last set point expired. A set point that a planner sent before it could
-    /// know of that is still valid.
+    /// The spring phase that ended when the last set point expired. A set point for this phase is still accepted,
+    /// because its planner may not have known of the expiry.
     pub expired_phase: Option<u32>,
 }
 

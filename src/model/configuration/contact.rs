@@ -1,8 +1,8 @@
-//! `[finger.contact]`: from which forces the finger notices a contact without touch sensors.
+//! `[finger.contact]`: the thresholds for the detection of contacts without touch sensors.
 
 use serde::{Deserialize, Serialize};
 
-/// `[finger.contact]`. docs/contact.md has the forces that the defaults notice.
+/// `[finger.contact]`. docs/contact.md lists the forces that are detected with the defaults.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfiguredContact {

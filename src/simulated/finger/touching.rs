@@ -11,7 +11,7 @@ impl SimulatedFinger {
         self.pads.exist().then(|| self.pads.fetch(request.received))
     }
 
-    /// Lets the tactile elements feel what touches the tip.
+    /// Passes the force on the tip to the tactile elements.
     pub(super) fn feel(&mut self) {
         if self.pads.exist() {
             let turn = self.plant.links().tip_rotation(&self.plant.joints()).inverse();
