@@ -27,7 +27,7 @@ const EXIT: &str = "-DEXIT -DOPENED -DNO_RECONNECT -DPORTS=1";
 enum Found {
     /// No run of the model ends before every process is at its end, and no assertion fails.
     Nothing,
-    /// A process waits, and no other process can go on.
+    /// A process waits, and no other process can continue.
     Deadlock,
 }
 

@@ -29,7 +29,7 @@ fn wait_for(queue: &EventQueue, kind: EventKind) -> Event {
     }
 }
 
-/// Whether poll(2) says within the limit that the descriptor is readable.
+/// Returns whether poll(2) reports within the limit that the descriptor is readable.
 fn readable(descriptor: i32, limit: Duration) -> bool {
     let mut entry = libc::pollfd { fd: descriptor, events: libc::POLLIN, revents: 0 };
     // SAFETY: the entry is valid during the call.

@@ -39,7 +39,7 @@ fn a_planner_waits_until_a_group_has_arrived_and_settled() {
         }
         hand.wait(&[3, 1], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     }
-    // A wait for fingers that are there returns at once, even without any time.
+    // A wait for fingers that have arrived returns at once, even with a time limit of 0.
     hand.wait(&[1, 2, 3], Until::Settled, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     hand.wait(&[1, 2, 3], Until::Settled, Duration::ZERO).unwrap_or_else(|error| panic!("{error}"));
     hand.wait(&[], Until::Arrived, Duration::ZERO).unwrap_or_else(|error| panic!("{error}"));

@@ -12,7 +12,7 @@ struct touch_traits {
     uint16_t elements; /* 0 to TOUCH_ELEMENTS_MOST. */
     uint16_t made;     /* An element is pressed above its count at power-up plus this. */
     uint16_t lost;     /* It is no longer pressed below its count at power-up plus this, which is less than `made`. */
-    uint16_t step;     /* A change of this size is an event by itself. */
+    uint16_t step;     /* A change since the last event that causes a pressure event. */
 };
 
 struct touch_element {

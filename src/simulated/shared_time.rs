@@ -7,12 +7,14 @@ use crate::simulated::pace::{LONGEST_STEP, PATIENCE};
 /// The time of simulated boards with one host each, ns.
 ///
 /// All boards have the same time, because an object that they share cannot be at two times. The time advances at the
-/// rate of real time, but at most by the grace after the last bytes for any finger whose motors follow commands, as
-/// with [`Pace::Patient`](crate::simulated::Pace). A finger whose motors are off, because it is stopped, faulted or not
-/// opened, does not hold up the others. A host that is silent for two seconds does not hold them up either.
+/// rate of real time. It stops if no bytes arrive within the grace for a finger whose motors follow commands, until
+/// bytes for this finger arrive, as with [`Pace::Patient`](crate::simulated::Pace). It does not stop for a finger whose
+/// motors are off, because the finger is stopped, faulted or not opened, nor for a host that is silent for two seconds.
 #[derive(Clone, Debug)]
 pub struct SharedTime {
+    /// How far the time continues after the last bytes for a finger, ns.
     grace: u64,
+    /// The time of the boards, ns.
     board: u64,
     /// Real time of the last wake-up.
     woken: u64,
@@ -56,8 +58,8 @@ impl SharedTime {
     }
 
     /// Returns whether bytes for this finger can be taken now. The host of a finger that is under control waits with
-    /// its next command for the answer to the last one. If the time is held up by another finger, the answer must wait
-    /// too: a controller that ran on would count periods that do not pass at its finger.
+    /// its next command for the answer to the last one. If the time has stopped for another finger, the answer must
+    /// wait too: a controller that continued would count periods that do not pass at its finger.
     pub fn takes(&self, finger: usize) -> bool {
         let host = &self.hosts[finger];
         !host.controls || self.board >= host.received_at + self.grace / 2

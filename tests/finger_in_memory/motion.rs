@@ -286,7 +286,7 @@ fn kx_changes_along_a_path_and_a_later_kx_wins() {
     };
     bench.mailbox.try_send((Replaced::Stiffness, None), soften).expect("not faulted").expect("admitted");
     assert!((at(&mut bench, 1250, begin) - 2.0).abs() < 1e-12);
-    assert!(bench.report().set_point.motion.is_some(), "the path goes on");
+    assert!(bench.report().set_point.motion.is_some(), "the path continues");
     assert!((at(&mut bench, 1700, begin) - 2.0).abs() < 1e-12);
     assert!((bench.report().set_point.joints - Vector3::new(0.3, 0.7, 1.2)).amax() < 1e-9);
 }

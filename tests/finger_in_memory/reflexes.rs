@@ -1,4 +1,4 @@
-//! Reflexes in the servo: how fast the command changes, what a reaction leaves behind, and its limits.
+//! Reflexes in the servo: how fast the command changes, the set point after a reaction, and its limits.
 
 use crate::finger_on_a_cable::{ServedFinger, World};
 use crate::rig::{Bench, Line};

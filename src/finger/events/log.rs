@@ -167,8 +167,8 @@ impl EventReader {
         self.lost
     }
 
-    /// Returns a time, ns. No event that [`EventReader::take`] has not returned when it is called after this function
-    /// and returns none has an earlier time.
+    /// Returns the horizon, ns: no event that is published later has an earlier time. So call this function first, and
+    /// then [`EventReader::take`] until it returns none. No event that was not returned then has an earlier time.
     pub fn horizon(&self) -> u64 {
         self.log.horizon.load(Ordering::Acquire)
     }
