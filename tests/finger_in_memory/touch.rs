@@ -81,7 +81,7 @@ fn an_element_that_cannot_be_read_has_no_number() {
     assert_eq!(bench.touch.reading(1), Some(Default::default()));
 }
 
-/// Frames are lost in both directions. Every event arrives once, in order, and no cycle becomes late.
+/// Frames are lost in both directions. Every event arrives once and in order, and the finger does not fault.
 #[test]
 fn no_touch_is_lost_on_a_bad_line() {
     let mut bench = Bench::with(two_elements);
