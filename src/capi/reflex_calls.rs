@@ -90,7 +90,8 @@ pub struct Reflex {
     pub Refractory: c_double,
     /// Time after a reaction in which the finger ignores set points of the planner, s, 0 to 3600.
     pub Inhibition: c_double,
-    /// THEN_RETRACT: joint angles, rad.
+    /// THEN_RETRACT: joint angles, rad. THEN_GRIP: direction in the finger's frame in which the tip presses harder;
+    /// 0, 0, 0 for the direction in which its spring presses.
     pub Pos: [c_double; 3],
     /// THEN_SOFTEN: stiffness, N/cm, row by row.
     pub Kx: [[c_double; 3]; 3],
@@ -229,7 +230,7 @@ fn reaction(rule: &Reflex) -> Result<Reaction, HandError> {
         THEN_HOLD => Reaction::Hold,
         THEN_SOFTEN => Reaction::Soften(Matrix3::from_fn(|row, column| rule.Kx[row][column])),
         THEN_RETRACT => Reaction::Retract(Vector3::from(rule.Pos)),
-        THEN_GRIP => Reaction::Grip { by: rule.Value, most: rule.Most },
+        THEN_GRIP => Reaction::Grip { direction: Vector3::from(rule.Pos), by: rule.Value, most: rule.Most },
         THEN_DAMP => Reaction::Damp(rule.Value),
         number => return Err(ReflexError::NoSuchKind { what: "reaction", number, prefix: "THEN_" }.into()),
     })

@@ -94,7 +94,8 @@ fn reaction(admission: &Admission, reaction: Reaction) -> Result<Reaction, HandE
         Reaction::Stop | Reaction::Hold => reaction,
         Reaction::Retract(joints) => Reaction::Retract(admission.joints(joints.into())?),
         Reaction::Soften(kx) => Reaction::Soften(admission.kx(rows(&kx))?),
-        Reaction::Grip { by, most } => {
+        Reaction::Grip { direction, by, most } => {
+            admission.finite("the direction of the grip", direction.as_slice())?;
             within(finger, "increase of the force", by, 0.0, STRONGEST, "N")?;
             within(finger, "largest force", most, 0.0, STRONGEST, "N")?;
             reaction

@@ -25,23 +25,47 @@ int GetRecord = 1, ResetTiming = 2;
         abort(); \
     }
 
-double AdjustFinger(double), FaultText(double), GetFault(double), GetStatus(double), GetTiming(double), GetTip(double);
-double IdentifyFinger(double), PushFinger(double), RecoverHand(double), SendContact(double), SendDamping(double);
-double SendTip(double), StopHand(double), WriteBlackBox(double), ZeroFinger(double);
+double AdjustFinger(double), EventDescriptor(double), FaultText(double), FindPos(double), FindTip(double);
+double GetFault(double), GetJacobian(double), GetJointTorques(double), GetObject(double), GetPalmPose(double);
+double GetStatus(double), GetTiming(double), GetTip(double), GetTouch(double), IdentifyFinger(double);
+double InstallReflex(double), NextEvent(double), OnEvent(double), PushFinger(double), RecoverHand(double);
+double RemoveReflex(double), SendContact(double), SendDamping(double), SendGroup(double), SendPath(double);
+double SendPosFor(double), SendTip(double), SetGravity(double), StopFinger(double), StopHand(double);
+double TareTouch(double), WaitEvent(double), WaitFingers(double), WriteBlackBox(double), ZeroFinger(double);
 
 OWN(AdjustFinger)
+OWN(EventDescriptor)
 OWN(FaultText)
+OWN(FindPos)
+OWN(FindTip)
 OWN(GetFault)
+OWN(GetJacobian)
+OWN(GetJointTorques)
+OWN(GetObject)
+OWN(GetPalmPose)
 OWN(GetStatus)
 OWN(GetTiming)
 OWN(GetTip)
+OWN(GetTouch)
 OWN(IdentifyFinger)
+OWN(InstallReflex)
+OWN(NextEvent)
+OWN(OnEvent)
 OWN(PushFinger)
 OWN(RecoverHand)
+OWN(RemoveReflex)
 OWN(SendContact)
 OWN(SendDamping)
+OWN(SendGroup)
+OWN(SendPath)
+OWN(SendPosFor)
 OWN(SendTip)
+OWN(SetGravity)
+OWN(StopFinger)
 OWN(StopHand)
+OWN(TareTouch)
+OWN(WaitEvent)
+OWN(WaitFingers)
 OWN(WriteBlackBox)
 OWN(ZeroFinger)
 

@@ -53,7 +53,7 @@ impl Random {
             0 => Reaction::Hold,
             1 => Reaction::Soften(Matrix3::identity() * self.between(0.0, 5.0)),
             2 => Reaction::Retract(self.pose()),
-            3 => Reaction::Grip { by: self.between(0.0, 3.0), most: self.between(0.0, 6.0) },
+            3 => Reaction::Grip { direction: self.pose(), by: self.between(0.0, 3.0), most: self.between(0.0, 6.0) },
             _ => Reaction::Damp(self.between(0.0, 3.0)),
         };
         Reflex {

@@ -15,6 +15,7 @@ use sun2xp::model::FingerNumber;
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{Configuration, RATES};
 use sun2xp::realtime::{CycleStage, Distribution};
+use sun2xp::reflexes::{Condition, MOST_RULES, Reaction, Reflex};
 
 /// Maximum size of the file that --costs names, bytes. The file contains four numbers.
 const LARGEST_COSTS: u64 = 1 << 16;
@@ -24,9 +25,10 @@ const LARGEST_COSTS: u64 = 1 << 16;
 ///
 /// The worst cases of this machine are measured on the simulated hand, with the rate, threads, cores and priorities of
 /// the configuration. With --costs they are read from a TOML file with the keys `wake_up`, `write` (the commands of one
-/// port), `read` (receive and decode one reply) and `compute` (one finger), all in us. Lines are as configured; a
-/// simulated port counts as a serial line of its baud rate. The results hold for any phases of the threads. The exit
-/// status is 1 if a deadline may be missed.
+/// port), `read` (receive and decode one reply) and `compute` (one finger), all in us. The measured computing time
+/// includes 16 reflexes of each finger, of which one reacts in every cycle. Lines are as configured; a simulated port
+/// counts as a serial line of its baud rate. The results hold for any phases of the threads. The exit status is 1 if a
+/// deadline may be missed.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file. The default is the file that OpenHand would use.
@@ -114,6 +116,7 @@ fn measure(configuration: &Configuration, arguments: &Arguments) -> Result<Costs
     let mut simulated = configuration.clone();
     simulated.fingers.iter_mut().for_each(|finger| finger.port = "simulated".into());
     let hand = Hand::open(simulated)?;
+    FingerNumber::ALL.into_iter().try_for_each(|finger| busy_with_reflexes(&hand, finger))?;
     (1..=3).try_for_each(|finger| hand.reset_timing(finger))?;
     sleep(Duration::from_secs(arguments.measure));
     let worst = |stage| -> Result<f64, Failure> {
@@ -127,6 +130,23 @@ fn measure(configuration: &Configuration, arguments: &Arguments) -> Result<Costs
         read: worst(CycleStage::Read)? + worst(CycleStage::Decode)?,
         compute: worst(CycleStage::Compute)?,
     })
+}
+
+/// Gives a finger as many reflexes as it can have. All of them fire again and again, so one of them reacts in every
+/// cycle, and the measured computing time includes the aperiodic server at its limit.
+fn busy_with_reflexes(hand: &Hand, finger: FingerNumber) -> Result<(), Failure> {
+    let reflex = Reflex {
+        condition: Condition::ForceAbove(0.0),
+        reaction: Reaction::Damp(1.0),
+        priority: 0,
+        // Shorter than any period.
+        refractory: 1e-9,
+        inhibition: 0.0,
+    };
+    for _ in 0..MOST_RULES {
+        hand.install_reflex(finger.get(), reflex)?;
+    }
+    Ok(())
 }
 
 fn table(out: &mut impl Write, schedule: &[Scheduled], title: &str) -> io::Result<()> {

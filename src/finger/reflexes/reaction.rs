@@ -3,7 +3,7 @@
 use super::rule::Reaction;
 use crate::control::{AdmissibleDamping, Report, SetPoint, spatial};
 use crate::model::configuration::ConfiguredFinger;
-use crate::model::{Contact, Links};
+use crate::model::{Contact, Links, direction};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
 /// Force below which the spring of a tip has no direction in which it presses, N.
@@ -38,7 +38,9 @@ impl ReactionLimits {
             Reaction::Hold => Some(SetPoint { joints: self.within(&report.joints), ..rest }),
             Reaction::Soften(kx) => Some(SetPoint { stiffness: spatial(&kx), damping: 1.0, ..rest }),
             Reaction::Retract(joints) => Some(SetPoint { joints: self.within(&joints), ..rest }),
-            Reaction::Grip { by, most } => Some(SetPoint { joints: self.grip(by, most, report, followed)?, ..rest }),
+            Reaction::Grip { direction, by, most } => {
+                Some(SetPoint { joints: self.grip(&direction, (by, most), report, followed)?, ..rest })
+            }
             Reaction::Damp(ratio) => Some(SetPoint { damping: self.damping(ratio, followed), ..rest }),
         }
     }
@@ -48,19 +50,25 @@ impl ReactionLimits {
         Vector3::from_fn(|joint, _| joints[joint].clamp(low[joint], high[joint]))
     }
 
-    /// Returns the anchor, rad, with which the tip presses harder in the direction F / |F| of the spring's force
-    /// F = Kx (x_d - x). The anchor moves by Kx^-1 dF. Returns none if there is no such direction, or if Kx has no
-    /// inverse.
-    fn grip(&self, by: f64, most: f64, report: &Report, followed: &SetPoint) -> Option<Vector3<f64>> {
+    /// Returns the anchor, rad, with which the tip presses harder by `by`, at most with `most`, N. The spring's force is
+    /// F = Kx (x_d - x). The anchor moves by Kx^-1 dF, with dF in `direction`, or in the direction of F if it is zero.
+    /// Returns none if the spring does not press in this direction, or if Kx has no inverse.
+    fn grip(
+        &self,
+        along: &Vector3<f64>,
+        (by, most): (f64, f64),
+        report: &Report,
+        followed: &SetPoint,
+    ) -> Option<Vector3<f64>> {
         let kx: Matrix3<f64> = followed.stiffness.fixed_view::<3, 3>(0, 0).into();
         let anchor = self.links.tip(&followed.joints);
         let force = kx * (anchor - self.links.tip(&report.joints));
-        let strength = force.norm();
+        let along = direction(along).or_else(|| direction(&force))?;
+        let strength = force.dot(&along);
         if strength < NO_DIRECTION {
             return None;
         }
-        let more = by.min(most - strength).max(0.0);
-        let change = kx.try_inverse()? * force * (more / strength);
+        let change = kx.try_inverse()? * along * by.min(most - strength).max(0.0);
         let turn = self.links.jacobian(&followed.joints).try_inverse()? * change;
         let joints = followed.joints + turn;
         joints.iter().all(|joint| joint.is_finite()).then(|| self.within(&joints))
@@ -96,13 +104,17 @@ mod tests {
         let report = Report { joints: tip_at, ..Report::default() };
         let force = |joints: &Vector3<f64>| 3.0 * (limits.links.tip(joints) - limits.links.tip(&tip_at));
         let before = force(&followed.joints);
-        let grip = Reaction::Grip { by: 0.2, most: 5.0 };
+        let grip = Reaction::Grip { direction: Vector3::zeros(), by: 0.2, most: 5.0 };
         let after = force(&limits.react(&grip, &report, &followed).expect("a set point").joints);
         assert!((after.norm() - before.norm() - 0.2).abs() < 0.01, "{} to {} N", before.norm(), after.norm());
         assert!(after.normalize().dot(&before.normalize()) > 0.9999);
         // The largest force is not exceeded, and a larger force is not reduced.
-        let most = Reaction::Grip { by: 0.2, most: before.norm() - 0.1 };
+        let most = Reaction::Grip { direction: Vector3::zeros(), by: 0.2, most: before.norm() - 0.1 };
         assert_eq!(limits.react(&most, &report, &followed).expect("a set point").joints, followed.joints);
+        // Only the component in a given direction grows.
+        let down = Reaction::Grip { direction: before.cross(&Vector3::x()) + before, by: 0.2, most: 5.0 };
+        let pressed = force(&limits.react(&down, &report, &followed).expect("a set point").joints) - before;
+        assert!(pressed.dot(&(before.cross(&Vector3::x()) + before).normalize()) > 0.19, "{pressed}");
         // A spring at rest presses in no direction.
         let at_rest = Report { joints: followed.joints, ..Report::default() };
         assert_eq!(limits.react(&grip, &at_rest, &followed), None);
@@ -120,7 +132,7 @@ mod tests {
             let reaction = match reaction {
                 0 => Reaction::Hold,
                 1 => Reaction::Retract(joints.into()),
-                2 => Reaction::Grip { by, most: 100.0 },
+                2 => Reaction::Grip { direction: is.into(), by, most: 100.0 },
                 _ => Reaction::Damp(ratio),
             };
             if let Some(next) = limits.react(&reaction, &report, &followed) {

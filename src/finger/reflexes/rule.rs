@@ -72,9 +72,11 @@ pub enum Reaction {
     Soften(Matrix3<f64>),
     /// The anchor of the spring goes to these joint angles, rad.
     Retract(Vector3<f64>),
-    /// The tip presses harder in the direction in which its spring presses now. Nothing happens while the spring
-    /// presses with less than 0.05 N.
+    /// The tip presses harder. Nothing happens while its spring presses with less than 0.05 N in the direction.
     Grip {
+        /// The direction in the finger's frame, for example the inward normal of the object at the tip. Its length does
+        /// not matter. If it is zero, the direction is that in which the spring presses now.
+        direction: Vector3<f64>,
         /// Increase of the force, N.
         by: f64,
         /// Largest force, N.
