@@ -51,9 +51,9 @@
    2. RETURN VALUES, ERRNO
 
    Every call except HandError and FaultText returns an int: 0 if it succeeded, -1 if it was
-   refused. NextEvent, WaitEvent and EventDescriptor also return larger numbers. A refused call
-   changes nothing, unless its entry says otherwise. errno gives the kind of the refusal.
-   HandError() gives its cause and the remedy:
+   refused. NextEvent, WaitEvent, EventDescriptor and InstallReflex also return larger numbers. A
+   refused call changes nothing, unless its entry says otherwise. errno gives the kind of the
+   refusal. HandError() gives its cause and the remedy:
 
        EPERM      the process is a forked child (chapter 6)
        EFAULT     an argument is a null pointer
@@ -66,7 +66,7 @@
                   damping outside its range
        EDOM       Kx not symmetric, or with a negative eigenvalue; a normal of length zero
        EIO        the finger is faulted: it has stopped by itself
-       ETIMEDOUT  the time limit of a wait is over
+       ETIMEDOUT  the time limit of a wait or of a calibration is over
        ENOTSUP    not for a finger on a real port
        ESHUTDOWN  the process is exiting, and the hand is closed (chapter 6)
        others     errno of the system, or the nearest: configuration file, port, enforced real time
@@ -75,7 +75,7 @@
    changes neither errno nor the text of HandError().
 
    Arrays, structs and texts are read and written only during the call. An output is written only if
-   the call returns 0.
+   the call returns 0, and by NextEvent and WaitEvent only if they return 1.
 
    Planners of 1990 ignore return values. For them the first refusal of each kind in a process also
    prints one line on standard error, unless hand.print_refusals is false.
@@ -139,7 +139,7 @@
    like C keywords, such as const, volatile, int or float. The exceptions are
 
        SendPos, SendKx, GetPos, SendPosD, SendKxD, GetPosD
-       names that begin with EVENT_, FAULT_, FINGER_, TIMING_, SUN2XP_ or Sun2Xp
+       names that begin with EVENT_, FAULT_, FINGER_, TIMING_, WHEN_, THEN_, SUN2XP_ or Sun2Xp
        _Pragma, and names that the compiler defines itself
        _Generic, default and sizeof where a C file calls SendPos, SendKx or GetPos
 
@@ -189,16 +189,15 @@
    (longjmp, siglongjmp). The same holds if a handler that interrupted a call calls pthread_exit or,
    in C++, lets an exception escape.
 
-   Memory: OpenHand allocates the memory for the servos, for CloseHand and for all calls that are
-   not slow. These calls work even if malloc later returns NULL. OpenHand (12 MiB), RecoverHand,
-   ZeroFinger, IdentifyFinger, AdjustFinger, SetGravity and WriteBlackBox (4 MiB), WaitFingers,
-   OnEvent, EventDescriptor and WaitEvent (64 KiB) are refused with ENOMEM if that much memory is
-   not free.
-   If memory runs out while one of them runs, the process is aborted, and the boards' watchdogs end
-   the motion. If less than 4 MiB are free when a finger faults, the fault is reported but no black
-   box is written, and a line on standard error says so. If the library was loaded with dlopen, the
-   first call of a thread needs memory for its thread-local data. If there is none, the C library
-   aborts the process.
+   Memory: OpenHand allocates the memory for the servos, for CloseHand and for all calls that are not
+   slow, except SendPath. These calls work even if malloc later returns NULL. OpenHand (12 MiB),
+   RecoverHand, ZeroFinger, IdentifyFinger, AdjustFinger, SetGravity and WriteBlackBox (4 MiB),
+   SendPath (1 MiB), WaitFingers, OnEvent, EventDescriptor and WaitEvent (64 KiB) are refused with
+   ENOMEM if that much memory is not free. If memory runs out while one of them runs, the process is
+   aborted, and the boards' watchdogs end the motion. If less than 4 MiB are free when a finger
+   faults, the fault is reported but no black box is written, and a line on standard error says so. If
+   the library was loaded with dlopen, the first call of a thread needs memory for its thread-local
+   data. If there is none, the C library aborts the process.
 
    Cancellation: pthread_cancel does not interrupt a call. It takes effect at the planner's next
    cancellation point or, with asynchronous cancellation, when the call returns.
@@ -931,8 +930,8 @@ struct FingerTip {
                                        It is zero while the finger is not running. */
     double Slide;                   /* Speed of the tip perpendicular to Contact, cm/s, while Touching: the tip
                                        slides on the object, or moves it. */
-    int Touching;                   /* 1: the finger touches something, as far as tensions and motion show it. 0: it
-                                       does not. */
+    int Touching;                   /* 1: according to tensions and motion, the finger touches something. 0: it does
+                                       not. */
     int Unused;                     /* Always zero. */
 };
 
@@ -1052,7 +1051,7 @@ struct Reflex {
     int Reaction;                   /* THEN_STOP to THEN_DAMP. */
     int Priority;                   /* If several rules fire in one cycle, the one with the highest priority is
                                        first; 0 to 255. */
-    int Reserved;                   /* 0. */
+    int Reserved;                   /* Set it to 0. */
     double Bound;                   /* N, rad or s, as the condition says. */
     double Value;                   /* THEN_GRIP: increase of the force, N. THEN_DAMP: ratio. */
     double Most;                    /* THEN_GRIP: largest force, N. */
@@ -1060,7 +1059,9 @@ struct Reflex {
                                        the rule fires again only after its condition was false. */
     double Inhibition;              /* Time after a reaction in which the finger ignores set points of the planner,
                                        s, 0 to 3600. */
-    double Pos[3];                  /* THEN_RETRACT: joint angles, rad. */
+    double Pos[3];                  /* THEN_RETRACT: joint angles, rad. THEN_GRIP: direction in the finger's frame in
+                                       which the tip presses harder; 0, 0, 0 for the direction in which its spring
+                                       presses. */
     double Kx[3][3];                /* THEN_SOFTEN: stiffness, N/cm, row by row. */
 };
 
@@ -1650,8 +1651,8 @@ int GetPalmPose(int, struct PalmPose *);
    Gravity   Gravity[3]: gravity along x, y, z of the palm's frame, m/s^2. Always double
 
  Replaces hand.gravity until CloseHand. Every finger compensates the new gravity within a cycle and
- without a jump in torque. Simulated fingers feel it too; a simulated object does not. The monitors
- begin again with every change, so a planner should not change gravity more often than it needs.
+ without a jump in torque. It also acts on simulated fingers, but not on a simulated object. The
+ monitors begin again with every change, so a planner should not change gravity more often than it needs.
 
  Returns 0, or -1 with
    EPERM    forked child
@@ -1689,7 +1690,7 @@ int SetGravity(const double *);
  The whole path is checked before anything moves: against the joint limits, and against speed,
  acceleration and jerk of finger.motion. With hand.out_of_range = "clamp" a path that is too fast is
  made slower as a whole instead. Another path, SendPos or SendTip replaces the path without a jump,
- also while it runs. A Kx that is sent while a path runs takes effect at once, and the path no longer
+ even while the finger follows it. A Kx that is sent while a path runs takes effect at once, and the path no longer
  changes Kx. After a refused call the finger continues as before.
 
  Returns 0, or -1 with
@@ -1701,7 +1702,8 @@ int SetGravity(const double *);
             than the one before; joint angles and tip positions are mixed; an entry is NaN or infinite
    EDOM     a Kx is not symmetric, or has a negative eigenvalue
    ERANGE   a pose or a place between two poses is out of reach or outside the joint limits, a Kx is
-            too stiff, or the path is too fast; HandError tells the pose, and how much slower it must be
+            too stiff, or the path is too fast; HandError names the pose, and the factor by which the
+            path must be slower
    EIO      the finger is faulted
    EBUSY    the finger is being opened or calibrated, or is limp
    EAGAIN   the finger has become a spring again during the call
@@ -1861,8 +1863,8 @@ int WriteBlackBox(int, const char *);
               dead, a joint meets no stop or meets it too early ...). No zero has changed, and
               HandError gives the remedy. The finger is then limp. Exception: if it moved while it
               was read, or if its counts were not valid, the calibration had not changed anything
-              yet, and the finger is in its former state. Also if another thread has recovered the
-              finger from a fault during the calibration: then it holds its pose, with its former zeros
+              yet, and the finger is in its former state. If another thread has recovered the finger
+              from a fault during the calibration, the finger holds its pose, with its former zeros
    ETIMEDOUT  not finished within finger.zeroing.time_limit_s; otherwise as with ECANCELED
    EACCES, ENOSPC ...  the configuration file cannot be written; the zeros are in force until
               CloseHand
@@ -2040,7 +2042,7 @@ int RecoverHand(int);
    Reflex   the rule; set Reflex->Size before the call
 
  The servo evaluates the rules of a finger in every cycle while the finger is a spring. If the
- condition becomes true, the command changes within two cycles, and within three cycles for
+ condition becomes true, the command changes within two cycles, or within three cycles for
  WHEN_OTHER_FINGER. At most one rule reacts in a cycle; the others wait. Each reaction is an event
  EVENT_REFLEX_FIRED with the number of the rule.
 
@@ -2061,8 +2063,8 @@ int RecoverHand(int);
 
  Example, a guarded move:
 
-     static struct Reflex Guard;
      int Number;
+     static struct Reflex Guard;
 
      Guard.Size = sizeof Guard;
      Guard.Condition = WHEN_EVENT;

@@ -126,8 +126,8 @@ pub struct Reflex {
 ///
 /// Example, a guarded move:
 ///
-///     static struct Reflex Guard;
 ///     int Number;
+///     static struct Reflex Guard;
 ///
 ///     Guard.Size = sizeof Guard;
 ///     Guard.Condition = WHEN_EVENT;

@@ -3,7 +3,6 @@
 #include <string.h>
 #include "Sun2Xp.h"
 #include "check.h"
-#include "refused.h"
 
 static struct Reflex rule(int condition, double bound, int reaction)
 {
@@ -45,7 +44,7 @@ static void refused(void)
     wrong = rule(WHEN_OTHER_FINGER, 0, THEN_HOLD), wrong.Finger = 1, wrong.Event = EVENT_SLIP;
     refuse(wrong, EINVAL, "own event");
     wrong = rule(WHEN_FORCE_ABOVE, 1, THEN_RETRACT), wrong.Pos[0] = 9;
-    refuse(wrong, EDOM, "joint 0");
+    refuse(wrong, ERANGE, "Pos[0]");
     wrong = rule(WHEN_FORCE_ABOVE, 1, THEN_SOFTEN), wrong.Kx[0][0] = -1;
     CHECK(InstallReflex(1, &wrong) == -1);
     CHECK(InstallReflex(4, &good) == -1 && errno == EINVAL);

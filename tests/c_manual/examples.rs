@@ -104,8 +104,10 @@ fn every_example_compiles_in_c_and_cpp() {
 #[test]
 fn every_example_runs() {
     let bench = Bench::new();
-    // The example of GetObject needs an object. It is out of reach, so that it does not disturb the others.
-    let object = "[finger]\nport = \"simulated\"\n[hand.simulated_object]\nposition = [0, 0, 50]\n";
+    // The example of GetObject needs an object, and that of GetTouch an element. The object is out of reach, so that it
+    // does not disturb the others.
+    let object = "[finger]\nport = \"simulated\"\n[hand.simulated_object]\nposition = [0, 0, 50]\n\
+                  [finger.touch]\nelements = [{ position = [0, 0, 0], normal = [0, 0, 1] }]\n";
     bench.write("sun2xp.toml", object);
     for example in programs() {
         let source = bench.write("example.c", &example.program());

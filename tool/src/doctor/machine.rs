@@ -6,7 +6,7 @@ use std::path::Path;
 use sun2xp::model::configuration::Configuration;
 
 /// Memory that three servo threads lock for stacks, rings and mailboxes, with a reserve, bytes.
-const LOCKED: u64 = 5 << 20;
+const LOCKED: u64 = 6 << 20;
 
 const CAP_IPC_LOCK: u32 = 14;
 const CAP_SYS_NICE: u32 = 23;
