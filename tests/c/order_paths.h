@@ -23,7 +23,7 @@ static void wrong_paths(void)
     memcpy(Path[0].Place, Pos, sizeof Pos);
     memcpy(Path[1].Place, Pos, sizeof Pos);
     Path[0].Time = 0.01;
-    REFUSED("SendPath", SendPath(1, 2, Path, 0), "multiply");
+    REFUSED("SendPath", SendPath(1, 2, Path, 0), "add poses");
     Path[0].Time = 1;
     REFUSED("SendPath", SendPath(1, 2, Path, 0), "stop");
 }

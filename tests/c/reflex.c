@@ -67,6 +67,7 @@ static void fired(void)
     struct Event Event;
     int numbers[2], seen = 0;
 
+    hold.Joint = 2;
     soften.Event = EVENT_REFLEX_FIRED;
     soften.Finger = 2;
     soften.Kx[0][0] = soften.Kx[1][1] = soften.Kx[2][2] = 0.5;

@@ -47,7 +47,7 @@ impl Example {
         if self.is_program() {
             return self.text.clone();
         }
-        let defines = self.text.starts_with("static ").then(|| self.text.rfind("\n}\n").expect("a function ends") + 3);
+        let defines = self.text.starts_with("static ").then(|| self.text.rfind("\n}\n").map(|end| end + 3)).flatten();
         let (functions, statements) = self.text.split_at(defines.unwrap_or_default());
         let (_, before, after) = AROUND.iter().find(|(call, ..)| *call == self.place).unwrap_or(&("", "", ""));
         let open = if statements.contains("OpenHand()") { "" } else { "if (OpenHand() != 0) return 2;" };
