@@ -117,23 +117,23 @@ pub struct Reflex {
 ///   EPERM    forked child
 ///   EFAULT   Reflex is null
 ///   ENODEV   no hand is open
-///   EINVAL   Size is too small; no such finger, joint, condition, reaction or event; a number is NaN
-///   ERANGE   a value is outside its range
-///   EDOM, ERANGE  as SendPos for Pos, and as SendKx for Kx
+///   EINVAL   Size is too small; no such finger, joint, condition, reaction or event; Pos or Kx is NaN
+///   ERANGE   another value is NaN or outside its range; Pos as in SendPos; Kx as in SendKx
+///   EDOM     Kx as in SendKx
 ///   ENOSPC   the finger has 16 rules
 ///
 /// Threads: any. Never waits for a servo. Takes a few us.
 ///
 /// Example, a guarded move:
 ///
-///     int Number;
 ///     static struct Reflex Guard;
 ///
 ///     Guard.Size = sizeof Guard;
 ///     Guard.Condition = WHEN_EVENT;
 ///     Guard.Event = EVENT_CONTACT;
 ///     Guard.Reaction = THEN_HOLD;
-///     Number = InstallReflex(1, &Guard);
+///     if (InstallReflex(1, &Guard) < 0)
+///         puts(HandError());
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn InstallReflex(i: c_int, Reflex: *const Reflex) -> c_int {
     let mut number = -1;

@@ -20,6 +20,8 @@ static struct FingerRecord Record;
 static struct FingerCommand Command[2];
 static struct JointTorques Torques;
 static struct PalmPose Pose;
+static struct FingerTouch Touch;
+static struct Reflex Rule;
 static int Fingers[1] = {9};
 static double J[9];
 static struct Fault Fault;
@@ -78,6 +80,8 @@ static void null_pointers(void)
     REFUSED("GetRecord", GetRecord(9, 99, NULL), "Record");
     REFUSED("WriteBlackBox", WriteBlackBox(9, NULL), "Path");
     REFUSED("GetFault", GetFault(9, NULL), "Fault");
+    REFUSED("GetTouch", GetTouch(9, 9, NULL), "Touch");
+    REFUSED("InstallReflex", InstallReflex(9, NULL), "Reflex");
     REFUSED("NextEvent", NextEvent(NULL), "Event");
     REFUSED("WaitEvent", WaitEvent(NULL, 0), "Event");
 }
@@ -116,6 +120,10 @@ static void without_hand(void)
     REFUSED("OnEvent", OnEvent(NULL, NULL), "OpenHand");
     REFUSED("EventDescriptor", EventDescriptor(), "OpenHand");
     REFUSED("StopFinger", StopFinger(9), "OpenHand");
+    REFUSED("GetTouch", GetTouch(9, 9, &Touch), "OpenHand");
+    REFUSED("TareTouch", TareTouch(9), "OpenHand");
+    REFUSED("InstallReflex", InstallReflex(9, &Rule), "OpenHand");
+    REFUSED("RemoveReflex", RemoveReflex(9, 9), "OpenHand");
     REFUSED("SetGravity", SetGravity(NanForce), "OpenHand");
 }
 
@@ -131,6 +139,8 @@ static void small_structs(void)
     REFUSED("GetObject", GetObject(&Object), "no simulated object");
     REFUSED("SendGroup", SendGroup(1, Command), "Size");
     REFUSED("NextEvent", NextEvent(&Event), "Size");
+    REFUSED("GetTouch", GetTouch(9, 9, &Touch), "Size");
+    REFUSED("InstallReflex", InstallReflex(9, &Rule), "Size");
     REFUSED("WaitEvent", WaitEvent(&Event, -1), "Size");
     REFUSED("GetJointTorques", GetJointTorques(9, &Torques), "Size");
     REFUSED("GetPalmPose", GetPalmPose(9, &Pose), "Size");
@@ -187,6 +197,7 @@ static void no_such_finger(void)
 }
 
 #include "order_groups.h"
+#include "order_reflexes.h"
 
 static void wrong_values_on_a_faulted_finger(void)
 {
@@ -218,6 +229,7 @@ static void wrong_values_on_a_faulted_finger(void)
     REFUSED("SendDamping", SendDamping(1, 99), "stop");
     wrong_groups();
     wrong_kinematics();
+    wrong_reflexes();
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\"\n="), "line 3");
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]\nport = \"other\""), "`port`");
     REFUSED("AdjustFinger", AdjustFinger(1, "joints.maximum_degrees = [-60, 100, 120]"), "minimum_degrees");

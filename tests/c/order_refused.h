@@ -10,6 +10,7 @@ static const char *name_of(int number)
     case EIO: return "EIO";
     case ENODEV: return "ENODEV";
     case ENOENT: return "ENOENT";
+    case ENOSPC: return "ENOSPC";
     case ENOTSUP: return "ENOTSUP";
     case ERANGE: return "ERANGE";
     default: return strerror(number);
