@@ -70,6 +70,7 @@ impl Controller {
         // The reserves keep the tensions within their bounds despite the variation by dither, noise and friction.
         let lower_reserve = state_feedback.as_ref().map_or(0.0, |law| law.lower_reserve);
         let upper_reserve = state_feedback.as_ref().map_or(Vector4::zeros(), |law| law.upper_reserve);
+        let dither_period = state_feedback.as_ref().map_or(0.0, StateFeedback::dither_period);
         positive("motor.continuous_torque", &finger.motor.continuous_torque)?;
         positive("motor.thermal_time", &[finger.motor.thermal_time])?;
         let soft = || Unusable { key: "tendon.stiffness", reason: "cannot hold every joint: check geometry.r".into() };
@@ -81,7 +82,7 @@ impl Controller {
             gravity: GravityCompensation::new(finger, gravity),
             heating: MotorHeating::new(finger, motor_torque.limit, &tendons.radius, rate),
             contact: ContactObserver::new(finger, &tendons, gravity, rate),
-            monitors: Monitors::new(finger, &tendons, rate),
+            monitors: Monitors::new(finger, &tendons, rate, dither_period),
             period: 1.0 / rate,
             sensors: SensorScales::new(finger)?,
             speed_filter: LowPass::new(gains.speed_filter, rate),

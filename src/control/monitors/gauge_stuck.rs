@@ -6,6 +6,7 @@ use super::alarm::{Alarm, Symptom, first_of};
 use super::sample::Sample;
 use crate::model::Part;
 use crate::model::configuration::ConfiguredFinger;
+use nalgebra::Vector4;
 
 /// Gain per sample of the running mean `Memory::repeats`.
 const LEARNING: f64 = 1.0 / 256.0;
@@ -92,6 +93,10 @@ pub(super) struct Memory {
     bends: [f64; 4],
     /// The last first and second difference of each gauge, counts.
     differences: [[i32; 2]; 4],
+    /// Tensions of the last sample, N.
+    tensions: Vector4<f64>,
+    /// Whether the tension of each gauge was low before its count became the present one.
+    was_low: [bool; 4],
 }
 
 impl Default for Memory {
@@ -105,6 +110,8 @@ impl Default for Memory {
             samples: 0,
             bends: [0.0; 4],
             differences: [[0; 2]; 4],
+            tensions: Vector4::zeros(),
+            was_low: [false; 4],
         }
     }
 }
@@ -135,7 +142,13 @@ impl Memory {
             let noisy = self.repeats[gauge] < MOST_REPEATS && reverses;
             self.samples >= KNOWN && noisy
         });
-        Flicker { known, same: self.same, saturated: self.last.map(|count| count >= full_scale) }
+        // A dead gauge often shows the lowest count too, but its tension is not low before. A gauge whose tension falls
+        // or drifts to the lowest count is at the end of its range.
+        let saturated = |gauge: usize| match self.last[gauge] {
+            0 => self.was_low[gauge],
+            count => count >= full_scale,
+        };
+        Flicker { known, same: self.same, saturated: std::array::from_fn(saturated) }
     }
 
     /// Notes the change of a gauge since the last sample, counts. Returns whether the second difference has changed its
@@ -162,6 +175,7 @@ impl GaugeStuck {
         let rises = |gauge: usize| counts[gauge] > last[gauge];
         memory.same = std::array::from_fn(|gauge| if same(gauge) { memory.same[gauge] + 1 } else { 0 });
         let same_for = memory.same;
+        let before = std::mem::replace(&mut memory.tensions, sample.tensions);
         // Whether at least two other gauges, of tendons that are not slack, have changed recently.
         let others_flicker = |gauge: usize| {
             let flickers =
@@ -180,6 +194,7 @@ impl GaugeStuck {
             }
             if memory.same[gauge] == 0 {
                 memory.rose[gauge] = rises(gauge);
+                memory.was_low[gauge] = before[gauge] < self.slack;
             }
         }
         let Flicker { known, saturated, .. } = memory.flickers(sample.full_scale);

@@ -11,8 +11,12 @@ use nalgebra::Vector4;
 /// than the thresholds allow for: friction that is configured lower must not make the monitor more sensitive.
 const FRICTION: f64 = 1.5;
 
-/// Time for which the imbalance must last, s. In this time a free motor would turn by dozens of counts under the
-/// smallest imbalance that this monitor reports.
+/// Total time for which the imbalance must exceed the tolerated one, s. In this time a free motor would turn by dozens
+/// of counts under the smallest imbalance that this monitor reports.
+///
+/// The dither makes the imbalance of a jammed motor oscillate, so in each of its periods the imbalance may exceed the
+/// tolerated one only for a part of this time. These parts are added, as long as the motor does not turn between them.
+/// A free motor that follows the dither turns by a multiple of [`AT_REST`] in each period.
 const DURATION: f64 = 0.012;
 
 /// Largest motion of a motor that is considered to be at rest, rad. The last bit of an encoder flickers.
@@ -25,41 +29,103 @@ pub(super) struct StalledMotor {
     /// `monitors.stall_fraction`.
     fraction: f64,
     friction: MotorFriction,
+    /// Longest time between two parts of the duration, s: a period of the dither. It is 0 without dither.
+    longest_gap: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Memory {
     /// Time for which each motor has been stalled, s, with the sign of pull minus tension.
     duration: [f64; 4],
-    /// Angle that each motor has turned in this time, rad.
+    /// Angle that each motor has turned since the beginning of this time, rad.
     turned: [f64; 4],
+    /// Time since the imbalance was last larger than tolerated, s.
+    gap: [f64; 4],
 }
 
 impl StalledMotor {
-    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons) -> Self {
+    /// `dither_period` is in s, and 0 without dither.
+    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, dither_period: f64) -> Self {
         Self {
             imbalance: Vector4::from(finger.monitors.stall_torque).component_div(&tendons.radius),
             fraction: finger.monitors.stall_fraction,
             friction: MotorFriction::new(finger, tendons),
+            longest_gap: dither_period,
         }
     }
 
     pub fn watch(&self, memory: &mut Memory, sample: &Sample) -> Option<Alarm> {
         for motor in 0..4 {
             let unbalanced = sample.pulls[motor] - sample.tensions[motor];
-            let larger = sample.pulls[motor].abs().max(sample.tensions[motor]);
-            let friction = FRICTION * self.friction.at(motor, larger);
-            let held = friction.max(self.imbalance[motor] + self.fraction * larger);
+            let excessive = unbalanced.abs() > self.tolerated(motor, sample);
             let turned = memory.turned[motor] + sample.turned[motor];
-            let stalled = unbalanced.abs() > held && turned.abs() <= AT_REST;
-            // An imbalance that changes its sign, such as that of a dither, restarts the time.
-            let continues = stalled && memory.duration[motor] * unbalanced >= 0.0;
-            memory.duration[motor] =
-                if continues { memory.duration[motor] + sample.elapsed.copysign(unbalanced) } else { 0.0 };
-            memory.turned[motor] = if continues { turned } else { 0.0 };
+            let gap = if excessive { 0.0 } else { memory.gap[motor] + sample.elapsed };
+            // An excessive imbalance in the other direction restarts the time.
+            let reversed = excessive && memory.duration[motor] * unbalanced < 0.0;
+            let continues = turned.abs() <= AT_REST && gap <= self.longest_gap && !reversed;
+            let added = if excessive { sample.elapsed.copysign(unbalanced) } else { 0.0 };
+            memory.duration[motor] = if continues { memory.duration[motor] + added } else { 0.0 };
+            memory.turned[motor] = if memory.duration[motor] == 0.0 { 0.0 } else { turned };
+            memory.gap[motor] = gap;
         }
         first_of(Symptom::StalledMotor, Part::motor, |motor| {
             (memory.duration[motor].abs() >= DURATION).then(|| sample.pulls[motor] - sample.tensions[motor])
         })
+    }
+
+    /// Returns the tolerated difference between pull and tension of a motor, N.
+    fn tolerated(&self, motor: usize, sample: &Sample) -> f64 {
+        let larger = sample.pulls[motor].abs().max(sample.tensions[motor]);
+        let friction = FRICTION * self.friction.at(motor, larger);
+        friction.max(self.imbalance[motor] + self.fraction * larger)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::signals::{Feedback, Report};
+    use std::f64::consts::TAU;
+
+    const DITHER: f64 = 44.0;
+
+    /// Watches a motor for a second at 1000 Hz. Its mean imbalance of 3 N is tolerated, and the peaks of its dither are
+    /// not. `amplitude` is that of the motor's own oscillation, rad. Returns the time of the first alarm, ms.
+    fn alarmed(dither_period: f64, amplitude: f64) -> Option<u32> {
+        let finger = ConfiguredFinger::default();
+        let monitor = StalledMotor::new(&finger, &finger.tendons().expect("the default tendons"), dither_period);
+        let (feedback, report, mut memory) = (Feedback::default(), Report::default(), Memory::default());
+        let wave = |millisecond: u32| (TAU * DITHER * 1e-3 * f64::from(millisecond)).sin();
+        let tensions = Vector4::repeat(8.0);
+        (1..=1000).find(|&now| {
+            let sample = Sample {
+                feedback: &feedback,
+                report: &report,
+                tensions,
+                travel: Vector4::zeros(),
+                turned: Vector4::repeat(amplitude * (wave(now) - wave(now - 1))),
+                pulls: tensions.map(|tension| tension - 3.0 - 10.0 * wave(now)),
+                elapsed: 1e-3,
+                full_scale: 4095,
+            };
+            monitor.watch(&mut memory, &sample).is_some()
+        })
+    }
+
+    #[test]
+    fn the_peaks_of_a_dither_reveal_a_jammed_motor() {
+        let alarmed = alarmed(1.0 / DITHER, 0.0).expect("an alarm");
+        // The second peak contains the twelfth sample.
+        assert!((23..46).contains(&alarmed), "{alarmed} ms");
+    }
+
+    #[test]
+    fn a_motor_that_follows_the_dither_is_not_stalled() {
+        assert_eq!(alarmed(1.0 / DITHER, 0.04), None);
+    }
+
+    #[test]
+    fn without_dither_the_imbalance_must_last() {
+        assert_eq!(alarmed(0.0, 0.0), None);
     }
 }

@@ -60,7 +60,8 @@ struct Before {
 }
 
 impl Monitors {
-    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64) -> Self {
+    /// Constructs the monitors at `rate`, Hz. `dither_period` is that of the controller, s, or 0 without dither.
+    pub fn new(finger: &ConfiguredFinger, tendons: &Tendons, rate: f64, dither_period: f64) -> Self {
         Self {
             period: 1.0 / rate,
             radius: tendons.radius,
@@ -69,7 +70,7 @@ impl Monitors {
             gauge_stuck: GaugeStuck::new(finger),
             agreement: Agreement::new(finger, tendons),
             encoder_jump: EncoderJump::new(finger, 1.0 / rate),
-            stalled_motor: StalledMotor::new(finger, tendons),
+            stalled_motor: StalledMotor::new(finger, tendons, dither_period),
             motor_heat: MotorHeat::new(finger),
             joint_stop: JointStop::new(finger),
         }

@@ -16,6 +16,7 @@ use crate::control::state_feedback::tension_dither::TensionDither;
 use crate::model::configuration::{ConfiguredFinger, Unusable};
 use crate::model::{LinkDynamics, Tendons};
 use nalgebra::{Matrix3, Matrix3x4, Matrix4x3, Vector3, Vector4};
+use std::f64::consts::TAU;
 
 /// Gauge noise for which the observers are designed, N rms.
 const GAUGE_NOISE: f64 = 0.03;
@@ -210,5 +211,10 @@ impl StateFeedback {
             radius: drives.radius,
             half_count: Vector4::from_fn(|motor, _| 0.5 * drives.count[motor] * f64::from(finger.encoder.sign[motor])),
         })
+    }
+
+    /// Returns the period of the dither, s.
+    pub fn dither_period(&self) -> f64 {
+        TAU / self.dither.frequency
     }
 }

@@ -79,12 +79,14 @@ pub struct Numbers {
 /// With 12 rad/s, a finger without stiffness oscillates at its joint limits.
 const LEAST_FREQUENCY: f64 = 4.0;
 
-/// Frequency of the dither, Hz. With 44 Hz, an amplitude of 1.6 and a rise of 2, fingers that differ from their
-/// configuration move less at rest, but a jammed motor is reported later (`docs/stiffness.md`).
-const DITHER_FREQUENCY: f64 = 40.0;
+/// Frequency of the dither, Hz. With 40 Hz, fingers with links of half the mass or with amplifiers that lag by 2 ms
+/// move by up to 59 um rms at rest, because the dither excites their slow modes. With 50 Hz, fingers with rotors of
+/// half the inertia or with slow amplifiers move by 180 to 330 um rms at walls.
+const DITHER_FREQUENCY: f64 = 44.0;
 
-/// See [`Numbers::dither`].
-const DITHER: f64 = 2.0;
+/// See [`Numbers::dither`]. With 2, fingers with amplifiers that lag by 2 ms move by more at rest. With 1, fingers with
+/// static friction of twice the Coulomb friction are less exact under pushes.
+const DITHER: f64 = 1.6;
 
 /// See [`Numbers::tension_dither`]. With 0.06 fingers rest whose motors have no friction, or static friction of twice
 /// the Coulomb friction. With 0.1, the tensions of a finger with rotors of half the inertia oscillate.
@@ -98,8 +100,8 @@ const PULLEY_EXCESS: f64 = 5.0;
 /// null vector.
 const DITHER_RESERVE: f64 = 16.0 / 3.0;
 
-/// See [`Numbers::dither_rise`]. No tension is so large that this limit applies.
-const DITHER_RISE: f64 = 1000.0;
+/// See [`Numbers::dither_rise`].
+const DITHER_RISE: f64 = 2.0;
 
 /// See [`Numbers::drift_bandwidth`].
 const DRIFT_BANDWIDTH: f64 = 60.0;
