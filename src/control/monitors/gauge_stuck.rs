@@ -95,8 +95,9 @@ pub(super) struct Memory {
     differences: [[i32; 2]; 4],
     /// Tensions of the last sample, N.
     tensions: Vector4<f64>,
-    /// Whether the tension of each gauge was low before its count became the present one.
-    was_low: [bool; 4],
+    /// Whether each gauge shows the lowest count because its tension fell or drifted to the end of the range. A dead
+    /// gauge often shows the lowest count too, but its tension is not low before.
+    at_lowest: [bool; 4],
 }
 
 impl Default for Memory {
@@ -111,7 +112,7 @@ impl Default for Memory {
             bends: [0.0; 4],
             differences: [[0; 2]; 4],
             tensions: Vector4::zeros(),
-            was_low: [false; 4],
+            at_lowest: [false; 4],
         }
     }
 }
@@ -142,12 +143,7 @@ impl Memory {
             let noisy = self.repeats[gauge] < MOST_REPEATS && reverses;
             self.samples >= KNOWN && noisy
         });
-        // A dead gauge often shows the lowest count too, but its tension is not low before. A gauge whose tension falls
-        // or drifts to the lowest count is at the end of its range.
-        let saturated = |gauge: usize| match self.last[gauge] {
-            0 => self.was_low[gauge],
-            count => count >= full_scale,
-        };
+        let saturated = |gauge: usize| self.last[gauge] >= full_scale || self.at_lowest[gauge];
         Flicker { known, same: self.same, saturated: std::array::from_fn(saturated) }
     }
 
@@ -194,7 +190,7 @@ impl GaugeStuck {
             }
             if memory.same[gauge] == 0 {
                 memory.rose[gauge] = rises(gauge);
-                memory.was_low[gauge] = before[gauge] < self.slack;
+                memory.at_lowest[gauge] = counts[gauge] == 0 && before[gauge] < self.slack;
             }
         }
         let Flicker { known, saturated, .. } = memory.flickers(sample.full_scale);

@@ -58,6 +58,9 @@ impl StalledMotor {
         for motor in 0..4 {
             let unbalanced = sample.pulls[motor] - sample.tensions[motor];
             let excessive = unbalanced.abs() > self.tolerated(motor, sample);
+            if !excessive && memory.duration[motor] == 0.0 {
+                continue;
+            }
             let turned = memory.turned[motor] + sample.turned[motor];
             let gap = if excessive { 0.0 } else { memory.gap[motor] + sample.elapsed };
             // An excessive imbalance in the other direction restarts the time.
