@@ -20,8 +20,6 @@ static struct FingerRecord Record;
 static struct FingerCommand Command[2];
 static struct JointTorques Torques;
 static struct PalmPose Pose;
-static struct FingerTouch Touch;
-static struct Reflex Rule;
 static int Fingers[1] = {9};
 static double J[9];
 static struct Fault Fault;

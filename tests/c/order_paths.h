@@ -1,6 +1,8 @@
-/* The part of order.c with the refusals of paths. */
+/* The part of order.c with the refusals of paths, and the arguments of order_reflexes.h. */
 
 static struct PathPose Path[2];
+static struct FingerTouch Touch;
+static struct Reflex Rule;
 
 static void wrong_paths(void)
 {

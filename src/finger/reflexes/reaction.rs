@@ -50,8 +50,8 @@ impl ReactionLimits {
         Vector3::from_fn(|joint, _| joints[joint].clamp(low[joint], high[joint]))
     }
 
-    /// Returns the anchor, rad, with which the tip presses harder by `by`, at most with `most`, N. The spring's force is
-    /// F = Kx (x_d - x). The anchor moves by Kx^-1 dF, with dF in `direction`, or in the direction of F if it is zero.
+    /// Returns the anchor, rad, with which the tip presses harder by `by`, at most with `most`, N. The force of the
+    /// spring is F = Kx (x_d - x). The anchor moves by Kx^-1 dF, with dF along `along`, or along F if `along` is zero.
     /// Returns none if the spring does not press in this direction, or if Kx has no inverse.
     fn grip(
         &self,
