@@ -100,7 +100,7 @@ impl FingerServo {
             timing: CycleTiming::default(),
             timings,
             black_box,
-            reflexes: Reflexive::new(number, &mut memory),
+            reflexes: Reflexive::default(),
             touch: TouchFetching::new(Elements::new(&finger.touch), identity.capabilities, &mut memory),
             events: EventOutput::new(number, initial, &mut memory),
             record: None,

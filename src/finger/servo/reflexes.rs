@@ -4,7 +4,7 @@ use super::FingerServo;
 use crate::control::Activity;
 use crate::finger::events::{EventKind, Occurrence};
 use crate::finger::reflexes::{Bulletin, Facts, Fired};
-use crate::finger::{Fault, FaultKind, Reaction, Reflexes, Stage, reflexes};
+use crate::finger::{Fault, FaultKind, Reaction, ReflexServer, Reflexes, Stage, reflexes};
 use crate::model::{FingerNumber, Part};
 
 impl FingerServo {
@@ -13,14 +13,14 @@ impl FingerServo {
     pub fn with_reflexes(mut self, finger: FingerNumber, bulletin: &Bulletin) -> (Self, Reflexes) {
         let (planners, server) = reflexes(finger, bulletin);
         self.memory.append(server.memory());
-        self.reflexes.server = server;
+        self.reflexes.server = Some(server);
         (self, planners)
     }
 
     /// Notes the events of this cycle for the rules of this finger and of the others.
     pub(super) fn note_events(&mut self) {
         let kinds = self.events.take_kinds();
-        self.reflexes.server.note(kinds);
+        self.reflexes.server.iter_mut().for_each(|server| server.note(kinds));
     }
 
     /// Evaluates the rules of a finger that is a spring, and carries out the reaction of one that has fired.
@@ -29,7 +29,7 @@ impl FingerServo {
         // Tactile events of this cycle have arrived before this point.
         self.note_events();
         if self.report.stage != Stage::Running {
-            self.reflexes.server.idle();
+            self.reflexes.server.iter_mut().for_each(ReflexServer::idle);
             (self.reflexes.inhibited_until, self.reflexes.last_set_point) = (None, period);
             return;
         }
@@ -46,7 +46,7 @@ impl FingerServo {
             link_lost: self.sample_age as f64 * seconds,
             planner_silent: period.saturating_sub(self.reflexes.last_set_point) as f64 * seconds,
         };
-        if let Some(fired) = self.reflexes.server.run(&facts) {
+        if let Some(fired) = self.reflexes.server.as_mut().and_then(|server| server.run(&facts)) {
             self.carry_out_reaction(&fired);
         }
     }

@@ -1,13 +1,12 @@
 //! The state of a finger's reflexes in its servo.
 
-use crate::finger::reflexes::Bulletin;
-use crate::finger::{ReflexServer, reflexes};
-use crate::model::FingerNumber;
-use crate::realtime::LockedMemory;
+use crate::finger::ReflexServer;
 
 /// The rules of a finger, and when it follows its planner.
+#[derive(Default)]
 pub(super) struct Reflexive {
-    pub server: ReflexServer,
+    /// None for a finger that planners give no rules.
+    pub server: Option<ReflexServer>,
     /// The period from which on the finger follows its planner again; none if it follows its planner now.
     pub inhibited_until: Option<u64>,
     /// The period of the last set point of the planner.
@@ -15,13 +14,6 @@ pub(super) struct Reflexive {
 }
 
 impl Reflexive {
-    /// Constructs a finger without rules, which reads no events of others. Adds its pages to `memory`.
-    pub fn new(finger: FingerNumber, memory: &mut LockedMemory) -> Self {
-        let (_, server) = reflexes(finger, &Bulletin::new());
-        memory.append(server.memory());
-        Self { server, inhibited_until: None, last_set_point: 0 }
-    }
-
     /// Returns whether the finger does not follow set points of its planner.
     pub fn inhibits(&self) -> bool {
         self.inhibited_until.is_some()

@@ -33,8 +33,7 @@ pub(in crate::finger) struct TouchFetching {
 }
 
 impl TouchFetching {
-    /// Constructs the touch of a finger whose board has these capabilities.
-    /// Adds the pages of the elements to `memory`.
+    /// Constructs the touch of a finger whose board has these capabilities. Adds the pages of the elements to `memory`.
     pub fn new(elements: Elements, board: Capabilities, memory: &mut LockedMemory) -> Self {
         elements.add_to(memory);
         let enabled = board.has(Capabilities::TACTILE) && elements.count() > 0;
@@ -100,8 +99,6 @@ impl TouchFetching {
             TactileChange::Invalid => EventKind::TouchInvalid,
             TactileChange::Nothing | TactileChange::Other(_) => return None,
         };
-        // An element that cannot be read has no force.
-        let force = if reading.valid { reading.force } else { 0.0 };
-        Some(Occurrence { kind, part: Part::Finger, values: [event.element.into(), force, 0.0, 0.0] })
+        Some(Occurrence { kind, part: Part::Finger, values: [event.element.into(), reading.force, 0.0, 0.0] })
     }
 }
