@@ -59,8 +59,17 @@ fn without_a_tool_a_test_passes_and_is_listed_and_with_ci_it_fails() {
     assert_eq!(tools::take_skipped(std::process::id()), Vec::<String>::new());
 }
 
-/// Runs `tests/run` in a copy of its own. Only these programs and a few of the system's are available.
+/// The list of Python packages of the copies of `tests/run`.
+const PYTHON_PACKAGES: &str = "mcap==1\n";
+
+/// Runs `tests/run` in a copy of its own, where the Python packages are installed.
 fn run_script(programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
+    run_script_beside(PYTHON_PACKAGES, programs, user)
+}
+
+/// Runs `tests/run` in a copy of its own. Only these programs and a few of the system's are available. The Python
+/// packages of the list `installed` are installed.
+fn run_script_beside(installed: &str, programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = tempfile::tempdir().expect("a scratch folder");
     let (tests, bin) = (folder.path().join("tests"), folder.path().join("bin"));
@@ -71,6 +80,9 @@ fn run_script(programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
     fs::copy(source, tests.join("run")).expect("a copy");
     fs::write(tests.join("tools.txt"), "# name\nhere | not-wanted | true\nclang | clang libc6-dev | looks-for-clang\n")
         .expect("written");
+    fs::write(tests.join("requirements.txt"), PYTHON_PACKAGES).expect("written");
+    fs::create_dir_all(folder.path().join("target/python")).expect("a folder");
+    fs::write(folder.path().join("target/python/requirements.txt"), installed).expect("written");
     let write = |name: &str, text: &str| {
         let file = bin.join(name);
         fs::write(&file, format!("#!/bin/sh\n{text}\n")).expect("written");
@@ -79,11 +91,12 @@ fn run_script(programs: &[(&str, &str)], user: Option<u32>) -> (bool, String) {
     for (name, text) in programs {
         write(name, text);
     }
-    for name in ["dirname", "env", "sh", "bash"] {
+    for name in ["dirname", "env", "sh", "bash", "cat", "cp", "mkdir", "chmod"] {
         std::os::unix::fs::symlink(Path::new("/usr/bin").join(name), bin.join(name)).expect("a link");
     }
     let mut script = Command::new("/bin/bash");
-    script.arg(tests.join("run")).arg("--test").arg("hand").env("PATH", &bin).env_remove("CI");
+    script.arg(tests.join("run")).arg("--test").arg("hand").env("PATH", &bin);
+    script.env_remove("CI").env_remove("CARGO_TARGET_DIR");
     if let Some(user) = user {
         script.uid(user);
     }
@@ -133,6 +146,22 @@ fn a_failed_installation_is_reported_with_the_remedy() {
         let (passed, output) = run_script(programs, None);
         assert!(!passed && output.contains(reason) && !output.contains("cargo test --locked"), "{output}");
     }
+}
+
+#[test]
+fn python_packages_of_another_list_are_replaced() {
+    let usable = ("looks-for-clang", "exit 0");
+    let python = ("python3", r#"mkdir -p $4/bin; echo "echo python \$*" > $4/bin/python; chmod +x $4/bin/python"#);
+    let (passed, output) = run_script_beside("mcap==0\n", &[CARGO, usable, python], None);
+    let install = "python -m pip install --quiet --disable-pip-version-check --requirement tests/requirements.txt\n";
+    assert!(
+        passed && output.contains(install) && output.ends_with("CI=true: cargo test --locked --test hand\n"),
+        "{output}"
+    );
+
+    let (passed, output) = run_script_beside("mcap==0\n", &[CARGO, usable, ("python3", "exit 1")], None);
+    let reason = "the Python packages were not installed. Check the network";
+    assert!(!passed && output.contains(reason) && !output.contains("cargo test --locked"), "{output}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The tools that tests need besides Rust, and the list of tests that were skipped because one is missing.
-//! `tests/tools.txt` names the tools and their Debian packages. Without a tool, the tests that need it pass, and
-//! tests/zz_left_out.rs lists them at the end of `cargo test`. With CI=true they fail.
+//! `tests/tools.txt` names the tools and their Debian packages, and `tests/requirements.txt` the Python packages. Without
+//! a tool, the tests that need it pass, and tests/zz_left_out.rs lists them at the end of `cargo test`. With CI=true they
+//! fail.
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -10,6 +11,8 @@ use std::sync::{Mutex, PoisonError};
 use std::{env, fs};
 
 const TOOLS: &str = include_str!("../tools.txt");
+
+const PYTHON_PACKAGES: &str = include_str!("../requirements.txt");
 
 /// A line of `tests/tools.txt`.
 struct Tool {
@@ -42,6 +45,18 @@ pub fn available(name: &str, part: &str) -> bool {
     );
     skip(part, &format!("{name} is missing ({remedy})"));
     false
+}
+
+/// Returns the Python interpreter that has the packages of `tests/requirements.txt`. If they are not installed, `part` of
+/// the current test is listed as skipped. With CI=true the test fails instead.
+pub fn python(part: &str) -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("python");
+    // tests/run writes this copy after it has installed the packages.
+    if fs::read_to_string(folder.join("requirements.txt")).is_ok_and(|installed| installed == PYTHON_PACKAGES) {
+        return Some(folder.join("bin/python"));
+    }
+    skip(part, "the Python packages of tests/requirements.txt are not installed (tests/run installs them)");
+    None
 }
 
 /// Lists `part` of the current test as skipped, with the reason. With CI=true the test fails instead.
