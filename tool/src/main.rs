@@ -7,6 +7,7 @@ mod bound;
 mod calibrate;
 mod doctor;
 mod failure;
+mod model;
 mod replay;
 mod schedule;
 
@@ -30,6 +31,7 @@ enum Tool {
     Bound(bound::Arguments),
     Calibrate(calibrate::Arguments),
     Doctor(doctor::Arguments),
+    Model(model::Arguments),
     Replay(replay::Arguments),
     Schedule(schedule::Arguments),
 }
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         Tool::Bound(arguments) => bound::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
+        Tool::Model(arguments) => model::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Replay(arguments) => replay::run(&arguments),
         Tool::Schedule(arguments) => schedule::run(&arguments).map(|()| ExitCode::SUCCESS),
     };

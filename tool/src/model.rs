@@ -1,0 +1,53 @@
+//! `sun2xp model`: the configured hand as a file for other programs.
+
+pub mod geometry;
+mod palm;
+pub mod shape;
+
+pub use geometry::geometry;
+
+use crate::failure::Failure;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use sun2xp::files::replace_file;
+use sun2xp::hand;
+use sun2xp::model::ShownPath;
+
+/// Writes a model of the configured hand for other programs: palm, fingers, joints with their stops, masses, tendons
+/// and the object of the simulation.
+///
+/// Masses, friction and moment arms are those of `[finger.simulation]`. Shapes and colours are only for the eye. The
+/// frames of the fingertips are `finger1_tip` to `finger3_tip`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    format: Format,
+    /// The configuration file. The default is the file that OpenHand would use.
+    #[arg(long, visible_alias = "configuration", value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// Write to this file instead of the standard output.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+#[derive(clap::Args)]
+#[group(required = true, multiple = false)]
+struct Format {
+    /// The geometry as the web page draws it, in cm, rad and kg.
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let configuration = match &arguments.config {
+        Some(file) => hand::read_configuration(file)?,
+        None => hand::find_configuration()?.configuration,
+    };
+    let text = serde_json::to_string_pretty(&geometry(&configuration))? + "\n";
+    match &arguments.output {
+        None => io::stdout().lock().write_all(text.as_bytes())?,
+        Some(path) => replace_file(path, |file| file.write_all(text.as_bytes()))
+            .map_err(|error| format!("{}: {error}", ShownPath(path)))?,
+    }
+    Ok(())
+}

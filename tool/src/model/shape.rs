@@ -1,0 +1,104 @@
+//! The shapes from which a hand is drawn. Lengths are in cm.
+
+use serde::{Serialize, Serializer};
+use sun2xp::model::FingerNumber;
+
+/// A shape with a colour.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Shape {
+    /// Its form and place.
+    #[serde(flatten)]
+    pub form: Form,
+    /// Its colour.
+    pub colour: Colour,
+}
+
+/// The form of a shape and its place in the frame of its link.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "form", rename_all = "snake_case")]
+pub enum Form {
+    /// A cylinder with round ends. The ends of its axis are the centres of the hemispheres.
+    Capsule {
+        /// One end of the axis.
+        from: [f64; 3],
+        /// The other end.
+        to: [f64; 3],
+        /// Radius.
+        radius: f64,
+    },
+    /// A cylinder with flat ends.
+    Cylinder {
+        /// One end of the axis.
+        from: [f64; 3],
+        /// The other end.
+        to: [f64; 3],
+        /// Radius.
+        radius: f64,
+    },
+    /// A sphere.
+    Sphere {
+        /// Centre.
+        centre: [f64; 3],
+        /// Radius.
+        radius: f64,
+    },
+    /// A box whose edges are parallel to the axes.
+    Box {
+        /// Centre.
+        centre: [f64; 3],
+        /// Lengths of the edges.
+        size: [f64; 3],
+    },
+}
+
+/// A colour: red, green and blue. In JSON it is `#rrggbb`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Colour(pub [u8; 3]);
+
+impl Colour {
+    /// The palm.
+    pub const PALM: Self = Self([0x3b, 0x42, 0x52]);
+    /// The wrist and the bases of the fingers.
+    pub const BASE: Self = Self([0x2b, 0x30, 0x3b]);
+    /// The pulleys of the joints.
+    pub const JOINT: Self = Self([0x4c, 0x56, 0x6a]);
+    /// The rubber of the fingertips.
+    pub const TIP: Self = Self([0x20, 0x23, 0x2a]);
+    /// The object of the simulation.
+    pub const OBJECT: Self = Self([0xe8, 0xc5, 0x6b]);
+
+    /// Returns the colour of a finger's links.
+    pub fn of_finger(finger: FingerNumber) -> Self {
+        // Blue, orange and green of Okabe and Ito, which people with any colour vision can distinguish.
+        Self([[0x56, 0xa5, 0xe0], [0xe6, 0x9f, 0x3c], [0x2b, 0xb0, 0x8c]][finger.index()])
+    }
+}
+
+impl Serialize for Colour {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let [red, green, blue] = self.0;
+        serializer.collect_str(&format_args!("#{red:02x}{green:02x}{blue:02x}"))
+    }
+}
+
+impl Shape {
+    /// Constructs a capsule.
+    pub fn capsule(from: [f64; 3], to: [f64; 3], radius: f64, colour: Colour) -> Self {
+        Self { form: Form::Capsule { from, to, radius }, colour }
+    }
+
+    /// Constructs a cylinder.
+    pub fn cylinder(from: [f64; 3], to: [f64; 3], radius: f64, colour: Colour) -> Self {
+        Self { form: Form::Cylinder { from, to, radius }, colour }
+    }
+
+    /// Constructs a sphere.
+    pub fn sphere(centre: [f64; 3], radius: f64, colour: Colour) -> Self {
+        Self { form: Form::Sphere { centre, radius }, colour }
+    }
+
+    /// Constructs a box.
+    pub fn block(centre: [f64; 3], size: [f64; 3], colour: Colour) -> Self {
+        Self { form: Form::Box { centre, size }, colour }
+    }
+}
