@@ -7,6 +7,7 @@ mod bound;
 mod calibrate;
 mod doctor;
 mod failure;
+mod jog;
 mod model;
 mod replay;
 mod schedule;

@@ -1,0 +1,222 @@
+//! What a person can do to a hand: typed commands, and their calls of the hand. The terminal and the web page send the
+//! same commands.
+
+use serde::{Deserialize, Serialize};
+use std::fmt::{self, Display, Formatter};
+use sun2xp::groups::FingerCommand;
+use sun2xp::model::configuration::Configuration;
+use sun2xp::{Hand, HandError, Stage};
+
+/// Largest change of a joint angle in one command to a real finger, rad: 3 degrees.
+pub const REAL_JOINT_STEP: f64 = 0.0524;
+
+/// Largest motion of a fingertip in one command to a real finger, cm.
+pub const REAL_TIP_STEP: f64 = 0.3;
+
+/// Angles of an open finger, degrees: the tips are some 9 cm apart.
+const OPEN_DEGREES: [f64; 3] = [0.0, -25.0, 40.0];
+
+/// Angles of a closed finger, degrees: the tips meet in the middle of the palm.
+const CLOSED_DEGREES: [f64; 3] = [0.0, 5.0, 45.0];
+
+/// A command. In JSON its name is in the key `command`: `{"command": "push", "finger": 1, "force": [0, 0, -1]}`.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(tag = "command", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Command {
+    /// Sends the desired joint angles, rad.
+    Joints { finger: i32, joints: [f64; 3] },
+    /// Changes the desired joint angles, rad.
+    MoveJoints { finger: i32, by: [f64; 3] },
+    /// Sends the desired position of the tip in the finger's frame, cm.
+    Tip { finger: i32, tip: [f64; 3] },
+    /// Changes the desired position of the tip in the finger's frame, cm.
+    MoveTip { finger: i32, by: [f64; 3] },
+    /// Sends Kx in the finger's frame, N/cm: `kx[row][column]`.
+    Stiffness { finger: i32, kx: [[f64; 3]; 3] },
+    /// Multiplies Kx by a factor.
+    ScaleStiffness { finger: i32, factor: f64 },
+    /// Pushes the tip of a simulated finger with a force in the finger's frame, N, until the next push.
+    Push { finger: i32, force: [f64; 3] },
+    /// Moves all running fingers apart.
+    Open,
+    /// Moves all running fingers to the middle of the palm.
+    Close,
+    /// Stops all fingers at once, as the planner's StopHand does.
+    Stop,
+    /// Makes a stopped or faulted finger a spring again, which holds its present pose. Takes up to some seconds.
+    Recover { finger: i32 },
+}
+
+/// A command that is refused. A refused command changes nothing.
+#[derive(Debug)]
+pub enum Refused {
+    /// The hand refuses the command.
+    Hand(HandError),
+    /// The command would move a real finger too far.
+    TooFar {
+        finger: i32,
+        /// The motion that was asked for, and the largest one, with the unit.
+        asked: String,
+        most: String,
+    },
+    /// No finger runs that could be opened or closed.
+    NoneRuns,
+}
+
+impl Display for Refused {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Hand(error) => error.fmt(formatter),
+            Self::TooFar { finger, asked, most } => write!(
+                formatter,
+                "finger {finger} is a real finger, and a command moves it by at most {most}, but {asked} were asked \
+                 for: send smaller steps"
+            ),
+            Self::NoneRuns => formatter.write_str("no finger runs: recover the fingers first"),
+        }
+    }
+}
+
+impl From<HandError> for Refused {
+    fn from(error: HandError) -> Self {
+        Self::Hand(error)
+    }
+}
+
+impl Command {
+    /// Carries the command out, and returns what was done, in words.
+    ///
+    /// # Errors
+    /// Returns an error if the hand refuses the command, or if the command would move a real finger too far.
+    pub fn execute(&self, hand: &Hand, configuration: &Configuration) -> Result<String, Refused> {
+        match *self {
+            Self::Joints { finger, joints } => send_joints(hand, configuration, finger, joints),
+            Self::MoveJoints { finger, by } => {
+                send_joints(hand, configuration, finger, sum(desired_joints(hand, finger)?, by))
+            }
+            Self::Tip { finger, tip } => send_tip(hand, configuration, finger, tip),
+            Self::MoveTip { finger, by } => {
+                let desired = hand.tip_at(finger, desired_joints(hand, finger)?)?;
+                send_tip(hand, configuration, finger, sum(desired, by))
+            }
+            Self::Stiffness { finger, kx } => send_stiffness(hand, finger, kx),
+            Self::ScaleStiffness { finger, factor } => {
+                let kx = desired_stiffness(hand, finger)?.map(|row| row.map(|entry| entry * factor));
+                send_stiffness(hand, finger, kx)
+            }
+            Self::Push { finger, force } => {
+                hand.push_simulated(finger, force)?;
+                Ok(match force {
+                    [0.0, 0.0, 0.0] => format!("finger {finger}: no push"),
+                    [x, y, z] => format!("finger {finger}: pushed with {x:.1}, {y:.1}, {z:.1} N"),
+                })
+            }
+            Self::Open => move_all(hand, configuration, OPEN_DEGREES, "opens"),
+            Self::Close => move_all(hand, configuration, CLOSED_DEGREES, "closes"),
+            Self::Stop => {
+                sun2xp::stop_all();
+                Ok("all fingers are stopped".into())
+            }
+            Self::Recover { finger } => {
+                hand.recover(finger)?;
+                Ok(format!("finger {finger}: holds its pose"))
+            }
+        }
+    }
+}
+
+/// Returns the desired joint angles in force, rad.
+pub fn desired_joints(hand: &Hand, finger: i32) -> Result<[f64; 3], HandError> {
+    Ok(hand.report(finger)?.set_point.joints.into())
+}
+
+/// Returns the Kx in force, N/cm: `[row][column]`.
+pub fn desired_stiffness(hand: &Hand, finger: i32) -> Result<[[f64; 3]; 3], HandError> {
+    let stiffness = hand.report(finger)?.set_point.stiffness;
+    Ok(std::array::from_fn(|row| std::array::from_fn(|column| stiffness[(row, column)])))
+}
+
+/// Returns whether a finger has a real port. A number that no finger has belongs to no real finger.
+pub fn is_real(configuration: &Configuration, finger: i32) -> bool {
+    let index = usize::try_from(finger).ok().and_then(|number| number.checked_sub(1));
+    index.and_then(|index| configuration.fingers.get(index)).is_some_and(|finger| !finger.simulated())
+}
+
+fn send_joints(hand: &Hand, configuration: &Configuration, finger: i32, joints: [f64; 3]) -> Result<String, Refused> {
+    let desired = desired_joints(hand, finger)?;
+    if is_real(configuration, finger) {
+        let degrees = largest_difference(joints, desired).to_degrees();
+        let most = REAL_JOINT_STEP.to_degrees();
+        within(finger, degrees, most, "degrees")?;
+    }
+    hand.send_position(finger, joints)?;
+    let [j0, j1, j2] = joints.map(f64::to_degrees);
+    Ok(format!("finger {finger}: joints to {j0:.1}, {j1:.1}, {j2:.1} degrees"))
+}
+
+fn send_tip(hand: &Hand, configuration: &Configuration, finger: i32, tip: [f64; 3]) -> Result<String, Refused> {
+    if is_real(configuration, finger) {
+        let desired = desired_joints(hand, finger)?;
+        let way = sum(tip, hand.tip_at(finger, desired)?.map(|entry| -entry));
+        within(finger, way.iter().map(|entry| entry * entry).sum::<f64>().sqrt(), REAL_TIP_STEP, "cm")?;
+        // Near a singular pose, or from one solution of the inverse kinematics to another, a small motion of the tip is
+        // a large motion of the joints.
+        let degrees = largest_difference(hand.joints_at(finger, tip)?, desired).to_degrees();
+        within(finger, degrees, 3.0 * REAL_JOINT_STEP.to_degrees(), "degrees of a joint")?;
+    }
+    hand.send_tip(finger, tip)?;
+    let [x, y, z] = tip;
+    Ok(format!("finger {finger}: tip to {x:.2}, {y:.2}, {z:.2} cm"))
+}
+
+fn send_stiffness(hand: &Hand, finger: i32, kx: [[f64; 3]; 3]) -> Result<String, Refused> {
+    hand.send_stiffness(finger, kx)?;
+    let [x, y, z] = [kx[0][0], kx[1][1], kx[2][2]];
+    Ok(format!("finger {finger}: Kx {x:.2}, {y:.2}, {z:.2} N/cm along x, y, z"))
+}
+
+/// Moves all running fingers towards these angles, real fingers by at most one step.
+fn move_all(
+    hand: &Hand,
+    configuration: &Configuration,
+    degrees: [f64; 3],
+    verb: &'static str,
+) -> Result<String, Refused> {
+    let mut commands = Vec::new();
+    for (finger, configured) in (1..).zip(&configuration.fingers) {
+        if hand.report(finger).is_ok_and(|report| report.stage == Stage::Running) {
+            let desired = desired_joints(hand, finger)?;
+            let (low, high) = configured.joint_limits();
+            let most = if configured.simulated() { f64::INFINITY } else { REAL_JOINT_STEP };
+            let joints = std::array::from_fn(|joint| {
+                let step = (degrees[joint].to_radians() - desired[joint]).clamp(-most, most);
+                (desired[joint] + step).clamp(low[joint], high[joint])
+            });
+            commands.push(FingerCommand::new(finger).joints(joints));
+        }
+    }
+    if commands.is_empty() {
+        return Err(Refused::NoneRuns);
+    }
+    hand.send_group(&commands)?;
+    Ok(format!("the hand {verb}"))
+}
+
+fn within(finger: i32, asked: f64, most: f64, unit: &str) -> Result<(), Refused> {
+    // The comparison is false for NaN, which the hand refuses with a better text.
+    if asked > most * (1.0 + 1e-9) {
+        return Err(Refused::TooFar { finger, asked: format!("{asked:.2} {unit}"), most: format!("{most:.2} {unit}") });
+    }
+    Ok(())
+}
+
+fn sum(left: [f64; 3], right: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|index| left[index] + right[index])
+}
+
+fn largest_difference(left: [f64; 3], right: [f64; 3]) -> f64 {
+    (0..3).map(|index| (left[index] - right[index]).abs()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests;
