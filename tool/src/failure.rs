@@ -1,6 +1,43 @@
-//! Failures of the tool's commands.
+//! Failures of the tool's commands, and its exit statuses.
 
 use std::error::Error;
+use std::fmt::{self, Display, Formatter};
+use std::io;
+use std::process::ExitCode;
+use sun2xp::model::one_line;
 
 /// The reason why a command failed. The tool prints its text, which names cause and remedy, in one line.
 pub type Failure = Box<dyn Error>;
+
+/// The exit statuses, for the help.
+pub const EXIT_STATUSES: &str = "Exit status: 0 if the command has done its work, 1 if it failed, 2 for wrong usage.";
+
+/// The exit status for wrong usage. clap uses it too.
+const WRONG_USAGE: u8 = 2;
+
+/// An argument that is wrong in a way that clap cannot find.
+#[derive(Debug)]
+struct WrongUsage(String);
+
+impl Display for WrongUsage {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
+impl Error for WrongUsage {}
+
+/// A failure whose exit status is that of wrong usage.
+pub fn wrong_usage(reason: impl Into<String>) -> Failure {
+    Box::new(WrongUsage(reason.into()))
+}
+
+/// Prints a failure, and returns the exit status. A reader that closes the pipe of standard output, such as `head`,
+/// needs no message.
+pub fn report(failure: &Failure) -> ExitCode {
+    let closed = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
+    if !failure.downcast_ref().is_some_and(closed) {
+        eprintln!("sun2xp: {}", one_line(&failure.to_string()));
+    }
+    if failure.is::<WrongUsage>() { ExitCode::from(WRONG_USAGE) } else { ExitCode::FAILURE }
+}

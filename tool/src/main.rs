@@ -5,20 +5,22 @@
 mod board;
 mod bound;
 mod calibrate;
+mod completions;
 mod doctor;
 mod failure;
 mod jog;
 mod model;
+mod print;
 mod replay;
 mod schedule;
+mod virtual_machine;
 
-use clap::{Parser, Subcommand};
+use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
-use sun2xp::model::one_line;
 
 /// Tools for a hand that the sun2xp library drives.
 #[derive(Parser)]
-#[command(version)]
+#[command(version, after_help = failure::EXIT_STATUSES)]
 struct Arguments {
     #[command(subcommand)]
     tool: Tool,
@@ -31,6 +33,7 @@ enum Tool {
     Board(board::Arguments),
     Bound(bound::Arguments),
     Calibrate(calibrate::Arguments),
+    Completions(completions::Arguments),
     Doctor(doctor::Arguments),
     Model(model::Arguments),
     Replay(replay::Arguments),
@@ -38,20 +41,25 @@ enum Tool {
 }
 
 fn main() -> ExitCode {
-    let result = match Arguments::parse().tool {
+    // clap has refused wrong usage before the conversion, so it cannot fail.
+    let arguments = Arguments::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
+    let result = match arguments.tool {
         Tool::Board(arguments) => board::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Bound(arguments) => bound::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Completions(arguments) => completions::run(&arguments, command()).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
         Tool::Model(arguments) => model::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Replay(arguments) => replay::run(&arguments),
-        Tool::Schedule(arguments) => schedule::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Schedule(arguments) => schedule::run(&arguments),
     };
-    match result {
-        Ok(status) => status,
-        Err(error) => {
-            eprintln!("sun2xp: {}", one_line(&error.to_string()));
-            ExitCode::FAILURE
-        }
-    }
+    result.unwrap_or_else(|error| failure::report(&error))
+}
+
+/// The command line. The help of every command ends with its exit statuses.
+fn command() -> Command {
+    Arguments::command().mut_subcommands(|command| {
+        let described = command.get_long_about().is_some_and(|about| about.to_string().contains("Exit status:"));
+        if described { command } else { command.after_help(failure::EXIT_STATUSES) }
+    })
 }

@@ -1,8 +1,13 @@
 //! `sun2xp schedule` with a file of costs.
 
+use serde_json::{Value, json};
 use std::process::{Command, Output};
 
 fn schedule(configuration: &str, costs: &str) -> Output {
+    schedule_with(configuration, costs, &[])
+}
+
+fn schedule_with(configuration: &str, costs: &str, options: &[&str]) -> Output {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str, text: &str| {
         let path = folder.path().join(name);
@@ -14,6 +19,7 @@ fn schedule(configuration: &str, costs: &str) -> Output {
         .arg(file("sun2xp.toml", configuration))
         .arg("--costs")
         .arg(file("costs.toml", costs))
+        .args(options)
         .output()
         .expect("the tool runs")
 }
@@ -26,14 +32,70 @@ fn a_hand_that_meets_its_deadlines() {
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{output:?}");
     for part in [
-        "| 3 | 3 | 2 | 80 | 3.0 % | 55 % | 660 us | 680 us | met |",
-        "| 3 | 3 | 2 | 80 | 8.0 % | 65 % | 760 us | 830 us | met |",
+        "thread  fingers  core  priority  computing  line busy  replies by  done by  deadlines\n",
+        "\n3       3        2           80      3.0 %       55 %      660 us   680 us  met\n",
+        "\n3       3        2           80      8.0 %       65 %      760 us   830 us  met\n",
         "met up to 1454 Hz: above that, the line is too busy, thread 1",
         // 100 + 10 + 650 + 70 us.
         "With the sensor, every deadline is met up to 1204 Hz: above that, a cycle may end too late, thread 1",
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");
     }
+    // A pipe receives neither Markdown nor escape sequences, and nothing about virtual machines: the costs are given.
+    assert!(!text.contains('|') && !text.contains('\u{1b}') && !text.contains("virtual"), "{text}");
+}
+
+#[test]
+fn no_rate_below_the_lowest_is_named() {
+    let output = schedule("[finger]\ncore = 0\n", &COSTS.replace("100", "1600"));
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1));
+    let parts = [
+        "\nNo rate that can be configured meets every deadline: at 500 Hz, a cycle may end too late, thread 1.\n",
+        "\nWith the sensor, no rate that can be configured meets every deadline: at 500 Hz, ",
+    ];
+    assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+}
+
+#[test]
+fn other_programs_receive_json() {
+    let run = |costs: &str| -> (Option<i32>, Value) {
+        let output = schedule_with("[finger.2]\ncore = 1\n", costs, &["--json"]);
+        (output.status.code(), serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}")))
+    };
+    let (status, told) = run(COSTS);
+    assert_eq!((status, &told["pass"], &told["rate"]), (Some(0), &json!(true), &json!(1000.0)));
+    assert_eq!(told["costs"], json!({"wake_up": 100.0, "write": 10.0, "read": 5.0, "compute": 15.0}));
+    assert_eq!((&told["source"], &told["virtual_machine"]), (&json!("file"), &json!(false)));
+    let second = &told["configured"]["threads"][1];
+    assert_eq!((&second["thread"], &second["core"], &second["fingers"]), (&json!(2), &json!(1), &json!([2])));
+    assert_eq!(second["limit"], Value::Null, "{second:#}");
+    let fastest = told["configured"]["fastest"]["rate"].as_u64().expect("a rate");
+    assert!(told["with_sensor"]["fastest"]["rate"].as_u64().is_some_and(|rate| rate < fastest), "{told:#}");
+    assert_eq!(told["with_sensor"]["sensor"], json!({"bytes": 10, "compute": 50.0}));
+
+    let (status, told) = run(&COSTS.replace("100", "1600"));
+    assert_eq!((status, &told["pass"]), (Some(1), &json!(false)));
+    let fastest = &told["configured"]["fastest"];
+    assert_eq!(fastest, &json!({"rate": null, "limit": {"missed": "cycle", "thread": 1}}));
+}
+
+/// The costs are measured, so what a virtual machine does to them is said exactly if this machine is one.
+#[test]
+fn a_virtual_machine_is_named_where_its_times_are_measured() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("sun2xp.toml"), "[hand]\nrate = 500\n").expect("written");
+    let run = |options: &[&str]| {
+        let mut tool = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+        tool.args(["schedule", "--measure", "1"]).args(options).current_dir(folder.path());
+        tool.env_remove("SUN2XP_CONFIG").output().expect("the tool runs").stdout
+    };
+    let told: Value = serde_json::from_slice(&run(&["--json"])).expect("JSON");
+    let text = String::from_utf8(run(&["--p999"])).expect("text");
+    assert!(text.starts_with("99.9 % values, us: wake-up "), "{text}");
+    assert_eq!(told["virtual_machine"], text.contains("This machine is virtual. Its host may pause it"), "{text}");
+    let flag = std::fs::read_to_string("/proc/cpuinfo").expect("there").contains(" hypervisor");
+    assert!(!flag || told["virtual_machine"] == true, "the kernel knows a hypervisor: {told:#}");
 }
 
 #[test]
@@ -47,7 +109,7 @@ fn without_an_argument_the_tool_uses_the_file_of_open_hand() {
         .env_remove("SUN2XP_CONFIG")
         .output()
         .expect("the tool runs");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("640 Hz:"), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("\n640 Hz\n"), "{output:?}");
 }
 
 #[test]

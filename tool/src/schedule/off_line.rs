@@ -2,7 +2,7 @@
 //! deadline. The inputs are worst-case times, the times on the lines, and the allocation of fingers to threads, cores
 //! and ports.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize, Serializer};
 use sun2xp::board::{USABLE_SHARE, exchange_microseconds, tactile_microseconds, tactile_requests};
 use sun2xp::finger::REPLY_WINDOW;
 use sun2xp::hand::{Wrong, deserialize};
@@ -12,7 +12,7 @@ use sun2xp::realtime::{PeriodicThread, response_times};
 use toml_edit::Document;
 
 /// Worst-case times of a machine, us.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Costs {
     /// From the scheduled beginning of a cycle to the thread's first instruction.
@@ -49,7 +49,7 @@ impl Costs {
 }
 
 /// What another sensor would add to every finger.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Sensor {
     /// Additional bytes in each reply.
     pub bytes: usize,
@@ -58,7 +58,7 @@ pub struct Sensor {
 }
 
 /// One servo thread of the schedule.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scheduled {
     /// Number of the thread, 1 to 3.
     pub thread: u8,
@@ -67,6 +67,7 @@ pub struct Scheduled {
     /// SCHED_FIFO priority.
     pub priority: u8,
     /// The fingers of the thread, in the order in which they are served.
+    #[serde(serialize_with = "numbers")]
     pub fingers: Vec<FingerNumber>,
     /// Fraction of a period in which the thread computes.
     pub load: f64,
@@ -80,7 +81,8 @@ pub struct Scheduled {
 }
 
 /// A deadline that may be missed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum RateLimit {
     /// The line is busy for a larger part of a period than permitted.
     Line,
@@ -88,6 +90,10 @@ pub enum RateLimit {
     Replies,
     /// The cycle may not be done when the next one begins.
     Cycle,
+}
+
+fn numbers<S: Serializer>(fingers: &[FingerNumber], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(fingers.iter().map(|finger| finger.get()))
 }
 
 /// The schedule of a hand at a rate, Hz, with one entry per servo thread. A port that is `simulated` counts as a serial
@@ -118,20 +124,6 @@ pub fn off_line_schedule(hand: &Configuration, rate: f64, costs: &Costs, sensor:
             Scheduled { thread, core: task.core, priority: task.priority, fingers, load, line, response, limit }
         })
         .collect()
-}
-
-/// The highest whole rate up to `most`, Hz, at which every deadline is met. 0 if there is none.
-pub fn fastest_rate(hand: &Configuration, costs: &Costs, sensor: &Sensor, most: u32) -> u32 {
-    let met = |rate: u32| {
-        off_line_schedule(hand, rate.into(), costs, sensor).iter().all(|scheduled| scheduled.limit.is_none())
-    };
-    // With a longer period, every deadline is later and nothing else changes, so bisection is valid.
-    let (mut met_at, mut missed_at) = (0, most + 1);
-    while missed_at - met_at > 1 {
-        let rate = met_at + (missed_at - met_at) / 2;
-        if met(rate) { met_at = rate } else { missed_at = rate }
-    }
-    met_at
 }
 
 fn task(hand: &Configuration, fingers: &[FingerNumber], period: f64, costs: &Costs, sensor: &Sensor) -> PeriodicThread {
@@ -202,6 +194,7 @@ fn longest_exchange(hand: &Configuration, fingers: &[FingerNumber], sensor: &Sen
 
 #[cfg(test)]
 mod tests {
+    use super::super::fastest::Fastest;
     use super::*;
     use sun2xp::model::configuration::TouchElement;
 
@@ -227,7 +220,7 @@ mod tests {
             assert!((thread.load - 0.03).abs() < 1e-9 && (thread.line - 0.55).abs() < 1e-9);
         }
         // The line is the limit: 550 us are 80 % of a period at 1454.5 Hz.
-        assert_eq!(fastest_rate(&hand, &COSTS, &Sensor::default(), 5000), 1454);
+        assert_eq!(Fastest::of(&hand, &COSTS, &Sensor::default()).rate, Some(1454));
         assert_eq!(off_line_schedule(&hand, 1455.0, &COSTS, &Sensor::default())[0].limit, Some(RateLimit::Line));
         // Ten more bytes take 100 us more. At 2 megabaud the exchange takes 225 + 100 + 50 us, which is 80 % of a
         // period at 2133 Hz.
@@ -235,7 +228,7 @@ mod tests {
         assert_eq!(off_line_schedule(&hand, 1000.0, &COSTS, &sensor)[0].response, Some((760.0, 830.0)));
         hand.fingers.iter_mut().for_each(|finger| finger.baud = 2_000_000);
         // 100 + 10 + 375 + 70 = 555: the cycle is done in time up to 1801 Hz.
-        assert_eq!(fastest_rate(&hand, &COSTS, &sensor, 5000), 1801);
+        assert_eq!(Fastest::of(&hand, &COSTS, &sensor).rate, Some(1801));
         assert_eq!(off_line_schedule(&hand, 1802.0, &COSTS, &sensor)[0].limit, Some(RateLimit::Cycle));
     }
 
@@ -281,7 +274,7 @@ mod tests {
         assert!((schedule[1].line - 0.75).abs() < 1e-9);
         // At 1100 Hz no time is left, so the servo sends no requests, and touch makes no cycle later.
         assert_eq!(touches(&hand, &[FingerNumber::TWO], 1100.0), 0);
-        assert_eq!(fastest_rate(&hand, &COSTS, &Sensor::default(), 5000), 1454);
+        assert_eq!(Fastest::of(&hand, &COSTS, &Sensor::default()).rate, Some(1454));
     }
 
     /// A late wake-up is not the board's fault: the reply window begins at the wake-up.

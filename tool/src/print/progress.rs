@@ -1,0 +1,159 @@
+//! Progress of long work, on standard error: a bar on a terminal, and a line now and then elsewhere.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, IsTerminal, Write};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Shorter work shows no line.
+const FIRST_LINE: Duration = Duration::from_secs(1);
+
+/// Time between two lines.
+const BETWEEN_LINES: Duration = Duration::from_secs(5);
+
+/// Time between two pictures of the bar, so that it moves while a step takes long.
+const PICTURE: Duration = Duration::from_millis(100);
+
+/// The progress of one piece of work. It disappears from a terminal when it is dropped. All methods may be called from
+/// any thread.
+pub struct Progress {
+    what: String,
+    bar: Option<ProgressBar>,
+    lines: Mutex<Lines>,
+}
+
+/// When to print a line, and what is known.
+struct Lines {
+    began: Instant,
+    printed: Option<Instant>,
+    done: u64,
+    total: u64,
+    now: String,
+}
+
+impl Progress {
+    /// Begins work that has this number of steps. `what` names the work, for example "finger 1, bounds".
+    pub fn new(what: impl Into<String>, total: u64) -> Self {
+        let what = what.into();
+        let bar = io::stderr().is_terminal().then(|| bar(&what, total));
+        let lines = Lines { began: Instant::now(), printed: None, done: 0, total, now: String::new() };
+        Self { what, bar, lines: Mutex::new(lines) }
+    }
+
+    /// Names what is done now, for example the plant that is searched.
+    pub fn now(&self, now: impl Into<String>) {
+        self.change(|lines| lines.now = now.into());
+    }
+
+    /// One more step is done.
+    pub fn step(&self) {
+        self.change(|lines| lines.done += 1);
+    }
+
+    /// This number of steps is done.
+    pub fn reach(&self, done: u64) {
+        self.change(|lines| lines.done = done);
+    }
+
+    /// Waits for `duration`, of which the work consists, and shows how much has passed. The steps are milliseconds.
+    pub fn wait(what: impl Into<String>, duration: Duration) {
+        let progress = Self::new(what, duration.as_millis() as u64);
+        let began = Instant::now();
+        while let Some(left) = duration.checked_sub(began.elapsed()).filter(|left| !left.is_zero()) {
+            std::thread::sleep(left.min(PICTURE));
+            progress.reach(began.elapsed().as_millis() as u64);
+        }
+    }
+
+    /// Runs `print`, which writes to standard output or standard error. On a terminal the bar is away meanwhile.
+    pub fn aside<T>(&self, print: impl FnOnce() -> T) -> T {
+        match &self.bar {
+            Some(bar) => bar.suspend(print),
+            None => print(),
+        }
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Lines)) {
+        // A thread that panicked has left complete values.
+        let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
+        change(&mut lines);
+        match &self.bar {
+            Some(bar) => {
+                bar.set_position(lines.done);
+                bar.set_message(lines.now.clone());
+            }
+            None => {
+                if let Some(line) = lines.due(Instant::now()) {
+                    // A failed write, for example because nobody reads standard error, is no reason to stop the work.
+                    let _ = writeln!(io::stderr(), "{}: {line}", self.what);
+                }
+            }
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Lines {
+    /// Returns the line to print at this instant, if one is due.
+    fn due(&mut self, now: Instant) -> Option<String> {
+        let due = match self.printed {
+            None => self.began + FIRST_LINE,
+            Some(printed) => printed + BETWEEN_LINES,
+        };
+        if now < due || self.done >= self.total {
+            return None;
+        }
+        self.printed = Some(now);
+        let percent = 100 * self.done / self.total.max(1);
+        Some(if self.now.is_empty() { format!("{percent} %") } else { format!("{percent} %, {}", self.now) })
+    }
+}
+
+fn bar(what: &str, total: u64) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
+    let template = "{prefix} {bar:30.cyan/dim} {percent:>3} %  {eta:>4} left  {msg:.dim}";
+    // The template is a constant that the tests check. Without it the bar has its usual form.
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("━╸─"));
+    }
+    bar.set_prefix(what.to_owned());
+    bar.enable_steady_tick(PICTURE);
+    bar
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pipe_receives_a_line_after_a_second_and_then_every_five() {
+        let began = Instant::now();
+        let mut lines = Lines { began, printed: None, done: 0, total: 8, now: String::new() };
+        let printed: Vec<(u64, String)> = (0..80)
+            .filter_map(|tenth| {
+                lines.done = tenth / 10;
+                lines.now = if tenth < 30 { String::new() } else { "slow motors".into() };
+                lines.due(began + Duration::from_millis(100 * tenth)).map(|line| (tenth, line))
+            })
+            .collect();
+        assert_eq!(printed, [(10, "12 %".into()), (60, "75 %, slow motors".into())]);
+        lines.done = 8;
+        assert_eq!(lines.due(began + Duration::from_secs(100)), None, "nothing is left to do");
+    }
+
+    #[test]
+    fn the_bar_contains_what_it_is_told() {
+        let bar = bar("finger 1", 4);
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+        bar.set_position(3);
+        assert_eq!((bar.position(), bar.length(), bar.prefix()), (3, Some(4), "finger 1".into()));
+        assert!(ProgressStyle::with_template("{bar:30.cyan/dim} {percent:>3} {eta:>4} {msg:.dim}").is_ok());
+    }
+}

@@ -1,0 +1,43 @@
+//! The highest rate at which a hand meets every deadline.
+
+use super::off_line::{Costs, RateLimit, Scheduled, Sensor, off_line_schedule};
+use serde::Serialize;
+use sun2xp::model::configuration::{Configuration, RATES};
+
+/// The highest rate, and what prevents a higher one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Fastest {
+    /// The highest whole rate that can be configured and at which every deadline is met, Hz. `None` if there is none.
+    pub rate: Option<u32>,
+    /// What is missed above that rate, or at the lowest rate if there is none. `None` if the highest rate that can be
+    /// configured is met.
+    pub limit: Option<Limit>,
+}
+
+/// A deadline that may be missed, and the first thread that may miss it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Limit {
+    pub missed: RateLimit,
+    pub thread: u8,
+}
+
+impl Fastest {
+    pub fn of(hand: &Configuration, costs: &Costs, sensor: &Sensor) -> Self {
+        let limit = |rate: u32| limit(&off_line_schedule(hand, rate.into(), costs, sensor));
+        let (lowest, highest) = (RATES.start().ceil() as u32, RATES.end().floor() as u32);
+        // With a longer period, every deadline is later and nothing else changes, so bisection is valid.
+        let (mut met_at, mut missed_at) = (lowest - 1, highest + 1);
+        while missed_at - met_at > 1 {
+            let rate = met_at + (missed_at - met_at) / 2;
+            if limit(rate).is_none() { met_at = rate } else { missed_at = rate }
+        }
+        Self {
+            rate: (met_at >= lowest).then_some(met_at),
+            limit: if met_at == highest { None } else { limit(missed_at) },
+        }
+    }
+}
+
+fn limit(schedule: &[Scheduled]) -> Option<Limit> {
+    schedule.iter().find_map(|thread| thread.limit.map(|missed| Limit { missed, thread: thread.thread }))
+}

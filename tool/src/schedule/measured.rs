@@ -1,0 +1,49 @@
+//! The worst cases of this machine, measured on the simulated hand.
+
+use super::off_line::Costs;
+use crate::failure::Failure;
+use crate::print::Progress;
+use std::time::Duration;
+use sun2xp::hand::Hand;
+use sun2xp::model::FingerNumber;
+use sun2xp::model::configuration::Configuration;
+use sun2xp::realtime::{CycleStage, Distribution};
+use sun2xp::reflexes::{Condition, MOST_RULES, Reaction, Reflex};
+
+/// Runs a simulated hand for `duration`, and returns the maximum of every time, or with `p999` its 99.9 % value.
+pub fn measure(configuration: &Configuration, duration: Duration, p999: bool) -> Result<Costs, Failure> {
+    let mut simulated = configuration.clone();
+    simulated.fingers.iter_mut().for_each(|finger| finger.port = "simulated".into());
+    let hand = Hand::open(simulated)?;
+    FingerNumber::ALL.into_iter().try_for_each(|finger| busy_with_reflexes(&hand, finger))?;
+    (1..=3).try_for_each(|finger| hand.reset_timing(finger))?;
+    Progress::wait("measuring the simulated hand", duration);
+    let worst = |stage| -> Result<f64, Failure> {
+        let part = |timing: Distribution| if p999 { timing.p999 } else { timing.maximum };
+        let timings = (1..=3).map(|finger| hand.timing(finger, stage).map(part));
+        Ok(timings.collect::<Result<Vec<f64>, _>>()?.into_iter().fold(0.0, f64::max))
+    };
+    Ok(Costs {
+        wake_up: worst(CycleStage::WakeUp)?,
+        write: worst(CycleStage::Write)?,
+        read: worst(CycleStage::Read)? + worst(CycleStage::Decode)?,
+        compute: worst(CycleStage::Compute)?,
+    })
+}
+
+/// Gives a finger as many reflexes as it can have. All of them fire again and again, so one of them reacts in every
+/// cycle, and the measured computing time includes the aperiodic server at its limit.
+fn busy_with_reflexes(hand: &Hand, finger: FingerNumber) -> Result<(), Failure> {
+    let reflex = Reflex {
+        condition: Condition::ForceAbove(0.0),
+        reaction: Reaction::Damp(1.0),
+        priority: 0,
+        // Shorter than any period.
+        refractory: 1e-9,
+        inhibition: 0.0,
+    };
+    for _ in 0..MOST_RULES {
+        hand.install_reflex(finger.get(), reflex)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,170 @@
+//! The result of `sun2xp schedule`, for people and for other programs.
+
+use super::fastest::{Fastest, Limit};
+use super::off_line::{Costs, RateLimit, Scheduled, Sensor, off_line_schedule, touches};
+use crate::print::{Cell, Look, Screen, Table, painted};
+use serde::Serialize;
+use std::io::{self, Write};
+use sun2xp::model::FingerNumber;
+use sun2xp::model::configuration::{Configuration, RATES};
+
+/// Where the costs come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// A file.
+    File,
+    /// The maximum of every time that was measured.
+    MeasuredMaximum,
+    /// The 99.9 % value of every time that was measured.
+    Measured999,
+}
+
+/// The output of `--json`.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    /// Whether every deadline is met at the configured rate.
+    pub pass: bool,
+    /// The configured rate, Hz.
+    rate: f64,
+    source: Source,
+    /// Whether the costs were measured on a virtual machine.
+    virtual_machine: bool,
+    costs: Costs,
+    configured: Schedule,
+    with_sensor: Schedule,
+}
+
+/// The schedule of a hand.
+#[derive(Debug, Serialize)]
+struct Schedule {
+    sensor: Sensor,
+    threads: Vec<Thread>,
+    fastest: Fastest,
+}
+
+/// One servo thread at the configured rate.
+#[derive(Debug, Serialize)]
+struct Thread {
+    #[serde(flatten)]
+    scheduled: Scheduled,
+    tactile_events: usize,
+}
+
+impl Schedule {
+    fn new(hand: &Configuration, costs: &Costs, sensor: Sensor) -> Self {
+        let rate = hand.hand.rate;
+        let threads = off_line_schedule(hand, rate, costs, &sensor).into_iter();
+        let with_touch =
+            |scheduled: Scheduled| Thread { tactile_events: touches(hand, &scheduled.fingers, rate), scheduled };
+        Self { sensor, threads: threads.map(with_touch).collect(), fastest: Fastest::of(hand, costs, &sensor) }
+    }
+
+    /// The highest rate and its reason, as a sentence that begins with `condition`.
+    fn summary(&self, condition: &str) -> String {
+        let Some(Limit { missed: limit, thread }) = self.fastest.limit else {
+            return format!("{condition}every deadline is met up to the highest rate that can be configured.");
+        };
+        let reason = format!("{}, thread {thread}", missed(limit));
+        match self.fastest.rate {
+            Some(rate) => format!("{condition}every deadline is met up to {rate} Hz: above that, {reason}."),
+            None => {
+                let lowest = RATES.start();
+                format!("{condition}no rate that can be configured meets every deadline: at {lowest} Hz, {reason}.")
+            }
+        }
+    }
+
+    fn table(&self) -> Table {
+        let header =
+            ["thread", "fingers", "core", "priority", "computing", "line busy", "replies by", "done by", "deadlines"];
+        let mut table = Table::new(header).numeric(3..8);
+        for Thread { scheduled, .. } in &self.threads {
+            let fingers = scheduled.fingers.iter().map(FingerNumber::to_string).collect::<Vec<_>>().join(", ");
+            let by = |time: Option<f64>| Cell::from(time.map_or("-".into(), |time| format!("{time:.0} us")));
+            table.row([
+                scheduled.thread.to_string().into(),
+                fingers.into(),
+                scheduled.core.map_or("any".into(), |core| core.to_string()).into(),
+                scheduled.priority.to_string().into(),
+                format!("{:.1} %", 100.0 * scheduled.load).into(),
+                format!("{:.0} %", 100.0 * scheduled.line).into(),
+                by(scheduled.response.map(|response| response.0)),
+                by(scheduled.response.map(|response| response.1)),
+                scheduled.limit.map_or(Cell::new(Look::Good, "met"), |limit| Cell::new(Look::Bad, missed(limit))),
+            ]);
+        }
+        table
+    }
+}
+
+impl Report {
+    pub fn new(hand: &Configuration, costs: Costs, source: Source, virtual_machine: bool, sensor: Sensor) -> Self {
+        let configured = Schedule::new(hand, &costs, Sensor::default());
+        Self {
+            pass: configured.threads.iter().all(|thread| thread.scheduled.limit.is_none()),
+            rate: hand.hand.rate,
+            source,
+            virtual_machine: virtual_machine && source != Source::File,
+            costs,
+            with_sensor: Schedule::new(hand, &costs, sensor),
+            configured,
+        }
+    }
+
+    pub fn write(&self, out: &mut impl Write, screen: &Screen) -> io::Result<()> {
+        let title = |text: &str| painted(screen, Look::Title, text);
+        let Costs { wake_up, write, read, compute } = self.costs;
+        let costs = match self.source {
+            Source::Measured999 => "99.9 % values",
+            Source::File | Source::MeasuredMaximum => "Worst cases",
+        };
+        writeln!(out, "{costs}, us: wake-up {wake_up:.1}, write {write:.1}, read {read:.1}, compute {compute:.1}")?;
+        if let Some(caveat) = self.caveat() {
+            writeln!(out, "{} {caveat}", painted(screen, Look::Warning, "This machine is virtual."))?;
+        }
+        writeln!(out, "\n{}\n", title(&format!("{:.0} Hz", self.rate)))?;
+        write!(out, "{}", self.configured.table().text(screen))?;
+        let Sensor { bytes, compute } = self.with_sensor.sensor;
+        let more = format!("{:.0} Hz with {bytes} more bytes and {compute:.0} us more per finger", self.rate);
+        writeln!(out, "\n{}\n", title(&more))?;
+        write!(out, "{}\n", self.with_sensor.table().text(screen))?;
+        for Thread { scheduled, tactile_events } in self.configured.threads.iter().filter(|one| one.tactile_events > 0)
+        {
+            let thread = scheduled.thread;
+            writeln!(out, "Thread {thread} fetches up to {tactile_events} tactile events in every period.")?;
+        }
+        writeln!(out, "{}", capitalized(&self.configured.summary("")))?;
+        writeln!(out, "{}", self.with_sensor.summary("With the sensor, "))?;
+        out.flush()
+    }
+
+    /// What a virtual machine does to the measured times.
+    fn caveat(&self) -> Option<&'static str> {
+        match (self.virtual_machine, self.source) {
+            (true, Source::MeasuredMaximum) => Some(
+                "Its host may pause it at any time and for any duration. The worst cases include such pauses, and a \
+                 longer measurement finds longer ones. They do not hold for a machine of its own. Use --p999 to leave \
+                 most pauses out.",
+            ),
+            (true, Source::Measured999) => Some(
+                "Its host may pause it at any time and for any duration. The 99.9 % values leave most pauses out, so \
+                 a deadline may be missed in every pause.",
+            ),
+            _ => None,
+        }
+    }
+}
+
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+fn missed(limit: RateLimit) -> &'static str {
+    match limit {
+        RateLimit::Line => "the line is too busy",
+        RateLimit::Replies => "replies may arrive too late",
+        RateLimit::Cycle => "a cycle may end too late",
+    }
+}
