@@ -1,8 +1,11 @@
 //! `sun2xp model`: the configured hand as a file for other programs.
 
 pub mod geometry;
+mod mjcf;
 mod palm;
 pub mod shape;
+mod urdf;
+mod xml;
 
 pub use geometry::geometry;
 
@@ -33,6 +36,12 @@ pub struct Arguments {
 #[derive(clap::Args)]
 #[group(required = true, multiple = false)]
 struct Format {
+    /// URDF, for ROS 2 and RViz.
+    #[arg(long)]
+    urdf: bool,
+    /// MJCF, for MuJoCo 3.4 or later.
+    #[arg(long)]
+    mjcf: bool,
     /// The geometry as the web page draws it, in cm, rad and kg.
     #[arg(long)]
     json: bool,
@@ -43,7 +52,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(file) => hand::read_configuration(file)?,
         None => hand::find_configuration()?.configuration,
     };
-    let text = serde_json::to_string_pretty(&geometry(&configuration))? + "\n";
+    let geometry = geometry(&configuration);
+    let text = match arguments.format {
+        Format { urdf: true, .. } => urdf::urdf(&geometry, &configuration),
+        Format { mjcf: true, .. } => mjcf::mjcf(&geometry, &configuration)?,
+        Format { .. } => serde_json::to_string_pretty(&geometry)? + "\n",
+    };
     match &arguments.output {
         None => io::stdout().lock().write_all(text.as_bytes())?,
         Some(path) => replace_file(path, |file| file.write_all(text.as_bytes()))

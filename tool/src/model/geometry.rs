@@ -143,11 +143,11 @@ fn link(finger: &ConfiguredFinger, number: FingerNumber, index: usize) -> Link {
     let mut shapes = vec![Shape::capsule(along(0.0), along(length), radius, colour)];
     if index < 2 {
         // The pulleys of the next joint, a little wider than the link.
-        let half = radius * 0.95;
-        shapes.push(Shape::capsule([-half, 0.0, length], [half, 0.0, length], radius * 0.75, Colour::JOINT));
+        let half = radius * 1.2;
+        shapes.push(Shape::cylinder([-half, 0.0, length], [half, 0.0, length], radius * 0.8, Colour::JOINT));
     } else {
         let tip = radius * TIP_RATIO;
-        shapes[0] = Shape::capsule(along(0.0), along(length - tip), radius * 0.9, colour);
+        shapes[0] = Shape::capsule(along(0.0), along((length - tip).max(length / 10.0)), radius * 0.9, colour);
         shapes.push(Shape::sphere(along(length), tip, Colour::TIP));
     }
     let body = body(finger, index);

@@ -1,6 +1,7 @@
 //! The shapes from which a hand is drawn. Lengths are in cm.
 
 use serde::{Serialize, Serializer};
+use std::fmt;
 use sun2xp::model::FingerNumber;
 
 /// A shape with a colour.
@@ -57,13 +58,13 @@ pub struct Colour(pub [u8; 3]);
 
 impl Colour {
     /// The palm.
-    pub const PALM: Self = Self([0x3b, 0x42, 0x52]);
+    pub const PALM: Self = Self([0x5a, 0x65, 0x78]);
     /// The wrist and the bases of the fingers.
-    pub const BASE: Self = Self([0x2b, 0x30, 0x3b]);
+    pub const BASE: Self = Self([0x3b, 0x42, 0x52]);
     /// The pulleys of the joints.
-    pub const JOINT: Self = Self([0x4c, 0x56, 0x6a]);
+    pub const JOINT: Self = Self([0x8a, 0x93, 0xa3]);
     /// The rubber of the fingertips.
-    pub const TIP: Self = Self([0x20, 0x23, 0x2a]);
+    pub const TIP: Self = Self([0x2e, 0x33, 0x3d]);
     /// The object of the simulation.
     pub const OBJECT: Self = Self([0xe8, 0xc5, 0x6b]);
 
@@ -72,12 +73,23 @@ impl Colour {
         // Blue, orange and green of Okabe and Ito, which people with any colour vision can distinguish.
         Self([[0x56, 0xa5, 0xe0], [0xe6, 0x9f, 0x3c], [0x2b, 0xb0, 0x8c]][finger.index()])
     }
+
+    /// Returns red, green and blue, 0 to 1.
+    pub fn unit(&self) -> [f64; 3] {
+        self.0.map(|part| f64::from(part) / 255.0)
+    }
 }
 
 impl Serialize for Colour {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl fmt::Display for Colour {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         let [red, green, blue] = self.0;
-        serializer.collect_str(&format_args!("#{red:02x}{green:02x}{blue:02x}"))
+        write!(formatter, "#{red:02x}{green:02x}{blue:02x}")
     }
 }
 
