@@ -1,9 +1,10 @@
 //! `sun2xp board`: a simulated board as a separate program.
 
 mod faults;
+mod manual;
 mod orders;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, wrong_usage};
 use faults::Trouble;
 use orders::{Action, Order};
 use std::io::{self, BufRead, Write};
@@ -13,59 +14,18 @@ use sun2xp::board::protocol::check;
 use sun2xp::hand;
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, FINGERS};
-use sun2xp::model::{ShownPath, one_line};
+use sun2xp::model::{Shown, ShownPath, one_line};
 use sun2xp::realtime::Priority;
 use sun2xp::simulated::{Pace, SimulatedBoard, SimulatedPort};
 
 /// Runs a simulated board behind a serial port of its own.
 ///
-/// The first line on standard output is the path of the port. Each line on standard input is an order. The board
-/// answers each order with one line: `ok`, `state ...` or `error ...`.
+/// The first line on standard output is the path of the port. Each line on standard input is an order, of which the end
+/// of --help has a list. The board answers each order with one line: `ok`, `state ...` or `error ...`.
 ///
-///     force FINGER X Y Z                     push the fingertip, N
-///     wall FINGER PX PY PZ NX NY NZ K        put a wall through P with normal N, stiffness K N/cm
-///     ball FINGER X Y Z RADIUS K             put a ball
-///     hold FINGER                            hold the finger in its current pose, like a jig
-///     free FINGER                            remove force, wall, ball and jig
-///     state FINGER                           answer with the true joint angles (rad), tip (cm), tensions (N), motor
-///                                            torques (N cm), three instants on the board's clock (ms), and the
-///                                            status bits of a Reply. The instants are: now, the last obeyed Command,
-///                                            and the end state that silence or a Stop caused. An instant is NaN if
-///                                            the event has not occurred since the last Configure
-///     quit                                   end the program
-///
-/// A defect lasts until `mend`. A line fault lasts until `good`, or for MS milliseconds if MS is given. Tendons,
-/// motors, gauges and encoders are numbered 1 to 4. PROBABILITY applies to each frame from the board, or with
-/// `commands` to each frame to the board.
-///
-///     cut FINGER TENDON                      tear a tendon
-///     slack FINGER TENDON GRIP               let a tendon slip at tensions above GRIP, N
-///     jam FINGER MOTOR                       block a motor
-///     hot FINGER MOTOR                       switch a motor driver off, as at over-temperature
-///     dead-element FINGER ELEMENT            make a tactile element, counted from 0, unreadable
-///     dead-gauge FINGER GAUGE [COUNT]        freeze a gauge at COUNT, or at its current count
-///     drift-gauge FINGER GAUGE SPEED         let a gauge drift, N/s
-///     jump FINGER ENCODER COUNTS             add COUNTS to the count of an encoder
-///     zero-lost FINGER                       declare the encoder counts invalid
-///     emergency FINGER, supply FINGER, sensor FINGER
-///                                            activate the emergency stop input, fail the motor supply, fail a sensor
-///     reset FINGER                           interrupt the board's power for a moment
-///     mend FINGER                            repair all of the above
-///     drop PROBABILITY [MS]                  lose frames
-///     corrupt PROBABILITY [MS]               invert one bit of a frame
-///     delay PROBABILITY LATER [MS]           delay frames by LATER ms
-///     duplicate PROBABILITY [MS], reorder PROBABILITY [MS]
-///                                            send frames twice, send frames in the wrong order
-///     stall MS                               send nothing for MS, then everything at once
-///     commands drop 0.01, commands stall MS, and so on
-///                                            the same for frames to the board
-///     good                                   end all line faults, in both directions
-///     unplug, replug                         remove the port; create a new port and answer with its path
-///
-/// Positions and forces are in the finger's frame, lengths in cm. The program ends at `quit` or a signal, and not at
-/// the end of standard input, so that it can run detached.
+/// The program ends at `quit` or a signal, and not at the end of standard input, so that it can run detached.
 #[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
+#[command(after_long_help = manual::help())]
 pub struct Arguments {
     /// The configuration of the simulated fingers. Without it every key has its default value. Its ports are ignored.
     #[arg(long, value_name = "FILE")]
@@ -125,6 +85,7 @@ pub struct Arguments {
 
 /// Starts the board, and executes orders until `quit`.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let orders = orders_in(&arguments.orders)?;
     let mut configuration = match &arguments.config {
         Some(file) => hand::read_configuration(file)?,
         None => Configuration::default(),
@@ -149,11 +110,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     say(&port.path().display().to_string())?;
     let session =
         Session { port: &port, configuration: &configuration, link: arguments.link.as_deref(), seed: arguments.seed };
-    for order in &arguments.orders {
-        let order = Order::read(order)?.ok_or("an --order is empty: see sun2xp board --help")?;
-        let answer = session.carry_out(&order)?;
+    for order in &orders {
+        let answer = session.carry_out(order)?;
         if answer.starts_with("error") {
-            return Err(answer.into());
+            return Err(wrong_usage(answer));
         }
     }
 
@@ -174,6 +134,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     loop {
         std::thread::park();
     }
+}
+
+/// Reads the orders of the command line.
+fn orders_in(texts: &[String]) -> Result<Vec<Order>, Failure> {
+    let read = |text: &String| match Order::read(text) {
+        Ok(Some(Order::Quit)) => Err(wrong_usage("quit cannot be given by --order")),
+        Ok(Some(order)) => Ok(order),
+        Ok(None) => Err(wrong_usage("an --order is empty: see sun2xp board --help")),
+        Err(reason) => Err(wrong_usage(format!("--order {}: {reason}", Shown(text)))),
+    };
+    texts.iter().map(read).collect()
 }
 
 /// Returns the unique number of the board. With a link it is derived from the path of the link, so that it stays the
@@ -232,7 +203,7 @@ impl Session<'_> {
                 }
                 Ok(answer)
             }
-            Order::Quit => Err("quit cannot be given by --order".into()),
+            Order::Quit => Ok("ok".into()),
         }
     }
 }

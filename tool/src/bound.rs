@@ -1,19 +1,22 @@
 //! `sun2xp bound`: finds the largest stiffness of a finger, and stores it in the configuration file.
 
 mod passivity;
+mod sample;
 mod set;
 
-use crate::failure::Failure;
-use serde::Deserialize;
+use crate::failure::{Failure, wrong_usage};
+use crate::print::{self, Progress, Screen};
+use passivity::Passivity;
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error, StrDeserializer};
+use serde::{Deserialize, Serialize};
+use set::SetBound;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use sun2xp::hand::{self, Fingers, Found};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, RATES, Scheme};
-use sun2xp::nalgebra::Vector3;
 
 /// Finds the bound on the eigenvalues of Kx up to which a finger is stable in every pose.
 ///
@@ -65,6 +68,40 @@ pub struct Arguments {
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 1990)]
     seed: u64,
+    /// Print one JSON object, for other programs. Stiffnesses are in N/cm.
+    #[arg(long)]
+    json: bool,
+}
+
+/// A finger whose stiffness is searched, and the rate, Hz.
+struct Searched<'a> {
+    number: FingerNumber,
+    finger: &'a ConfiguredFinger,
+    rate: f64,
+}
+
+/// The output of `--json`.
+#[derive(Serialize)]
+struct Report {
+    /// Hz.
+    rate: f64,
+    fingers: Vec<FingerReport>,
+    /// The file that has the bounds now. `None` without `--write`.
+    written: Option<PathBuf>,
+}
+
+/// The result for one finger.
+#[derive(Serialize)]
+struct FingerReport {
+    finger: i32,
+    /// The bound, or with `--passivity` the stiffness of the spring, N/cm.
+    stiffness: f64,
+    /// The equal finger that the result comes from.
+    same_as: Option<i32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    set: Option<SetBound>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    passivity: Option<Passivity>,
 }
 
 fn scheme(name: &str) -> Result<Scheme, String> {
@@ -91,26 +128,76 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     configuration.hand.rate = arguments.rate.unwrap_or(configuration.hand.rate);
     let rate = configuration.hand.rate;
-    let mut found: Vec<(FingerNumber, f64)> = Vec::new();
-    for number in Fingers::of(&arguments.fingers)?.numbers() {
-        let number = FingerNumber::try_from(number)?;
+    let numbers = Fingers::of(&arguments.fingers).map_err(|error| wrong_usage(error.to_string()))?.numbers();
+    let numbers = numbers.map(FingerNumber::try_from).collect::<Result<Vec<_>, _>>()?;
+    // Equal fingers have equal bounds. Each is searched once.
+    let first_like = |number: FingerNumber| {
         let finger = &configuration.fingers[number.index()];
-        let twin = found.iter().find(|&&(other, _)| alike(finger, &configuration.fingers[other.index()]));
-        let stiffness = match twin {
-            Some(&(twin, stiffness)) => {
-                writeln!(io::stdout(), "finger {number}: {stiffness:.1} N/cm at {rate} Hz, as for finger {twin}")?;
-                stiffness
-            }
-            None if arguments.passivity => passivity::report(arguments, number, finger, rate)?,
-            None => set::report(arguments, number, finger, rate)?,
+        numbers.iter().copied().find(|other| alike(finger, &configuration.fingers[other.index()])).unwrap_or(number)
+    };
+    let different = numbers.iter().filter(|&&number| first_like(number) == number).count();
+    let steps = if arguments.passivity { passivity::number_of_poses(arguments) } else { set::searches(arguments) };
+    let progress = Progress::new("bound", (different * steps) as u64);
+    let mut reports: Vec<FingerReport> = Vec::new();
+    for &number in &numbers {
+        let searched = Searched { number, finger: &configuration.fingers[number.index()], rate };
+        let twin = reports.iter().find(|report| report.finger == first_like(number).get());
+        let report = match twin {
+            Some(twin) => FingerReport {
+                finger: number.get(),
+                stiffness: twin.stiffness,
+                same_as: Some(twin.finger),
+                set: None,
+                passivity: None,
+            },
+            None => search(arguments, &searched, &progress)?,
         };
-        found.push((number, stiffness));
+        if !arguments.json {
+            progress.aside(|| report.write(&searched))?;
+        }
+        reports.push(report);
     }
-    let Some(path) = arguments.config.as_ref().filter(|_| arguments.write) else { return Ok(()) };
-    let bounds = found.iter().map(|&(number, stiffness)| Found::bound(stiffness, number, &configuration));
-    hand::store_findings(path, &bounds.collect::<Vec<_>>())?;
-    writeln!(io::stdout(), "written to {}", ShownPath(path))?;
+    drop(progress);
+    let written = arguments.config.as_ref().filter(|_| arguments.write);
+    if let Some(path) = written {
+        let number = |report: &FingerReport| FingerNumber::try_from(report.finger);
+        let bounds = reports.iter().map(|one| Ok(Found::bound(one.stiffness, number(one)?, &configuration)));
+        hand::store_findings(path, &bounds.collect::<Result<Vec<_>, Failure>>()?)?;
+    }
+    match (arguments.json, written) {
+        (true, _) => print::json(&Report { rate, fingers: reports, written: written.cloned() })?,
+        (false, Some(path)) => writeln!(io::stdout(), "written to {}", ShownPath(path))?,
+        (false, None) => {}
+    }
     Ok(())
+}
+
+fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<FingerReport, Failure> {
+    let finger = searched.number.get();
+    let report = FingerReport { finger, stiffness: 0.0, same_as: None, set: None, passivity: None };
+    if arguments.passivity {
+        let (stiffness, passivity) = passivity::compute(arguments, searched, progress)?;
+        return Ok(FingerReport { stiffness, passivity: Some(passivity), ..report });
+    }
+    let (stiffness, set) = set::search(arguments, searched, progress)?;
+    Ok(FingerReport { stiffness, set: Some(set), ..report })
+}
+
+impl FingerReport {
+    fn write(&self, searched: &Searched) -> io::Result<()> {
+        let (mut out, screen) = (io::stdout().lock(), Screen::stdout());
+        let Searched { number, rate, .. } = searched;
+        if let Some(twin) = self.same_as {
+            writeln!(out, "finger {number}: {:.1} N/cm at {rate} Hz, as for finger {twin}", self.stiffness)?;
+        }
+        if let Some(set) = &self.set {
+            set.write(&mut out, &screen, searched)?;
+        }
+        match &self.passivity {
+            Some(passivity) => passivity.write(&mut out, &screen, searched, self.stiffness),
+            None => Ok(()),
+        }
+    }
 }
 
 /// Whether two fingers are equal in everything that stability depends on. State feedback depends on the resolution of
@@ -125,9 +212,4 @@ fn alike(one: &ConfiguredFinger, other: &ConfiguredFinger) -> bool {
         && one.friction == other.friction
         && one.controller == other.controller
         && one.stiffness.bound == other.stiffness.bound
-}
-
-/// Returns joint angles as text.
-fn degrees(pose: &Vector3<f64>) -> String {
-    format!("{:.0?} degrees", pose.map(f64::to_degrees).as_slice())
 }

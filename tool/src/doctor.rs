@@ -7,6 +7,7 @@ mod measured;
 mod ports;
 
 use crate::failure::Failure;
+use crate::print::{self, Cell, Look, Progress, Screen, Table, painted};
 use examination::examine;
 use finding::{Finding, Rating};
 use serde::Serialize;
@@ -19,7 +20,7 @@ use sun2xp::hand::{self, Configured, Fingers};
 /// Checks the kernel, the resource limits of this process, the cores and the ports. Measures wake-ups and round trips.
 /// Reports what to change. The motors stay off.
 ///
-/// The exit status is 0 if the hand can run as configured and at its configured rate, and 1 otherwise.
+/// Exit status: 0 if the hand can run as configured and at its configured rate, 1 if not, 2 for wrong usage.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The configuration file. The default is the file that OpenHand would use.
@@ -46,26 +47,31 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => hand::find_configuration()?,
     };
     configured.announce(Fingers::ALL);
-    let findings = examine(&configured.configuration, Path::new("/"), Duration::from_secs_f64(arguments.seconds))?;
+    let duration = Duration::from_secs_f64(arguments.seconds);
+    let examining = || examine(&configured.configuration, Path::new("/"), duration);
+    let findings = Progress::during("examining this machine and its ports", duration, examining)?;
     let pass = findings.iter().all(|finding| finding.verdict < Rating::Failure);
-    let mut output = io::stdout().lock();
-    if arguments.json {
-        writeln!(output, "{}", serde_json::to_string_pretty(&Examination { pass, findings: &findings })?)?;
-    } else {
-        findings.iter().try_for_each(|finding| report(&mut output, finding))?;
-        writeln!(output, "{}", if pass { "pass" } else { "fail" })?;
+    match arguments.json {
+        true => print::json(&Examination { pass, findings: &findings })?,
+        false => write!(io::stdout(), "{}", report(&findings, pass, &Screen::stdout()))?,
     }
     Ok(if pass { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-fn report(output: &mut impl Write, finding: &Finding) -> io::Result<()> {
-    let mark = match finding.verdict {
-        Rating::Good => "good   ",
-        Rating::Warning => "warning",
-        Rating::Failure => "FAILURE",
-    };
-    writeln!(output, "{mark}  {}: {}", finding.subject, finding.found)?;
-    if finding.advice.is_empty() { Ok(()) } else { writeln!(output, "         {}", finding.advice) }
+/// One row for each finding, with the advice below what was found, and the verdict in the last line.
+fn report(findings: &[Finding], pass: bool, screen: &Screen) -> String {
+    let mut table = Table::without_header();
+    for Finding { subject, verdict, found, advice } in findings {
+        let mark = match verdict {
+            Rating::Good => Cell::new(Look::Good, "good"),
+            Rating::Warning => Cell::new(Look::Warning, "warning"),
+            Rating::Failure => Cell::new(Look::Bad, "FAILURE"),
+        };
+        let gap = if advice.is_empty() { "" } else { "\n" };
+        table.row([mark, subject.into(), format!("{found}{gap}{advice}").into()]);
+    }
+    let (look, word) = if pass { (Look::Good, "pass") } else { (Look::Bad, "fail") };
+    format!("{}{}\n", table.text(screen), painted(screen, look, word))
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

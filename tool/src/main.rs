@@ -20,7 +20,7 @@ use std::process::ExitCode;
 
 /// Tools for a hand that the sun2xp library drives.
 #[derive(Parser)]
-#[command(version, after_help = failure::EXIT_STATUSES)]
+#[command(name = "sun2xp", version, after_help = failure::EXIT_STATUSES)]
 struct Arguments {
     #[command(subcommand)]
     tool: Tool,

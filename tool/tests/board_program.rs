@@ -106,6 +106,10 @@ fn defects_occur_while_it_runs_and_are_repaired() {
     assert!(tensions(&mut board)[1] > 1.0);
     assert!(board.order("jam 7 1").starts_with("error this board has no finger 7"));
     assert!(board.order("jam 1 7").starts_with("error"));
+    let answer = board.order("shove 1");
+    let orders = ["force", "state", "cut", "drift-gauge", "mend", "drop", "commands", "unplug", "replug"];
+    assert!(answer.starts_with("error there is no order shove: "), "{answer}");
+    assert!(orders.iter().all(|order| answer.contains(&format!(" {order}"))), "{answer}");
 
     // The line loses every frame, and then works again.
     assert_eq!(board.order("drop 1"), "ok");

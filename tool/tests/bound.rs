@@ -1,6 +1,8 @@
 //! `sun2xp bound` finds the bound of Kx and stores it.
 
-use std::process::Command;
+use serde_json::Value;
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
 use sun2xp::hand;
 
 #[test]
@@ -49,25 +51,48 @@ fn output(arguments: &[&str]) -> String {
 
 #[test]
 fn the_tool_prints_the_bound_of_every_plant_and_takes_the_least() {
+    let told: Value = serde_json::from_str(&output(&["--samples", "8", "--json"])).expect("JSON");
+    let finger = &told["fingers"][0];
+    let plants = finger["set"]["plants"].as_array().expect("an array");
+    let places = |walls: bool| plants.iter().filter(move |plant| plant["walls"] == walls);
+    let names: Vec<&str> = places(false).filter_map(|plant| plant["plant"].as_str()).collect();
+    assert_eq!(names, sun2xp::stability::Variant::SET.map(|variant| variant.name));
+    assert_eq!(places(true).count(), names.len());
+    let bound = |plant: &Value| plant["bound"].as_f64().expect("a bound");
+    let covered = plants.iter().filter(|plant| plant["uncovered"] == 0).map(bound);
+    let least = covered.fold(f64::INFINITY, f64::min);
+    assert_eq!(finger["stiffness"], least);
+    let limiting = &plants[finger["set"]["limited_by"].as_u64().expect("an index") as usize];
+    assert_eq!(bound(limiting), least);
+
+    // People see the same bounds: plant, free, (uncovered), against walls, (uncovered).
     let printed = output(&["--samples", "8"]);
-    // Two bounds, each with or without a count in brackets: "11.2 (3 of 6)  9.0  nominal".
-    let rows = printed.lines().skip(2).map_while(|line| {
-        let mut bounds = Vec::new();
-        let mut rest = line.trim();
-        while let Some((number, after)) = rest.split_once(' ').filter(|(number, _)| number.parse::<f64>().is_ok()) {
-            let after = after.trim_start();
-            let counted = after.strip_prefix('(').and_then(|count| count.split_once(')'));
-            bounds.push((number.parse::<f64>().ok()?, counted.is_none()));
-            rest = counted.map_or(after, |(_, after)| after).trim();
-        }
-        (bounds.len() == 2).then(|| (bounds, rest.to_owned()))
-    });
-    let rows: Vec<_> = rows.collect();
-    let plants: Vec<&str> = rows.iter().map(|(_, plant)| plant.as_str()).collect();
-    assert_eq!(plants, sun2xp::stability::Variant::SET.map(|variant| variant.name));
-    let covered = rows.iter().flat_map(|(bounds, _)| bounds).filter(|(_, covered)| *covered);
-    let least = covered.map(|(bound, _)| *bound).fold(f64::INFINITY, f64::min);
+    for (free, against) in places(false).zip(places(true)) {
+        let name = free["plant"].as_str().expect("a name");
+        let row = printed.lines().find_map(|line| line.strip_prefix(name)).unwrap_or_else(|| panic!("{printed}"));
+        let numbers: Vec<&str> = row.split_whitespace().filter(|word| word.parse::<f64>().is_ok()).collect();
+        let uncovered = row.matches(" of ").count();
+        assert_eq!(numbers, [free, against].map(|plant| format!("{:.1}", bound(plant))), "{row}");
+        let expected = [free, against].iter().filter(|plant| plant["uncovered"] != 0).count();
+        assert_eq!(uncovered, expected, "{row}");
+    }
     assert!(printed.contains(&format!("finger 1: {least:.1} N/cm at 1000 Hz, limited by: ")), "{printed}");
+    assert!(!printed.contains('\u{1b}') && !printed.contains("of more"), "{printed}");
+}
+
+/// The search takes longer than a second, so a pipe receives at least one line with the part that is done.
+#[test]
+fn the_tool_shows_its_progress() {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+    program.args(["bound", "--finger", "1", "--samples", "400"]).current_dir(env!("CARGO_TARGET_TMPDIR"));
+    let mut program = program.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the tool runs");
+    let lines = BufReader::new(program.stderr.take().expect("a pipe")).lines().map_while(Result::ok);
+    let line = lines.into_iter().find(|line| line.starts_with("bound: ")).expect("a line");
+    program.kill().expect("a child");
+    program.wait().expect("its end");
+    let (percent, plant) = line["bound: ".len()..].split_once(" %, finger 1, ").unwrap_or_else(|| panic!("{line}"));
+    assert!(percent.parse::<u32>().is_ok_and(|percent| percent < 100), "{line}");
+    assert!(sun2xp::stability::Variant::SET.iter().any(|variant| plant.starts_with(variant.name)), "{line}");
 }
 
 #[test]

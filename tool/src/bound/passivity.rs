@@ -1,10 +1,12 @@
 //! The passivity of the fingertip.
 
-use super::{Arguments, degrees};
+use super::sample::{degrees, pose};
+use super::{Arguments, Searched};
 use crate::failure::Failure;
+use crate::print::{Cell, Look, Progress, Screen, Table};
+use serde::Serialize;
 use std::io::{self, Write};
 use sun2xp::control::Law;
-use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::ConfiguredFinger;
 use sun2xp::nalgebra::{Matrix3, Vector3};
 use sun2xp::stability::{OneCycleMap, Rest};
@@ -23,57 +25,83 @@ const DEFLECTION: f64 = 0.01;
 /// Distance of the tip from the axis of joint 0 in every pose, cm. Nearer poses are nearly singular.
 const CLEAR_OF_AXIS: f64 = 3.0;
 
-/// Prints the passivity of the tip, and returns the stiffness at which it was computed, N/cm.
-pub fn report(
-    arguments: &Arguments,
-    number: FingerNumber,
-    finger: &ConfiguredFinger,
-    rate: f64,
-) -> Result<f64, Failure> {
+/// The passivity of the tip in several poses.
+#[derive(Debug, Serialize)]
+pub struct Passivity {
+    /// Hz.
+    frequencies: Vec<f64>,
+    poses: Vec<Pose>,
+}
+
+#[derive(Debug, Serialize)]
+struct Pose {
+    joints_degrees: [f64; 3],
+    /// The passivity at every frequency. `None` if the finger does not come to rest in the pose.
+    passivity: Option<Vec<f64>>,
+}
+
+/// Computes the passivity of the tip, and returns the stiffness at which it was computed, N/cm.
+pub fn compute(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<(f64, Passivity), Failure> {
+    let Searched { number, finger, rate } = *searched;
     let map = OneCycleMap::new(finger, rate)
         .map_err(|unusable| format!("finger {number}: {} {}", unusable.key, unusable.reason))?;
     let stiffness = finger.stiffness_bound(rate);
     let ratio = (HIGHEST / LOWEST).powf(1.0 / f64::from(STEPS));
     let frequencies: Vec<f64> = (0..=STEPS).map(|step| LOWEST * ratio.powi(step)).collect();
-    let mut output = io::stdout();
-    writeln!(
-        output,
-        "finger {number}: {stiffness:.1} N/cm at {rate} Hz\n    passivity of the tip by frequency (Hz) and pose:"
-    )?;
-    let mut columns = Vec::new();
-    for pose in poses(finger, arguments.samples.unwrap_or(POSES)) {
+    let mut computed = Vec::new();
+    for pose in poses(finger, number_of_poses(arguments)) {
+        progress.now(format!("finger {number}, passivity"));
         let deflection = Vector3::repeat(DEFLECTION);
         let rest = Rest::hard_finger(pose, deflection, &(Matrix3::identity() * stiffness));
-        let Some(found) = map.admittances(&Rest { law: Law::Exact, ..rest }, &frequencies) else {
-            writeln!(output, "    {}: the finger does not come to rest", degrees(&pose))?;
-            continue;
-        };
-        columns.push((pose, found.iter().map(|admittance| admittance.passivity()).collect::<Vec<_>>()));
+        let found = map.admittances(&Rest { law: Law::Exact, ..rest }, &frequencies);
+        let passivity = found.map(|found| found.iter().map(|admittance| admittance.passivity()).collect());
+        computed.push(Pose { joints_degrees: degrees(&pose), passivity });
+        progress.step();
     }
-    let letters = columns.iter().zip('a'..);
-    write!(output, "        Hz")?;
-    for (_, letter) in letters.clone() {
-        write!(output, "{letter:>9}")?;
-    }
-    for (row, frequency) in frequencies.iter().enumerate() {
-        write!(output, "\n    {frequency:6.1}")?;
-        for (_, passivities) in &columns {
-            write!(output, "{:>9.4}", passivities[row])?;
-        }
-    }
-    writeln!(output)?;
-    for ((pose, passivities), letter) in letters {
-        let least = (0..frequencies.len()).min_by(|&one, &other| passivities[one].total_cmp(&passivities[other]));
-        let Some(least) = least else { continue };
+    Ok((stiffness, Passivity { frequencies, poses: computed }))
+}
+
+/// Returns the number of poses for one finger, which are the steps of the progress.
+pub fn number_of_poses(arguments: &Arguments) -> usize {
+    arguments.samples.unwrap_or(POSES)
+}
+
+impl Passivity {
+    pub fn write(&self, out: &mut impl Write, screen: &Screen, searched: &Searched, stiffness: f64) -> io::Result<()> {
+        let Searched { number, rate, .. } = searched;
         writeln!(
-            output,
-            "    {letter}: {}, least {:.4} of |Y| at {:.1} Hz",
-            degrees(pose),
-            passivities[least],
-            frequencies[least]
+            out,
+            "finger {number}: {stiffness:.1} N/cm at {rate} Hz\n    passivity of the tip by frequency and pose:\n"
         )?;
+        let computed = || self.poses.iter().filter_map(|pose| Some((&pose.joints_degrees, pose.passivity.as_ref()?)));
+        let letters = || (0..computed().count()).map(letter);
+        let mut table = Table::titled(["Hz".to_owned()].into_iter().chain(letters())).numeric(0..=computed().count());
+        for (row, frequency) in self.frequencies.iter().enumerate() {
+            let cells = computed().map(|(_, passivity)| {
+                let look = if passivity[row] < 0.0 { Look::Warning } else { Look::Plain };
+                Cell::new(look, format!("{:.4}", passivity[row]))
+            });
+            table.row([Cell::from(format!("{frequency:.1}"))].into_iter().chain(cells));
+        }
+        writeln!(out, "{}", table.text(screen))?;
+        for (letter, (joints, passivity)) in letters().zip(computed()) {
+            let numbered = self.frequencies.iter().zip(passivity);
+            let Some((frequency, least)) = numbered.min_by(|(_, one), (_, other)| one.total_cmp(other)) else {
+                continue;
+            };
+            writeln!(out, "    {letter}: {}, least {least:.4} of |Y| at {frequency:.1} Hz", pose(joints))?;
+        }
+        for unsettled in self.poses.iter().filter(|pose| pose.passivity.is_none()) {
+            writeln!(out, "    {}: the finger does not come to rest", pose(&unsettled.joints_degrees))?;
+        }
+        Ok(())
     }
-    Ok(stiffness)
+}
+
+/// The name of a column: a to z, then a1, b1 and so on.
+fn letter(index: usize) -> String {
+    let letter = char::from(b'a' + (index % 26) as u8);
+    if index < 26 { letter.to_string() } else { format!("{letter}{}", index / 26) }
 }
 
 /// Returns poses that are spread evenly over the joint ranges: the first points of a Halton sequence that are clear of

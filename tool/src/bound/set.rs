@@ -1,12 +1,12 @@
 //! The bound over the set of plants, without and with walls.
 
-use super::{Arguments, degrees};
+use super::sample::{Sample, degrees, pose};
+use super::{Arguments, Searched};
 use crate::failure::Failure;
+use crate::print::{Cell, Look, Progress, Screen, Table};
+use serde::Serialize;
 use std::io::{self, Write};
-use sun2xp::control::Law;
-use sun2xp::model::FingerNumber;
-use sun2xp::model::configuration::ConfiguredFinger;
-use sun2xp::stability::{Limit, Rest, Search, StiffnessBound, Variant};
+use sun2xp::stability::{Limit, Search, StiffnessBound, Variant};
 
 /// Samples for each plant of the set, without and with walls.
 const SAMPLES_OF_SET: usize = 400;
@@ -18,102 +18,110 @@ const SAMPLES_OF_NOMINAL: usize = 2000;
 /// useless. A few almost straight poses with a very slow motion do not make it so.
 const USELESS: f64 = 0.1;
 
-/// The bound for one plant.
-struct Member {
-    variant: Variant,
-    search: Search,
-    bound: StiffnessBound,
+/// The bounds of all plants.
+#[derive(Debug, Serialize)]
+pub struct SetBound {
+    plants: Vec<Member>,
+    /// Index of the plant that limits the bound.
+    limited_by: usize,
+    near_axis: NearAxis,
 }
 
-/// Searches the bounds of all plants, prints them, and returns the least one, N/cm. Except for the nominal plant
-/// without walls, a plant with samples that are unstable at any stiffness does not count: no bound makes it stable.
+/// The bound for one plant.
+#[derive(Debug, Serialize)]
+struct Member {
+    plant: &'static str,
+    walls: bool,
+    /// N/cm.
+    bound: f64,
+    limit: LimitFound,
+    /// Number of samples clear of the axis of joint 0.
+    samples: usize,
+    /// Number of samples that are unstable at any stiffness. The bound does not cover them.
+    uncovered: usize,
+    uncovered_example: Option<Sample>,
+    /// The softest wall of an uncovered sample, N/cm. `None` without walls or uncovered samples.
+    uncovered_from_wall: Option<f64>,
+    /// Fraction of the poses in which the servo scales Kx down.
+    scaled: f64,
+    /// The smallest factor by which it does so.
+    least_scale: f64,
+}
+
+/// What prevents a larger bound.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum LimitFound {
+    /// With a larger bound, this sample is unstable.
+    Unstable(Sample),
+    /// With a larger bound, the tendons support less than half of it in the pose with these joint angles.
+    ScaledBelowHalf { joints_degrees: [f64; 3] },
+}
+
+/// The samples with the tip within 3 cm of the axis of joint 0.
+#[derive(Debug, Serialize)]
+struct NearAxis {
+    samples: usize,
+    unstable: usize,
+    /// Largest distance of an unstable tip from the axis, cm.
+    distance: f64,
+}
+
+/// Returns the number of searches for one finger, which are the steps of the progress.
+pub fn searches(arguments: &Arguments) -> usize {
+    variants(arguments).len() * places(arguments).len() + 1
+}
+
+fn variants(arguments: &Arguments) -> &'static [Variant] {
+    if arguments.nominal { &Variant::SET[..1] } else { &Variant::SET[..] }
+}
+
+fn places(arguments: &Arguments) -> &'static [bool] {
+    if arguments.free { &[false] } else { &[false, true] }
+}
+
+/// Searches the bounds of all plants, and returns the least one, N/cm. Except for the nominal plant without walls, a
+/// plant with samples that are unstable at any stiffness does not count: no bound makes it stable.
 ///
 /// # Errors
 /// If the nominal plant without walls is often unstable at any stiffness, there is no bound.
-pub fn report(
-    arguments: &Arguments,
-    number: FingerNumber,
-    finger: &ConfiguredFinger,
-    rate: f64,
-) -> Result<f64, Failure> {
-    let variants = if arguments.nominal { &Variant::SET[..1] } else { &Variant::SET[..] };
+pub fn search(arguments: &Arguments, searched: &Searched, progress: &Progress) -> Result<(f64, SetBound), Failure> {
+    let Searched { number, finger, rate } = *searched;
     let usual = if arguments.nominal { SAMPLES_OF_NOMINAL } else { SAMPLES_OF_SET };
     let samples = arguments.samples.unwrap_or(usual);
-    let walls: &[bool] = if arguments.free { &[false] } else { &[false, true] };
-    let columns: String = walls.iter().map(|&walls| format!("{:>22}", place(walls))).collect();
-    writeln!(io::stdout(), "finger {number}, bounds in N/cm (samples that are unstable at any stiffness):")?;
-    writeln!(io::stdout(), "{columns}  plant")?;
-    let mut members: Vec<Member> = Vec::new();
-    for variant in variants {
-        for &walls in walls {
+    let mut plants: Vec<Member> = Vec::new();
+    for variant in variants(arguments) {
+        for &walls in places(arguments) {
+            progress.now(format!("finger {number}, {}, {}", variant.name, place(walls)));
             let search = Search { samples, seed: arguments.seed, walls };
             let bound = search
                 .bound(finger, rate, variant)
                 .map_err(|unusable| format!("finger {number}: {} {}", unusable.key, unusable.reason))?;
-            let uncovered = match bound.uncovered.len() {
-                0 => String::new(),
-                uncovered => format!("({uncovered} of {})", bound.samples),
-            };
-            write!(io::stdout(), "{:>8.1} {uncovered:<13}", bound.stiffness)?;
-            io::stdout().flush()?;
-            members.push(Member { variant: *variant, search, bound });
+            plants.push(Member::new(variant, walls, &bound));
+            progress.step();
         }
-        writeln!(io::stdout(), "  {}", variant.name)?;
     }
-    let nominal = members.first().ok_or("the set of plants is empty")?;
-    if nominal.bound.uncovered.len() as f64 > USELESS * nominal.bound.samples as f64 {
+    let nominal = plants.first().ok_or("the set of plants is empty")?;
+    if nominal.uncovered as f64 > USELESS * nominal.samples as f64 {
         return Err(format!(
             "finger {number}: controller leaves the finger unstable at any stiffness in {} of {} poses: remove the \
              gains from this table, or choose another scheme",
-            nominal.bound.uncovered.len(),
-            nominal.bound.samples
+            nominal.uncovered, nominal.samples
         )
         .into());
     }
-    let others = members[1..].iter().filter(|member| member.bound.uncovered.is_empty());
-    let least = others.chain([nominal]).min_by(|one, other| one.bound.stiffness.total_cmp(&other.bound.stiffness));
-    let least = least.ok_or("the set of plants is empty")?;
-    least.report(number, rate)?;
-    report_uncovered(&members)?;
-    report_near_axis(&least.search, finger, rate, least.bound.stiffness)?;
-    Ok(least.bound.stiffness)
-}
-
-/// Prints which plants have samples that the bound does not cover.
-fn report_uncovered(members: &[Member]) -> io::Result<()> {
-    for Member { variant, search, bound } in members {
-        let stiffnesses = bound.uncovered.iter().filter_map(|rest| rest.wall).map(|wall| wall.stiffness);
-        let walls = match search.walls {
-            true => format!(" of {:.0} N/cm and more", stiffnesses.fold(f64::INFINITY, f64::min)),
-            false => String::new(),
-        };
-        if let Some(first) = bound.uncovered.first() {
-            let (number, samples, place) = (bound.uncovered.len(), bound.samples, place(search.walls));
-            let name = variant.name;
-            writeln!(
-                io::stdout(),
-                "    not covered: {name}, {place}{walls}: {number} of {samples}, for example {}",
-                sample(first)
-            )?;
-        }
-    }
-    Ok(())
-}
-
-fn report_near_axis(search: &Search, finger: &ConfiguredFinger, rate: f64, stiffness: f64) -> Result<(), Failure> {
-    let near = search
+    // The nominal plant without walls is the first one. It limits the bound if no other plant has a lower one.
+    let counts = |&(index, member): &(usize, &Member)| index == 0 || member.uncovered == 0;
+    let numbered = plants.iter().enumerate().filter(counts);
+    let least = numbered.min_by(|(_, one), (_, other)| one.bound.total_cmp(&other.bound));
+    let (limited_by, least) = least.ok_or("the set of plants is empty")?;
+    let stiffness = least.bound;
+    let near = Search { samples, seed: arguments.seed, walls: least.walls }
         .near_axis(finger, rate, &Variant::NOMINAL, stiffness)
         .map_err(|unusable| format!("{} {}", unusable.key, unusable.reason))?;
-    let found = match near.unstable {
-        0 => "all stable".to_owned(),
-        unstable => format!("{unstable} unstable, up to {:.1} cm from the axis", near.distance),
-    };
-    let samples = near.samples;
-    writeln!(
-        io::stdout(),
-        "    not covered: {samples} samples with the tip within 3 cm of the axis of joint 0, {found}"
-    )?;
-    Ok(())
+    progress.step();
+    let near_axis = NearAxis { samples: near.samples, unstable: near.unstable, distance: near.distance };
+    Ok((stiffness, SetBound { plants, limited_by, near_axis }))
 }
 
 fn place(walls: bool) -> &'static str {
@@ -121,45 +129,109 @@ fn place(walls: bool) -> &'static str {
 }
 
 impl Member {
-    fn report(&self, number: FingerNumber, rate: f64) -> io::Result<()> {
-        let mut output = io::stdout().lock();
-        let Self { variant, bound, search } = self;
-        let place = place(search.walls);
-        writeln!(
-            output,
-            "finger {number}: {:.1} N/cm at {rate} Hz, limited by: {}, {place}",
-            bound.stiffness, variant.name
-        )?;
-        match &bound.limit {
-            Limit::Unstable(rest) => writeln!(output, "    above this, unstable: {}", sample(rest))?,
-            Limit::Scaled(pose) => writeln!(
-                output,
-                "    above this, the servo would scale Kx down by more than half at {}",
-                degrees(pose)
-            )?,
+    fn new(variant: &Variant, walls: bool, bound: &StiffnessBound) -> Self {
+        let stiffnesses = bound.uncovered.iter().filter_map(|rest| rest.wall).map(|wall| wall.stiffness);
+        Self {
+            plant: variant.name,
+            walls,
+            bound: bound.stiffness,
+            limit: match &bound.limit {
+                Limit::Unstable(rest) => LimitFound::Unstable(Sample::new(rest)),
+                Limit::Scaled(pose) => LimitFound::ScaledBelowHalf { joints_degrees: degrees(pose) },
+            },
+            samples: bound.samples,
+            uncovered: bound.uncovered.len(),
+            uncovered_example: bound.uncovered.first().map(Sample::new),
+            uncovered_from_wall: stiffnesses.reduce(f64::min),
+            scaled: bound.scaled,
+            least_scale: bound.least_scale,
         }
-        writeln!(
-            output,
-            "    {} samples for each plant; in {:.1} % of the poses the servo scales Kx down, at worst by a factor of \
-             {:.2}",
-            bound.samples,
-            100.0 * bound.scaled,
-            bound.least_scale
-        )
+    }
+
+    /// The text of a bound, with the number of samples that it does not cover in brackets.
+    fn cells(&self, limits: bool) -> [Cell; 2] {
+        let uncovered = match self.uncovered {
+            0 => String::new(),
+            uncovered => format!("({uncovered} of {})", self.samples),
+        };
+        let look = match (limits, self.uncovered) {
+            (true, _) => Look::Title,
+            (false, 0) => Look::Plain,
+            (false, _) => Look::Dim,
+        };
+        [Cell::new(look, format!("{:.1}", self.bound)), Cell::new(Look::Dim, uncovered)]
     }
 }
 
-/// Returns a sample as text.
-fn sample(rest: &Rest) -> String {
-    let contact = match rest.dimensions() {
-        1 => "frictionless point",
-        3 => "hard finger",
-        _ => "soft finger",
-    };
-    let law = match rest.law {
-        Law::Exact => "the exact law",
-        _ => "the report's law",
-    };
-    let wall = rest.wall.map_or(String::new(), |wall| format!(", wall of {:.0} N/cm", wall.stiffness));
-    format!("{}, {contact}, {law}, damping {:.2}{wall}", degrees(&rest.joints), rest.damping)
+impl SetBound {
+    pub fn write(&self, out: &mut impl Write, screen: &Screen, searched: &Searched) -> io::Result<()> {
+        let Searched { number, rate, .. } = searched;
+        writeln!(out, "finger {number}, bounds in N/cm (samples that are unstable at any stiffness):\n")?;
+        write!(out, "{}", self.table().text(screen))?;
+        let least = &self.plants[self.limited_by];
+        writeln!(
+            out,
+            "\nfinger {number}: {:.1} N/cm at {rate} Hz, limited by: {}, {}",
+            least.bound,
+            least.plant,
+            place(least.walls)
+        )?;
+        match &least.limit {
+            LimitFound::Unstable(sample) => writeln!(out, "    above this, unstable: {}", sample.text())?,
+            LimitFound::ScaledBelowHalf { joints_degrees } => writeln!(
+                out,
+                "    above this, the servo would scale Kx down by more than half at {}",
+                pose(joints_degrees)
+            )?,
+        }
+        writeln!(
+            out,
+            "    {} samples for each plant; in {:.1} % of the poses the servo scales Kx down, at worst by a factor of \
+             {:.2}",
+            least.samples,
+            100.0 * least.scaled,
+            least.least_scale
+        )?;
+        self.write_uncovered(out)
+    }
+
+    fn table(&self) -> Table {
+        let has_walls = self.plants.iter().any(|member| member.walls);
+        let mut table = match has_walls {
+            true => Table::new(["plant", "free", "", "against walls", ""]).numeric([1, 3]),
+            false => Table::new(["plant", "free", ""]).numeric([1]),
+        };
+        let columns = if has_walls { 2 } else { 1 };
+        for (row, members) in self.plants.chunks(columns).enumerate() {
+            let cells = members
+                .iter()
+                .enumerate()
+                .flat_map(|(column, member)| member.cells(row * columns + column == self.limited_by));
+            table.row([Cell::from(members[0].plant)].into_iter().chain(cells));
+        }
+        table
+    }
+
+    /// Writes which samples the bound does not cover.
+    fn write_uncovered(&self, out: &mut impl Write) -> io::Result<()> {
+        for member in &self.plants {
+            let Some(example) = &member.uncovered_example else { continue };
+            let walls = member.uncovered_from_wall.map_or(String::new(), |wall| format!(" of {wall:.0} N/cm and more"));
+            writeln!(
+                out,
+                "    not covered: {}, {}{walls}: {} of {}, for example {}",
+                member.plant,
+                place(member.walls),
+                member.uncovered,
+                member.samples,
+                example.text()
+            )?;
+        }
+        let NearAxis { samples, unstable, distance } = self.near_axis;
+        let found = match unstable {
+            0 => "all stable".to_owned(),
+            unstable => format!("{unstable} unstable, up to {distance:.1} cm from the axis"),
+        };
+        writeln!(out, "    not covered: {samples} samples with the tip within 3 cm of the axis of joint 0, {found}")
+    }
 }

@@ -122,7 +122,8 @@ fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -
     let mut wanted: Vec<usize> = configuration.fingers.iter().filter_map(|finger| finger.core).collect();
     wanted.sort_unstable();
     wanted.dedup();
-    let found = format!("configured {wanted:?}, allowed {allowed:?}, isolated {isolated:?}");
+    let configured = if wanted.is_empty() { "none, so the scheduler selects them".into() } else { numbers(&wanted) };
+    let found = format!("configured: {configured}; permitted: {}; isolated: {}", numbers(allowed), numbers(isolated));
     if let Some(core) = wanted.iter().find(|core| !allowed.contains(core)) {
         let advice =
             format!("The servo cannot run on core {core}: set finger.core to a permitted core (taskset -p $$)");
@@ -139,6 +140,14 @@ fn cores(configuration: &Configuration, allowed: &[usize], isolated: &[usize]) -
         return Finding::new(Rating::Warning, subject, found, advice);
     }
     Finding::good(subject, found)
+}
+
+/// The numbers of cores as text.
+fn numbers(cores: &[usize]) -> String {
+    if cores.is_empty() {
+        return "none".into();
+    }
+    cores.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
 }
 
 fn governor(online: &[usize], read: impl Fn(usize) -> Option<String>) -> Finding {
@@ -271,6 +280,18 @@ mod tests {
         assert_eq!(memory(&wanted, limits, true).verdict, Rating::Good);
         let status = "CapEff:\t0000000000804000\n";
         assert!(has(status, CAP_IPC_LOCK) && has(status, CAP_SYS_NICE) && !has(status, 0) && !has("", CAP_SYS_NICE));
+    }
+
+    #[test]
+    fn cores_are_reported_in_words() {
+        let found = |wanted: Option<usize>, isolated: &[usize]| {
+            let mut configuration = Configuration::default();
+            configuration.fingers.iter_mut().for_each(|finger| finger.core = wanted);
+            cores(&configuration, &[0, 1], isolated).found
+        };
+        let none = "configured: none, so the scheduler selects them; permitted: 0, 1; isolated: none";
+        assert_eq!(found(None, &[]), none);
+        assert_eq!(found(Some(1), &[1]), "configured: 1; permitted: 0, 1; isolated: 1");
     }
 
     #[test]

@@ -15,7 +15,8 @@ const HEAD_START: u64 = 10_000_000;
 /// If the 99 % wake-up latency exceeds this fraction of the period, the time left for the replies becomes short.
 const LATE: f64 = 0.1;
 
-/// If the 99 % wake-up latency exceeds this fraction of the period, some periods are lost.
+/// If the 99 % wake-up latency exceeds this fraction of the period, many periods are lost. If only the worst one does,
+/// single periods are lost.
 const TOO_LATE: f64 = 0.5;
 
 /// Largest acceptable timer slack of a thread that is not real-time, ns. Servo threads request 1 ns. The default of the
@@ -54,19 +55,24 @@ fn judge(configuration: &Configuration, thread: u8, wake_up: WakeUp) -> Finding 
     let subject = format!("wake-up of servo thread {thread}");
     let WakeUp { late, refusals, .. } = wake_up;
     let period = 1e6 / configuration.hand.rate;
+    let periods = late.maximum / period;
+    let lost = if periods > 1.0 { format!(", {periods:.1} periods") } else { String::new() };
     let found = format!(
-        "median {:.0}, 99 % {:.0}, worst {:.0} us of a period of {period:.0} us",
+        "median {:.0}, 99 % {:.0}, worst {:.0} us of a period of {period:.0} us{lost}",
         late.median, late.p99, late.maximum
     );
-    let verdict = match late.p99 / period {
-        share if share > TOO_LATE => Rating::Failure,
-        share if share > LATE => Rating::Warning,
-        _ => Rating::Good,
+    let watchdog = f64::from(configuration.hand.watchdog_ms) * 1e3;
+    let (verdict, consequence) = match late.p99 / period {
+        share if share > TOO_LATE => (Rating::Failure, "Periods are lost again and again."),
+        _ if late.maximum > watchdog => (Rating::Failure, "The board switches the motors off in so long a silence."),
+        share if share > LATE => (Rating::Warning, "The time left for the replies becomes short."),
+        _ if periods > TOO_LATE => (Rating::Warning, "The worst wake-up is so late that its period is lost."),
+        _ => (Rating::Good, ""),
     };
     if verdict > Rating::Good {
         let advice = "Something keeps this thread from running, for example other real-time threads, a busy or paused \
                       virtual machine, or power saving. Isolate a core for it (finger.core), or lower hand.rate";
-        return Finding::new(verdict, subject, found, advice);
+        return Finding::new(verdict, subject, found, format!("{consequence} {advice}"));
     }
     if let Some(missing) = missing_permissions(vec![refusals]).first() {
         return lacking(configuration, &subject, found, missing.to_string());
@@ -95,16 +101,26 @@ mod tests {
 
     #[test]
     fn wake_ups_are_judged_by_the_period() {
-        let judged = |rate, p99, refusals| {
+        let judged_by_worst = |rate, p99, worst, refusals| {
             let mut configuration = Configuration::default();
             configuration.hand.rate = rate;
             let mut late = Distribution::default();
-            late.p99 = p99;
+            (late.p99, late.maximum) = (p99, worst);
             judge(&configuration, 1, WakeUp { late, refusals, timer_slack: 1 })
         };
+        let judged = |rate, p99, refusals| judged_by_worst(rate, p99, p99, refusals);
         assert_eq!(judged(1000.0, 90.0, RealtimeRefusals::default()).verdict, Rating::Good);
         assert_eq!(judged(1000.0, 110.0, RealtimeRefusals::default()).verdict, Rating::Warning);
         assert_eq!(judged(5000.0, 110.0, RealtimeRefusals::default()).verdict, Rating::Failure);
+        // The worst wake-up counts too. The watchdog of the board has 18 ms.
+        for (worst, verdict, part) in [
+            (400.0, Rating::Good, "worst 400 us of a period of 1000 us"),
+            (4700.0, Rating::Warning, "worst 4700 us of a period of 1000 us, 4.7 periods"),
+            (18_100.0, Rating::Failure, "18.1 periods"),
+        ] {
+            let finding = judged_by_worst(1000.0, 90.0, worst, RealtimeRefusals::default());
+            assert!(finding.verdict == verdict && finding.found.ends_with(part), "{finding:?}");
+        }
         let scheduling = Some(std::io::Error::from_raw_os_error(libc::EPERM));
         let refused = judged(1000.0, 90.0, RealtimeRefusals { scheduling, ..RealtimeRefusals::default() });
         assert!(refused.verdict == Rating::Warning && refused.advice.contains("rtprio"), "{refused:?}");

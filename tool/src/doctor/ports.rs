@@ -2,6 +2,7 @@
 //! board takes.
 
 use super::finding::{Finding, Rating};
+use std::ops::RangeInclusive;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::time::Duration;
@@ -24,6 +25,9 @@ const LONG: f64 = 0.75;
 /// Largest acceptable fraction of lost replies.
 const TOO_MANY_LOST: f64 = 0.01;
 
+/// Major device numbers of pseudo-terminals (Documentation/admin-guide/devices.txt of Linux).
+const PSEUDO_TERMINALS: RangeInclusive<u64> = 136..=143;
+
 pub(super) fn findings(
     configuration: &Configuration,
     simulated: &SimulatedHand,
@@ -34,6 +38,7 @@ pub(super) fn findings(
     let each = duration / ports.len() as u32;
     let mut findings = Vec::new();
     for (path, fingers) in ports {
+        let simulated = is_pseudo_terminal(&path);
         let subject = format!("port {}", ShownPath(&path));
         let mut link = match Link::open(&path, configuration.fingers[fingers[0].index()].baud) {
             Ok(link) => link,
@@ -42,17 +47,26 @@ pub(super) fn findings(
                 continue;
             }
         };
-        findings.push(latency(subject, link.transport().latency_timer_ms()));
+        findings.push(match simulated {
+            true => Finding::good(subject, "opened: the pseudo-terminal of a simulated board, not used by others"),
+            false => latency(subject, link.transport().latency_timer_ms()),
+        });
         let priority = priority(configuration, configuration.thread(fingers[0]));
         let owned = configuration.clone();
         let measuring = spawn("sun2xp doctor", priority, move |_| round_trips(&owned, &mut link, &fingers, each))
             .map_err(|source| HandError::System { doing: "start a thread", source })?;
         // A thread that panicked has no result.
         if let Ok(measured) = measuring.join() {
-            findings.push(judge(configuration, format!("round trip on {}", ShownPath(&path)), measured));
+            let subject = format!("round trip on {}", ShownPath(&path));
+            findings.push(judge(configuration, subject, measured, simulated));
         }
     }
     Ok(findings)
+}
+
+/// Whether a port is a pseudo-terminal. Linux has eight major device numbers for them.
+fn is_pseudo_terminal(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|file| PSEUDO_TERMINALS.contains(&(file.rdev() >> 8 & 0xfff)))
 }
 
 /// The text of the error, with the port's group if the permission is missing.
@@ -145,7 +159,14 @@ fn round_trips(
     Ok(Measured { times: histograms.distribution(CycleStage::Wire), lost })
 }
 
-fn judge(configuration: &Configuration, subject: String, measured: Result<Measured, LinkError>) -> Finding {
+/// A simulated board answers as soon as the scheduler runs it, so its round trips say nothing about a port. They are no
+/// reason why the hand cannot run.
+fn judge(
+    configuration: &Configuration,
+    subject: String,
+    measured: Result<Measured, LinkError>,
+    simulated: bool,
+) -> Finding {
     let Measured { times, lost } = match measured {
         Ok(measured) => measured,
         Err(error) => return Finding::new(Rating::Failure, subject, "none", error.to_string()),
@@ -164,6 +185,11 @@ fn judge(configuration: &Configuration, subject: String, measured: Result<Measur
         share if share > LONG => Rating::Warning,
         _ => return Finding::good(subject, found),
     };
+    if simulated {
+        let advice = "The simulated board runs on this machine, which has been too busy to run it in time. The \
+                      simulation is then uneven; a real board is not affected. End other programs, and measure again";
+        return Finding::new(Rating::Warning, subject, found, advice);
+    }
     let advice = "Replies arrive too late for their cycle: raise the baud rate of the board and finger.baud, connect \
          the adapter to a USB port of its own, shorten its latency timer, or lower hand.rate";
     Finding::new(verdict, subject, found, advice)
@@ -175,19 +201,31 @@ mod tests {
 
     #[test]
     fn round_trips_are_judged_by_the_reply_window() {
-        let judged = |p99, lost| {
+        let judged_on = |p99, lost, simulated| {
             let mut times = Distribution::default();
             (times.count, times.p99) = (1000, p99);
-            judge(&Configuration::default(), "x".into(), Ok(Measured { times, lost })).verdict
+            judge(&Configuration::default(), "x".into(), Ok(Measured { times, lost }), simulated).verdict
         };
+        let judged = |p99, lost| judged_on(p99, lost, false);
         // The reply window is 850 us at 1000 Hz.
         assert_eq!(judged(600.0, 0), Rating::Good);
         assert_eq!(judged(700.0, 5), Rating::Warning);
         assert_eq!(judged(900.0, 0), Rating::Failure);
         assert_eq!(judged(600.0, 20), Rating::Failure);
+        // A simulated board that is late shows that the machine is busy, not that its port is bad.
+        assert_eq!(judged_on(600.0, 0, true), Rating::Good);
+        assert_eq!(judged_on(900.0, 20, true), Rating::Warning);
         let silent = Err(LinkError::Silent { milliseconds: 500 });
-        let finding = judge(&Configuration::default(), "x".into(), silent);
+        let finding = judge(&Configuration::default(), "x".into(), silent, true);
         assert!(finding.verdict == Rating::Failure && finding.advice.contains("switched on"), "{finding:?}");
+    }
+
+    #[test]
+    fn only_pseudo_terminals_are_simulated_boards() {
+        let board = SimulatedHand::start(&Configuration::default(), Fingers::ALL).expect("a hand");
+        let ports = ports(&Configuration::default(), Fingers::ALL, &board);
+        assert!(ports.iter().all(|(path, _)| is_pseudo_terminal(path)), "{ports:?}");
+        assert!(!is_pseudo_terminal(Path::new("/dev/null")) && !is_pseudo_terminal(Path::new("/dev/none")));
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::thread::{self, Thread};
 use std::time::{Duration, Instant};
 
 /// Shorter work shows no line.
@@ -55,14 +57,21 @@ impl Progress {
         self.change(|lines| lines.done = done);
     }
 
-    /// Waits for `duration`, of which the work consists, and shows how much has passed. The steps are milliseconds.
-    pub fn wait(what: impl Into<String>, duration: Duration) {
+    /// Runs work that takes about `duration`, and shows how much of the time has passed.
+    pub fn during<T>(what: impl Into<String>, duration: Duration, work: impl FnOnce() -> T) -> T {
         let progress = Self::new(what, duration.as_millis() as u64);
-        let began = Instant::now();
-        while let Some(left) = duration.checked_sub(began.elapsed()).filter(|left| !left.is_zero()) {
-            std::thread::sleep(left.min(PICTURE));
-            progress.reach(began.elapsed().as_millis() as u64);
-        }
+        let (began, ended) = (Instant::now(), AtomicBool::new(false));
+        thread::scope(|scope| {
+            let clock = scope.spawn(|| {
+                while !ended.load(Ordering::Acquire) {
+                    progress.reach(began.elapsed().min(duration).as_millis() as u64);
+                    thread::park_timeout(PICTURE);
+                }
+            });
+            // The clock also ends if the work panics.
+            let _end = End { ended: &ended, clock: clock.thread().clone() };
+            work()
+        })
     }
 
     /// Runs `print`, which writes to standard output or standard error. On a terminal the bar is away meanwhile.
@@ -89,6 +98,19 @@ impl Progress {
                 }
             }
         }
+    }
+}
+
+/// Ends a clock thread when it is dropped.
+struct End<'a> {
+    ended: &'a AtomicBool,
+    clock: Thread,
+}
+
+impl Drop for End<'_> {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Release);
+        self.clock.unpark();
     }
 }
 

@@ -41,7 +41,12 @@ pub struct Table {
 impl Table {
     /// A table with these titles of its columns.
     pub fn new<const COLUMNS: usize>(header: [&str; COLUMNS]) -> Self {
-        Self { header: header.map(String::from).to_vec(), ..Self::default() }
+        Self::titled(header.map(String::from))
+    }
+
+    /// A table with any number of columns.
+    pub fn titled(header: impl IntoIterator<Item = String>) -> Self {
+        Self { header: header.into_iter().collect(), ..Self::default() }
     }
 
     /// A table without titles.

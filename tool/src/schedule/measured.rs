@@ -3,6 +3,7 @@
 use super::off_line::Costs;
 use crate::failure::Failure;
 use crate::print::Progress;
+use std::thread::sleep;
 use std::time::Duration;
 use sun2xp::hand::Hand;
 use sun2xp::model::FingerNumber;
@@ -17,7 +18,7 @@ pub fn measure(configuration: &Configuration, duration: Duration, p999: bool) ->
     let hand = Hand::open(simulated)?;
     FingerNumber::ALL.into_iter().try_for_each(|finger| busy_with_reflexes(&hand, finger))?;
     (1..=3).try_for_each(|finger| hand.reset_timing(finger))?;
-    Progress::wait("measuring the simulated hand", duration);
+    Progress::during("measuring the simulated hand", duration, || sleep(duration));
     let worst = |stage| -> Result<f64, Failure> {
         let part = |timing: Distribution| if p999 { timing.p999 } else { timing.maximum };
         let timings = (1..=3).map(|finger| hand.timing(finger, stage).map(part));

@@ -128,7 +128,7 @@ impl Report {
         let Sensor { bytes, compute } = self.with_sensor.sensor;
         let more = format!("{:.0} Hz with {bytes} more bytes and {compute:.0} us more per finger", self.rate);
         writeln!(out, "\n{}\n", title(&more))?;
-        write!(out, "{}\n", self.with_sensor.table().text(screen))?;
+        writeln!(out, "{}", self.with_sensor.table().text(screen))?;
         for Thread { scheduled, tactile_events } in self.configured.threads.iter().filter(|one| one.tactile_events > 0)
         {
             let thread = scheduled.thread;

@@ -1,0 +1,92 @@
+//! The orders of `sun2xp board`, for its help and for its answer to an unknown order.
+
+use crate::print::{Screen, Table};
+use sun2xp::model::Shown;
+
+/// Width of the help where the output is not a terminal, columns. clap uses the same width.
+const WIDTH: usize = 100;
+
+/// Indentation of the list, columns.
+const INDENT: usize = 2;
+
+/// An order as one writes it, and what it does.
+type Entry = (&'static str, &'static str);
+
+const ACTIONS: [Entry; 7] = [
+    ("force FINGER X Y Z", "push the fingertip, N"),
+    ("wall FINGER PX PY PZ NX NY NZ K", "put a wall through P with normal N, stiffness K N/cm"),
+    ("ball FINGER X Y Z RADIUS K", "put a ball"),
+    ("hold FINGER", "hold the finger in its current pose, like a jig"),
+    ("free FINGER", "remove force, wall, ball and jig"),
+    (
+        "state FINGER",
+        "answer with the true joint angles (rad), tip (cm), tensions (N), motor torques (N cm), three instants on the \
+         board's clock (ms), and the status bits of a Reply. The instants are: now, the last obeyed Command, and the \
+         end state that silence or a Stop caused. An instant is NaN if the event has not occurred since the last \
+         Configure",
+    ),
+    ("quit", "end the program"),
+];
+
+const DEFECTS: [Entry; 14] = [
+    ("cut FINGER TENDON", "tear a tendon"),
+    ("slack FINGER TENDON GRIP", "let a tendon slip at tensions above GRIP, N"),
+    ("jam FINGER MOTOR", "block a motor"),
+    ("hot FINGER MOTOR", "switch a motor driver off, as at over-temperature"),
+    ("dead-element FINGER ELEMENT", "make a tactile element, counted from 0, unreadable"),
+    ("dead-gauge FINGER GAUGE [COUNT]", "freeze a gauge at COUNT, or at its current count"),
+    ("drift-gauge FINGER GAUGE SPEED", "let a gauge drift, N/s"),
+    ("jump FINGER ENCODER COUNTS", "add COUNTS to the count of an encoder"),
+    ("zero-lost FINGER", "declare the encoder counts invalid"),
+    ("emergency FINGER", "activate the emergency stop input"),
+    ("supply FINGER", "fail the motor supply"),
+    ("sensor FINGER", "fail a sensor"),
+    ("reset FINGER", "interrupt the board's power for a moment"),
+    ("mend FINGER", "repair all of the above"),
+];
+
+const LINE_FAULTS: [Entry; 10] = [
+    ("drop PROBABILITY [MS]", "lose frames"),
+    ("corrupt PROBABILITY [MS]", "invert one bit of a frame"),
+    ("delay PROBABILITY LATER [MS]", "delay frames by LATER ms"),
+    ("duplicate PROBABILITY [MS]", "send frames twice"),
+    ("reorder PROBABILITY [MS]", "send frames in the wrong order"),
+    ("stall MS", "send nothing for MS, then everything at once"),
+    ("commands drop 0.01, and so on", "the same for frames to the board"),
+    ("good", "end all line faults, in both directions"),
+    ("unplug", "remove the port"),
+    ("replug", "create a new port and answer with its path"),
+];
+
+/// Returns the names of all orders.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    let entries = ACTIONS.iter().chain(&DEFECTS).chain(&LINE_FAULTS);
+    entries.filter_map(|(usage, _)| usage.split_whitespace().next())
+}
+
+/// Returns the answer to a name that is not an order.
+pub fn unknown(name: &str) -> String {
+    let names: Vec<&str> = names().collect();
+    format!("there is no order {}: the orders are {}; see sun2xp board --help", Shown(name), names.join(", "))
+}
+
+/// Returns the end of the help, at the width of the terminal.
+pub fn help() -> String {
+    let width = Screen::stdout().width.unwrap_or(WIDTH);
+    let screen = Screen { width: Some(width - INDENT), lines: false, coloured: false };
+    let list = |entries: &[Entry]| -> String {
+        let mut table = Table::without_header();
+        entries.iter().for_each(|&(usage, meaning)| table.row([usage.into(), meaning.into()]));
+        table.text(&screen).lines().map(|line| format!("{:INDENT$}{line}\n", "")).collect()
+    };
+    format!(
+        "Orders:\n{}\nDefects, each of which lasts until `mend`. Tendons, motors, gauges and encoders are numbered 1 \
+         to 4:\n{}\nLine faults, each of which lasts until `good`, or for MS milliseconds if MS is given. PROBABILITY \
+         applies to each frame from the board, or with `commands` to each frame to the board:\n{}\nPositions and \
+         forces are in the finger's frame, lengths in cm.\n\n{}",
+        list(&ACTIONS),
+        list(&DEFECTS),
+        list(&LINE_FAULTS),
+        crate::failure::EXIT_STATUSES
+    )
+}
