@@ -356,27 +356,28 @@ _Pragma("push_macro(\"PushFinger\")") _Pragma("push_macro(\"Rate\")") _Pragma("p
 _Pragma("push_macro(\"Realtime\")") _Pragma("push_macro(\"RecoverHand\")") _Pragma("push_macro(\"Reflex\")")
 _Pragma("push_macro(\"Refractory\")") _Pragma("push_macro(\"RemoveReflex\")") _Pragma("push_macro(\"Reserved\")")
 _Pragma("push_macro(\"ResetTiming\")") _Pragma("push_macro(\"Rotation\")") _Pragma("push_macro(\"SendContact\")")
-_Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendGroup\")") _Pragma("push_macro(\"SendPath\")")
-_Pragma("push_macro(\"SendPosFor\")") _Pragma("push_macro(\"SendTip\")") _Pragma("push_macro(\"SetGravity\")")
-_Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")") _Pragma("push_macro(\"Slide\")")
-_Pragma("push_macro(\"Spin\")") _Pragma("push_macro(\"Stage\")") _Pragma("push_macro(\"State\")")
-_Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"Stiffness\")") _Pragma("push_macro(\"StiffnessScale\")")
-_Pragma("push_macro(\"StopFinger\")") _Pragma("push_macro(\"StopHand\")") _Pragma("push_macro(\"TareTouch\")")
-_Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")") _Pragma("push_macro(\"Tensions\")")
-_Pragma("push_macro(\"Time\")") _Pragma("push_macro(\"Tip\")") _Pragma("push_macro(\"TipRotation\")")
-_Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")") _Pragma("push_macro(\"Touching\")")
-_Pragma("push_macro(\"Unused\")") _Pragma("push_macro(\"Valid\")") _Pragma("push_macro(\"Value\")")
-_Pragma("push_macro(\"Values\")") _Pragma("push_macro(\"Velocity\")") _Pragma("push_macro(\"WaitEvent\")")
-_Pragma("push_macro(\"WaitFingers\")") _Pragma("push_macro(\"WakeUp99\")") _Pragma("push_macro(\"WakeUpMaximum\")")
-_Pragma("push_macro(\"WakeUpMedian\")") _Pragma("push_macro(\"Warning\")") _Pragma("push_macro(\"WarningPart\")")
-_Pragma("push_macro(\"WarningValue\")") _Pragma("push_macro(\"Warnings\")") _Pragma("push_macro(\"WriteBlackBox\")")
-_Pragma("push_macro(\"ZeroFinger\")") _Pragma("push_macro(\"char\")") _Pragma("push_macro(\"class\")")
-_Pragma("push_macro(\"const\")") _Pragma("push_macro(\"double\")") _Pragma("push_macro(\"extern\")")
-_Pragma("push_macro(\"float\")") _Pragma("push_macro(\"inline\")") _Pragma("push_macro(\"int\")")
-_Pragma("push_macro(\"long\")") _Pragma("push_macro(\"reinterpret_cast\")") _Pragma("push_macro(\"return\")")
-_Pragma("push_macro(\"sizeof\")") _Pragma("push_macro(\"struct\")") _Pragma("push_macro(\"template\")")
-_Pragma("push_macro(\"typedef\")") _Pragma("push_macro(\"unsigned\")") _Pragma("push_macro(\"void\")")
-_Pragma("push_macro(\"volatile\")")
+_Pragma("push_macro(\"SendDamping\")") _Pragma("push_macro(\"SendGroup\")")
+_Pragma("push_macro(\"SendJointStiffness\")") _Pragma("push_macro(\"SendJointTorque\")")
+_Pragma("push_macro(\"SendPath\")") _Pragma("push_macro(\"SendPosFor\")") _Pragma("push_macro(\"SendTip\")")
+_Pragma("push_macro(\"SetGravity\")") _Pragma("push_macro(\"Size\")") _Pragma("push_macro(\"SkippedPeriods\")")
+_Pragma("push_macro(\"Slide\")") _Pragma("push_macro(\"Spin\")") _Pragma("push_macro(\"Stage\")")
+_Pragma("push_macro(\"State\")") _Pragma("push_macro(\"StatusBits\")") _Pragma("push_macro(\"Stiffness\")")
+_Pragma("push_macro(\"StiffnessScale\")") _Pragma("push_macro(\"StopFinger\")") _Pragma("push_macro(\"StopHand\")")
+_Pragma("push_macro(\"TareTouch\")") _Pragma("push_macro(\"Tension\")") _Pragma("push_macro(\"TensionSent\")")
+_Pragma("push_macro(\"Tensions\")") _Pragma("push_macro(\"Time\")") _Pragma("push_macro(\"Tip\")")
+_Pragma("push_macro(\"TipRotation\")") _Pragma("push_macro(\"Torque\")") _Pragma("push_macro(\"TorqueScale\")")
+_Pragma("push_macro(\"Touching\")") _Pragma("push_macro(\"Unused\")") _Pragma("push_macro(\"Valid\")")
+_Pragma("push_macro(\"Value\")") _Pragma("push_macro(\"Values\")") _Pragma("push_macro(\"Velocity\")")
+_Pragma("push_macro(\"WaitEvent\")") _Pragma("push_macro(\"WaitFingers\")") _Pragma("push_macro(\"WakeUp99\")")
+_Pragma("push_macro(\"WakeUpMaximum\")") _Pragma("push_macro(\"WakeUpMedian\")") _Pragma("push_macro(\"Warning\")")
+_Pragma("push_macro(\"WarningPart\")") _Pragma("push_macro(\"WarningValue\")") _Pragma("push_macro(\"Warnings\")")
+_Pragma("push_macro(\"WriteBlackBox\")") _Pragma("push_macro(\"ZeroFinger\")") _Pragma("push_macro(\"char\")")
+_Pragma("push_macro(\"class\")") _Pragma("push_macro(\"const\")") _Pragma("push_macro(\"double\")")
+_Pragma("push_macro(\"extern\")") _Pragma("push_macro(\"float\")") _Pragma("push_macro(\"inline\")")
+_Pragma("push_macro(\"int\")") _Pragma("push_macro(\"long\")") _Pragma("push_macro(\"reinterpret_cast\")")
+_Pragma("push_macro(\"return\")") _Pragma("push_macro(\"sizeof\")") _Pragma("push_macro(\"struct\")")
+_Pragma("push_macro(\"template\")") _Pragma("push_macro(\"typedef\")") _Pragma("push_macro(\"unsigned\")")
+_Pragma("push_macro(\"void\")") _Pragma("push_macro(\"volatile\")")
 #undef AdjustFinger
 #undef Answered
 #undef Base
@@ -475,6 +476,8 @@ _Pragma("push_macro(\"volatile\")")
 #undef SendContact
 #undef SendDamping
 #undef SendGroup
+#undef SendJointStiffness
+#undef SendJointTorque
 #undef SendPath
 #undef SendPosFor
 #undef SendTip
@@ -846,7 +849,8 @@ const char *HandError(void);
 #define THEN_HOLD 2                 /* The finger stays where it is. */
 #define THEN_SOFTEN 3               /* The tip gets the stiffness Kx. */
 #define THEN_RETRACT 4              /* The finger goes to Pos. */
-#define THEN_GRIP 5                 /* The tip presses harder by Value, N, but not harder than Most, N. */
+#define THEN_GRIP 5                 /* The tip presses harder by Value, N, but not harder than Most, N. It needs a Kx
+                                       without an eigenvalue of 0. */
 #define THEN_DAMP 6                 /* The tip gets the damping ratio Value. */
 
 /* Result of GetStatus. */
@@ -1358,6 +1362,79 @@ int AdjustFinger(int, const char *);
  Threads: any.
  */
 int PushFinger(int, const double *);
+
+/*
+ SendJointStiffness - make the joints of a finger springs
+
+     int SendJointStiffness(int i, const double *K);
+
+   i     finger, 1 to 3
+   K     K[3][3] or K[9], row by row: entry [row][column] is the torque of joint row for a deflection
+         of joint column from its set point, N cm/rad. Always double
+
+ The torque of the joints is K (Pos - p), with the desired angles Pos and the measured angles p of
+ joints 0, 1 and 2. K takes effect like Kx, without a jump in torque: 95 % of the change has taken
+ effect after 50 ms. It replaces the Kx or contact that was sent last, and a later SendKx,
+ SendContact, or Kx of SendGroup or SendPath replaces it. The torque of SendJointTorque stays. K must
+ be symmetric and must have no negative eigenvalue, as for SendKx. It may be zero.
+
+ The largest eigenvalue of K may be at most the bound of Kx times l2 l2, where l2 is the length of the
+ last link: by default 96 N cm/rad at 1000 Hz and above, and 80 N cm/rad below. This is the stiffness
+ that a Kx at its bound gives joint 2 in every pose.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   K is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; an entry is NaN or infinite
+   EDOM     K is not symmetric, or has a negative eigenvalue
+   ERANGE   K is stiffer than the bound (hand.out_of_range = "clamp" clamps it instead)
+   EIO      the finger is faulted
+   ERANGE   K is too stiff for the ratio of SendDamping ("clamp" clamps the ratio instead)
+
+ Threads: any. Never waits for a servo. Takes a few us.
+
+ Example:
+
+     double K[3][3] = {{80, 0, 0}, {0, 80, 0}, {0, 0, 50}};
+     SendJointStiffness(1, &K[0][0]);
+ */
+int SendJointStiffness(int, const double *);
+
+/*
+ SendJointTorque - add a constant torque to the joints of a finger
+
+     int SendJointTorque(int i, const double *Torque);
+
+   i        finger, 1 to 3
+   Torque   Torque[3]: torque of joints 0, 1, 2, N cm; positive torques increase the angles. Always
+            double
+
+ The torque acts in addition to the spring of Kx, of a contact or of SendJointStiffness, until the
+ next call replaces it; zero ends it. It takes effect like Kx, without a jump. If the stiffness is
+ zero, the finger is controlled by torque alone: a free finger then moves to its joint limits, at a
+ speed that only damping and friction limit. A fault, a calibration, the reactions of reflexes that
+ hold, retract or soften the finger, and a set point that expires end the torque.
+
+ A torque is refused if it needs more tension than a tendon and its motor permit. If the spring, the
+ compensation of gravity and the torque together need more, the servo scales their sum down.
+
+ Returns 0, or -1 with
+   EPERM    forked child
+   EFAULT   Torque is null
+   ENODEV   no hand is open
+   EINVAL   no such finger; a torque is NaN or infinite
+   ERANGE   the tendons cannot make Torque (hand.out_of_range = "clamp" scales it instead)
+   EIO      the finger is faulted
+
+ Threads: any. Never waits for a servo. Takes about 1 us.
+
+ Example:
+
+     double Torque[3] = {0, 3, 1.5};
+     SendJointTorque(1, Torque);
+ */
+int SendJointTorque(int, const double *);
 
 /*
  SendGroup - command several fingers in the same cycle
@@ -2417,27 +2494,27 @@ _Pragma("pop_macro(\"PushFinger\")") _Pragma("pop_macro(\"Rate\")") _Pragma("pop
 _Pragma("pop_macro(\"Realtime\")") _Pragma("pop_macro(\"RecoverHand\")") _Pragma("pop_macro(\"Reflex\")")
 _Pragma("pop_macro(\"Refractory\")") _Pragma("pop_macro(\"RemoveReflex\")") _Pragma("pop_macro(\"Reserved\")")
 _Pragma("pop_macro(\"ResetTiming\")") _Pragma("pop_macro(\"Rotation\")") _Pragma("pop_macro(\"SendContact\")")
-_Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendGroup\")") _Pragma("pop_macro(\"SendPath\")")
-_Pragma("pop_macro(\"SendPosFor\")") _Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"SetGravity\")")
-_Pragma("pop_macro(\"Size\")") _Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Slide\")")
-_Pragma("pop_macro(\"Spin\")") _Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")")
-_Pragma("pop_macro(\"StatusBits\")") _Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")")
-_Pragma("pop_macro(\"StopFinger\")") _Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"TareTouch\")")
-_Pragma("pop_macro(\"Tension\")") _Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")")
-_Pragma("pop_macro(\"Time\")") _Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"TipRotation\")")
-_Pragma("pop_macro(\"Torque\")") _Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Touching\")")
-_Pragma("pop_macro(\"Unused\")") _Pragma("pop_macro(\"Valid\")") _Pragma("pop_macro(\"Value\")")
-_Pragma("pop_macro(\"Values\")") _Pragma("pop_macro(\"Velocity\")") _Pragma("pop_macro(\"WaitEvent\")")
-_Pragma("pop_macro(\"WaitFingers\")") _Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")")
-_Pragma("pop_macro(\"WakeUpMedian\")") _Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")")
-_Pragma("pop_macro(\"WarningValue\")") _Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")")
-_Pragma("pop_macro(\"ZeroFinger\")") _Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")")
-_Pragma("pop_macro(\"const\")") _Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")")
-_Pragma("pop_macro(\"float\")") _Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")")
-_Pragma("pop_macro(\"long\")") _Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")")
-_Pragma("pop_macro(\"sizeof\")") _Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")")
-_Pragma("pop_macro(\"typedef\")") _Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")")
-_Pragma("pop_macro(\"volatile\")")
+_Pragma("pop_macro(\"SendDamping\")") _Pragma("pop_macro(\"SendGroup\")") _Pragma("pop_macro(\"SendJointStiffness\")")
+_Pragma("pop_macro(\"SendJointTorque\")") _Pragma("pop_macro(\"SendPath\")") _Pragma("pop_macro(\"SendPosFor\")")
+_Pragma("pop_macro(\"SendTip\")") _Pragma("pop_macro(\"SetGravity\")") _Pragma("pop_macro(\"Size\")")
+_Pragma("pop_macro(\"SkippedPeriods\")") _Pragma("pop_macro(\"Slide\")") _Pragma("pop_macro(\"Spin\")")
+_Pragma("pop_macro(\"Stage\")") _Pragma("pop_macro(\"State\")") _Pragma("pop_macro(\"StatusBits\")")
+_Pragma("pop_macro(\"Stiffness\")") _Pragma("pop_macro(\"StiffnessScale\")") _Pragma("pop_macro(\"StopFinger\")")
+_Pragma("pop_macro(\"StopHand\")") _Pragma("pop_macro(\"TareTouch\")") _Pragma("pop_macro(\"Tension\")")
+_Pragma("pop_macro(\"TensionSent\")") _Pragma("pop_macro(\"Tensions\")") _Pragma("pop_macro(\"Time\")")
+_Pragma("pop_macro(\"Tip\")") _Pragma("pop_macro(\"TipRotation\")") _Pragma("pop_macro(\"Torque\")")
+_Pragma("pop_macro(\"TorqueScale\")") _Pragma("pop_macro(\"Touching\")") _Pragma("pop_macro(\"Unused\")")
+_Pragma("pop_macro(\"Valid\")") _Pragma("pop_macro(\"Value\")") _Pragma("pop_macro(\"Values\")")
+_Pragma("pop_macro(\"Velocity\")") _Pragma("pop_macro(\"WaitEvent\")") _Pragma("pop_macro(\"WaitFingers\")")
+_Pragma("pop_macro(\"WakeUp99\")") _Pragma("pop_macro(\"WakeUpMaximum\")") _Pragma("pop_macro(\"WakeUpMedian\")")
+_Pragma("pop_macro(\"Warning\")") _Pragma("pop_macro(\"WarningPart\")") _Pragma("pop_macro(\"WarningValue\")")
+_Pragma("pop_macro(\"Warnings\")") _Pragma("pop_macro(\"WriteBlackBox\")") _Pragma("pop_macro(\"ZeroFinger\")")
+_Pragma("pop_macro(\"char\")") _Pragma("pop_macro(\"class\")") _Pragma("pop_macro(\"const\")")
+_Pragma("pop_macro(\"double\")") _Pragma("pop_macro(\"extern\")") _Pragma("pop_macro(\"float\")")
+_Pragma("pop_macro(\"inline\")") _Pragma("pop_macro(\"int\")") _Pragma("pop_macro(\"long\")")
+_Pragma("pop_macro(\"reinterpret_cast\")") _Pragma("pop_macro(\"return\")") _Pragma("pop_macro(\"sizeof\")")
+_Pragma("pop_macro(\"struct\")") _Pragma("pop_macro(\"template\")") _Pragma("pop_macro(\"typedef\")")
+_Pragma("pop_macro(\"unsigned\")") _Pragma("pop_macro(\"void\")") _Pragma("pop_macro(\"volatile\")")
 #endif
 
 #endif

@@ -13,7 +13,7 @@ fn law() -> JointStiffness {
 }
 
 fn set_point(joints: Vector3<f64>, contact: &Contact, law: Law) -> SetPoint {
-    SetPoint { joints, law, stiffness: *contact.stiffness(), damping: 1.0, motion: None }
+    SetPoint { joints, law, stiffness: *contact.stiffness(), damping: 1.0, motion: None, joint_spring: None }
 }
 
 fn soft_finger(root: [f64; 16], normal: [f64; 3]) -> (Matrix4<f64>, Vector3<f64>, Contact) {

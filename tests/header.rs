@@ -16,6 +16,7 @@ const OTHER_CALLS: &[&str] = &[
     "status_calls.rs",
     "timing_calls.rs",
     "fingertip_calls.rs",
+    "spring_calls.rs",
     "group_calls.rs",
     "object_calls.rs",
     "touch_calls.rs",

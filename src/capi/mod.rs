@@ -32,6 +32,7 @@ mod recovery_calls;
 mod reflex_calls;
 mod refusal;
 mod remedy_calls;
+mod spring_calls;
 mod status_calls;
 mod text;
 mod timing_calls;

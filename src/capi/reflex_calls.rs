@@ -53,7 +53,7 @@ pub const THEN_SOFTEN: c_int = 3;
 /// The finger goes to Pos.
 pub const THEN_RETRACT: c_int = 4;
 
-/// The tip presses harder by Value, N, but not harder than Most, N.
+/// The tip presses harder by Value, N, but not harder than Most, N. It needs a Kx without an eigenvalue of 0.
 pub const THEN_GRIP: c_int = 5;
 
 /// The tip gets the damping ratio Value.

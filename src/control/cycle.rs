@@ -238,6 +238,11 @@ impl Controller {
         self.monitors.watch(watch, feedback, &measured, &state.report, &state.pulls, &heat, age, full_scale)
     }
 
+    /// Returns the distribution of joint torques to tensions within their bounds.
+    pub fn distribution(&self) -> &TensionDistribution {
+        &self.distribution
+    }
+
     /// Returns the joint angles, rad, that the controller follows, and their motion. `set_point` is the set point of
     /// the last cycle. A finger that is not a spring follows its measured pose.
     pub fn reference(&self, state: &State, set_point: &SetPoint) -> (Vector3<f64>, Motion) {

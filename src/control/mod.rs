@@ -25,6 +25,7 @@ pub use cycle::{Controller, State};
 pub use motion::Motion;
 pub use signals::{Activity, Feedback, Law, Measured, MotorCommand, Report, SetPoint, spatial};
 pub use spring::admissible_damping::AdmissibleDamping;
+pub use spring::joint_spring::JointSpring;
 pub use spring::joint_springs::JointSprings;
 pub use spring::joint_stiffness::JointStiffness;
 pub use spring::spring_transition::Spring;

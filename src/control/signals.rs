@@ -4,6 +4,7 @@ pub use crate::model::configuration::Law;
 
 use crate::control::contact::ContactEstimate;
 use crate::control::motion::Motion;
+use crate::control::spring::joint_spring::JointSpring;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +43,9 @@ pub struct SetPoint {
     /// follows a set point with a motion without a lag.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
+    /// The spring in joint angles that acts in addition to `stiffness`; none if there is no such spring.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_spring: Option<JointSpring>,
 }
 
 impl SetPoint {
@@ -49,7 +53,28 @@ impl SetPoint {
     /// law is the exact one, and the relative damping is 1.
     pub fn hard_finger(joints: Vector3<f64>, stiffness: Matrix3<f64>) -> Self {
         let stiffness = spatial(&stiffness);
-        Self { joints, law: Law::Exact, stiffness, damping: 1.0, motion: None }
+        Self { joints, law: Law::Exact, stiffness, damping: 1.0, motion: None, joint_spring: None }
+    }
+
+    /// Replaces the stiffness by that of a fingertip, as in [`SetPoint::stiffness`]. The joint stiffness ends, and the
+    /// constant joint torque stays.
+    pub fn stiffen_tip(&mut self, stiffness: Matrix6<f64>) {
+        self.stiffness = stiffness;
+        if let Some(spring) = self.joint_spring {
+            self.joint_spring = JointSpring { k_theta: Matrix3::zeros(), ..spring }.unless_zero();
+        }
+    }
+
+    /// Replaces the stiffness by that of the joints, K_theta, N cm/rad. The stiffness of the fingertip ends, and the
+    /// constant joint torque stays.
+    pub fn stiffen_joints(&mut self, k_theta: Matrix3<f64>) {
+        self.stiffness = Matrix6::zeros();
+        self.joint_spring = JointSpring { k_theta, ..self.joint_spring.unwrap_or_default() }.unless_zero();
+    }
+
+    /// Replaces the constant joint torque, N cm. The stiffness stays.
+    pub fn torque_joints(&mut self, torque: Vector3<f64>) {
+        self.joint_spring = JointSpring { torque, ..self.joint_spring.unwrap_or_default() }.unless_zero();
     }
 }
 

@@ -1,7 +1,7 @@
 //! Changes of a finger's configuration while it runs. The new controller is made on the planner's thread and passed to
 //! the servo as a whole.
 
-use crate::control::SetPoint;
+use crate::control::{JointSpring, SetPoint};
 use crate::finger::{Adjustable, Replaced};
 use crate::hand::admission::Admission;
 use crate::hand::configuration_file::{Wrong, deserialize, overlay};
@@ -76,7 +76,14 @@ fn adjust_member(member: &Member, changed: Admission, adjustable: Adjustable) ->
     let joints = changed.joints(sent.joints.into())?;
     let contact = Contact::general(&sent.stiffness, &Matrix6::identity());
     let stiffness = changed.contact(&contact.map_err(|source| SetPointError::Contact { finger, source })?)?;
-    let mut admitted = SetPoint { joints, stiffness, ..sent };
+    let joint_spring = match sent.joint_spring {
+        None => None,
+        Some(JointSpring { k_theta, torque }) => {
+            let rows = [0, 1, 2].map(|row| [0, 1, 2].map(|column| k_theta[(row, column)]));
+            JointSpring { k_theta: changed.k_theta(rows)?, torque: changed.torque(torque.into())? }.unless_zero()
+        }
+    };
+    let mut admitted = SetPoint { joints, stiffness, joint_spring, ..sent };
     changed.damping.admit(&mut admitted)?;
     let faulted = |fault| HandError::Faulted { finger, fault };
     member.mailbox.adjust(adjustable).map_err(faulted)?;

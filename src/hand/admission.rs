@@ -1,6 +1,8 @@
 //! The checks of a planner's commands. A command that fails a check does not reach the servo.
 
-use crate::control::{AdmissibleDamping, JointSprings, SetPoint, spatial};
+mod joint_springs;
+
+use crate::control::{AdmissibleDamping, JointSprings, SetPoint, TensionDistribution, spatial};
 use crate::hand::{MotionLimits, SetPointError};
 use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
@@ -24,6 +26,9 @@ pub(super) struct Admission {
     pub r: Matrix3x4<f64>,
     /// The springs of the finger. There are none if the rank of R is below 3, and no hand opens with such an R.
     pub springs: Option<JointSprings>,
+    /// The distribution of joint torques to tensions. There is none if no controller can use the configuration, and no
+    /// hand opens with such a configuration.
+    pub distribution: Option<TensionDistribution>,
     /// The check of damping against stiffness.
     pub damping: DampingAdmission,
     /// The stiffness law for set points in joint angles.
@@ -149,7 +154,9 @@ impl DampingAdmission {
         let finger = self.finger;
         let contact = Contact::general(&set_point.stiffness, &Matrix6::identity());
         let contact = contact.map_err(|source| SetPointError::Contact { finger, source })?;
-        let stiffness = contact.largest_eigenvalue(self.lever);
+        // The eigenvalue of a sum is at most the sum of the eigenvalues.
+        let of_joints = set_point.joint_spring.map_or(0.0, |spring| spring.equivalent(self.lever));
+        let stiffness = contact.largest_eigenvalue(self.lever) + of_joints;
         let (least, most) = self.admissible.range(stiffness);
         let ratio = set_point.damping;
         if !(least..=most).contains(&ratio) && self.out_of_range == OutOfRange::Refuse {

@@ -88,7 +88,9 @@ impl FingerCommand {
         let damping = admission.damping;
         Ok(move |set_point: &mut SetPoint| {
             (set_point.joints, set_point.law) = pose.unwrap_or((set_point.joints, set_point.law));
-            set_point.stiffness = stiffness.unwrap_or(set_point.stiffness);
+            if let Some(stiffness) = stiffness {
+                set_point.stiffen_tip(stiffness);
+            }
             set_point.damping = ratio.unwrap_or(set_point.damping);
             if stiffness.is_some() || ratio.is_some() { damping.admit(set_point) } else { Ok(()) }
         })

@@ -3,7 +3,7 @@
 
 use crate::board::protocol::Status;
 use crate::board::{Link, Port, Terms, capacity, tactile_requests};
-use crate::control::{AdmissibleDamping, JointSprings};
+use crate::control::{AdmissibleDamping, Controller, JointSprings};
 use crate::finger::events::EventLog;
 use crate::finger::{
     BlackBox, Bulletin, Elements, FingerServo, GroupGate, Mailbox, Reflexes, ServedPort, StopSignal, link_handover,
@@ -235,6 +235,7 @@ pub(super) fn admission(configuration: &Configuration, number: FingerNumber) -> 
         links: finger.links(),
         r: finger.r(),
         springs: JointSprings::new(finger, rate),
+        distribution: Controller::new(finger, rate).ok().map(|controller| controller.distribution().clone()),
         stiffness_bound: finger.stiffness_bound(rate),
         damping: DampingAdmission {
             finger: number,

@@ -59,7 +59,7 @@ impl Hand {
             |set_point| {
                 (set_point.joints, set_point.law) = (end, law);
                 for stiffness in stiffest {
-                    set_point.stiffness = stiffness;
+                    set_point.stiffen_tip(stiffness);
                     damping.admit(set_point)?;
                 }
                 Ok(())

@@ -51,7 +51,7 @@ impl Hand {
         self.send(finger, (Replaced::Stiffness, None), |admission| {
             let (stiffness, damping) = (admission.stiffness(rows)?, admission.damping);
             Ok(move |set_point: &mut SetPoint| {
-                set_point.stiffness = stiffness;
+                set_point.stiffen_tip(stiffness);
                 damping.admit(set_point)
             })
         })
@@ -92,8 +92,46 @@ impl Hand {
         self.send(finger, (Replaced::Stiffness, None), |admission| {
             let (stiffness, damping) = (admission.contact(&contact)?, admission.damping);
             Ok(move |set_point: &mut SetPoint| {
-                set_point.stiffness = stiffness;
+                set_point.stiffen_tip(stiffness);
                 damping.admit(set_point)
+            })
+        })
+    }
+
+    /// Sends the joint stiffness K_theta of finger 1, 2 or 3, N cm/rad: `rows[row][column]`. The joints become springs
+    /// between their angles and theta_d, without a jump in torque. K_theta replaces the last Kx or contact, and a later
+    /// Kx or contact replaces K_theta. No eigenvalue may be above the bound of Kx times the square of the last link's
+    /// length.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if the stiffness has
+    /// an entry that is NaN or infinite, is not symmetric, has a negative eigenvalue, is above the bound, or is too
+    /// high for the damping that was sent last.
+    pub fn send_joint_stiffness(&self, finger: i32, rows: [[f64; 3]; 3]) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
+        self.send(finger, (Replaced::Stiffness, None), |admission| {
+            let (k_theta, damping) = (admission.k_theta(rows)?, admission.damping);
+            Ok(move |set_point: &mut SetPoint| {
+                set_point.stiffen_joints(k_theta);
+                damping.admit(set_point)
+            })
+        })
+    }
+
+    /// Sends a constant torque of joints 0, 1 and 2 of finger 1, 2 or 3, N cm. It acts in addition to the spring of the
+    /// tip or of the joints, without a jump in torque, until the next call replaces it. With a stiffness of zero, the
+    /// finger is controlled by torque alone.
+    ///
+    /// # Errors
+    /// Returns an error if there is no such finger, or if the finger is faulted. Returns an error if a torque is NaN or
+    /// infinite, or more than the tendons can make.
+    pub fn send_joint_torque(&self, finger: i32, torque: [f64; 3]) -> Result<(), HandError> {
+        let finger = FingerNumber::try_from(finger)?;
+        self.send(finger, (Replaced::Other, None), |admission| {
+            let torque = admission.torque(torque)?;
+            Ok(move |set_point: &mut SetPoint| {
+                set_point.torque_joints(torque);
+                Ok(())
             })
         })
     }

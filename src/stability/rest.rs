@@ -83,6 +83,7 @@ impl Rest {
             stiffness: self.stiffness,
             damping: self.damping,
             motion: None,
+            joint_spring: None,
         }
     }
 

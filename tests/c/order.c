@@ -61,6 +61,8 @@ static void null_pointers(void)
     REFUSED("GetTip", GetTip(9, NULL), "Tip");
     REFUSED("SendContact", SendContact(9, 99, NULL, NULL), "K is");
     REFUSED("SendContact", SendContact(9, 4, Nan[0], NULL), "Normal");
+    REFUSED("SendJointStiffness", SendJointStiffness(9, NULL), "K is");
+    REFUSED("SendJointTorque", SendJointTorque(9, NULL), "Torque");
     REFUSED("SendGroup", SendGroup(9, NULL), "Commands");
     REFUSED("GetObject", GetObject(NULL), "Object");
     REFUSED("WaitFingers", WaitFingers(9, NULL, 9, NAN), "Fingers");
@@ -96,6 +98,8 @@ static void without_hand(void)
     REFUSED("GetTip", GetTip(9, &Fingertip), "OpenHand");
     REFUSED("SendContact", SendContact(9, 99, Nan[0], NoNormal), "OpenHand");
     REFUSED("SendDamping", SendDamping(9, NAN), "OpenHand");
+    REFUSED("SendJointStiffness", SendJointStiffness(9, three(Nan)), "OpenHand");
+    REFUSED("SendJointTorque", SendJointTorque(9, NanForce), "OpenHand");
     REFUSED("SendGroup", SendGroup(9, Command), "OpenHand");
     REFUSED("GetObject", GetObject(&Object), "OpenHand");
     REFUSED("WaitFingers", WaitFingers(1, Fingers, 9, NAN), "OpenHand");
@@ -168,6 +172,8 @@ static void no_such_finger(void)
     REFUSED("GetTip", GetTip(9, &Fingertip), NO_FINGER);
     REFUSED("SendContact", SendContact(9, 99, Nan[0], NoNormal), NO_FINGER);
     REFUSED("SendDamping", SendDamping(9, NAN), NO_FINGER);
+    REFUSED("SendJointStiffness", SendJointStiffness(9, three(Nan)), NO_FINGER);
+    REFUSED("SendJointTorque", SendJointTorque(9, NanForce), NO_FINGER);
     Command[0].Finger = Command[1].Finger = 9;
     Command[0].Kx = three(Nan);
     REFUSED("WaitFingers", WaitFingers(9, Fingers, 9, NAN), "and not 9");
@@ -196,6 +202,7 @@ static void no_such_finger(void)
 
 #include "order_groups.h"
 #include "order_reflexes.h"
+#include "order_springs.h"
 
 static void wrong_values_on_a_faulted_finger(void)
 {
@@ -206,25 +213,13 @@ static void wrong_values_on_a_faulted_finger(void)
     REFUSED("SendPos", SendPos(1, NanPos), "NaN");
     REFUSED("SendPos", SendPos(1, FarPos), "limits");
     REFUSED("SendPos", SendPos(1, Pos), "stop");
-    REFUSED("SendKx", SendKx(1, three(Nan)), "NaN");
-    REFUSED("SendKx", SendKx(1, three(Skew)), "symmetric");
-    REFUSED("SendKx", SendKx(1, three(Stiff)), "bound");
-    REFUSED("SendKx", SendKx(1, three(Soft)), "stop");
     REFUSED("GetPos", GetPos(1, Pos), "stop");
     REFUSED("GetTiming", GetTiming(1, 99, &Timing), "99");
     REFUSED("SendTip", SendTip(1, NanTip), "NaN");
     REFUSED("SendTip", SendTip(1, FarTip), "99");
     REFUSED("SendTip", SendTip(1, Tip), "stop");
     REFUSED("GetTip", GetTip(1, &Fingertip), "stop");
-    REFUSED("SendContact", SendContact(1, 99, Nan[0], NoNormal), "99");
-    REFUSED("SendContact", SendContact(1, 4, Nan[0], NoNormal), "NaN");
-    REFUSED("SendContact", SendContact(1, 4, Skew[0], NanNormal), "NaN");
-    REFUSED("SendContact", SendContact(1, 4, Skew[0], NoNormal), "symmetric");
-    REFUSED("SendContact", SendContact(1, 4, Stiff[0], NoNormal), "direction");
-    REFUSED("SendContact", SendContact(1, 4, Stiff[0], Normal), "bound");
-    REFUSED("SendContact", SendContact(1, 4, Soft[0], Normal), "stop");
-    REFUSED("SendDamping", SendDamping(1, NAN), "NaN");
-    REFUSED("SendDamping", SendDamping(1, 99), "stop");
+    wrong_springs();
     wrong_groups();
     wrong_kinematics();
     wrong_reflexes();

@@ -167,6 +167,11 @@ fn a_group_of_fingers_is_commanded_as_a_whole_or_not_at_all() {
 }
 
 #[test]
+fn the_joints_of_a_finger_become_springs() {
+    succeed(&strict(&["-ansi"]), &["spring.c"]);
+}
+
+#[test]
 fn the_kinematics_of_a_finger_are_read() {
     succeed(&strict(&["-ansi"]), &["kinematics.c"]);
 }

@@ -5,6 +5,7 @@ mod behaviour;
 mod damping;
 mod figure11;
 mod joint_solutions;
+mod joint_spring;
 mod limits;
 mod rig;
 mod robustness;

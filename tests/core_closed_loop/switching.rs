@@ -2,7 +2,7 @@
 
 use crate::rig::{Loop, SCHEMES, quiet};
 use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
-use sun2xp::control::{Activity, JointStiffness, Law, SetPoint, TensionDistribution};
+use sun2xp::control::{Activity, JointSpring, JointStiffness, Law, SetPoint, TensionDistribution};
 use sun2xp::model::Contact;
 use sun2xp::model::configuration::{ConfiguredFinger, Scheme};
 
@@ -24,7 +24,16 @@ fn switches() -> Vec<(&'static str, SetPoint, SetPoint, bool)> {
     let point = stiff(Contact::frictionless_point(4.0, Vector3::new(0.3, 1.0, 0.5)));
     let directed = stiff(Contact::hard_finger(Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 2.0))));
     let damped = SetPoint { damping: 3.0, ..report };
+    let mut in_joints = exact;
+    in_joints.stiffen_joints(Matrix3::new(60.0, 10.0, 0.0, 10.0, 60.0, 10.0, 0.0, 10.0, 40.0));
+    let mut torqued = exact;
+    torqued.torque_joints(Vector3::new(4.0, -5.0, 3.0));
     let steps = [
+        ("joint spring", exact, in_joints),
+        ("tip again", in_joints, exact),
+        ("torque", exact, torqued),
+        ("no torque", torqued, report),
+        ("joint spring for a torque", torqued, in_joints),
         ("law", report, exact),
         ("stiffer", isotropic(1.0), isotropic(6.0)),
         ("softer", isotropic(6.0), isotropic(1.0)),
@@ -60,7 +69,11 @@ fn at_once(finger: &ConfiguredFinger, servo: &Loop, before: SetPoint, after: Set
     let distribution =
         TensionDistribution::new(&finger.tendons().expect("regular"), finger.tendon.minimum, limit).expect("bounds");
     let [before, after] = [before, after].map(|set_point| {
-        let torques = law.torques(&set_point.into(), &servo.plant.joints(), &servo.plant.joint_rates());
+        let joints = servo.plant.joints();
+        let mut torques = law.torques(&set_point.into(), &joints, &servo.plant.joint_rates());
+        if let Some(JointSpring { k_theta, torque }) = set_point.joint_spring {
+            torques += k_theta * (set_point.joints - joints) + torque;
+        }
         distribution.distribute(&torques).tensions
     });
     (after - before).amax()

@@ -2,9 +2,10 @@
 //! sends another.
 
 use crate::rig::{Bench, TARGET};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use sun2xp::calibration::{Calibration, Task, Verdict};
-use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Stage};
+use sun2xp::control::{SetPoint, spatial};
+use sun2xp::finger::{Adjustable, CalibrationRun, FaultKind, Order, Recording, Stage};
 use sun2xp::model::FingerNumber;
 use sun2xp::model::configuration::{Configuration, ZeroingMethod};
 use sun2xp::simulated::Defect;
@@ -124,4 +125,32 @@ fn set_points_sent_during_a_calibration_are_discarded() {
     let found = bench.report().set_point.joints;
     soften(&bench);
     holds(&mut bench, found);
+}
+
+#[test]
+fn a_replay_of_joint_springs_is_exact() {
+    let mut bench = Bench::new();
+    bench.goes(TARGET);
+    let steps: [fn(&mut SetPoint); 4] = [
+        |set_point| set_point.stiffen_joints(Matrix3::from_diagonal(&Vector3::new(90.0, 80.0, 50.0))),
+        |set_point| set_point.torque_joints(Vector3::new(2.0, -3.0, 1.5)),
+        |set_point| set_point.stiffen_tip(spatial(&(Matrix3::identity() * 3.0))),
+        |set_point| set_point.torque_joints(Vector3::zeros()),
+    ];
+    for step in steps {
+        bench.mailbox.send(step).expect("not faulted");
+        for _ in 0..4 {
+            bench.cycles(100);
+            bench.black_box.collect();
+        }
+    }
+    assert_eq!(bench.report().set_point.joint_spring, None);
+    let recording = bench.black_box.recording().expect("a recording");
+    let mut file = Vec::new();
+    recording.write(&mut file).expect("written");
+    let text = String::from_utf8(file.clone()).expect("text");
+    assert!(text.contains("k_theta") && text.lines().any(|line| !line.contains("k_theta")));
+    let recording = Recording::read(&file[..], "the file").unwrap_or_else(|error| panic!("{error}"));
+    let replayed = recording.replay().unwrap_or_else(|error| panic!("{error}"));
+    assert!(replayed.different == 0 && replayed.cycles >= 1200, "{replayed:?}");
 }

@@ -2,6 +2,7 @@
 
 use super::{Controller, Doing, State};
 use crate::control::signals::{Report, SetPoint};
+use crate::control::spring::joint_spring::JointSpring;
 use crate::control::spring::soft_limits::Push;
 use crate::control::spring::spring_transition::Spring;
 use crate::control::state_feedback::decision::Decision;
@@ -16,10 +17,11 @@ impl Controller {
     /// Follows the set point with the tendon controller of Figure 9, 10 or 11. The anchor starts at the present joint
     /// angles, so the spring starts without deflection.
     pub(super) fn follow(&self, state: &mut State, set_point: &SetPoint) {
-        let spring = self.spring_transition.advance(&mut state.spring, set_point);
+        let (spring, joint_spring) = self.spring_transition.advance(&mut state.spring, set_point);
         let mut spring = self.joint_stiffness.posed(spring, &state.report.joints);
         let push = self.soft_limits.push(&state.report.joints);
-        spring.soften(self.supported(&mut state.report, &spring.k_theta, &push));
+        let scale = self.supported(&mut state.report, &spring.k_theta, joint_spring, &push);
+        spring.soften(scale);
         let (mut anchor, begins) = match state.doing {
             Doing::Following(anchor) => (anchor, false),
             _ => (state.report.joints, true),
@@ -31,7 +33,13 @@ impl Controller {
         anchor += way;
         state.doing = Doing::Following(anchor);
         let Report { joints, joint_rates, .. } = &state.report;
-        let torques = spring.torques(&anchor) - spring.damper(&(joint_rates - rates));
+        let mut torques = spring.torques(&anchor);
+        if let Some(joint_spring) = joint_spring.map(|joint_spring| joint_spring.softened(scale)) {
+            torques += joint_spring.torques(&(anchor - joints));
+            // The damper damps both springs. The torque of the tip's spring is known by now.
+            spring.k_theta += joint_spring.k_theta;
+        }
+        let torques = torques - spring.damper(&(joint_rates - rates));
         let damped = push.stiffness.component_mul(joint_rates) * LIMIT_DAMPING;
         let torques = torques + push.torque - damped + self.gravity.torques(joints);
         let limit = self.heating.limit(&state.heat);
@@ -44,11 +52,12 @@ impl Controller {
     /// Follows the set point with state feedback. The anchor starts at the present joint angles, so the spring starts
     /// without deflection.
     pub(super) fn follow_by_state(&self, state: &mut State, set_point: &SetPoint) {
-        let spring = self.spring_transition.advance(&mut state.spring, set_point);
+        let (spring, joint_spring) = self.spring_transition.advance(&mut state.spring, set_point);
         let k_theta = self.joint_stiffness.joint_stiffness(spring, &state.report.joints);
         let push = self.soft_limits.push(&state.report.joints);
-        let scale = self.supported(&mut state.report, &k_theta, &push);
+        let scale = self.supported(&mut state.report, &k_theta, joint_spring, &push);
         let spring = &Spring { stiffness: spring.stiffness * scale, ..*spring };
+        let joint_spring = &joint_spring.map(|joint_spring| joint_spring.softened(scale));
         let (Some(law), Some(elastic)) = (&self.state_feedback, &mut state.state_feedback) else {
             return;
         };
@@ -56,8 +65,9 @@ impl Controller {
         let begins = !matches!(state.doing, Doing::Following(_));
         state.doing = Doing::Following(elastic.joints);
         let distribution = self.reachable(&(limit - law.upper_reserve));
+        let springs = (spring, joint_spring, &set_point.motion);
         let Decision { pulls, against_friction, joint_torques, desired_tensions, torque_scale } =
-            law.decide(elastic, (spring, &set_point.motion), begins, &self.soft_limits, &self.gravity, &distribution);
+            law.decide(elastic, springs, begins, &self.soft_limits, &self.gravity, &distribution);
         state.against_friction = against_friction;
         self.command_pulls(state, &pulls, &limit, false);
         state.report.joint_torques = joint_torques;
@@ -65,10 +75,14 @@ impl Controller {
         state.report.torque_scale = torque_scale;
     }
 
-    /// Returns the factor, 0 to 1, by which K_theta must be scaled, and writes it to the report. The pose supports the
-    /// scaled K_theta together with the stiffness of the soft limits. `k_theta` is in N cm/rad.
-    fn supported(&self, report: &mut Report, k_theta: &Matrix3<f64>, push: &Push) -> f64 {
-        report.stiffness_scale = self.admissible.scale(k_theta, &push.stiffness);
+    /// Returns the factor, 0 to 1, by which the stiffness must be scaled, and writes it to the report. The pose
+    /// supports the scaled stiffness of both springs together with that of the soft limits. `k_theta` is that of the
+    /// tip's spring, N cm/rad.
+    fn supported(&self, report: &mut Report, k_theta: &Matrix3<f64>, joint: Option<&JointSpring>, push: &Push) -> f64 {
+        report.stiffness_scale = match joint {
+            None => self.admissible.scale(k_theta, &push.stiffness),
+            Some(joint) => self.admissible.scale(&(k_theta + joint.k_theta), &push.stiffness),
+        };
         report.stiffness_scale
     }
 }

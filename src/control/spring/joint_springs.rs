@@ -31,7 +31,10 @@ impl JointSprings {
     /// Returns the stiffness of the joints, N cm/rad, at joint angles, rad. `scale` is the fraction of the stiffness of
     /// `set_point` that is in force, [`Report::stiffness_scale`](crate::control::Report::stiffness_scale).
     pub fn stiffness(&self, set_point: &SetPoint, scale: f64, joints: &Vector3<f64>) -> Matrix3<f64> {
-        let of_tip = self.joint_stiffness.joint_stiffness(&(*set_point).into(), joints);
-        of_tip * scale + Matrix3::from_diagonal(&self.soft_limits.push(joints).stiffness)
+        let mut held = self.joint_stiffness.joint_stiffness(&(*set_point).into(), joints);
+        if let Some(joint_spring) = &set_point.joint_spring {
+            held += joint_spring.k_theta;
+        }
+        held * scale + Matrix3::from_diagonal(&self.soft_limits.push(joints).stiffness)
     }
 }

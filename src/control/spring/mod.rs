@@ -4,6 +4,7 @@ pub(crate) mod admissible_damping;
 pub(crate) mod admissible_stiffness;
 pub(crate) mod gravity_compensation;
 pub(crate) mod joint_hold;
+pub(crate) mod joint_spring;
 pub(crate) mod joint_springs;
 pub(crate) mod joint_stiffness;
 pub(crate) mod slew;

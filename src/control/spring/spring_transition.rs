@@ -1,11 +1,15 @@
 //! Transition from one spring to another without a jump in torque: law, stiffness and damping change gradually.
 
 use crate::control::signals::{Law, SetPoint};
+use crate::control::spring::joint_spring::JointSpring;
 use nalgebra::{Matrix6, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// Time constant of each of the two stages, s.
 const STAGE: f64 = 0.01;
+
+/// Stiffness, N cm/rad, and torque, N cm, below which a joint spring that ends is no longer computed.
+const NEGLIGIBLE: f64 = 1e-9;
 
 /// The spring of one cycle. It is the spring of a [`SetPoint`], or a spring between those of two set points.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
@@ -57,6 +61,9 @@ pub(crate) struct SpringTransition {
 pub(crate) struct SpringStages {
     first: Spring,
     second: Spring,
+    /// The two stages of the joint spring, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    joint: Option<[JointSpring; 2]>,
 }
 
 impl SpringTransition {
@@ -65,17 +72,36 @@ impl SpringTransition {
         Self { part: -(-1.0 / (STAGE * rate)).exp_m1() }
     }
 
-    /// Returns the spring of this cycle. It approaches the spring of `set_point` from cycle to cycle, except that it
-    /// has the anchor of `set_point` at once. The first call starts with the spring of `set_point`.
-    pub fn advance<'a>(&self, stages: &'a mut Option<SpringStages>, set_point: &SetPoint) -> &'a Spring {
+    /// Returns the springs of this cycle: the spring of the tip, and the joint spring if there is one. They approach
+    /// the springs of `set_point` from cycle to cycle, except that they have the anchor of `set_point` at once. The
+    /// first call starts with the springs of `set_point`.
+    pub fn advance<'a>(
+        &self,
+        stages: &'a mut Option<SpringStages>,
+        set_point: &SetPoint,
+    ) -> (&'a Spring, Option<&'a JointSpring>) {
         let begin = || {
             let spring = Spring::from(*set_point);
-            SpringStages { first: spring, second: spring }
+            SpringStages { first: spring, second: spring, joint: set_point.joint_spring.map(|joint| [joint; 2]) }
         };
-        let SpringStages { first, second } = stages.get_or_insert_with(begin);
+        let SpringStages { first, second, joint } = stages.get_or_insert_with(begin);
         first.approach(share(set_point.law), &set_point.stiffness, set_point.damping, self.part);
         second.approach(first.exact, &first.stiffness, first.damping, self.part);
         second.joints = set_point.joints;
-        second
+        if joint.is_some() || set_point.joint_spring.is_some() {
+            self.advance_joint(joint, &set_point.joint_spring);
+        }
+        (second, joint.as_ref().map(|[_, second]| second))
+    }
+
+    /// Advances the joint spring. A spring that ends is removed when it is negligible.
+    #[cold]
+    fn advance_joint(&self, stages: &mut Option<[JointSpring; 2]>, target: &Option<JointSpring>) {
+        let [first, second] = stages.get_or_insert_default();
+        first.approach(&target.unwrap_or_default(), self.part);
+        second.approach(first, self.part);
+        if target.is_none() && first.is_below(NEGLIGIBLE) && second.is_below(NEGLIGIBLE) {
+            *stages = None;
+        }
     }
 }

@@ -3,6 +3,7 @@
 use super::{StateFeedback, StateFeedbackState};
 use crate::control::motion::Motion;
 use crate::control::spring::gravity_compensation::GravityCompensation;
+use crate::control::spring::joint_spring::JointSpring;
 use crate::control::spring::soft_limits::SoftLimits;
 use crate::control::spring::spring_transition::Spring;
 use crate::control::state_feedback::observer::TendonMotion;
@@ -42,12 +43,13 @@ struct Shake {
 }
 
 impl StateFeedback {
-    /// Returns the pulls that make the fingertip the spring `spring` from the next sample on. The anchor of the spring
-    /// has the motion `motion`. If `begins` is true, the spring starts without deflection.
+    /// Returns the pulls that make the fingertip the spring `spring` from the next sample on, and the joints the spring
+    /// `joint_spring`. The anchor of both springs has the motion `motion`. If `begins` is true, the springs start
+    /// without deflection.
     pub fn decide(
         &self,
         state: &mut StateFeedbackState,
-        (spring, motion): (&Spring, &Option<Motion>),
+        (spring, joint_spring, motion): (&Spring, &Option<JointSpring>, &Option<Motion>),
         begins: bool,
         limits: &SoftLimits,
         gravity: &GravityCompensation,
@@ -60,7 +62,8 @@ impl StateFeedback {
         let reference = self.follow(state, &spring.joints, motion);
         let spring = Spring { joints: reference.joints, ..*spring };
         let inertia = self.dynamics.inertia(&state.joints);
-        let joint_torques = self.joint_torques(state, &now, &spring, &reference, &inertia, (limits, gravity)) * 100.0;
+        let joint_torques =
+            self.joint_torques(state, &now, (&spring, joint_spring), &reference, &inertia, (limits, gravity)) * 100.0;
         let DistributedTensions { tensions: distributed, scale: torque_scale } =
             distribution.distribute(&joint_torques);
         if begins {
@@ -122,19 +125,25 @@ impl StateFeedback {
         &self,
         state: &mut StateFeedbackState,
         now: &FingerMotion,
-        spring: &Spring,
+        (spring, joint_spring): (&Spring, &Option<JointSpring>),
         reference: &ReferenceMotion,
         inertia: &Matrix3<f64>,
         (limits, gravity): (&SoftLimits, &GravityCompensation),
     ) -> Vector3<f64> {
         let push = limits.push(&now.joints);
         let posed = self.joint_stiffness.posed(spring, &now.joints);
-        let k_theta = (posed.k_theta + Matrix3::from_diagonal(&push.stiffness)) * 0.01;
+        let mut k_theta = posed.k_theta;
+        let mut sprung = posed.torques(&spring.joints);
+        if let Some(joint_spring) = joint_spring {
+            k_theta += joint_spring.k_theta;
+            sprung += joint_spring.torques(&(spring.joints - now.joints));
+        }
+        let k_theta = (k_theta + Matrix3::from_diagonal(&push.stiffness)) * 0.01;
         let apparent = self.apparent_motors + inertia;
         let damped = self.damped_motors + inertia;
         let damping = self.damping.damping(&damped, inertia, &k_theta, spring.damping);
         let joint_friction = self.joint_friction(state, &now.rates, &reference.rates, &damping);
-        let held = posed.torques(&spring.joints) + push.torque + gravity.torques(&now.joints);
+        let held = sprung + push.torque + gravity.torques(&now.joints);
         let rubbing = self.pulleys.as_ref().map_or_else(Vector3::zeros, |pulleys| {
             self.r * pulleys.tensions(&self.r.tr_mul(&reference.rates), &now.tensions)
         });

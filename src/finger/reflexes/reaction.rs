@@ -33,11 +33,19 @@ impl ReactionLimits {
         followed: &SetPoint,
     ) -> Option<SetPoint> {
         let rest = SetPoint { motion: None, ..*followed };
+        // A constant torque would move the finger away from the pose of a reaction.
+        let still = {
+            let mut still = rest;
+            still.torque_joints(Vector3::zeros());
+            still
+        };
         match *reaction {
             Reaction::Stop => None,
-            Reaction::Hold => Some(SetPoint { joints: self.within(&report.joints), ..rest }),
-            Reaction::Soften(kx) => Some(SetPoint { stiffness: spatial(&kx), damping: 1.0, ..rest }),
-            Reaction::Retract(joints) => Some(SetPoint { joints: self.within(&joints), ..rest }),
+            Reaction::Hold => Some(SetPoint { joints: self.within(&report.joints), ..still }),
+            Reaction::Soften(kx) => {
+                Some(SetPoint { stiffness: spatial(&kx), damping: 1.0, joint_spring: None, ..rest })
+            }
+            Reaction::Retract(joints) => Some(SetPoint { joints: self.within(&joints), ..still }),
             Reaction::Grip { direction, by, most } => {
                 Some(SetPoint { joints: self.grip(&direction, (by, most), report, followed)?, ..rest })
             }
@@ -79,7 +87,8 @@ impl ReactionLimits {
         // Every set point that was admitted is a contact.
         let contact = Contact::general(&followed.stiffness, &Matrix6::identity());
         let largest = contact.map_or(f64::INFINITY, |contact| contact.largest_eigenvalue(self.links.0[2]));
-        let (least, most) = self.damping.range(largest);
+        let of_joints = followed.joint_spring.map_or(0.0, |spring| spring.equivalent(self.links.0[2]));
+        let (least, most) = self.damping.range(largest + of_joints);
         ratio.clamp(least, most)
     }
 }

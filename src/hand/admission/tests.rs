@@ -1,6 +1,7 @@
 //! The checks of joints, stiffnesses, contacts and damping.
 
 use super::*;
+use crate::control::Controller;
 use crate::model::FingerNumber;
 use crate::model::configuration::ConfiguredFinger;
 use proptest::prelude::*;
@@ -15,6 +16,7 @@ fn admission(out_of_range: OutOfRange) -> Admission {
         links,
         r: Matrix3x4::zeros(),
         springs: None,
+        distribution: Controller::new(&ConfiguredFinger::default(), 1000.0).ok().map(|it| it.distribution().clone()),
         stiffness_bound: 6.0,
         damping: DampingAdmission {
             finger: FingerNumber::TWO,
@@ -220,4 +222,39 @@ mod damping {
             "{refused:?}"
         );
     }
+}
+
+#[test]
+fn joint_springs_are_admitted_up_to_the_bound_and_torques_up_to_the_tensions() {
+    let (refuse, clamp) = (admission(OutOfRange::Refuse), admission(OutOfRange::Clamp));
+    let diagonal = |a, b, c| [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]];
+    for rows in [diagonal(0.0, 0.0, 0.0), diagonal(50.0, 0.0, 10.0), [[60.0, 5.0, 0.0], [5.0, 60.0, 0.0], [0.0; 3]]] {
+        assert!(refuse.k_theta(rows).is_ok(), "{rows:?}");
+    }
+    // 6 N/cm at a lever of 4 cm.
+    assert!(refuse.k_theta(diagonal(96.0, 96.0, 96.0)).is_ok());
+    assert!(matches!(refuse.k_theta(diagonal(0.0, 1e300, 0.0)), Err(SetPointError::TooStiffJoints { .. })));
+    for stiff in [96.1, 1e6] {
+        let error = refuse.k_theta(diagonal(0.0, stiff, 0.0)).expect_err("stiff");
+        assert!(matches!(error, SetPointError::TooStiffJoints { bound: 96.0, .. }), "{error}");
+        let clamped = clamp.k_theta(diagonal(50.0, stiff, 0.0)).expect("clamped");
+        assert!((clamped - Matrix3::from_diagonal(&Vector3::new(50.0, 96.0, 0.0))).amax() < 1e-6, "{clamped}");
+    }
+    assert!(matches!(refuse.k_theta(diagonal(1.0, -0.1, 0.0)), Err(SetPointError::JointStiffness { .. })));
+    assert!(matches!(refuse.k_theta(diagonal(f64::NAN, 0.0, 0.0)), Err(SetPointError::NotFinite { .. })));
+
+    let error = refuse.torque([0.0, 1e6, 0.0]).expect_err("much");
+    let SetPointError::TooMuchTorque { least, most, .. } = error else { panic!("{error}") };
+    for joint in 0..3 {
+        for limit in [least[joint], most[joint]] {
+            let mut torque = [0.0; 3];
+            torque[joint] = limit;
+            assert!(refuse.torque(torque).is_ok() && limit.abs() > 1.0, "{torque:?}");
+            torque[joint] = limit * 1.01;
+            assert!(refuse.torque(torque).is_err(), "{torque:?}");
+            let clamped = clamp.torque(torque).expect("clamped");
+            assert!((clamped[joint] / limit - 1.0).abs() < 1e-9, "{clamped}");
+        }
+    }
+    assert!(matches!(refuse.torque([f64::INFINITY, 0.0, 0.0]), Err(SetPointError::NotFinite { .. })));
 }

@@ -74,6 +74,43 @@ pub enum SetPointError {
         /// Smallest eigenvalue, N/cm.
         smallest: f64,
     },
+    /// A joint stiffness is not that of a spring.
+    #[error("the joint stiffness of finger {finger} is invalid: {source}")]
+    JointStiffness {
+        /// The finger.
+        finger: FingerNumber,
+        /// What is wrong.
+        source: ContactError,
+    },
+    /// A joint stiffness is above the bound.
+    #[error(
+        "the largest eigenvalue of the joint stiffness of finger {finger} is {largest:.3} N cm/rad, above the bound of \
+         {bound:.3} N cm/rad: send a softer joint stiffness, or set `hand.out_of_range = \"clamp\"`"
+    )]
+    TooStiffJoints {
+        /// The finger.
+        finger: FingerNumber,
+        /// Largest eigenvalue, N cm/rad.
+        largest: f64,
+        /// The bound, N cm/rad.
+        bound: f64,
+    },
+    /// The tendons cannot make a joint torque.
+    #[error(
+        "the tendons of finger {finger} can make only {part:.3} of the joint torque: send less torque, or set \
+         `hand.out_of_range = \"clamp\"`. A single joint may have {:.2} to {:.2} (joint 0), {:.2} to {:.2} (joint 1) \
+         or {:.2} to {:.2} N cm (joint 2)", least[0], most[0], least[1], most[1], least[2], most[2]
+    )]
+    TooMuchTorque {
+        /// The finger.
+        finger: FingerNumber,
+        /// The part of the torque that the tendons can make.
+        part: f64,
+        /// The smallest torque of each joint while the others have none, N cm.
+        least: [f64; 3],
+        /// The largest torque of each joint while the others have none, N cm.
+        most: [f64; 3],
+    },
     /// The finger cannot reach the fingertip position.
     #[error("the tip of finger {finger} cannot be at {:.3}, {:.3}, {:.3} cm: {source}", tip[0], tip[1], tip[2])]
     OutOfReach {
@@ -149,8 +186,10 @@ impl SetPointError {
             Self::GroupsWaiting(_) => libc::EBUSY,
             Self::Contact { source: ContactError::NotFinite(_), .. } => libc::EINVAL,
             Self::BeyondJointLimit { .. } | Self::TooStiff { .. } => libc::ERANGE,
+            Self::TooStiffJoints { .. } | Self::TooMuchTorque { .. } => libc::ERANGE,
             Self::OutOfReach { .. } | Self::Damping { .. } => libc::ERANGE,
             Self::NotSymmetric { .. } | Self::Negative { .. } | Self::Contact { .. } => libc::EDOM,
+            Self::JointStiffness { .. } => libc::EDOM,
         }
     }
 }

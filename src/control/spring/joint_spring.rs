@@ -1,0 +1,53 @@
+//! A spring in joint angles: a joint stiffness K_theta and a constant joint torque.
+
+use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+
+/// A spring between the joint angles and their set point, with a constant torque in addition:
+/// tau = K_theta (theta_d - theta) + torque. It acts in addition to the spring of the fingertip.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct JointSpring {
+    /// K_theta, N cm/rad, symmetric and positive semi-definite. Rows and columns are joints 0 to 2.
+    pub k_theta: Matrix3<f64>,
+    /// Constant torque of joints 0 to 2, N cm.
+    pub torque: Vector3<f64>,
+}
+
+impl JointSpring {
+    /// Returns none for a spring without stiffness and torque.
+    pub fn unless_zero(self) -> Option<Self> {
+        (self != Self::default()).then_some(self)
+    }
+
+    /// Returns the stiffness of the tip, N/cm, with which K_theta is compared: its largest eigenvalue divided by the
+    /// square of `lever`, cm, the length of the last link.
+    ///
+    /// Joint 2 moves the tip by this lever in every pose, so a Kx of this size gives joint 2 the same stiffness. The
+    /// levers of joints 0 and 1 are longer in most poses, and Kx gives these joints more. But K_theta stays the same
+    /// when the finger is folded, where their levers and their inertia are small. So this lever, the shortest one in
+    /// most poses, is used for all joints.
+    pub fn equivalent(&self, lever: f64) -> f64 {
+        self.k_theta.symmetric_eigenvalues().max() / (lever * lever)
+    }
+
+    /// Returns the spring with its stiffness scaled by `part`. The constant torque is no stiffness and stays.
+    pub(crate) fn softened(&self, part: f64) -> Self {
+        Self { k_theta: self.k_theta * part, torque: self.torque }
+    }
+
+    /// Returns tau, N cm. `deflection` is theta_d - theta, rad.
+    pub(crate) fn torques(&self, deflection: &Vector3<f64>) -> Vector3<f64> {
+        self.k_theta * deflection + self.torque
+    }
+
+    /// Moves the spring toward `target` by the fraction `part` of the difference.
+    pub(crate) fn approach(&mut self, target: &Self, part: f64) {
+        self.k_theta += (target.k_theta - self.k_theta) * part;
+        self.torque += (target.torque - self.torque) * part;
+    }
+
+    /// Returns whether no entry is larger than `least`, N cm/rad and N cm.
+    pub(crate) fn is_below(&self, least: f64) -> bool {
+        self.k_theta.amax() <= least && self.torque.amax() <= least
+    }
+}
