@@ -52,7 +52,7 @@ pub use reflexes::{
 };
 pub use relay::Relay;
 #[cfg(feature = "internals")]
-pub use replay::{Difference, NotReplayable, Replayed};
+pub use replay::{ContinuousReplay, Difference, NotReplayable, Recomputed, Replayed, Step, Unsound};
 pub use report::FingerReport;
 pub use sent::Replaced;
 pub use served_port::ServedPort;

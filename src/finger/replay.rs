@@ -1,6 +1,9 @@
 //! Replay: runs the pure controller over a recording. It must compute the same commands, to the last bit.
 
+mod continuous;
 mod soundness;
+
+pub use continuous::{ContinuousReplay, Recomputed, Step, Unsound};
 
 use crate::control::Controller;
 use crate::finger::{ControlRecord, Origin, Recording};
@@ -102,11 +105,9 @@ impl Recording {
                 return Err(NotReplayable::NotFinite(record.cycle));
             }
             replayed.cycles += 1;
-            let same =
-                bits(&command.motor_torques) == bits(&recorded.command.motor_torques) && report == recorded.report;
-            if !same {
+            let replay = ControlRecord { command, report, ..recorded };
+            if !same(&replay, &recorded) {
                 replayed.different += 1;
-                let replay = ControlRecord { command, report, ..recorded };
                 replayed.first.get_or_insert(Difference { index, recorded, replayed: replay });
             }
         }
@@ -133,6 +134,11 @@ impl Controllers<'_> {
         self.made.insert(number, made.map_err(unusable)?);
         Ok(())
     }
+}
+
+/// Returns whether two controllers computed the same, to the last bit.
+fn same(one: &ControlRecord, other: &ControlRecord) -> bool {
+    bits(&one.command.motor_torques) == bits(&other.command.motor_torques) && one.report == other.report
 }
 
 fn bits(torques: &Vector4<f64>) -> [u64; 4] {

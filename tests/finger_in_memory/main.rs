@@ -3,6 +3,7 @@
 
 mod calibrating;
 mod commands;
+mod continuous_replay;
 mod events;
 #[allow(dead_code)]
 #[path = "../common/finger_on_a_cable.rs"]

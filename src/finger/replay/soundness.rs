@@ -4,8 +4,8 @@
 
 use super::NotReplayable;
 use crate::finger::link_watch::LinkWatch;
-use crate::finger::{ControlInput, Recording};
-use crate::model::configuration::Unusable;
+use crate::finger::{ControlInput, ControllerSource, Recording};
+use crate::model::configuration::{ConfiguredHand, Unusable};
 use serde::Serialize;
 use serde_json::Value;
 use std::ops::RangeInclusive;
@@ -35,12 +35,8 @@ impl Recording {
         }
         for source in &origin.controllers {
             let number = source.number;
-            let unusable = |Unusable { key, reason }| NotReplayable::Unusable { number, key, reason };
-            source.finger.check().map_err(unusable)?;
-            if let Some(part) = source.gravity.iter().find(|part| !GRAVITY.contains(part)) {
-                let reason = format!("of {part:?} m/s^2 is outside {} to {}", GRAVITY.start(), GRAVITY.end());
-                return Err(NotReplayable::Unusable { number, key: "gravity", reason });
-            }
+            let unusable = |(key, reason)| NotReplayable::Unusable { number, key, reason };
+            check_source(source).map_err(unusable)?;
         }
         let numbers = origin.controllers.iter().map(|source| source.number);
         if !numbers.is_sorted_by(|one, next| one < next) {
@@ -53,39 +49,69 @@ impl Recording {
     }
 
     fn check_cycles(&self) -> Result<(), NotReplayable> {
-        let hand = &self.origin.hand;
-        // A built-in simulated finger waits for its servo and never skips a period, so the limit for real fingers is
-        // used for all fingers.
-        let most_skipped = u64::from(LinkWatch::new(hand, false).most());
+        let limits = InputLimits::new(&self.origin.hand);
         let mut computed: u64 = 0;
         for (index, record) in self.cycles.iter().enumerate() {
             let Some(control) = &record.control else { continue };
-            let wrong = |key: &str, reason: String| {
+            let wrong = |(key, reason)| {
                 let key = format!("control.input.{key}");
-                Err(NotReplayable::Cycle { cycle: record.cycle, line: index + 2, key, reason })
+                NotReplayable::Cycle { cycle: record.cycle, line: index + 2, key, reason }
             };
-            let ControlInput { skipped, fading, .. } = control.input;
-            if skipped > most_skipped {
-                return wrong("skipped", format!("is {skipped}: with this watchdog it is at most {most_skipped}"));
-            }
-            computed = computed.saturating_add(skipped + 1);
+            limits.check(&control.input).map_err(wrong)?;
+            computed = computed.saturating_add(control.input.skipped + 1);
             if computed > MOST_COMPUTED {
-                return wrong("skipped", format!("gives more than {MOST_COMPUTED} cycles to compute"));
-            }
-            if fading.is_some_and(|fading| !fading.possible(hand)) {
-                let most = hand.hold_torque_limit;
-                return wrong("fading", format!("has `left` outside 0 to 1, or `rest` outside 0 to {most} N cm"));
-            }
-            if let Err((key, reason)) = within_bounds(&control.input, "") {
-                return wrong(key.trim_start_matches('.'), reason);
+                let reason = format!("gives more than {MOST_COMPUTED} cycles to compute");
+                return Err(wrong(("skipped".into(), reason)));
             }
         }
         Ok(())
     }
 }
 
+/// Checks that a finger can have this controller. Otherwise returns the key and the reason.
+pub(super) fn check_source(source: &ControllerSource) -> Result<(), (&'static str, String)> {
+    source.finger.check().map_err(|Unusable { key, reason }| (key, reason))?;
+    match source.gravity.iter().find(|part| !GRAVITY.contains(part)) {
+        None => Ok(()),
+        Some(part) => {
+            let reason = format!("of {part:?} m/s^2 is outside {} to {}", GRAVITY.start(), GRAVITY.end());
+            Err(("gravity", reason))
+        }
+    }
+}
+
+/// What a servo can have recorded as input of its controller.
+pub(super) struct InputLimits<'a> {
+    hand: &'a ConfiguredHand,
+    most_skipped: u64,
+}
+
+impl<'a> InputLimits<'a> {
+    pub fn new(hand: &'a ConfiguredHand) -> Self {
+        // A built-in simulated finger waits for its servo and never skips a period, so the limit for real fingers is
+        // used for all fingers.
+        Self { hand, most_skipped: u64::from(LinkWatch::new(hand, false).most()) }
+    }
+
+    /// Checks an input. Returns the key that no servo can have recorded, and the reason.
+    pub fn check(&self, input: &ControlInput) -> Result<(), (String, String)> {
+        let most_skipped = self.most_skipped;
+        let ControlInput { skipped, fading, .. } = *input;
+        if skipped > most_skipped {
+            let reason = format!("is {skipped}: with this watchdog it is at most {most_skipped}");
+            return Err(("skipped".into(), reason));
+        }
+        if fading.is_some_and(|fading| !fading.possible(self.hand)) {
+            let most = self.hand.hold_torque_limit;
+            let reason = format!("has `left` outside 0 to 1, or `rest` outside 0 to {most} N cm");
+            return Err(("fading".into(), reason));
+        }
+        within_bounds(input, "").map_err(|(key, reason)| (key.trim_start_matches('.').into(), reason))
+    }
+}
+
 /// Checks that every number is within bounds. Otherwise returns the key and the reason.
-fn within_bounds(value: &impl Serialize, key: &str) -> Result<(), (String, String)> {
+pub(super) fn within_bounds(value: &impl Serialize, key: &str) -> Result<(), (String, String)> {
     match serde_json::to_value(value) {
         Ok(value) => check_numbers(&value, key),
         Err(error) => Err((key.into(), error.to_string())),
