@@ -2,14 +2,16 @@
 //! file.
 
 mod pose;
+mod report;
 
 use crate::failure::Failure;
+use crate::print::{self, Progress, Screen};
 use pose::{ask_to_hold, ask_to_release};
-use std::fmt::Display;
-use std::io::{self, IsTerminal, Write};
+use report::{Calibrated, Measured, Report};
+use std::io::{self, Write};
 use std::path::PathBuf;
-use sun2xp::calibration::{Findings, Progress, Task};
-use sun2xp::hand::{Configured, Fingers, Hand};
+use sun2xp::calibration::{self, Findings, Task};
+use sun2xp::hand::{Configured, Fingers, Hand, HandError};
 use sun2xp::model::ShownPath;
 use sun2xp::model::configuration::{ConfiguredFinger, FINGERS, ZeroingMethod};
 
@@ -50,6 +52,9 @@ pub struct Arguments {
     /// Do not write the results.
     #[arg(long)]
     dry_run: bool,
+    /// Print one JSON object with the configured and the found values, for other programs.
+    #[arg(long)]
+    json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -58,48 +63,71 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     configured.announce(fingers);
     let tasks = arguments.tasks();
     let hand = Hand::open_limp(configured.configuration, Some(arguments.config.clone()), fingers)?;
+    let mut report = Report { fingers: Vec::new(), written: None };
     for finger in fingers.numbers() {
         let before = hand.calibrated(finger)?;
+        let mut calibrated = Calibrated { finger, ..Calibrated::default() };
         for (done, &task) in tasks.iter().enumerate() {
-            let at_pose = hand.calibrated(finger)?.zeroing_method() == ZeroingMethod::Pose;
-            let progress = show(finger, task);
-            let found = match task {
-                Task::Signs => hand.find_signs(finger, progress),
-                Task::Zero => {
-                    if at_pose {
-                        ask_to_hold(finger, &before, arguments.yes)?;
-                    }
-                    hand.zero(finger, progress)
+            let found = arguments.carry_out(&hand, task, finger, &before).map_err(|failure| match failure {
+                Refused::ByPerson(failure) => failure,
+                Refused::ByHand(error) => {
+                    let rest = fingers.numbers().filter(|&other| other > finger);
+                    let instructions = arguments.instructions(finger, &tasks[done..], &rest.collect::<Vec<_>>());
+                    format!("{error}\n{instructions}").into()
                 }
-                Task::Identify => {
-                    if at_pose && tasks.contains(&Task::Zero) {
-                        ask_to_release(finger, arguments.yes)?;
-                    }
-                    hand.identify(finger, progress)
-                }
-            };
-            let found = found.map_err(|error| {
-                end_line();
-                let rest = fingers.numbers().filter(|&other| other > finger);
-                format!("{error}\n{}", arguments.instructions(finger, &tasks[done..], &rest.collect::<Vec<_>>()))
             })?;
-            report(found)?;
+            calibrated.measured.extend(Measured::all(&found));
             // Results are stored after each task, so that they are kept if a later task is refused.
             if !arguments.dry_run {
                 hand.store_calibration(finger)?;
             }
         }
-        compare(finger, &before, &hand.calibrated(finger)?)?;
+        calibrated.compare(&before, &hand.calibrated(finger)?);
+        if !arguments.json {
+            write!(io::stdout(), "{}", calibrated.text(&Screen::stdout()))?;
+        }
+        report.fingers.push(calibrated);
     }
-    let mut output = io::stdout().lock();
-    match arguments.dry_run {
-        true => writeln!(output, "nothing written (--dry-run)")?,
-        false => writeln!(output, "written to {}", ShownPath(&arguments.config))?,
+    report.written = (!arguments.dry_run).then(|| arguments.config.clone());
+    match (&report.written, arguments.json) {
+        (_, true) => print::json(&report)?,
+        (None, false) => writeln!(io::stdout(), "nothing written (--dry-run)")?,
+        (Some(path), false) => writeln!(io::stdout(), "written to {}", ShownPath(path))?,
     }
     Ok(())
 }
 
+/// Why a task was not done.
+enum Refused {
+    /// Nobody is there to hold the finger.
+    ByPerson(Failure),
+    ByHand(HandError),
+}
+
 impl Arguments {
+    /// Carries out one task, and asks the person who holds the finger where that is necessary.
+    fn carry_out(&self, hand: &Hand, task: Task, finger: i32, before: &ConfiguredFinger) -> Result<Findings, Refused> {
+        let calibrated = hand.calibrated(finger).map_err(Refused::ByHand)?;
+        let at_pose = calibrated.zeroing_method() == ZeroingMethod::Pose;
+        match task {
+            Task::Zero if at_pose => ask_to_hold(finger, before, self.yes),
+            Task::Identify if at_pose && self.tasks().contains(&Task::Zero) => ask_to_release(finger, self.yes),
+            _ => Ok(()),
+        }
+        .map_err(Refused::ByPerson)?;
+        let shown = begin(finger, task);
+        let progress = |progress: calibration::Progress| {
+            shown.now(progress.step.to_string());
+            shown.reach((progress.part * 1000.0) as u64);
+        };
+        match task {
+            Task::Signs => hand.find_signs(finger, progress),
+            Task::Zero => hand.zero(finger, progress),
+            Task::Identify => hand.identify(finger, progress),
+        }
+        .map_err(Refused::ByHand)
+    }
+
     /// The requested tasks, in the order of their execution.
     fn tasks(&self) -> Vec<Task> {
         let asked = [(Task::Signs, self.signs), (Task::Zero, self.zero), (Task::Identify, self.identify)];
@@ -131,94 +159,12 @@ impl Arguments {
     }
 }
 
-/// Ends the progress line on a terminal.
-fn end_line() {
-    if io::stderr().is_terminal() {
-        let _ = writeln!(io::stderr());
-    }
-}
-
-/// Shows progress on standard error. On a terminal one line is overwritten; otherwise there is one line per step.
-fn show(finger: i32, task: Task) -> impl FnMut(Progress) {
+/// Begins to show the progress of a task. The steps are thousandths.
+fn begin(finger: i32, task: Task) -> Progress {
     let doing = match task {
         Task::Signs => "finding signs",
         Task::Zero => "zeroing",
         Task::Identify => "identifying",
     };
-    let terminal = io::stderr().is_terminal();
-    let mut last = None;
-    move |progress| {
-        let percent = (progress.part * 100.0) as u32;
-        if last != Some((progress.step, if terminal { percent } else { 0 })) {
-            let (begin, end) = if terminal { ("\r\x1b[K", "") } else { ("", "\n") };
-            // A failed write, for example because no program reads standard error, is no reason to stop the finger.
-            let _ = write!(io::stderr(), "{begin}finger {finger}, {doing}: {percent:3} %, {}{end}", progress.step);
-            last = Some((progress.step, if terminal { percent } else { 0 }));
-        }
-    }
-}
-
-/// Prints results that are not stored.
-fn report(findings: Findings) -> io::Result<()> {
-    let mut output = io::stdout().lock();
-    end_line();
-    match findings {
-        Findings::Signs(_) => Ok(()),
-        Findings::Zeros(zeros) => {
-            let degrees = zeros.joint_error.map(f64::to_degrees);
-            writeln!(output, "joint angle errors before zeroing, degrees: {}", list(degrees.as_slice(), 2))?;
-            if let Some(range) = zeros.range_error {
-                writeln!(
-                    output,
-                    "measured minus configured range, degrees:   {}",
-                    list(range.map(f64::to_degrees).as_slice(), 2)
-                )?;
-            }
-            Ok(())
-        }
-        Findings::Identified(found) => {
-            writeln!(output, "gauge gain / configured gain:          {}", list(found.gauge_gain.as_slice(), 4))?;
-            writeln!(output, "motor torque by gauges / command:      {}", list(found.motor_ratio.as_slice(), 3))?;
-            writeln!(output, "viscous joint friction, N cm s/rad:    {}", list(found.joint_viscous.as_slice(), 3))?;
-            writeln!(output, "residual of the motor travel, cm rms:  {:.5}", found.travel_residual)
-        }
-    }
-}
-
-/// Prints a table of the configured and the found values.
-fn compare(finger: i32, before: &ConfiguredFinger, after: &ConfiguredFinger) -> io::Result<()> {
-    let mut output = io::stdout().lock();
-    writeln!(output, "{:<32} {:<36} {:<36} changed", format!("finger.{finger}"), "configured", "found")?;
-    let mut row = |key: &str, before: String, after: String| {
-        let changed = if before == after { "" } else { "*" };
-        writeln!(output, "{key:<32} {before:<36} {after:<36} {changed}")
-    };
-    row("motor.sign", list(&before.motor.sign, 0), list(&after.motor.sign, 0))?;
-    row("encoder.sign", list(&before.encoder.sign, 0), list(&after.encoder.sign, 0))?;
-    row("encoder.zero", list(&before.encoder.zero, 0), list(&after.encoder.zero, 0))?;
-    let scales = |finger: &ConfiguredFinger| list(&finger.gauge.newton_per_count, 5);
-    row("gauge.newton_per_count, N", scales(before), scales(after))?;
-    row("gauge.zero", list(&before.gauge.zero, 1), list(&after.gauge.zero, 1))?;
-    row("tendon.stiffness, N/cm", list(&before.tendon.stiffness, 1), list(&after.tendon.stiffness, 1))?;
-    let (old, new) = (&before.friction, &after.friction);
-    row("friction.motor_coulomb, N cm", list(&old.motor_coulomb, 4), list(&new.motor_coulomb, 4))?;
-    row("friction.conduit", list(&old.conduit, 4), list(&new.conduit, 4))?;
-    row("friction.pulley", list(&old.pulley, 4), list(&new.pulley, 4))?;
-    row("friction.joint_coulomb, N cm", list(&old.joint_coulomb, 4), list(&new.joint_coulomb, 4))?;
-    let tolerances = |finger: &ConfiguredFinger| {
-        let monitors = &finger.monitors;
-        [monitors.friction_tolerance, monitors.moment_arm_tolerance, monitors.gauge_tolerance]
-    };
-    let names = ["friction", "moment_arm", "gauge"];
-    for (name, (old, new)) in names.iter().zip(tolerances(before).into_iter().zip(tolerances(after))) {
-        row(&format!("monitors.{name}_tolerance"), list(&[old], 3), list(&[new], 3))?;
-    }
-    for (joint, (old, new)) in before.geometry.r.iter().zip(&after.geometry.r).enumerate() {
-        row(&format!("geometry.r, row {}, cm", joint + 1), list(old, 4), list(new, 4))?;
-    }
-    Ok(())
-}
-
-fn list<T: Display>(values: &[T], digits: usize) -> String {
-    values.iter().map(|value| format!("{value:.digits$}")).collect::<Vec<_>>().join(" ")
+    Progress::new(format!("finger {finger}, {doing}"), 1000).with_every_name()
 }

@@ -1,5 +1,6 @@
 //! `sun2xp calibrate`, started by a person and by a script.
 
+use serde_json::Value;
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -156,4 +157,24 @@ fn a_finger_whose_stops_are_known_is_zeroed_against_them() {
     assert!(!text.contains("Press Enter"), "{text}");
     assert!(String::from_utf8_lossy(&output.stdout).contains("measured minus configured range"), "{output:?}");
     assert!(!desk.unchanged());
+
+    // Other programs receive one JSON object, and a trial changes nothing.
+    let stored = fs::read_to_string(desk.file()).expect("there");
+    let output = desk.calibrate(&["--finger", "1", "--zero", "--json", "--dry-run"], "");
+    assert_eq!(fs::read_to_string(desk.file()).expect("there"), stored);
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"));
+    assert_eq!((&told["written"], told["fingers"].as_array().map(Vec::len)), (&Value::Null, Some(1)));
+    let finger = &told["fingers"][0];
+    let error = &finger["measured"][0];
+    assert_eq!(error["name"], "joint angle errors before zeroing, degrees");
+    let degrees = |of: &Value| of.as_f64().is_some_and(|degrees| degrees.abs() < 1.0);
+    assert!(
+        error["values"].as_array().is_some_and(|joints| joints.len() == 3 && joints.iter().all(degrees)),
+        "{told:#}"
+    );
+    let value = |key: &str| finger["values"].as_array().and_then(|all| all.iter().find(|value| value["key"] == key));
+    let zero = value("encoder.zero").expect("a value");
+    assert!(zero["found"].as_array().is_some_and(|zeros| zeros.len() == 4), "{zero:#}");
+    let signs = value("motor.sign").expect("a value");
+    assert_eq!((&signs["configured"], &signs["unit"]), (&signs["found"], &Value::from("")));
 }

@@ -31,6 +31,9 @@ struct Lines {
     done: u64,
     total: u64,
     now: String,
+    /// Whether every new value of `now` is due at once, and whether the present one is.
+    named: bool,
+    renamed: bool,
 }
 
 impl Progress {
@@ -38,13 +41,22 @@ impl Progress {
     pub fn new(what: impl Into<String>, total: u64) -> Self {
         let what = what.into();
         let bar = io::stderr().is_terminal().then(|| bar(&what, total));
-        let lines = Lines { began: Instant::now(), printed: None, done: 0, total, now: String::new() };
-        Self { what, bar, lines: Mutex::new(lines) }
+        Self { what, bar, lines: Mutex::new(Lines::new(total)) }
+    }
+
+    /// Prints a line for everything that is done, where standard error is not a terminal.
+    pub fn with_every_name(self) -> Self {
+        self.change(|lines| lines.named = true);
+        self
     }
 
     /// Names what is done now, for example the plant that is searched.
     pub fn now(&self, now: impl Into<String>) {
-        self.change(|lines| lines.now = now.into());
+        let now = now.into();
+        self.change(|lines| {
+            lines.renamed = lines.named && lines.now != now;
+            lines.now = now;
+        });
     }
 
     /// One more step is done.
@@ -123,15 +135,21 @@ impl Drop for Progress {
 }
 
 impl Lines {
+    fn new(total: u64) -> Self {
+        let now = String::new();
+        Self { began: Instant::now(), printed: None, done: 0, total, now, named: false, renamed: false }
+    }
+
     /// Returns the line to print at this instant, if one is due.
     fn due(&mut self, now: Instant) -> Option<String> {
         let due = match self.printed {
             None => self.began + FIRST_LINE,
             Some(printed) => printed + BETWEEN_LINES,
         };
-        if now < due || self.done >= self.total {
+        if !self.renamed && (now < due || self.done >= self.total) {
             return None;
         }
+        self.renamed = false;
         self.printed = Some(now);
         let percent = 100 * self.done / self.total.max(1);
         Some(if self.now.is_empty() { format!("{percent} %") } else { format!("{percent} %, {}", self.now) })
@@ -156,8 +174,8 @@ mod tests {
 
     #[test]
     fn a_pipe_receives_a_line_after_a_second_and_then_every_five() {
-        let began = Instant::now();
-        let mut lines = Lines { began, printed: None, done: 0, total: 8, now: String::new() };
+        let mut lines = Lines::new(8);
+        let began = lines.began;
         let printed: Vec<(u64, String)> = (0..80)
             .filter_map(|tenth| {
                 lines.done = tenth / 10;

@@ -1,6 +1,7 @@
 //! Black box files: an altered bit is found, a damaged file is refused, and numbers keep every bit.
 
-use crate::rig::{eventful, own_board, replayed, turn};
+use crate::rig::{eventful, own_board, replayed, replayed_with, turn};
+use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use sun2xp::finger::{CycleRecord, Recording, RecordingError};
@@ -37,8 +38,15 @@ fn one_bit_of_feedback_is_found_where_it_was_changed() {
     altered.cycles[place].feedback.as_mut().expect("a reply").gauge_counts[3] ^= 1;
     altered.save(&file).expect("written");
     let (status, told) = replayed(&file);
-    assert_eq!(status, Some(2), "{told}");
+    assert_eq!(status, Some(1), "{told}");
     assert!(told.contains(&format!("cycle {}, line {}", recording.cycles[place].cycle, place + 2)), "{told}");
+    let (status, told) = replayed_with(&file, &["--json"]);
+    let told: Value = serde_json::from_str(&told).unwrap_or_else(|error| panic!("{error}: {told}"));
+    assert_eq!((status, &told["pass"], &told["finger"]), (Some(1), &json!(false), &json!(2)));
+    let first = &told["first_difference"];
+    assert_eq!((&first["cycle"], &first["line"]), (&json!(recording.cycles[place].cycle), &json!(place + 2)));
+    assert!(told["different"].as_u64().is_some_and(|different| different > 0), "{told:#}");
+    assert_eq!(told["replayed"], json!(recording.cycles.iter().filter(|one| one.control.is_some()).count()));
 }
 
 #[test]

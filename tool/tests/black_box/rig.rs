@@ -68,7 +68,12 @@ pub fn eventful(board: &SimulatedPort, hand: &Hand) {
 }
 
 pub fn replayed(file: &Path) -> (Option<i32>, String) {
-    let run = Command::new(env!("CARGO_BIN_EXE_sun2xp")).arg("replay").arg(file).output().expect("the tool runs");
+    replayed_with(file, &[])
+}
+
+pub fn replayed_with(file: &Path, options: &[&str]) -> (Option<i32>, String) {
+    let mut tool = Command::new(env!("CARGO_BIN_EXE_sun2xp"));
+    let run = tool.arg("replay").arg(file).args(options).output().expect("the tool runs");
     let Output { status, stdout, stderr } = run;
     (status.code(), [stdout, stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat())
 }
