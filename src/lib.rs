@@ -67,6 +67,10 @@ pub mod simulated;
 mod stability;
 #[cfg(feature = "internals")]
 pub mod stability;
+#[cfg(not(feature = "internals"))]
+mod telemetry;
+#[cfg(feature = "internals")]
+pub mod telemetry;
 
 pub use calibration::{Findings, Identified, Obstacle, Progress, Signs, Step, Task, Zeros};
 pub use finger::{Fault, FaultKind, Losses, Recording, RecordingError, Stage, stop_all};
@@ -77,8 +81,8 @@ pub use hand::{
 pub use model::configuration::{
     Configuration, ConfiguredController, ConfiguredEncoder, ConfiguredFinger, ConfiguredFriction, ConfiguredGauge,
     ConfiguredGeometry, ConfiguredHand, ConfiguredJoints, ConfiguredLinks, ConfiguredMonitors, ConfiguredMotor,
-    ConfiguredSimulation, ConfiguredStiffness, ConfiguredTendon, ConfiguredZeroing, EndState, GaugeReference, Law,
-    OnFault, OutOfRange, PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
+    ConfiguredSimulation, ConfiguredStiffness, ConfiguredTelemetry, ConfiguredTendon, ConfiguredZeroing, EndState,
+    GaugeReference, Law, OnFault, OutOfRange, PeriodClock, RealTime, Scheme, Surface, ZeroingMethod,
 };
 pub use model::{Contact, ContactError, FingerNumber, Part};
 pub use realtime::Distribution;

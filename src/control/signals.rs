@@ -41,7 +41,7 @@ pub struct SetPoint {
     pub damping: f64,
     /// The motion of `joints`; none for a set point at rest, whose steps the controller itself smooths. The controller
     /// follows a set point with a motion without a lag.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub motion: Option<Motion>,
     /// The spring in joint angles that acts in addition to `stiffness`; none if there is no such spring.
     #[serde(default, skip_serializing_if = "Option::is_none")]

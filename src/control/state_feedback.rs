@@ -114,7 +114,7 @@ pub(super) struct StateFeedbackState {
     transition: BumplessTransfer,
     reference: ReferenceState,
     /// The stages of the reference that belong to the set point of the last cycle, if that set point had a motion.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     along: Option<ReferenceState>,
     /// Joint rates minus the rates of the reference, low-pass filtered, rad/s.
     drift: Vector3<f64>,

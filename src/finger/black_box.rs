@@ -7,6 +7,7 @@
 //! everything twice.
 
 use crate::control::State;
+use crate::finger::outlet::{Keyframe, Outlet};
 use crate::finger::recording::{Origin, Recording};
 use crate::finger::{ControllerSource, CycleRecord, KeptRecord, Stage};
 use crate::model::FingerNumber;
@@ -22,13 +23,7 @@ const KEPT: f64 = 2.0;
 const UNCOLLECTED: f64 = 0.5;
 
 /// Keyframes per second.
-const KEYFRAMES: f64 = 8.0;
-
-/// The controller's state before a cycle.
-struct Keyframe {
-    cycle: u64,
-    state: State,
-}
+pub const KEYFRAMES: f64 = 8.0;
 
 /// The servo's end. It never waits or allocates.
 pub struct Recorder {
@@ -54,6 +49,10 @@ pub struct BlackBox {
     awaited: Option<u32>,
     /// Whether a fault arrived that [`BlackBox::faulted`] has not reported yet.
     faulted: bool,
+    /// Copies of what arrives, while telemetry has a reader.
+    outlet: Option<Outlet>,
+    /// Controllers from this number on are not published yet. They are kept while there is an outlet.
+    unpublished: u32,
 }
 
 impl BlackBox {
@@ -78,6 +77,8 @@ impl BlackBox {
             controllers: vec![ControllerSource { number: 0, gravity: configuration.gravity(number), finger }],
             awaited: None,
             faulted: false,
+            outlet: None,
+            unpublished: 0,
         };
         (recorder, black_box)
     }
@@ -96,7 +97,8 @@ impl BlackBox {
         let named: BTreeSet<u32> = controls.flat_map(|control| [control.controller, control.previous]).collect();
         let number = self.next_number();
         let awaited = self.awaited;
-        let kept = |number: u32| number >= taken || named.contains(&number) || awaited == Some(number);
+        let unpublished = self.first_unpublished();
+        let kept = |number: u32| number >= taken.min(unpublished) || named.contains(&number) || awaited == Some(number);
         self.controllers.retain(|controller| kept(controller.number));
         self.controllers.push(ControllerSource { number, gravity, finger });
     }
@@ -113,6 +115,7 @@ impl BlackBox {
     pub fn collect(&mut self) {
         while let Some(record) = self.arriving.pop() {
             self.faulted |= matches!(record.stage, Stage::Faulted(_));
+            self.outlet.iter_mut().for_each(|outlet| outlet.add_record(&record));
             // There is a gap, because nothing was collected for too long or the finger was faulted. A replay cannot
             // cross a gap.
             if self.records.back().is_some_and(|last| last.cycle + 1 != record.cycle) {
@@ -125,6 +128,7 @@ impl BlackBox {
         }
         // Keyframes are read after the records, because the servo writes a keyframe before the record of its cycle.
         while let Some(keyframe) = self.keyframes_arriving.pop() {
+            self.outlet.iter_mut().for_each(|outlet| outlet.add_keyframe(&keyframe));
             self.keyframes.push_back(keyframe);
         }
         self.forget();
@@ -144,10 +148,34 @@ impl BlackBox {
         self.records.drain(..too_old);
         let controls = self.records.iter().filter_map(|record| record.control.as_ref());
         let needed = controls.map(|control| control.controller.min(control.previous)).min();
-        if let Some(needed) = needed {
+        if let Some(needed) = needed.map(|needed| needed.min(self.first_unpublished())) {
             let awaited = self.awaited;
             self.controllers.retain(|controller| controller.number >= needed || awaited == Some(controller.number));
         }
+    }
+
+    fn first_unpublished(&self) -> u32 {
+        if self.outlet.is_some() { self.unpublished } else { u32::MAX }
+    }
+
+    /// Sets the outlet to which everything that arrives is copied, or removes it.
+    pub fn set_outlet(&mut self, outlet: Option<Outlet>) {
+        self.outlet = outlet;
+    }
+
+    /// Exchanges the contents of the outlet, if there is one, for those of `other`, which must be empty.
+    pub fn exchange_outlet(&mut self, other: &mut Outlet) {
+        self.outlet.iter_mut().for_each(|outlet| std::mem::swap(outlet, other));
+    }
+
+    /// Returns the sources of the controllers that the records name or will name, from the number `from` on.
+    pub fn controllers_from(&self, from: u32) -> impl Iterator<Item = &ControllerSource> {
+        self.controllers.iter().filter(move |controller| controller.number >= from)
+    }
+
+    /// Notes that all controllers up to now are published.
+    pub fn controllers_published(&mut self) {
+        self.unpublished = self.next_number();
     }
 
     /// Whether a fault has arrived since the last call.

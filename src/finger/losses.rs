@@ -1,7 +1,9 @@
 //! Counts of the servo's timing and communication errors.
 
+use serde::{Deserialize, Serialize};
+
 /// Numbers of the cycles of a finger and of their errors.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Losses {
     /// Number of cycles.

@@ -6,6 +6,7 @@ mod control_input;
 mod cycle_record;
 pub mod events;
 mod faults;
+mod fingertip_state;
 mod group_gate;
 mod link_handover;
 mod link_watch;
@@ -13,6 +14,7 @@ mod losses;
 mod mailbox;
 mod motion_settings;
 mod order;
+mod outlet;
 mod path_buffer;
 mod recording;
 mod reference;
@@ -31,10 +33,11 @@ mod supervision;
 mod touch;
 
 pub use adjustable::Adjustable;
-pub use black_box::{BlackBox, Recorder};
+pub use black_box::{BlackBox, KEYFRAMES, Recorder};
 pub use control_input::ControlInput;
 pub use cycle_record::{ControlRecord, ControllerSource, CycleRecord, KeptRecord};
 pub use faults::{Action, Description, Fault, FaultKind, PartKind, Quantity, Severity, Warnings};
+pub use fingertip_state::FingertipState;
 pub use group_gate::GroupGate;
 pub use link_handover::{
     LinkRepairEnd, LinkServoEnd, ReleasedLink, RepairedLink, RestoredBoard, RestoredFinger, link_handover,
@@ -44,6 +47,7 @@ pub use losses::Losses;
 pub use mailbox::Mailbox;
 pub use mailbox::groups::PreparedSetPoint;
 pub use order::{CalibrationRun, Order};
+pub use outlet::{Keyframe, Outlet};
 pub use path_buffer::{MOST_PIECES, MOST_POSES};
 pub use recording::{Origin, Recording, RecordingError};
 pub use reference::Reference;

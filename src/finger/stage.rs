@@ -1,10 +1,11 @@
 //! The stages of a finger between open and close.
 
 use crate::finger::Fault;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A stage of a finger between open and close.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum Stage {
     /// The finger takes up the slack of its tendons.

@@ -7,8 +7,8 @@ use crate::hand::calibration_file::store_findings;
 use crate::hand::opening::check;
 use crate::hand::{Found, Hand, HandError};
 use crate::model::FingerNumber;
-use crate::model::UnusableConfiguration;
 use crate::model::configuration::ConfiguredFinger;
+use crate::model::{Section, UnusableConfiguration};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -252,5 +252,5 @@ impl ToStore {
 }
 
 fn refusal(finger: FingerNumber, unusable: crate::model::configuration::Unusable) -> HandError {
-    UnusableConfiguration { finger: Some(finger), unusable }.into()
+    UnusableConfiguration { section: Section::Finger(finger), unusable }.into()
 }

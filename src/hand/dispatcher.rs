@@ -3,42 +3,33 @@
 
 mod collected;
 mod collecting;
+mod member;
+mod publishing;
 
-use crate::finger::{
-    self, Adjustable, BlackBox, Elements, FingerReport, GroupGate, KeptRecord, Losses, Mailbox, Recording, Reflexes,
-};
+pub(super) use member::Member;
+
+use crate::finger::{self, Adjustable, BlackBox, FingerReport, GroupGate, KeptRecord, Losses, Recording};
 use crate::hand::HandError;
-use crate::hand::admission::Admission;
 use crate::hand::dispatcher::collected::Collected;
 use crate::hand::dispatcher::collecting::collect;
+use crate::hand::dispatcher::publishing::Publishing;
+use crate::hand::events::EventSource;
 use crate::hand::opening::Reached;
 use crate::model::FingerNumber;
 use crate::model::configuration::{Configuration, ConfiguredFinger};
 use crate::realtime::{CycleStage, Distribution, Histograms, Priority, spawn};
+use crate::simulated::ObjectView;
 use crossbeam_channel::{Sender, bounded};
 use nalgebra::Vector3;
 use parking_lot::{Mutex, MutexGuard, RwLock};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
-
-/// The planners' side of one finger.
-pub(super) struct Member {
-    /// Number of the finger, 1 to 3.
-    pub number: FingerNumber,
-    pub admission: RwLock<Admission>,
-    pub mailbox: Mailbox,
-    pub touch: Elements,
-    pub reflexes: Reflexes,
-    /// Whether a caller has the right to calibrate the finger.
-    pub calibrated: Arc<AtomicBool>,
-}
 
 /// Passes commands to the fingers, and collects their timings and black boxes.
 pub(super) struct Dispatcher {
-    members: Vec<Member>,
+    members: Arc<Vec<Member>>,
     /// Lets the fingers of a group change in the same period.
     pub gate: GroupGate,
     collected: Arc<Vec<Mutex<Collected>>>,
@@ -65,15 +56,23 @@ impl Dispatcher {
                 black_box: finger.black_box,
             }));
         }
-        Self { members, gate, collected: Arc::new(collected), collector: None }
+        Self { members: Arc::new(members), gate, collected: Arc::new(collected), collector: None }
     }
 
     /// Starts the thread that collects timings and black boxes, so that none is lost while no planner calls. The thread
-    /// also causes the black box of a faulted finger to be written into `folder`.
-    pub fn start_collecting(&mut self, folder: Option<PathBuf>) -> io::Result<()> {
+    /// also causes the black box of a faulted finger to be written into `folder`, and publishes what it collects to
+    /// readers of telemetry.
+    pub fn start_collecting(
+        &mut self,
+        folder: Option<PathBuf>,
+        configuration: &Configuration,
+        events: &EventSource,
+        object: Option<ObjectView>,
+    ) -> io::Result<()> {
         let (stop, stopped) = bounded(0);
         let fingers = self.collected.clone();
-        let body = move |_| collect(&fingers, folder.as_deref(), &stopped);
+        let publishing = Publishing::start(configuration, self.members.clone(), events, object);
+        let body = move |_| collect(&fingers, folder.as_deref(), publishing, &stopped);
         let thread = spawn("sun2xp reports", Priority::default(), body)?;
         self.collector = Some((stop, thread));
         Ok(())

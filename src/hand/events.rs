@@ -12,6 +12,7 @@ mod readiness;
 mod source;
 
 pub use listener::EventListener;
+pub(super) use merging::{MergedEvents, Next};
 pub use queue::EventQueue;
 pub(super) use source::EventSource;
 

@@ -1,15 +1,9 @@
 //! The state of a fingertip: position, force and tendon tensions.
 
-use crate::finger::{FingerReport, Stage};
+use crate::finger::{FingerReport, FingertipState, Stage};
 use crate::hand::admission::Admission;
 use crate::hand::{Hand, HandError};
 use crate::model::FingerNumber;
-use nalgebra::Matrix3;
-
-/// Limit of observability, cm per rad. If a joint motion of 1 rad moves the fingertip in a direction by less than this,
-/// the force in that direction cannot be found from the joint torques: a torque error of 0.1 N cm would cause a force
-/// error of a third of a newton. The default finger has such a direction within 9 degrees of the straight pose.
-const FELT: f64 = 0.3;
 
 /// The state of a fingertip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,69 +49,20 @@ impl Hand {
 
 impl FingerTip {
     fn new(admission: &Admission, report: &FingerReport) -> Self {
-        let joints = &report.cycle.joints;
-        let torques = admission.r * report.cycle.tensions; // eq. 13
-        let (inverse, felt) = felt_inverse(&admission.links.jacobian(joints));
-        let springs = admission.springs.as_ref().filter(|_| report.stage == Stage::Running);
-        let held = springs.map_or_else(Matrix3::zeros, |springs| {
-            springs.stiffness(&report.set_point, report.cycle.stiffness_scale, joints)
-        });
-        // Symmetric, so its rows are its columns.
-        let stiffness = inverse.tr_mul(&(held * inverse));
+        let running = report.stage == Stage::Running;
+        let springs = admission.springs.as_ref().filter(|_| running);
+        let spring = springs.map(|springs| (springs, &report.set_point));
+        let state = FingertipState::new(admission.links, &admission.r, &report.cycle, spring);
         Self {
-            tip: admission.links.tip(joints).into(),
-            force: inverse.tr_mul(&torques).into(),
-            felt,
+            tip: state.tip.into(),
+            force: state.force.into(),
+            felt: state.felt,
             tensions: report.cycle.tensions.into(),
-            stiffness: stiffness.into(),
+            // Symmetric, so its rows are its columns.
+            stiffness: state.stiffness.into(),
             contact: (-report.cycle.contact.force).into(),
             touching: report.cycle.contact.touching,
             slide: report.cycle.contact.slide,
-        }
-    }
-}
-
-/// Returns the inverse of the Jacobian in the directions that the joints feel, rad/cm, and the number of these
-/// directions. The inverse is zero in other directions. Its transpose converts joint torques to the smallest force f
-/// with tau = J^T f.
-fn felt_inverse(jacobian: &Matrix3<f64>) -> (Matrix3<f64>, usize) {
-    // With the eigenvectors u and eigenvalues s^2 of J J^T: J^-1 = J^T (sum of u u^T / s^2).
-    let eigen = (jacobian * jacobian.transpose()).symmetric_eigen();
-    let mut inverse = Matrix3::zeros();
-    let mut felt = 0;
-    for (direction, &square) in eigen.eigenvectors.column_iter().zip(eigen.eigenvalues.iter()) {
-        if square >= FELT * FELT {
-            inverse += direction * direction.transpose() / square;
-            felt += 1;
-        }
-    }
-    (jacobian.tr_mul(&inverse), felt)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::Links;
-    use nalgebra::Vector3;
-
-    #[test]
-    fn the_force_is_the_one_that_makes_the_torque() {
-        let links = Links([3.556, 5.080, 4.000]);
-        let force = Vector3::new(0.5, -1.0, 2.0);
-        let pose = |degrees: [f64; 3]| links.jacobian(&Vector3::from(degrees.map(f64::to_radians)));
-        for degrees in [[0.0, 30.0, 60.0], [-40.0, 80.0, 110.0], [30.0, -20.0, 10.0]] {
-            let jacobian = pose(degrees);
-            let (inverse, felt) = felt_inverse(&jacobian);
-            let found = inverse.tr_mul(&jacobian.tr_mul(&force));
-            assert!(felt == 3 && (found - force).amax() < 1e-9, "{degrees:?}: {found}");
-        }
-        // In the straight pose, a force along the finger is not felt, and any other force is.
-        for degrees in [[0.0, 0.0, 0.0], [0.0, 0.0, 5.0]] {
-            let jacobian = pose(degrees);
-            let (inverse, felt) = felt_inverse(&jacobian);
-            let found = inverse.tr_mul(&jacobian.tr_mul(&force));
-            assert!(felt == 2, "{degrees:?}");
-            assert!((found.xy() - force.xy()).amax() < 0.2 && found.z.abs() < 0.2, "{found}");
         }
     }
 }

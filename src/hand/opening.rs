@@ -20,7 +20,7 @@ use crate::hand::{ConfigurationError, HandError, MotionLimits, SetPointError};
 use crate::model::FingerNumber;
 use crate::model::InverseKinematics;
 use crate::model::configuration::{Configuration, OnFault, Unusable};
-use crate::model::{Shown, ShownPath, UnusableConfiguration};
+use crate::model::{Section, Shown, ShownPath, UnusableConfiguration};
 use crate::realtime::{Consumer, CycleTiming, EventCount, Pages, SharedPages, now, ring};
 use nalgebra::Matrix3;
 use std::path::{Path, PathBuf};
@@ -73,7 +73,7 @@ pub(super) struct Line {
 pub fn check(configuration: &Configuration) -> Result<(), UnusableConfiguration> {
     configuration.check()?;
     for number in FingerNumber::ALL {
-        let refused = |unusable| UnusableConfiguration { finger: Some(number), unusable };
+        let refused = |unusable| UnusableConfiguration { section: Section::Finger(number), unusable };
         initial_stiffness(configuration, number).map_err(refused)?;
         carries(configuration, number).map_err(refused)?;
     }
@@ -87,7 +87,7 @@ pub(super) fn black_box_folder(configuration: &Configuration) -> Result<Option<P
         Some(folder) if !Path::new(folder).is_dir() => {
             let reason =
                 format!("{} is not a folder: create it (mkdir -p), or configure another folder", Shown(folder));
-            Err(UnusableConfiguration { finger: None, unusable: Unusable { key: "black_box", reason } })
+            Err(UnusableConfiguration { section: Section::Hand, unusable: Unusable { key: "black_box", reason } })
         }
         folder => Ok(folder.as_ref().map(|folder| from_here(folder.into()))),
     }

@@ -128,7 +128,10 @@ impl Hand {
             process,
         };
         // From here on, dropping the hand closes it.
-        let collecting = hand.dispatcher.start_collecting(folder);
+        let collecting = {
+            let (configuration, object) = (hand.configuration.read(), hand.simulated.object_view());
+            hand.dispatcher.start_collecting(folder, &configuration, &hand.events, object)
+        };
         collecting.map_err(|source| HandError::System { doing: "start the thread that collects reports", source })?;
         hand.real_time = start(&hand.configuration.read(), lines, &mut hand.servos)?;
         hand.wait_for_every_finger()?;

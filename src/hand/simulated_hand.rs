@@ -2,12 +2,12 @@
 
 use crate::hand::{Fingers, HandError};
 use crate::model::FingerNumber;
-use crate::model::UnusableConfiguration;
 use crate::model::configuration::{Configuration, FINGERS, RealTime, Unusable};
+use crate::model::{Section, UnusableConfiguration};
 use crate::realtime::Priority;
 use crate::simulated::{
-    CoupledPorts, CoupledPortsError, ObjectState, Pace, Scene, SimulatedBoard, SimulatedBoardError, SimulatedFinger,
-    SimulatedPort,
+    CoupledPorts, CoupledPortsError, ObjectState, ObjectView, Pace, Scene, SimulatedBoard, SimulatedBoardError,
+    SimulatedFinger, SimulatedPort,
 };
 use std::path::PathBuf;
 
@@ -67,7 +67,12 @@ impl SimulatedHand {
 
     /// Returns the state of the object. `None`: there is no object.
     pub fn object(&self) -> Option<ObjectState> {
-        self.coupled.as_ref().map(CoupledPorts::object)
+        self.object_view().map(|view| view.state())
+    }
+
+    /// Returns the view of the object's state. `None`: there is no object.
+    pub fn object_view(&self) -> Option<ObjectView> {
+        self.coupled.as_ref().map(|ports| ports.object().clone())
     }
 }
 
@@ -81,5 +86,5 @@ fn priority(configuration: &Configuration, number: FingerNumber) -> Priority {
 
 fn unusable(finger: FingerNumber, source: &SimulatedBoardError) -> HandError {
     let unusable = Unusable { key: "simulation", reason: source.to_string() };
-    UnusableConfiguration { finger: Some(finger), unusable }.into()
+    UnusableConfiguration { section: Section::Finger(finger), unusable }.into()
 }

@@ -1,12 +1,14 @@
 //! The number of a finger.
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Number of fingers of a hand.
 pub const FINGERS: usize = 3;
 
 /// The number of a finger: 1, 2 or 3 in calls, configuration files and texts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(try_from = "u8", into = "u8")]
 pub struct FingerNumber {
     /// The number minus 1, less than [`FINGERS`].
     index: u8,
@@ -41,6 +43,20 @@ impl FingerNumber {
     #[must_use]
     pub const fn index(self) -> usize {
         self.index as usize
+    }
+}
+
+impl From<FingerNumber> for u8 {
+    fn from(finger: FingerNumber) -> Self {
+        finger.index + 1
+    }
+}
+
+impl TryFrom<u8> for FingerNumber {
+    type Error = String;
+
+    fn try_from(number: u8) -> Result<Self, Self::Error> {
+        Self::new(number.into()).ok_or_else(|| format!("there is no finger {number}: fingers are 1, 2 and 3"))
     }
 }
 

@@ -25,4 +25,4 @@ pub use link_momentum::LinkMomentum;
 pub use part::Part;
 pub use shown::{OneLine, Shown, ShownPath, one_line};
 pub use tendons::{Tendons, TendonsError};
-pub use validation::UnusableConfiguration;
+pub use validation::{Section, UnusableConfiguration};

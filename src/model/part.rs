@@ -1,9 +1,10 @@
 //! Parts of a finger, as the texts of faults and refusals name them.
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A part of a finger. The numbers are those that planners see.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub enum Part {
     /// The whole finger, or an unknown part.

@@ -8,17 +8,40 @@ mod object;
 mod ranges;
 mod sharing;
 mod simulation;
+mod telemetry;
 mod touch;
 
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, RATES, RealTime, Unusable};
 use crate::model::{FingerNumber, TendonsError};
 use ranges::{each, path, unusable, within};
+use std::fmt;
 
-/// A configuration that cannot be used: the finger or the hand, the key and the reason.
+/// A section of the configuration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    /// `[hand]`
+    Hand,
+    /// `[telemetry]`
+    Telemetry,
+    /// `[finger]` and the table of this finger.
+    Finger(FingerNumber),
+}
+
+impl fmt::Display for Section {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Section::Hand => formatter.write_str("hand"),
+            Section::Telemetry => formatter.write_str("telemetry"),
+            Section::Finger(number) => write!(formatter, "finger.{number}"),
+        }
+    }
+}
+
+/// A configuration that cannot be used: the section, the key and the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnusableConfiguration {
-    /// The finger, or None for `[hand]`.
-    pub finger: Option<FingerNumber>,
+    /// The section.
+    pub section: Section,
     /// The key and the reason.
     pub unusable: Unusable,
 }
@@ -29,21 +52,22 @@ impl Configuration {
     /// # Errors
     /// Returns the first unusable value.
     pub fn check(&self) -> Result<(), UnusableConfiguration> {
-        self.hand.check().map_err(|unusable| UnusableConfiguration { finger: None, unusable })?;
+        self.hand.check().map_err(|unusable| UnusableConfiguration { section: Section::Hand, unusable })?;
+        let of_telemetry = |unusable| UnusableConfiguration { section: Section::Telemetry, unusable };
+        self.telemetry.check().map_err(of_telemetry)?;
         for (number, finger) in FingerNumber::ALL.into_iter().zip(&self.fingers) {
-            finger.check().map_err(|unusable| UnusableConfiguration { finger: Some(number), unusable })?;
+            let section = Section::Finger(number);
+            finger.check().map_err(|unusable| UnusableConfiguration { section, unusable })?;
             if finger.priority == 0 && self.hand.real_time == RealTime::Enforce {
                 let reason = "0 is not a real-time priority, but hand.real_time is \"enforce\": set 1 to 99".into();
-                return Err(UnusableConfiguration {
-                    finger: Some(number),
-                    unusable: Unusable { key: "priority", reason },
-                });
+                return Err(UnusableConfiguration { section, unusable: Unusable { key: "priority", reason } });
             }
         }
         for (position, &second) in FingerNumber::ALL.iter().enumerate() {
             for &first in &FingerNumber::ALL[..position] {
                 let between = self.check_sharing(first, second);
-                between.map_err(|unusable| UnusableConfiguration { finger: Some(second), unusable })?;
+                let section = Section::Finger(second);
+                between.map_err(|unusable| UnusableConfiguration { section, unusable })?;
             }
         }
         Ok(())

@@ -52,10 +52,15 @@ impl CycleTiming {
     pub fn note(&mut self, stage: CycleStage, from: u64, to: u64) {
         self.stages[stage as usize] = Some(u32::try_from(to.saturating_sub(from)).unwrap_or(u32::MAX));
     }
+
+    /// Returns the duration of a stage, ns; none if the stage did not take place.
+    pub fn duration(&self, stage: CycleStage) -> Option<u32> {
+        self.stages[stage as usize]
+    }
 }
 
 /// The distribution of a stage's duration, microseconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Distribution {
     /// Number of cycles.

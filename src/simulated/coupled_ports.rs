@@ -49,12 +49,22 @@ pub enum CoupledPortsError {
 /// removes the ports.
 pub struct CoupledPorts {
     shared: Arc<Mutex<Shared>>,
-    /// The newest state of the object. A planner that reads it does not make the boards' thread wait.
-    object: Mutex<Output<ObjectState>>,
+    object: ObjectView,
     ended: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
     /// The process in which the thread runs. A forked child inherits this value, but not the thread.
     process: u32,
+}
+
+/// The newest state of the object. A thread that reads it does not make the boards' thread wait.
+#[derive(Clone)]
+pub struct ObjectView(Arc<Mutex<Output<ObjectState>>>);
+
+impl ObjectView {
+    /// Returns the state of the object, at most some milliseconds old.
+    pub fn state(&self) -> ObjectState {
+        *self.0.lock().read()
+    }
 }
 
 /// The data that the boards' thread and its owner share.
@@ -93,7 +103,7 @@ impl CoupledPorts {
             // The refusals are ignored, because a simulation does not need real-time priority.
             spawn("sun2xp board", priority, move |_| run(&shared, rate, published, &ended))?
         };
-        let object = Mutex::new(object);
+        let object = ObjectView(Arc::new(Mutex::new(object)));
         Ok(Self { shared, object, ended, thread: Some(thread), process: std::process::id() })
     }
 
@@ -108,9 +118,9 @@ impl CoupledPorts {
         self.shared.lock().boards[finger.index()].as_mut()?.fingers().first_mut().map(look)
     }
 
-    /// Returns the state of the object, at most some milliseconds old.
-    pub fn object(&self) -> ObjectState {
-        *self.object.lock().read()
+    /// Returns the view of the object's state.
+    pub fn object(&self) -> &ObjectView {
+        &self.object
     }
 }
 

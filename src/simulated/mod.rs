@@ -16,7 +16,7 @@ mod shared_time;
 
 pub use board::{SimulatedBoard, SimulatedBoardError};
 pub use cable::SimulatedCable;
-pub use coupled_ports::{CoupledPorts, CoupledPortsError};
+pub use coupled_ports::{CoupledPorts, CoupledPortsError, ObjectView};
 pub use defects::Defect;
 pub use finger::SimulatedFinger;
 pub use line::LineFault;

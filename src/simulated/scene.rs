@@ -9,9 +9,10 @@ use crate::model::configuration::{Configuration, FINGERS};
 use crate::plant::{FreeObject, PLANT_STEP_SECONDS, TipMotion};
 use crate::simulated::finger::SimulatedFinger;
 use nalgebra::{Isometry3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// The state of the object in the palm's frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ObjectState {
     /// Simulated time since the boards have started, s.

@@ -15,9 +15,10 @@ use std::fs;
 use std::path::Path;
 
 /// The folders of the library from the top down. A file imports from its own folder and from lower ones.
-const FLOORS: [&[&str]; 9] = [
+const FLOORS: [&[&str]; 10] = [
     &["capi"],
     &["hand"],
+    &["telemetry"],
     &["finger"],
     &["calibration", "simulated", "stability"],
     &["board", "control"],

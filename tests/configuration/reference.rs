@@ -31,8 +31,9 @@ fn every_key_of_every_table_is_in_it() {
     let fingers: BTreeSet<String> = ["1", "2", "3"].map(String::from).into();
 
     let in_file: BTreeSet<String> = document.iter().map(|(key, _)| key.to_owned()).collect();
-    assert_eq!(in_file, ["finger", "hand"].map(String::from).into());
+    assert_eq!(in_file, ["finger", "hand", "telemetry"].map(String::from).into());
     assert_eq!(named("hand"), expected_keys("hand"));
+    assert_eq!(named("telemetry"), expected_keys("telemetry"));
     assert_eq!(named("hand.simulated_object"), expected_keys("hand.simulated_object"));
     // Keys with different defaults for each finger are in the tables of the fingers.
     let of_fingers: BTreeSet<String> = &named("finger") | &named("finger.1");

@@ -4,9 +4,10 @@ use super::EventKind;
 use crate::control::events::{Observation, ObservationKind};
 use crate::finger::Fault;
 use crate::model::{FingerNumber, Part};
+use serde::{Deserialize, Serialize};
 
 /// Something that happened to a finger in one cycle of its servo.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Event {
     /// The finger.

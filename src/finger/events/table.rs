@@ -3,6 +3,8 @@
 //! Numbers are permanent: a new kind gets the next free number.
 
 use super::kind::{Description, ValueKind};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 macro_rules! kinds {
     ($($number:literal $kind:ident $constant:literal $part:expr, [$($value:ident),*],
@@ -88,6 +90,19 @@ impl EventKind {
     #[must_use]
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.iter().copied().find(|kind| kind.number() == number)
+    }
+}
+
+impl Serialize for EventKind {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u8(self.number())
+    }
+}
+
+impl<'de> Deserialize<'de> for EventKind {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let number = u8::deserialize(deserializer)?;
+        Self::from_number(number).ok_or_else(|| D::Error::custom(format!("no kind has the number {number}")))
     }
 }
 

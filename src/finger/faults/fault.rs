@@ -2,11 +2,12 @@
 
 use super::{FaultKind, Quantity};
 use crate::model::Part;
+use serde::{Deserialize, Serialize};
 use std::error::Error;
 use std::fmt;
 
 /// The reason why a finger stopped, or a warning.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Fault {
     /// Kind of the fault.

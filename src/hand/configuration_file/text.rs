@@ -5,7 +5,7 @@ use super::values::deserialize;
 use super::wrong::Wrong;
 use crate::hand::opening::check;
 use crate::model::configuration::{Configuration, ConfiguredFinger, ConfiguredHand, FINGERS};
-use crate::model::{Shown, UnusableConfiguration};
+use crate::model::{Section, Shown, UnusableConfiguration};
 use std::ops::Range;
 use toml_edit::{Document, Item, Table, Value};
 
@@ -13,11 +13,12 @@ use toml_edit::{Document, Item, Table, Value};
 pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wrong> {
     let document = Document::parse(text).map_err(Wrong::in_syntax)?;
     let root = document.as_table();
-    if let Some((key, _)) = root.iter().find(|(key, _)| !matches!(*key, "hand" | "finger")) {
-        let reason = format!("unknown key `{}`, expected `hand` or `finger`", Shown(key));
+    if let Some((key, _)) = root.iter().find(|(key, _)| !matches!(*key, "hand" | "telemetry" | "finger")) {
+        let reason = format!("unknown key `{}`, expected `hand`, `telemetry` or `finger`", Shown(key));
         return Err(Wrong::at(span_of_key(root, key), reason));
     }
     let hand: ConfiguredHand = deserialize(&table(root, "hand")?).map_err(|wrong| wrong.in_key("hand"))?;
+    let telemetry = deserialize(&table(root, "telemetry")?).map_err(|wrong| wrong.in_key("telemetry"))?;
     let all = table(root, "finger")?;
     let numbers = || (1..=FINGERS).map(|number| number.to_string());
     if let Some((key, _)) = all.iter().find(|(key, _)| is_number(key) && !numbers().any(|number| number == *key)) {
@@ -40,7 +41,7 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wron
         *finger = deserialize(&merged).map_err(|wrong| wrong.in_key(&section))?;
     }
 
-    let configuration = Configuration { hand, fingers };
+    let configuration = Configuration { hand, telemetry, fingers };
     check(&configuration).map_err(|refusal| unusable(root, &refusal))?;
     Ok((configuration, ports_named))
 }
@@ -48,12 +49,12 @@ pub(super) fn parse(text: &str) -> Result<(Configuration, [bool; FINGERS]), Wron
 /// An error for a value that the checks refuse, with its position in the file.
 fn unusable(root: &Table, refusal: &UnusableConfiguration) -> Wrong {
     let key = refusal.unusable.key;
-    let number = refusal.finger.map(|number| number.to_string());
-    let (section, places) = match &number {
-        None => ("hand".to_string(), [root.get("hand"), None]),
-        Some(number) => {
+    let section = refusal.section.to_string();
+    let places = match refusal.section {
+        Section::Hand | Section::Telemetry => [root.get(&section), None],
+        Section::Finger(number) => {
             let shared = root.get("finger");
-            (format!("finger.{number}"), [shared.and_then(|all| all.get(number)), shared])
+            [shared.and_then(|all| all.get(number.to_string())), shared]
         }
     };
     let span = places.iter().find_map(|&place| span_of(place, key));

@@ -1,10 +1,12 @@
 //! The thread that collects from the servos, so that nothing is lost while no planner calls. When a finger faults and a
-//! folder is configured, it starts another thread that writes the finger's black box. Otherwise it allocates no memory,
-//! so that the hand keeps working if the planner is out of memory.
+//! folder is configured, it starts another thread that writes the finger's black box. It also publishes what it
+//! collects to readers of telemetry. It allocates memory only for a black box and when a reader attaches, so that the
+//! hand keeps working if the planner is out of memory.
 
 use crate::finger::Recording;
 use crate::hand::black_box_file::save_at_fault;
 use crate::hand::dispatcher::collected::Collected;
+use crate::hand::dispatcher::publishing::Publishing;
 use crate::realtime::{PlannerWatch, Priority, is_memory_free, print_line, spawn};
 use crossbeam_channel::{Receiver, RecvTimeoutError};
 use parking_lot::Mutex;
@@ -20,8 +22,14 @@ const COLLECTING_INTERVAL: Duration = Duration::from_millis(50);
 /// Memory for a copy of a black box and the thread that writes it, bytes.
 const MEMORY_OF_BLACK_BOX: usize = 4 << 20;
 
-/// Runs until `stopped` is disconnected. Black boxes are written into `folder`, if there is one.
-pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopped: &Receiver<()>) {
+/// Runs until `stopped` is disconnected. Black boxes are written into `folder`, if there is one. What is collected is
+/// published, if `publishing` is given and has a reader.
+pub(super) fn collect(
+    fingers: &[Mutex<Collected>],
+    folder: Option<&Path>,
+    mut publishing: Option<Publishing>,
+    stopped: &Receiver<()>,
+) {
     let mut ended = false;
     let mut writing = Vec::new();
     let mut planner = PlannerWatch::default();
@@ -41,6 +49,7 @@ pub(super) fn collect(fingers: &[Mutex<Collected>], folder: Option<&Path>, stopp
             drop(collected);
             writing.extend(recording.and_then(|recording| write(recording, folder.to_path_buf())));
         }
+        publishing.iter_mut().for_each(|publishing| publishing.publish(fingers));
     }
     for thread in writing {
         // A panic in such a thread loses only its file.

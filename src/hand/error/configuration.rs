@@ -123,7 +123,6 @@ impl ConfigurationError {
 
 impl From<UnusableConfiguration> for ConfigurationError {
     fn from(refusal: UnusableConfiguration) -> Self {
-        let section = refusal.finger.map_or("hand".into(), |number| format!("finger.{number}"));
-        Self::Unusable { section, unusable: refusal.unusable }
+        Self::Unusable { section: refusal.section.to_string(), unusable: refusal.unusable }
     }
 }

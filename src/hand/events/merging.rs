@@ -8,7 +8,7 @@ use crate::finger::events::{Event, EventReader};
 const PATIENCE: u64 = 2;
 
 /// The next event of several fingers.
-pub(super) enum Next {
+pub enum Next {
     Event(Event),
     /// There is an event, but a finger may still have an earlier one. The event is due at this time, ns, or when that
     /// finger has finished its cycle.
@@ -17,7 +17,7 @@ pub(super) enum Next {
 }
 
 /// Readers of the logs of all fingers.
-pub(super) struct MergedEvents {
+pub struct MergedEvents {
     fingers: Vec<FingerEvents>,
     /// Longest time for which an event waits for those of other fingers, ns.
     patience: u64,

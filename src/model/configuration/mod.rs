@@ -21,6 +21,7 @@ mod named_values;
 mod object;
 mod simulation;
 mod stiffness;
+mod telemetry;
 mod tendon;
 mod touch;
 mod zeroing;
@@ -32,7 +33,7 @@ pub use events::ConfiguredEvents;
 pub use friction::ConfiguredFriction;
 pub use gauge::{ConfiguredGauge, GaugeReference};
 pub use geometry::ConfiguredGeometry;
-pub use hand::{ConfiguredHand, EndState, OnFault, OutOfRange, PeriodClock, RealTime};
+pub use hand::{ConfiguredHand, EndState, OnFault, OutOfRange, PeriodClock, RATES, RealTime};
 pub use joints::ConfiguredJoints;
 pub use links::ConfiguredLinks;
 pub use monitors::ConfiguredMonitors;
@@ -42,6 +43,7 @@ pub use named_hand::NamedHand;
 pub use object::{ConfiguredObject, ObjectShape};
 pub use simulation::{ConfiguredSimulation, Surface};
 pub use stiffness::ConfiguredStiffness;
+pub use telemetry::ConfiguredTelemetry;
 pub use tendon::ConfiguredTendon;
 pub use touch::{ConfiguredTouch, MOST_ELEMENTS, TouchElement};
 pub use zeroing::{ConfiguredZeroing, ZeroingMethod};
@@ -53,10 +55,6 @@ use crate::model::kinematics::Links;
 use crate::model::tendons::{Tendons, TendonsError};
 use nalgebra::{Isometry3, Matrix3, Matrix3x4, RowVector4, Vector3, Vector4};
 use serde::{Deserialize, Serialize};
-use std::ops::RangeInclusive;
-
-/// Admissible rates of a hand, Hz. The gains for 500 Hz are stable down to 470 Hz, and the finger oscillates at 450 Hz.
-pub const RATES: RangeInclusive<f64> = 500.0..=5000.0;
 
 /// Distance of a mechanical stop beyond the soft limit if no stop is configured, degrees.
 const STOP_MARGIN: f64 = 3.0;
@@ -132,10 +130,12 @@ pub struct ConfiguredFinger {
 }
 
 /// The configuration of a complete hand.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Configuration {
     /// Values that all fingers share.
     pub hand: ConfiguredHand,
+    /// What other processes may read.
+    pub telemetry: ConfiguredTelemetry,
     /// Fingers 1, 2 and 3.
     pub fingers: [ConfiguredFinger; FINGERS],
 }

@@ -1,0 +1,131 @@
+//! The messages that a hand publishes. In the memory that readers share they are encoded with postcard.
+
+use crate::control::State;
+use crate::finger::events::Event;
+use crate::finger::{ControllerSource, CycleRecord, Fault, Losses, Stage};
+use crate::model::FingerNumber;
+use crate::model::configuration::{Configuration, ConfiguredHand};
+use crate::realtime::Distribution;
+use crate::simulated::ObjectState;
+use serde::{Deserialize, Serialize};
+
+/// A message of a hand.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[expect(clippy::large_enum_variant, reason = "almost all messages are cycles, and a box for each would cost time")]
+pub enum Message {
+    /// A controller. It comes before the first cycle that names it, and again for each new reader.
+    Controller {
+        /// The finger.
+        finger: FingerNumber,
+        /// The data from which the controller is constructed.
+        source: Box<ControllerSource>,
+        /// The hand's configuration, with the rate.
+        hand: Box<ConfiguredHand>,
+    },
+    /// The state of the controller before a cycle, eight times a second. A replay can begin here.
+    Keyframe {
+        /// The finger.
+        finger: FingerNumber,
+        /// Number of the cycle.
+        cycle: u64,
+        /// The state before that cycle.
+        state: Box<State>,
+    },
+    /// A cycle. The cycles of a finger arrive in their order.
+    Cycle {
+        /// The finger.
+        finger: FingerNumber,
+        /// The cycle, as in the black box.
+        record: CycleRecord,
+    },
+    /// An event, as planners get it.
+    Event(Event),
+    /// The object of a simulated hand, once in each batch.
+    Object(ObjectState),
+    /// The status of a finger, once a second, and at once for a new reader.
+    Status(Box<Status>),
+}
+
+/// The status of a finger.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Status {
+    /// The finger.
+    pub finger: FingerNumber,
+    /// Time of the status, ns of the monotonic clock.
+    pub time: u64,
+    /// Stage of the finger.
+    pub stage: Stage,
+    /// Counts since open.
+    pub losses: Losses,
+    /// Time from the scheduled beginning of a cycle to its first instruction, microseconds, since open or the last
+    /// reset.
+    pub wake_up: Distribution,
+    /// Time from the scheduled beginning of a cycle to the end of its computation, microseconds, since open or the last
+    /// reset.
+    pub whole: Distribution,
+    /// The newest warning, if it was noted not long ago.
+    pub warning: Option<Fault>,
+    /// Number of warnings since open. A warning that persists counts once.
+    pub warnings: u64,
+    /// Number of recoveries from a fault.
+    pub recoveries: u32,
+    /// The last cycle. A finger that is faulted has no newer ones.
+    pub last: Option<CycleRecord>,
+}
+
+/// The same messages with borrowed contents. The variants have the order of [`Message`], because postcard writes their
+/// indices.
+#[derive(Clone, Copy, Serialize)]
+pub enum Outgoing<'a> {
+    /// See [`Message::Controller`].
+    Controller {
+        /// The finger.
+        finger: FingerNumber,
+        /// The data from which the controller is constructed.
+        source: &'a ControllerSource,
+        /// The hand's configuration.
+        hand: &'a ConfiguredHand,
+    },
+    /// See [`Message::Keyframe`].
+    Keyframe {
+        /// The finger.
+        finger: FingerNumber,
+        /// Number of the cycle.
+        cycle: u64,
+        /// The state before that cycle.
+        state: &'a State,
+    },
+    /// See [`Message::Cycle`].
+    Cycle {
+        /// The finger.
+        finger: FingerNumber,
+        /// The cycle.
+        record: &'a CycleRecord,
+    },
+    /// See [`Message::Event`].
+    Event(&'a Event),
+    /// See [`Message::Object`].
+    Object(&'a ObjectState),
+    /// See [`Message::Status`].
+    Status(&'a Status),
+}
+
+/// The description of a hand, which a reader gets when it attaches.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Description {
+    /// Name of the hand.
+    pub name: String,
+    /// Number of the hand's process.
+    pub process: u32,
+    /// Version of the library in that process.
+    pub library: String,
+    /// Time at which the hand was opened, s since 1970.
+    pub started: u64,
+    /// Time since 1970 minus the time of the monotonic clock, ns, when the reader attached. It converts the times of
+    /// the messages.
+    pub clock_offset: i64,
+    /// The fingers that are open.
+    pub fingers: Vec<FingerNumber>,
+    /// The configuration with which the hand was opened. [`Message::Controller`] has later changes.
+    pub configuration: Configuration,
+}

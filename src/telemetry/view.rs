@@ -1,0 +1,134 @@
+//! Conversion of cycles to samples, with the geometry of the controller that each cycle names.
+
+use super::message::Message;
+use super::sample::Sample;
+use crate::control::{Activity, JointSprings, Report};
+use crate::finger::{ControlRecord, ControllerSource, CycleRecord, FingertipState, Stage};
+use crate::model::configuration::{Configuration, ConfiguredFinger, FINGERS};
+use crate::model::{FingerNumber, Links};
+use crate::realtime::CycleStage;
+use nalgebra::{Isometry3, Matrix3, Matrix3x4, Vector3};
+use std::collections::BTreeMap;
+
+/// What samples of a hand's fingers are computed with.
+pub struct View {
+    rate: f64,
+    fingers: [FingerView; FINGERS],
+}
+
+struct FingerView {
+    to_palm: Isometry3<f64>,
+    /// The finger as it was configured at open, for cycles whose controller has not been announced.
+    configured: Mechanics,
+    /// For each controller, by its number, the finger that it is made for.
+    adjusted: BTreeMap<u32, Mechanics>,
+    /// The last cycle in which the controller ran.
+    last: Option<ControlRecord>,
+}
+
+/// Geometry, springs and tension bounds of a finger.
+struct Mechanics {
+    links: Links,
+    r: Matrix3x4<f64>,
+    springs: Option<JointSprings>,
+    tension_bounds: (f64, f64),
+}
+
+impl Mechanics {
+    fn new(finger: &ConfiguredFinger, rate: f64) -> Self {
+        Self {
+            links: finger.links(),
+            r: finger.r(),
+            springs: JointSprings::new(finger, rate),
+            tension_bounds: (finger.tendon.minimum, finger.tendon.maximum),
+        }
+    }
+}
+
+impl View {
+    /// Creates the view of a hand with this configuration.
+    pub fn new(configuration: &Configuration) -> Self {
+        let rate = configuration.hand.rate;
+        let finger = |number: FingerNumber| FingerView {
+            to_palm: configuration.finger_to_palm(number),
+            configured: Mechanics::new(&configuration.fingers[number.index()], rate),
+            adjusted: BTreeMap::new(),
+            last: None,
+        };
+        Self { rate, fingers: FingerNumber::ALL.map(finger) }
+    }
+
+    /// Takes note of a controller. Later cycles that name it are computed with its finger.
+    pub fn note_controller(&mut self, finger: FingerNumber, source: &ControllerSource) {
+        let mechanics = Mechanics::new(&source.finger, self.rate);
+        self.fingers[finger.index()].adjusted.insert(source.number, mechanics);
+    }
+
+    /// Takes note of a controller, and converts a cycle. Returns none for every other message.
+    pub fn take(&mut self, message: &Message) -> Option<Sample> {
+        match message {
+            Message::Controller { finger, source, .. } => {
+                self.note_controller(*finger, source);
+                None
+            }
+            Message::Cycle { finger, record } => Some(self.sample(*finger, record)),
+            _ => None,
+        }
+    }
+
+    /// Converts a cycle.
+    pub fn sample(&mut self, finger: FingerNumber, record: &CycleRecord) -> Sample {
+        let view = &mut self.fingers[finger.index()];
+        let control = record.control.or(view.last);
+        view.last = control;
+        let adjusted = control.and_then(|control| view.adjusted.get(&control.controller));
+        let mechanics = adjusted.unwrap_or(&view.configured);
+        let report = control.map_or_else(Report::default, |control| control.report);
+        let set_point = control.and_then(|control| match control.input.activity {
+            Activity::Follow(set_point) => Some(set_point),
+            _ => None,
+        });
+        let running = record.stage == Stage::Running;
+        let springs = mechanics.springs.as_ref().filter(|_| running);
+        let spring = springs.zip(set_point.as_ref());
+        let state = FingertipState::new(mechanics.links, &mechanics.r, &report, spring);
+        let (to_palm, turn) = (&view.to_palm, view.to_palm.rotation.to_rotation_matrix());
+        let in_palm = |tip: Vector3<f64>| to_palm.transform_point(&tip.into()).coords.into();
+        let microseconds = |stage| record.timing.duration(stage).map(|time| f64::from(time) * 1e-3);
+        Sample {
+            finger,
+            cycle: record.cycle,
+            began: record.began,
+            stage: record.stage,
+            computed: record.control.is_some(),
+            joints: report.joints.into(),
+            joint_rates: report.joint_rates.into(),
+            joint_set_point: set_point.map(|set_point| set_point.joints.into()),
+            tip: in_palm(state.tip),
+            tip_set_point: set_point.map(|set_point| in_palm(mechanics.links.tip(&set_point.joints))),
+            tip_force: state.force.into(),
+            tip_force_in_palm: (turn * state.force).into(),
+            kx: set_point.map(|set_point| rows(&set_point.stiffness.fixed_view::<3, 3>(0, 0).into_owned())),
+            stiffness: rows(&state.stiffness),
+            stiffness_in_palm: rows(&(turn * state.stiffness * turn.transpose())),
+            joint_torques: report.joint_torques.into(),
+            measured_joint_torques: state.torques.into(),
+            desired_tensions: report.desired_tensions.into(),
+            tensions: report.tensions.into(),
+            t_min: mechanics.tension_bounds.0,
+            t_max: mechanics.tension_bounds.1,
+            motor_torques: report.motor_torques.into(),
+            torque_scale: report.torque_scale,
+            stiffness_scale: report.stiffness_scale,
+            contact_force: (-report.contact.force).into(),
+            touching: report.contact.touching,
+            slide: report.contact.slide,
+            wake_up: microseconds(CycleStage::WakeUp),
+            whole: microseconds(CycleStage::Whole),
+        }
+    }
+}
+
+fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]))
+}

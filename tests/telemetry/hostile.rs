@@ -1,0 +1,1 @@
+//! Processes that do not keep to the protocol.

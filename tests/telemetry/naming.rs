@@ -1,0 +1,40 @@
+//! The names of hands, and which processes may attach.
+
+use crate::support::{OtherProcess, configuration, name, open, read_for, reader};
+use std::time::Duration;
+use sun2xp::hand::Hand;
+use sun2xp::telemetry::{AttachError, Reader, hands};
+
+#[test]
+fn several_hands_have_names() {
+    let name = name("several");
+    let first = open(&name);
+    let second = open(&name);
+    let other = OtherProcess::with_hand(&name);
+    let numbered = [name.clone(), format!("{name}-2"), format!("{name}-3")];
+    let open: Vec<String> = hands().expect("names").into_iter().filter(|found| found.starts_with(&name)).collect();
+    assert_eq!(open, numbered);
+    let mut readers = numbered.map(|name| reader(&name));
+    for reader in &mut readers {
+        read_for(reader, Duration::from_millis(100), &mut Vec::new());
+    }
+    assert_eq!(readers[1].description().name, format!("{name}-2"));
+    assert_eq!(readers[2].description().process, other.child.id());
+    // Without a name there is a choice, which is the user's.
+    assert!(matches!(Reader::attach(None), Err(AttachError::Several(names)) if names.contains(&name)));
+    drop((first, second));
+    other.end();
+    let error = Reader::attach(Some(&name)).err().expect("closed");
+    assert!(matches!(&error, AttachError::Unknown { wanted, .. } if *wanted == name), "{error}");
+}
+
+#[test]
+fn telemetry_can_be_turned_off() {
+    let name = name("off");
+    let mut configured = configuration(&name);
+    configured.telemetry.enabled = false;
+    let hand = Hand::open(configured).expect("open");
+    assert!(!hands().expect("names").contains(&name));
+    assert!(matches!(Reader::attach(Some(&name)), Err(AttachError::Unknown { .. })));
+    drop(hand);
+}
