@@ -833,6 +833,12 @@ const char *HandError(void);
 #define TIMING_AGE 7                /* Age of the newest measurement when the command computed from it takes effect,
                                        by the board's clock. One period if nothing is late. */
 
+/* Condition of a wait (WaitFingers) */
+#define WAIT_ARRIVED 1              /* Every joint has been within finger.events.arrived_degrees of the set point
+                                       sent last. */
+#define WAIT_SETTLED 2              /* Since the set point sent last took effect, no joint has moved by more than
+                                       finger.events.settled_degrees for finger.events.settled_ms. */
+
 /* Condition of a reflex (Reflex.Condition) */
 #define WHEN_EVENT 1                /* An event of the finger: Event. */
 #define WHEN_OTHER_FINGER 2         /* An event of another finger: Event and Finger. */
@@ -1488,9 +1494,7 @@ int SendGroup(int, const struct FingerCommand *);
 
    Count     number of fingers, 0 to 3
    Fingers   Fingers[Count]: the fingers, 1 to 3
-   Until     1: arrived. Every joint has been within finger.events.arrived_degrees of the set point sent
-             last. 2: settled. Since that set point took effect, no joint has moved by more than
-             finger.events.settled_degrees for finger.events.settled_ms
+   Until     WAIT_ARRIVED or WAIT_SETTLED
    Limit     longest time to wait, s
 
  Waits until the condition holds for every finger. Returns at once if it holds already. A finger
@@ -1512,7 +1516,7 @@ int SendGroup(int, const struct FingerCommand *);
  Example:
 
      int Fingers[2] = {1, 2};
-     if (WaitFingers(2, Fingers, 2, 5.0) != 0)
+     if (WaitFingers(2, Fingers, WAIT_SETTLED, 5.0) != 0)
          fprintf(stderr, "%s\n", HandError());
  */
 int WaitFingers(int, const int *, int, double);

@@ -46,6 +46,7 @@ const HEADINGS: &[(&str, &str)] = &[
     ("FINGER_", "State of a finger (FingerStatus.State, FingerRecord.State)"),
     ("WHEN_", "Condition of a reflex (Reflex.Condition)"),
     ("THEN_", "Reaction of a reflex (Reflex.Reaction)"),
+    ("WAIT_", "Condition of a wait (WaitFingers)"),
     ("TIMING_", "Stage of a cycle (GetTiming, FingerTiming.Stage)"),
 ];
 

@@ -12,6 +12,13 @@ use crate::model::configuration::FINGERS;
 use std::ffi::{c_int, c_uint};
 use std::time::Duration;
 
+/// Every joint has been within finger.events.arrived_degrees of the set point sent last.
+pub const WAIT_ARRIVED: c_int = 1;
+
+/// Since the set point sent last took effect, no joint has moved by more than finger.events.settled_degrees for
+/// finger.events.settled_ms.
+pub const WAIT_SETTLED: c_int = 2;
+
 /// Command to one finger of a group (SendGroup).
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -90,9 +97,7 @@ pub unsafe extern "C" fn SendGroup(Count: c_int, Commands: *const FingerCommand)
 ///
 ///   Count     number of fingers, 0 to 3
 ///   Fingers   Fingers[Count]: the fingers, 1 to 3
-///   Until     1: arrived. Every joint has been within finger.events.arrived_degrees of the set point sent
-///             last. 2: settled. Since that set point took effect, no joint has moved by more than
-///             finger.events.settled_degrees for finger.events.settled_ms
+///   Until     WAIT_ARRIVED or WAIT_SETTLED
 ///   Limit     longest time to wait, s
 ///
 /// Waits until the condition holds for every finger. Returns at once if it holds already. A finger
@@ -114,7 +119,7 @@ pub unsafe extern "C" fn SendGroup(Count: c_int, Commands: *const FingerCommand)
 /// Example:
 ///
 ///     int Fingers[2] = {1, 2};
-///     if (WaitFingers(2, Fingers, 2, 5.0) != 0)
+///     if (WaitFingers(2, Fingers, WAIT_SETTLED, 5.0) != 0)
 ///         fprintf(stderr, "%s\n", HandError());
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn WaitFingers(Count: c_int, Fingers: *const c_int, Until: c_int, Limit: f64) -> c_int {
@@ -133,8 +138,8 @@ pub unsafe extern "C" fn WaitFingers(Count: c_int, Fingers: *const c_int, Until:
                 .iter()
                 .try_for_each(|&finger| default_hand::with(|hand| hand.report(finger).map(drop)))?;
             let until = match Until {
-                1 => hand::Until::Arrived,
-                2 => hand::Until::Settled,
+                WAIT_ARRIVED => hand::Until::Arrived,
+                WAIT_SETTLED => hand::Until::Settled,
                 _ => return Err(hand::HandError::from(SetPointError::NoSuchCondition(Until)).into()),
             };
             // A limit that is too long for a Duration is no limit.

@@ -41,8 +41,8 @@ pub enum HandError {
     NoSuchStage(i32),
     /// The finger has no tactile element with this number.
     #[error(
-        "finger {finger} has no tactile element {element}, but {count}, which count from 0: list its elements in \
-         [finger.{finger}.touch]"
+        "finger {finger} has {count} tactile elements, numbered from 0, and none with the number {element}: list its \
+         elements in [finger.{finger}.touch]"
     )]
     NoSuchElement {
         /// The finger.

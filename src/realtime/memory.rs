@@ -31,6 +31,11 @@ impl LockedMemory {
         self.0.extend_from_slice(&other.0);
     }
 
+    /// Returns the ranges. They do not overlap, and each is mapped as long as its value exists.
+    pub fn ranges(&self) -> &[Range<usize>] {
+        &self.0
+    }
+
     /// Faults in the pages of every range, and locks them.
     ///
     /// # Errors

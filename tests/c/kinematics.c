@@ -15,7 +15,7 @@ int main(void)
 
     CHECK(OpenHand() == 0);
     CHECK(SendPosD(1, Pos) == 0);
-    CHECK(WaitFingers(1, Fingers, 2, 20.0) == 0);
+    CHECK(WaitFingers(1, Fingers, WAIT_SETTLED, 20.0) == 0);
     CHECK(FindTip(1, Pos, Tip) == 0);
     CHECK(FindPos(1, Tip, Found) == 0);
     for (joint = 0; joint < 3; joint++)
@@ -48,7 +48,7 @@ int main(void)
     CHECK(SetGravity(Down) == 0);
     REFUSED(SetGravity(Far), EINVAL, "gravity");
     CHECK(SendPosD(1, Found) == 0);
-    CHECK(WaitFingers(0, Fingers, 1, 0.0) == 0);
+    CHECK(WaitFingers(0, Fingers, WAIT_ARRIVED, 0.0) == 0);
     CHECK(CloseHand() == 0);
     return 0;
 }

@@ -11,7 +11,7 @@ static double deflection(int joint, const double *Pos)
     int Fingers[1] = {1};
 
     PAUSE_MS(300);
-    CHECK(WaitFingers(1, Fingers, 2, 20.0) == 0);
+    CHECK(WaitFingers(1, Fingers, WAIT_SETTLED, 20.0) == 0);
     CHECK(GetPosD(1, Now) == 0);
     return Now[joint] - Pos[joint];
 }
@@ -26,7 +26,7 @@ int main(void)
 
     CHECK(OpenHand() == 0);
     CHECK(SendPosD(1, Pos) == 0);
-    CHECK(WaitFingers(1, Fingers, 2, 20.0) == 0);
+    CHECK(WaitFingers(1, Fingers, WAIT_SETTLED, 20.0) == 0);
     CHECK(SendJointStiffness(1, K) == 0);
     CHECK(SendJointTorque(1, Torque) == 0);
     /* 6 N cm on a joint of 60 N cm/rad, against the friction of the joint. */

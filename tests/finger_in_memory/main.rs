@@ -11,6 +11,7 @@ mod finger_on_a_cable;
 mod floods;
 mod kinds;
 mod limits;
+mod locked_memory;
 mod motion;
 mod named_hands;
 mod opening;

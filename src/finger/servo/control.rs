@@ -1,7 +1,11 @@
 //! Computes a finger's command in one cycle. The servo takes what planners have sent, and then runs the controller.
 
 use super::FingerServo;
-use crate::control::Activity;
+use super::set_point_motion::Following;
+use crate::control::events::Arrival;
+use crate::control::motion::{Follower, InterpolationState};
+use crate::control::{Activity, SetPoint};
+use crate::finger::sent::SentSetPoint;
 use crate::finger::{Adjustable, ControlInput, ControlRecord, Order, Stage};
 use crate::model::configuration::EndState;
 
@@ -75,5 +79,62 @@ impl FingerServo {
             }
         }
         previous
+    }
+
+    /// Follows the set point that a planner has sent. A set point of another spring phase is discarded.
+    pub(super) fn take_set_point(&mut self, sent: &SentSetPoint) {
+        if sent.spring != self.report.springs && self.motion.expired_phase != Some(sent.spring) {
+            return;
+        }
+        self.reflexes.note_set_point(self.motion.next_period);
+        if self.reflexes.inhibits() {
+            return;
+        }
+        let held = self.report.set_point;
+        let mut set_point = sent.set_point;
+        let motion = &mut self.motion;
+        motion.expired_phase = None;
+        motion.target = set_point.joints;
+        match &sent.path {
+            Some(path) if path.number != motion.path.number => {
+                // The buffer may already have a later path, whose set point is not published yet.
+                let taken = self.mailbox.take_path();
+                motion.path = Following {
+                    number: taken.number,
+                    follower: Some(Follower::new(held.stiffness)),
+                    stiffness: path.stiffness,
+                };
+            }
+            Some(path) => motion.path.stiffness &= path.stiffness,
+            None if motion.path.follower.is_some() => {
+                motion.path.follower = None;
+                motion.interpolation = InterpolationState::at_rest(held.joints);
+            }
+            None => {}
+        }
+        if motion.path.follower.is_some() {
+            (set_point.joints, set_point.motion) = (held.joints, held.motion);
+            if motion.path.stiffness {
+                set_point.stiffness = held.stiffness;
+            }
+        } else if self.adjustable.motion.interpolation.is_some() {
+            set_point.joints = held.joints;
+        } else {
+            motion.interpolation = InterpolationState::at_rest(set_point.joints);
+        }
+        self.follow(set_point, sent.number);
+        self.begin_validity(sent);
+    }
+
+    /// Makes the finger follow a set point from this cycle on. `number` is the number of the set point.
+    pub(super) fn follow(&mut self, set_point: SetPoint, number: u32) {
+        if set_point != self.report.set_point {
+            // The detectors compare the measurements with the new set point only after the next reply.
+            self.report.arrival = Arrival::default();
+        }
+        self.report.set_point_number = number;
+        self.report.set_point = set_point;
+        self.report.set_point_period = self.report.period;
+        self.activity = Activity::Follow(set_point);
     }
 }

@@ -1,7 +1,6 @@
 //! The stages of a finger from open to close, and the transitions between them.
 
 use super::{FingerServo, STOPS_AFTER_FAULT};
-use crate::control::events::Arrival;
 use crate::control::{Activity, Feedback, MotorCommand, SetPoint};
 use crate::finger::{Fault, FaultKind, Order, RestoredBoard, Stage};
 use crate::model::Part;
@@ -87,18 +86,6 @@ impl FingerServo {
         } else {
             Fault::of(FaultKind::OpeningTimedOut, waited_ms)
         });
-    }
-
-    /// Makes the finger follow a set point from this cycle on. `number` is the number of the set point.
-    pub(super) fn follow(&mut self, set_point: SetPoint, number: u32) {
-        if set_point != self.report.set_point {
-            // The detectors compare the measurements with the new set point only after the next reply.
-            self.report.arrival = Arrival::default();
-        }
-        self.report.set_point_number = number;
-        self.report.set_point = set_point;
-        self.report.set_point_period = self.report.period;
-        self.activity = Activity::Follow(set_point);
     }
 
     pub(super) fn enter(&mut self, stage: Stage) {

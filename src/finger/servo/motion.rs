@@ -1,8 +1,8 @@
 //! The motion of the set point in the servo: paths, the interpolation of set points, and their expiry.
 
 use super::FingerServo;
-use super::set_point_motion::{Expiry, Following};
-use crate::control::motion::{Follower, InterpolationState, PathTable};
+use super::set_point_motion::Expiry;
+use crate::control::motion::{InterpolationState, PathTable};
 use crate::control::{Activity, SetPoint};
 use crate::finger::events::{EventKind, Occurrence};
 use crate::finger::motion_settings::{AfterExpiry, MotionSettings};
@@ -11,53 +11,8 @@ use crate::finger::{Fault, FaultKind, Reference, Stage};
 use crate::model::Part;
 
 impl FingerServo {
-    /// Follows the set point that a planner has sent. A set point of another spring phase is discarded.
-    pub(super) fn take_set_point(&mut self, sent: &SentSetPoint) {
-        if sent.spring != self.report.springs && self.motion.expired_phase != Some(sent.spring) {
-            return;
-        }
-        self.reflexes.note_set_point(self.motion.next_period);
-        if self.reflexes.inhibits() {
-            return;
-        }
-        let held = self.report.set_point;
-        let mut set_point = sent.set_point;
-        let motion = &mut self.motion;
-        motion.expired_phase = None;
-        motion.target = set_point.joints;
-        match &sent.path {
-            Some(path) if path.number != motion.path.number => {
-                // The buffer may already have a later path, whose set point is not published yet.
-                let taken = self.mailbox.take_path();
-                motion.path = Following {
-                    number: taken.number,
-                    follower: Some(Follower::new(held.stiffness)),
-                    stiffness: path.stiffness,
-                };
-            }
-            Some(path) => motion.path.stiffness &= path.stiffness,
-            None if motion.path.follower.is_some() => {
-                motion.path.follower = None;
-                motion.interpolation = InterpolationState::at_rest(held.joints);
-            }
-            None => {}
-        }
-        if motion.path.follower.is_some() {
-            (set_point.joints, set_point.motion) = (held.joints, held.motion);
-            if motion.path.stiffness {
-                set_point.stiffness = held.stiffness;
-            }
-        } else if self.adjustable.motion.interpolation.is_some() {
-            set_point.joints = held.joints;
-        } else {
-            motion.interpolation = InterpolationState::at_rest(set_point.joints);
-        }
-        self.follow(set_point, sent.number);
-        self.begin_validity(sent);
-    }
-
     /// Computes when a set point expires. A path is valid until its end, and from there for the time of a set point.
-    fn begin_validity(&mut self, sent: &SentSetPoint) {
+    pub(super) fn begin_validity(&mut self, sent: &SentSetPoint) {
         let valid = sent.valid.or(self.adjustable.motion.valid);
         let now = self.motion.next_period;
         let mut begin = now;

@@ -9,7 +9,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum PathError {
     /// The path has no pose, or too many.
-    #[error("a path of {count} poses: send 1 to {most} poses, and further ones as another path")]
+    #[error("the path has {count} poses: send 1 to {most} poses, and further ones as another path")]
     Count {
         /// Number of poses.
         count: usize,

@@ -139,7 +139,7 @@ pub enum SetPointError {
     #[error("a group has 0 to 3 commands, and not {0}")]
     GroupSize(i32),
     /// The condition to wait for does not exist.
-    #[error("there is no condition {0} to wait for: 1 is arrived, and 2 is settled")]
+    #[error("there is no condition {0} to wait for: pass WAIT_ARRIVED or WAIT_SETTLED")]
     NoSuchCondition(i32),
     /// A time limit is negative or NaN.
     #[error("the time limit {0} s is not zero or positive")]
