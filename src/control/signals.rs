@@ -44,7 +44,7 @@ pub struct SetPoint {
     #[serde(default)]
     pub motion: Option<Motion>,
     /// The spring in joint angles that acts in addition to `stiffness`; none if there is no such spring.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub joint_spring: Option<JointSpring>,
 }
 

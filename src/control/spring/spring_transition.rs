@@ -62,7 +62,7 @@ pub(crate) struct SpringStages {
     first: Spring,
     second: Spring,
     /// The two stages of the joint spring, if there is one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     joint: Option<[JointSpring; 2]>,
 }
 
