@@ -8,6 +8,7 @@ use crate::model::configuration::{Configuration, ConfiguredHand};
 use crate::realtime::Distribution;
 use crate::simulated::ObjectState;
 use serde::{Deserialize, Serialize};
+use std::io;
 
 /// A message of a hand.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -44,6 +45,28 @@ pub enum Message {
     Object(ObjectState),
     /// The status of a finger, once a second, and at once for a new reader.
     Status(Box<Status>),
+}
+
+impl Message {
+    /// Returns the message in the format of the shared memory, which keeps every bit.
+    ///
+    /// # Errors
+    /// Returns an error if the message cannot be encoded. No message of this library is such a message.
+    pub fn encode(&self) -> io::Result<Vec<u8>> {
+        postcard::to_stdvec(self).map_err(io::Error::other)
+    }
+
+    /// Returns the message in `bytes`.
+    ///
+    /// # Errors
+    /// Returns an error if `bytes` are not exactly one message.
+    pub fn decode(bytes: &[u8]) -> io::Result<Self> {
+        match postcard::take_from_bytes(bytes) {
+            Ok((message, [])) => Ok(message),
+            Ok(_) => Err(io::Error::new(io::ErrorKind::InvalidData, "bytes follow the message")),
+            Err(error) => Err(io::Error::new(io::ErrorKind::InvalidData, error)),
+        }
+    }
 }
 
 /// The status of a finger.

@@ -11,6 +11,8 @@ mod failure;
 mod jog;
 mod model;
 mod print;
+#[allow(dead_code, unused_imports, reason = "the commands that read recordings follow")]
+mod recording;
 mod replay;
 mod schedule;
 mod virtual_machine;

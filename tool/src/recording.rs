@@ -1,0 +1,18 @@
+//! Recordings: MCAP files with the telemetry of a hand. Each file can be read by itself.
+//!
+//! `/finger1/cycle` to `/finger3/cycle` have the samples, for every MCAP reader that supports ROS 2. `/finger1/replay`
+//! and so on have the messages of telemetry with every bit, from which this program reads the cycles again. The other
+//! channels are JSON. docs/recordings.md describes the format.
+
+mod black_box;
+mod cdr;
+mod channels;
+mod entry;
+mod reading;
+#[cfg(test)]
+mod tests;
+mod writing;
+
+pub use entry::{Entry, Item};
+pub use reading::Recording;
+pub use writing::RecordingWriter;

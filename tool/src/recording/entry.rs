@@ -1,0 +1,27 @@
+//! The contents of a recording.
+
+use sun2xp::model::FingerNumber;
+use sun2xp::telemetry::Message;
+
+/// What a recording contains, in its order.
+#[derive(Clone, Debug)]
+pub enum Item {
+    /// A message of telemetry. The status has no last cycle.
+    Message(Message),
+    /// Cycles of this finger are missing here, because the recorder or the hand was too slow.
+    Lost {
+        /// The finger.
+        finger: FingerNumber,
+        /// Number of cycles.
+        cycles: u64,
+    },
+}
+
+/// An item with its time, ns since 1970.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// The time.
+    pub time: u64,
+    /// The item.
+    pub item: Item,
+}

@@ -1,0 +1,235 @@
+//! Reading a recording: an MCAP file that `sun2xp record` has written, complete or not, or a black box.
+
+use super::black_box;
+use super::channels::{DESCRIPTION, EVENTS, FORMAT, LOST, OBJECT, POSTCARD, STATUS, VERSION};
+use super::entry::{Entry, Item};
+use crate::failure::Failure;
+use mcap::records::{Record, op};
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use sun2xp::files::open_regular_file;
+use sun2xp::model::{FingerNumber, ShownPath};
+use sun2xp::telemetry::{Description, Message};
+
+/// Largest record that is read, bytes. A chunk has at most 8 MB.
+const LARGEST_RECORD: usize = 64 << 20;
+
+/// Largest number of channels. A recording has 11.
+const MOST_CHANNELS: usize = 1000;
+
+/// An open recording. It is an iterator over the entries, in the order in which they were recorded. The cycles of a
+/// finger are in their order. It needs little memory, however long the recording is.
+pub struct Recording {
+    path: PathBuf,
+    source: Source,
+    description: Description,
+    complete: bool,
+    ended: bool,
+}
+
+/// Where the entries come from.
+enum Source {
+    Mcap(Box<Mcap>),
+    BlackBox(std::vec::IntoIter<Entry>),
+}
+
+struct Mcap {
+    file: File,
+    reader: LinearReader,
+    channels: BTreeMap<u16, (String, String)>,
+    /// Number of bytes of the file and of those that have been read.
+    bytes: (u64, u64),
+}
+
+/// A record that this program reads.
+enum Found {
+    Description(Box<Description>),
+    Format { version: String, library: String },
+    Entry(Entry),
+    End,
+}
+
+impl Recording {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read, or if it is neither a recording nor a black box.
+    pub fn open(path: &Path) -> Result<Self, Failure> {
+        let unreadable = |error| format!("cannot read {}: {error}", ShownPath(path));
+        if black_box::is_one(path).map_err(unreadable)? {
+            let (description, entries) = black_box::read(path)?;
+            return Ok(Self::new(path, Source::BlackBox(entries.into_iter()), description));
+        }
+        let file = open_regular_file(path, u64::MAX).map_err(unreadable)?.into_inner();
+        let bytes = (file.metadata().map_err(unreadable)?.len(), 0);
+        let options =
+            LinearReaderOptions::default().with_prevalidate_chunk_crcs(true).with_record_length_limit(LARGEST_RECORD);
+        let reader = LinearReader::new_with_options(options);
+        let mut mcap = Mcap { file, reader, channels: BTreeMap::new(), bytes };
+        let foreign = |reason: &str| format!("{} is not a recording of sun2xp: {reason}", ShownPath(path));
+        loop {
+            match mcap.next().map_err(|error| foreign(&error.to_string()))? {
+                Some(Found::Format { version, .. }) if version == VERSION => {}
+                Some(Found::Format { library, .. }) => {
+                    return Err(foreign(&format!("library {library} wrote it in another version of the format")).into());
+                }
+                Some(Found::Description(description)) => {
+                    description.configuration.check().map_err(|wrong| {
+                        foreign(&format!("{}.{} {}", wrong.section, wrong.unusable.key, wrong.unusable.reason))
+                    })?;
+                    return Ok(Self::new(path, Source::Mcap(Box::new(mcap)), *description));
+                }
+                Some(Found::Entry(_)) => return Err(foreign("its first message is not a description").into()),
+                Some(Found::End) | None => return Err(foreign("it has no description of a hand").into()),
+            }
+        }
+    }
+
+    fn new(path: &Path, source: Source, description: Description) -> Self {
+        let complete = matches!(source, Source::BlackBox(_));
+        Self { path: path.to_owned(), source, description, complete, ended: false }
+    }
+
+    /// Returns the description of the hand.
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    /// Returns whether the file ends as its recorder has ended it. It is false until the last entry has been read, and
+    /// stays false if the recorder was killed.
+    pub fn is_complete(&self) -> bool {
+        self.complete
+    }
+
+    /// Returns which part of the file has been read, 0 to 1.
+    pub fn progress(&self) -> f64 {
+        match &self.source {
+            Source::Mcap(mcap) => mcap.bytes.1 as f64 / mcap.bytes.0.max(1) as f64,
+            Source::BlackBox(entries) => {
+                if entries.len() == 0 {
+                    1.0
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+}
+
+impl Iterator for Recording {
+    type Item = Result<Entry, Failure>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let mcap = match &mut self.source {
+            _ if self.ended => return None,
+            Source::BlackBox(entries) => return entries.next().map(Ok),
+            Source::Mcap(mcap) => mcap,
+        };
+        loop {
+            match mcap.next() {
+                Ok(Some(Found::Entry(entry))) => return Some(Ok(entry)),
+                Ok(Some(Found::Description(_) | Found::Format { .. })) => {}
+                Ok(Some(Found::End)) => {
+                    (self.complete, self.ended) = (true, true);
+                    return None;
+                }
+                Ok(None) => {
+                    self.ended = true;
+                    return None;
+                }
+                Err(error) => {
+                    self.ended = true;
+                    return Some(Err(format!("{}: {error}", ShownPath(&self.path)).into()));
+                }
+            }
+        }
+    }
+}
+
+impl Mcap {
+    /// Reads the next record that this program uses. Returns none at the end of a file that is not complete.
+    fn next(&mut self) -> Result<Option<Found>, Failure> {
+        loop {
+            let found = match self.reader.next_event() {
+                None => return Ok(Some(Found::End)),
+                Some(Err(mcap::McapError::UnexpectedEof)) => return Ok(None),
+                Some(Err(error)) => return Err(error.into()),
+                Some(Ok(LinearReadEvent::ReadRequest(count))) => {
+                    let count = count.min(LARGEST_RECORD);
+                    let read = self.file.read(self.reader.insert(count))?;
+                    self.reader.notify_read(read);
+                    self.bytes.1 += read as u64;
+                    continue;
+                }
+                Some(Ok(LinearReadEvent::Record { data, opcode })) => interpret(&mut self.channels, opcode, data)?,
+            };
+            if let Some(found) = found {
+                return Ok(Some(found));
+            }
+        }
+    }
+}
+
+/// Returns what a record contains; none if this program does not use it.
+fn interpret(
+    channels: &mut BTreeMap<u16, (String, String)>,
+    opcode: u8,
+    data: &[u8],
+) -> Result<Option<Found>, Failure> {
+    if opcode == op::FOOTER {
+        return Ok(Some(Found::End));
+    }
+    if !matches!(opcode, op::CHANNEL | op::MESSAGE | op::METADATA) {
+        return Ok(None);
+    }
+    Ok(match mcap::parse_record(opcode, data)? {
+        Record::Channel(channel) if channels.len() < MOST_CHANNELS => {
+            channels.insert(channel.id, (channel.topic, channel.message_encoding));
+            None
+        }
+        Record::Metadata(metadata) if metadata.name == FORMAT => {
+            let value = |key| metadata.metadata.get(key).cloned().unwrap_or_default();
+            Some(Found::Format { version: value("version"), library: value("library") })
+        }
+        Record::Message { header, data } => match channels.get(&header.channel_id) {
+            Some((topic, encoding)) => message(topic, encoding, header.log_time, &data)?,
+            None => return Err("a message belongs to no channel".into()),
+        },
+        _ => None,
+    })
+}
+
+/// Cycles that were lost.
+#[derive(Deserialize)]
+struct Lost {
+    finger: FingerNumber,
+    cycles: u64,
+}
+
+fn message(topic: &str, encoding: &str, time: u64, data: &[u8]) -> Result<Option<Found>, Failure> {
+    let wrong = |error: serde_json::Error| format!("a message of {topic} cannot be read: {error}");
+    let item = match (topic, encoding) {
+        (DESCRIPTION, _) => return Ok(Some(Found::Description(serde_json::from_slice(data).map_err(wrong)?))),
+        (EVENTS, _) => Item::Message(Message::Event(serde_json::from_slice(data).map_err(wrong)?)),
+        (OBJECT, _) => Item::Message(Message::Object(serde_json::from_slice(data).map_err(wrong)?)),
+        (STATUS, _) => Item::Message(Message::Status(serde_json::from_slice(data).map_err(wrong)?)),
+        (LOST, _) => {
+            let Lost { finger, cycles } = serde_json::from_slice(data).map_err(wrong)?;
+            Item::Lost { finger, cycles }
+        }
+        (_, POSTCARD) => {
+            let message = Message::decode(data).map_err(|error| format!("a message of {topic}: {error}"))?;
+            if let Message::Controller { source, .. } = &message {
+                let refused = |key: &str, reason: &str| format!("a controller of {topic}: {key} {reason}");
+                source.finger.check().map_err(|wrong| refused(wrong.key, &wrong.reason))?;
+            }
+            Item::Message(message)
+        }
+        _ => return Ok(None),
+    };
+    Ok(Some(Found::Entry(Entry { time, item })))
+}

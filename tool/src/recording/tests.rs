@@ -1,0 +1,158 @@
+//! Recordings of a simulated hand are read again, complete or not, and so are black boxes.
+
+use super::{Entry, Item, Recording, RecordingWriter};
+use std::fs::{self, File};
+use std::path::Path;
+use std::time::{Duration, Instant};
+use sun2xp::hand::Hand;
+use sun2xp::model::FingerNumber;
+use sun2xp::model::configuration::{Configuration, RealTime};
+use sun2xp::telemetry::{Message, Reader};
+
+fn open(name: &str) -> Hand {
+    let mut configuration = Configuration::default();
+    configuration.telemetry.name = format!("recording-{}-{name}", std::process::id());
+    configuration.hand.real_time = RealTime::Ignore;
+    Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"))
+}
+
+/// Reads from a simulated hand for this time. Returns its reader, for the description, and the messages.
+fn messages(name: &str, time: Duration) -> (Reader, Vec<Message>) {
+    let hand = open(name);
+    let mut reader = Reader::attach(Some(&format!("recording-{}-{name}", std::process::id()))).expect("attached");
+    hand.send_position(1, [0.1, 0.5, 0.9]).expect("sent");
+    let (mut messages, end) = (Vec::new(), Instant::now() + time);
+    while Instant::now() < end {
+        reader.read(Duration::from_millis(100), &mut messages).expect("open");
+    }
+    hand.stop(2).expect("stopped");
+    drop(hand);
+    while reader.read(Duration::from_millis(100), &mut messages).is_ok() {}
+    (reader, messages)
+}
+
+fn write(path: &Path, reader: &Reader, messages: &[Message]) {
+    let file = File::create(path).expect("a file");
+    let mut writer = RecordingWriter::new(file, reader.description()).expect("begun");
+    for (number, message) in messages.iter().enumerate() {
+        writer.write(message).expect("written");
+        if number % 500 == 0 {
+            writer.write_lost(FingerNumber::THREE, 7).expect("written");
+            std::thread::sleep(Duration::from_millis(1));
+            writer.flush_if_due().expect("written");
+        }
+    }
+    writer.finish().expect("finished");
+}
+
+/// The messages in a form that can be compared. The status is recorded without its last cycle.
+fn shown<'a>(messages: impl IntoIterator<Item = &'a Message>) -> Vec<String> {
+    let shown = |message: &Message| match message {
+        Message::Status(status) => {
+            let mut status = status.clone();
+            status.last = None;
+            format!("{status:?}")
+        }
+        message => format!("{message:?}"),
+    };
+    messages.into_iter().map(shown).collect()
+}
+
+#[test]
+fn a_recording_has_every_message_with_every_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.mcap");
+    let (reader, messages) = messages("whole", Duration::from_millis(700));
+    write(&path, &reader, &messages);
+    let mut recording = Recording::open(&path).expect("a recording");
+    assert_eq!(recording.description(), reader.description());
+    let entries: Vec<Entry> = recording.by_ref().map(|entry| entry.expect("readable")).collect();
+    assert!(recording.is_complete() && recording.progress() > 0.9);
+    let lost = entries.iter().filter(|entry| matches!(entry.item, Item::Lost { cycles: 7, .. })).count();
+    assert_eq!(lost, messages.len().div_ceil(500));
+    let recorded = entries.iter().filter_map(|entry| match &entry.item {
+        Item::Message(message) => Some(message),
+        Item::Lost { .. } => None,
+    });
+    assert_eq!(shown(recorded), shown(&messages));
+    let offset = reader.description().clock_offset;
+    for entry in &entries {
+        if let Item::Message(Message::Cycle { record, .. }) = &entry.item {
+            assert_eq!(entry.time, record.began.saturating_add_signed(offset));
+        }
+    }
+    let kinds = |find: fn(&Message) -> bool| messages.iter().filter(|message| find(message)).count();
+    assert!(kinds(|message| matches!(message, Message::Cycle { .. })) > 1500);
+    assert!(kinds(|message| matches!(message, Message::Event(_))) > 0);
+    assert!(kinds(|message| matches!(message, Message::Status(_))) > 2);
+}
+
+#[test]
+fn a_recording_that_ends_anywhere_is_readable_up_to_its_last_chunk() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.mcap");
+    let (reader, messages) = messages("cut", Duration::from_millis(400));
+    write(&path, &reader, &messages);
+    let whole = fs::read(&path).expect("the file");
+    let mut read = Vec::new();
+    for part in [30, 60, 90, 99] {
+        fs::write(&path, &whole[..whole.len() * part / 100]).expect("written");
+        let mut recording = Recording::open(&path).expect("a recording");
+        let count = recording.by_ref().map(|entry| entry.expect("readable")).count();
+        assert!(!recording.is_complete() || part == 99);
+        read.push(count);
+    }
+    assert!(read.is_sorted() && *read.last().expect("parts") > 300, "{read:?}");
+    // Altered bytes are an error or change nothing, and never a panic.
+    for place in (0..whole.len()).step_by(whole.len() / 300) {
+        let mut altered = whole.clone();
+        altered[place] ^= 0x55;
+        fs::write(&path, &altered).expect("written");
+        if let Ok(recording) = Recording::open(&path) {
+            recording.take_while(Result::is_ok).for_each(drop);
+        }
+    }
+}
+
+#[test]
+fn a_black_box_is_a_recording() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("black-box.jsonl");
+    let hand = open("box");
+    let begun = hand.losses(2).expect("losses").cycles;
+    while hand.losses(2).expect("losses").cycles < begun + 200 {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    hand.stop(2).expect("stopped");
+    while hand.status(2).expect("status").stage == sun2xp::Stage::Running {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    hand.write_black_box(2, &path).expect("written");
+    drop(hand);
+    let black_box = sun2xp::Recording::open(&path).expect("a black box");
+    let recording = Recording::open(&path).expect("a recording");
+    assert_eq!(recording.description().fingers, [FingerNumber::TWO]);
+    let mut cycles = Vec::new();
+    for entry in recording {
+        if let Item::Message(Message::Cycle { record, .. }) = entry.expect("readable").item {
+            cycles.push((record.cycle, record.stage.to_string(), record.control));
+        }
+    }
+    let expected: Vec<_> = black_box.cycles.iter().map(|c| (c.cycle, c.stage.clone(), c.control)).collect();
+    assert!(cycles.len() > 100, "{} cycles", cycles.len());
+    assert!(cycles == expected);
+    assert!(cycles.last().expect("cycles").1.starts_with("faulted: "));
+}
+
+#[test]
+fn other_files_are_refused_with_a_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("other");
+    for (content, words) in [("", "description"), ("text", "not a recording"), ("{}", "black box")] {
+        fs::write(&path, content).expect("written");
+        let error = Recording::open(&path).err().expect("refused").to_string();
+        assert!(error.contains(words), "{content:?}: {error}");
+    }
+    let error = Recording::open(&folder.path().join("missing")).err().expect("refused").to_string();
+    assert!(error.starts_with("cannot read"), "{error}");
+}
