@@ -1,5 +1,7 @@
-#include "processor.h"
-#include <string.h>
+#include "../emulated/processor.h"
+#include "../cortex_m/line.h"
+#include "../cortex_m/systick.h"
+#include "interrupt_handlers.h"
 
 /* Registers, named after the LM3S6965's data sheet and ARM's manual of the Cortex-M3. */
 
@@ -16,9 +18,6 @@ REGISTER(timer_control, 0x4003000Cu);
 REGISTER(timer_interrupt_mask, 0x40030018u);
 REGISTER(timer_interrupt_clear, 0x40030024u);
 REGISTER(timer_reload, 0x40030028u);
-REGISTER(systick_control, 0xE000E010u);
-REGISTER(systick_reload, 0xE000E014u);
-REGISTER(systick_value, 0xE000E018u);
 REGISTER(interrupt_enable, 0xE000E100u);
 REGISTER(interrupt_priorities, 0xE000E400u);
 
@@ -35,40 +34,8 @@ enum { RECEIVE_EMPTY = 1 << 4, TRANSMIT_FULL = 1 << 5 };
 enum { INTERRUPT_RECEIVED = 1 << 4, INTERRUPT_ROOM = 1 << 5, INTERRUPT_SILENCE = 1 << 6 };
 
 enum { CLOCK_MEGAHERTZ = 50, WAKE_UP_MICROSECONDS = 500, BAUD = 1000000 };
-/* SysTick counts 24 bits. */
-enum { SYSTICK_MOST = 0xFFFFFF };
 
-/* Rings between interrupt and main loop. Each index of the input ring has only one writer; the output ring is
-   accessed with interrupts masked. The rings hold a burst of 15 Commands and the answers to them. */
-enum { INPUT_ROOM = 512, OUTPUT_ROOM = 1024 };
-
-static struct {
-    volatile size_t written, taken; /* Never reset; their difference is the number of bytes that wait. */
-    volatile uint8_t bytes[INPUT_ROOM];
-    volatile uint32_t arrived_at[INPUT_ROOM];
-} input;
-
-static struct {
-    size_t begin, end;
-    uint8_t bytes[OUTPUT_ROOM];
-} output;
-
-static void mask_interrupts(void)
-{
-    __asm__ volatile("cpsid i" ::: "memory");
-}
-
-static void unmask_interrupts(void)
-{
-    __asm__ volatile("cpsie i" ::: "memory");
-}
-
-static volatile uint32_t systick_rounds;
-
-void systick_interrupt(void)
-{
-    systick_rounds++;
-}
+const uint8_t processor_name[8] = {'l', 'm', '3', 's', '6', '9', '6', '5'};
 
 /* Wakes the main loop, which is its only purpose. */
 void wake_up_interrupt(void)
@@ -76,84 +43,24 @@ void wake_up_interrupt(void)
     *timer_interrupt_clear = 1;
 }
 
-/* The UART's interrupt may call this too. SysTick has a higher priority and preempts it, so the rounds stay correct. */
-uint32_t timer_microseconds(void)
-{
-    static volatile uint32_t latest;
-    uint32_t rounds, left, now;
-    do {
-        rounds = systick_rounds;
-        left = *systick_value;
-    } while (rounds != systick_rounds);
-    now = (uint32_t)(((uint64_t)rounds * (SYSTICK_MOST + 1) + SYSTICK_MOST - left) / CLOCK_MEGAHERTZ);
-    /* SysTick may wrap slightly before its interrupt runs. Until then the latest value is kept, so that time never
-       runs backward. */
-    if (now - latest < 0x80000000u)
-        latest = now;
-    return latest;
-}
-
-static void receive(void)
-{
-    while (!(uart->flags & RECEIVE_EMPTY)) {
-        uint8_t byte = (uint8_t)uart->data;
-        size_t place = input.written % INPUT_ROOM;
-        /* Bytes that do not fit are lost, as on any UART. The checksum reveals the damage. */
-        if (input.written - input.taken < INPUT_ROOM) {
-            input.bytes[place] = byte;
-            input.arrived_at[place] = timer_microseconds();
-            input.written++;
-        }
-    }
-}
-
-/* Fills the transmit FIFO. The transmit interrupt is enabled only while more bytes wait. */
-static void transmit(void)
-{
-    while (output.begin < output.end && !(uart->flags & TRANSMIT_FULL))
-        uart->data = output.bytes[output.begin++];
-    bool more = output.begin < output.end;
-    if (!more)
-        output.begin = output.end = 0;
-    uart->interrupt_mask = INTERRUPT_RECEIVED | INTERRUPT_SILENCE | (more ? INTERRUPT_ROOM : 0u);
-}
-
 void uart_interrupt(void)
 {
     uart->interrupt_clear = INTERRUPT_RECEIVED | INTERRUPT_SILENCE | INTERRUPT_ROOM;
-    receive();
-    transmit();
+    while (!(uart->flags & RECEIVE_EMPTY))
+        line_received((uint8_t)uart->data);
+    uart_transmit();
 }
 
-bool uart_take(uint8_t *byte, uint32_t *arrived_at)
+void uart_transmit(void)
 {
-    size_t place = input.taken % INPUT_ROOM;
-    if (input.taken == input.written)
-        return false;
-    *byte = input.bytes[place];
-    *arrived_at = input.arrived_at[place];
-    input.taken++;
-    return true;
-}
-
-void uart_send(const uint8_t *bytes, size_t length)
-{
-    mask_interrupts();
-    if (length <= OUTPUT_ROOM - output.end) {
-        memcpy(output.bytes + output.end, bytes, length);
-        output.end += length;
+    uint8_t byte;
+    bool more = true;
+    while (more && !(uart->flags & TRANSMIT_FULL)) {
+        more = line_next(&byte);
+        if (more)
+            uart->data = byte;
     }
-    transmit();
-    unmask_interrupts();
-}
-
-void sleep(void)
-{
-    /* WFI also wakes on a masked interrupt, so a byte that arrives between the check and WFI still ends the sleep. */
-    mask_interrupts();
-    if (input.taken == input.written)
-        __asm__ volatile("wfi" ::: "memory");
-    unmask_interrupts();
+    uart->interrupt_mask = INTERRUPT_RECEIVED | INTERRUPT_SILENCE | (more ? INTERRUPT_ROOM : 0u);
 }
 
 void pin_set(unsigned pin, bool high)
@@ -191,14 +98,13 @@ void processor_start(void)
     *port_clocks = 1u << 0 | 1u << 5;
     port_f[PORT_DIRECTION] = port_f[PORT_DIGITAL] = 0xFFu;
     start_uart();
-    *systick_reload = SYSTICK_MOST;
-    *systick_value = 0;
-    *systick_control = 7; /* Processor clock, interrupt, on. */
-    *timer_mode = 2;      /* Periodic. */
+    systick_start(CLOCK_MEGAHERTZ);
+    *timer_mode = 2; /* Periodic. */
     *timer_reload = CLOCK_MEGAHERTZ * WAKE_UP_MICROSECONDS - 1;
     *timer_interrupt_mask = 1;
     *timer_control = 1;
-    /* Four priorities a word. UART 0 is interrupt 5 and timer 0 is 19. SysTick has priority 0, the highest. */
+    /* Four priorities a word. UART 0 is interrupt 5 and timer 0 is 19. SysTick keeps priority 0, the
+       highest. */
     interrupt_priorities[5 / 4] = 0x80u << 8;
     interrupt_priorities[19 / 4] = 0x80u << 24;
     *interrupt_enable = 1u << 5 | 1u << 19;

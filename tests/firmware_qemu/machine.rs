@@ -1,4 +1,4 @@
-//! The reference firmware on an emulated Cortex-M3, and the physics that replaces its motors and sensors.
+//! The reference firmware on an emulated processor, and the physics that replaces its motors and sensors.
 
 use std::ffi::CString;
 use std::fs::{File, OpenOptions};
@@ -10,7 +10,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 
-use crate::priority::{run_first, runs_first};
+use crate::priority::{run_first, runs_first, stays_on_processor};
 use nalgebra::Vector3;
 use sun2xp::board::protocol::Status;
 use sun2xp::model::configuration::Configuration;
@@ -19,38 +19,88 @@ use tempfile::TempDir;
 
 const FIRMWARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/firmware");
 
-/// Compiles the firmware image.
-pub fn build(folder: &Path) -> PathBuf {
-    let output = Command::new("make")
-        .args(["-C", FIRMWARE, "lm3s6965"])
-        .arg(format!("BUILD={}", folder.display()))
-        .output()
-        .expect("make runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    folder.join("lm3s6965.elf")
+/// A kind of board that the emulator knows, and the images of the firmware for the boards of a hand.
+#[derive(Clone, Copy)]
+pub struct Emulated {
+    /// Name of the board in the emulator.
+    pub board: &'static str,
+    /// One image for each board. The fingers are divided evenly among the boards.
+    images: &'static [&'static str],
 }
 
-/// The running emulator. Dropping it kills its process, so the process ends even if the test fails.
+/// A Cortex-M3 with three fingers.
+pub const LM3S6965: Emulated = Emulated { board: "lm3s6965evb", images: &["lm3s6965.elf"] };
+
+/// An STM32F405, a Cortex-M4, for each finger.
+pub const STM32F405: Emulated =
+    Emulated { board: "netduinoplus2", images: &["netduinoplus2-1.elf", "netduinoplus2-2.elf", "netduinoplus2-3.elf"] };
+
+impl Emulated {
+    /// Compiles the images of all emulated boards into `folder`.
+    pub fn build(self, folder: &Path) {
+        let output = Command::new("make")
+            .args(["-C", FIRMWARE, "emulated"])
+            .arg(format!("BUILD={}", folder.display()))
+            .output()
+            .expect("make runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+/// The boards of a hand with three fingers.
 pub struct Machine {
+    /// Dropped before the plants.
+    emulators: Vec<Emulator>,
+    plants: Arc<[Mutex<Finger>; 3]>,
+}
+
+impl Machine {
+    /// Starts the boards with the images in `folder`.
+    pub fn start(emulated: Emulated, folder: &Path) -> Self {
+        let plants = Arc::new(std::array::from_fn(|index| Mutex::new(Finger::new(index))));
+        let fingers = 3 / emulated.images.len();
+        let start = |(index, image)| {
+            Emulator::start(emulated.board, &folder.join(image), index, plants.clone(), fingers * index)
+        };
+        Self { emulators: emulated.images.iter().enumerate().map(start).collect(), plants }
+    }
+
+    /// The port of each board.
+    pub fn ports(&self) -> Vec<PathBuf> {
+        self.emulators.iter().map(|emulator| emulator.port.clone()).collect()
+    }
+
+    /// Process numbers of the emulators.
+    pub fn processes(&self) -> Vec<u32> {
+        self.emulators.iter().map(|emulator| emulator.process.id()).collect()
+    }
+
+    /// Locks finger 0 to 2. The physics stands still meanwhile, so the lock must be brief.
+    pub fn finger(&self, index: usize) -> MutexGuard<'_, Finger> {
+        self.plants[index].lock().expect("no panic holding it")
+    }
+}
+
+/// One running emulator. Dropping it kills its process, so the process ends even if the test fails.
+struct Emulator {
     process: Child,
-    /// One port for all three fingers.
-    pub port: PathBuf,
+    port: PathBuf,
     /// Keeps the host end of the terminal open. The emulator discards what it sends to a closed one, and checks only
     /// once a second whether it was opened.
     _end: File,
     _folder: TempDir,
     requests: File,
-    plants: Arc<[Mutex<Finger>; 3]>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Machine {
-    pub fn start(image: &Path) -> Self {
+impl Emulator {
+    /// `index` counts the boards, and `first` is the index of the first finger of this one.
+    fn start(board: &str, image: &Path, index: usize, plants: Arc<[Mutex<Finger>; 3]>, first: usize) -> Self {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let [to_plant, from_plant] = ["plant_to", "plant_from"].map(|name| pipe(&folder.path().join(name)));
         let mut command = Command::new("qemu-system-arm");
-        let mut process = runs_first(&mut command)
-            .args(["-M", "lm3s6965evb", "-display", "none", "-monitor", "none", "-serial", "pty"])
+        let mut process = stays_on_processor(index, runs_first(&mut command))
+            .args(["-M", board, "-display", "none", "-monitor", "none", "-serial", "pty"])
             .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
             .arg(image)
             // The firmware opens the plant's pipes by name, so they are in the working directory.
@@ -66,39 +116,17 @@ impl Machine {
             .expect("the emulator names a terminal");
         let end = OpenOptions::new().read(true).write(true).custom_flags(libc::O_NOCTTY).open(&port);
         let requests = to_plant.try_clone().expect("a second descriptor");
-        let plants = Arc::new(std::array::from_fn(|index| Mutex::new(Finger::new(index))));
-        let thread = {
-            let plants = plants.clone();
-            let serving = move || {
-                run_first();
-                serve(to_plant, from_plant, &plants);
-            };
-            // The watch over pauses recognises board threads by this name.
-            std::thread::Builder::new().name("sun2xp board".into()).spawn(serving).expect("a thread")
+        let serving = move || {
+            run_first();
+            serve(to_plant, from_plant, &plants[first..]);
         };
-        Self {
-            process,
-            port,
-            _end: end.expect("the terminal opens"),
-            _folder: folder,
-            requests,
-            plants,
-            thread: Some(thread),
-        }
-    }
-
-    /// Process number of the emulator.
-    pub fn process(&self) -> u32 {
-        self.process.id()
-    }
-
-    /// Locks finger 0 to 2. The physics stands still meanwhile, so the lock must be brief.
-    pub fn finger(&self, index: usize) -> MutexGuard<'_, Finger> {
-        self.plants[index].lock().expect("no panic holding it")
+        // The watch over pauses recognises board threads by this name.
+        let thread = std::thread::Builder::new().name("sun2xp board".into()).spawn(serving).expect("a thread");
+        Self { process, port, _end: end.expect("the terminal opens"), _folder: folder, requests, thread: Some(thread) }
     }
 }
 
-impl Drop for Machine {
+impl Drop for Emulator {
     fn drop(&mut self) {
         let _ = self.process.kill();
         let _ = self.process.wait();
@@ -203,7 +231,7 @@ impl Finger {
     }
 }
 
-/// As in firmware/lm3s6965/plant.h.
+/// As in firmware/emulated/plant.h.
 const REQUEST_LENGTH: usize = 32;
 
 /// Sent in place of a finger's number when the machine is shut down.
@@ -217,7 +245,7 @@ fn pipe(path: &Path) -> File {
     OpenOptions::new().read(true).write(true).open(path).expect("a pipe")
 }
 
-fn serve(mut requests: File, mut answers: File, plants: &[Mutex<Finger>; 3]) {
+fn serve(mut requests: File, mut answers: File, plants: &[Mutex<Finger>]) {
     let mut request = [0; REQUEST_LENGTH];
     while requests.read_exact(&mut request).is_ok() && request[0] != END {
         let finger = &plants[usize::from(request[0])];

@@ -1,16 +1,26 @@
-//! The tactile elements of the emulated board.
+//! The tactile elements of the emulated boards.
 
+use crate::machine::{Emulated, LM3S6965, STM32F405};
 use crate::{KEYS, PATIENCE, alone, text, wait_until, with_configured_hand};
 
-/// An element of finger 2 is pressed, becomes unreadable, and can be read again. Finger 3 has no configured elements.
 #[test]
 fn its_tactile_elements_reach_the_planner() {
+    elements_reach_the_planner(LM3S6965);
+}
+
+#[test]
+fn the_tactile_elements_of_the_stm32f405_reach_the_planner() {
+    elements_reach_the_planner(STM32F405);
+}
+
+/// An element of finger 2 is pressed and becomes unreadable. Finger 3 has no configured elements.
+fn elements_reach_the_planner(emulated: Emulated) {
     let Some(_alone) = alone() else { return };
     let keys = format!(
         "{KEYS}\n[finger.2.touch]\nelements = [{{ position = [0, 0, 0], normal = [0, 0, 1], zero = 300 }}, \
          {{ position = [0, 0, 0], normal = [1, 0, 0], zero = 500, newton_per_count = 0.002 }}]"
     );
-    with_configured_hand("touch on the firmware", &keys, |machine, hand| {
+    with_configured_hand(emulated, "touch on the firmware", &keys, |machine, hand| {
         assert!(!hand.touch(2, 1).expect("an element").valid);
         hand.touch(3, 0).expect_err("no element is configured");
         machine.finger(1).touch[1] = 600;

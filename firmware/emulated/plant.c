@@ -1,4 +1,5 @@
 #include "plant.h"
+#include "../cortex_m/line.h"
 #include "processor.h"
 #include <string.h>
 
@@ -32,8 +33,6 @@ enum { OPEN = 1, WRITE = 5, READ = 6 };
 enum { OPEN_READ_AND_WRITE = 3 };
 
 static int to_plant, from_plant;
-
-static uint32_t frame_arrived_at;
 
 static int semihost(int operation, const void *parameters)
 {
@@ -69,8 +68,8 @@ static void transfer(int operation, int file, void *bytes, size_t length)
 
 static void ask(unsigned finger, bool sample, struct answer *answer)
 {
-    struct request request = {.finger = (uint8_t)finger, .sample = sample, .now = timer_microseconds()};
-    request.arrived_at = frame_arrived_at;
+    struct request request = {.finger = (uint8_t)finger, .sample = sample, .now = hal_microseconds()};
+    request.arrived_at = line_frame_arrived_at();
     request.set_at = fingers[finger].set_at;
     memcpy(request.currents, fingers[finger].currents, sizeof request.currents);
     fingers[finger].asked_at = request.now;
@@ -89,16 +88,11 @@ void plant_start(void)
         memset(fingers[finger].touch, 0xFF, sizeof fingers[finger].touch);
 }
 
-void plant_note_frame(uint32_t arrived_at)
-{
-    frame_arrived_at = arrived_at;
-}
-
 void plant_poll(void)
 {
     for (unsigned finger = 0; finger < PLANT_FINGERS; finger++) {
-        struct answer ignored;
-        if (timer_microseconds() - fingers[finger].asked_at > REFRESH)
+        struct answer ignored = {0};
+        if (hal_microseconds() - fingers[finger].asked_at > REFRESH)
             ask(finger, false, &ignored);
     }
 }
@@ -107,7 +101,7 @@ void plant_poll(void)
 
 void hal_sample(unsigned finger, struct sensors *sensors)
 {
-    struct answer answer;
+    struct answer answer = {0};
     ask(finger, true, &answer);
     memcpy(sensors->encoders, answer.encoders, sizeof sensors->encoders);
     memcpy(sensors->gauges, answer.gauges, sizeof sensors->gauges);
@@ -116,7 +110,7 @@ void hal_sample(unsigned finger, struct sensors *sensors)
 void hal_set_currents(unsigned finger, const int32_t microamperes[MOTORS])
 {
     memcpy(fingers[finger].currents, microamperes, sizeof fingers[finger].currents);
-    fingers[finger].set_at = timer_microseconds();
+    fingers[finger].set_at = hal_microseconds();
 }
 
 /* A count of 0xFFFF stands for an element that cannot be read. */
@@ -129,4 +123,9 @@ bool hal_touch(unsigned finger, unsigned element, uint16_t *count)
 uint16_t hal_faults(unsigned finger)
 {
     return fingers[finger].faults;
+}
+
+void hal_set_toggle(unsigned finger, bool high)
+{
+    pin_set(finger, high);
 }

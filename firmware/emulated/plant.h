@@ -1,10 +1,10 @@
-/* Replaces motors and sensors by a plant on the machine that emulates this processor. The plant receives the motor
+/* Replaces motors and sensors by a plant on the machine that emulates the processor. The plant receives the motor
    currents and returns the sensor counts. A real board has PWM, counters and a converter here instead.
 
    It is reached by semihosting, through two files that the plant has created: a whole request or answer costs one
    trap. A UART of the emulator transfers single bytes and took 1 ms for the same exchange.
 
-   Request, in plant_to: u8 finger; u8 1 for a sample that a host requested, else 0; u16 0; u32 this timer, us; u32
+   Request, in plant_to: u8 finger, from 0; u8 1 for a sample that a host requested, else 0; u16 0; u32 this timer, us; u32
    arrival of the last frame, us; u32 when the currents were last set, us; 4 x i32 present currents, uA. The plant
    applies them to the whole time since the last request.
 
@@ -16,13 +16,18 @@
 
 #include "../hal.h"
 
-enum { PLANT_FINGERS = 3, PLANT_ELEMENTS = 2 };
+/* Set by the Makefile: number of fingers, and address of the first one. */
+#ifndef FINGERS
+#define FINGERS 3
+#endif
+#ifndef FIRST_ADDRESS
+#define FIRST_ADDRESS 1
+#endif
+
+enum { PLANT_FINGERS = FINGERS, PLANT_ELEMENTS = 2 };
 
 /* Opens the two files of the plant. */
 void plant_start(void);
-
-/* Records when the last byte of a frame arrived, us. */
-void plant_note_frame(uint32_t arrived_at);
 
 /* Queries the plant for every finger that no host has sampled for a while. */
 void plant_poll(void);

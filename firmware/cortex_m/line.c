@@ -1,0 +1,90 @@
+#include "line.h"
+#include "../hal.h"
+#include "interrupts.h"
+#include "time.h"
+#include <string.h>
+
+/* The rings hold a burst of 15 Commands and the answers to them. */
+enum { INPUT_ROOM = 512, OUTPUT_ROOM = 1024 };
+
+/* Each index has only one writer: the interrupt writes `written`, the main loop `taken`. */
+static struct {
+    volatile size_t written, taken; /* Never reset; their difference is the number of bytes that wait. */
+    volatile uint8_t bytes[INPUT_ROOM];
+    volatile uint32_t arrived_at[INPUT_ROOM];
+} input;
+
+/* Accessed by the interrupt, and by the main loop with interrupts masked. */
+static struct {
+    size_t written, taken; /* As for the input. */
+    uint8_t bytes[OUTPUT_ROOM];
+} output;
+
+static uint32_t frame_arrived_at;
+
+void line_received(uint8_t byte)
+{
+    size_t place = input.written % INPUT_ROOM;
+    if (input.written - input.taken < INPUT_ROOM) {
+        input.bytes[place] = byte;
+        input.arrived_at[place] = time_microseconds();
+        input.written++;
+    }
+}
+
+bool line_next(uint8_t *byte)
+{
+    if (output.taken == output.written)
+        return false;
+    *byte = output.bytes[output.taken++ % OUTPUT_ROOM];
+    return true;
+}
+
+uint32_t line_frame_arrived_at(void)
+{
+    return frame_arrived_at;
+}
+
+void line_sleep(void)
+{
+    /* WFI also wakes on a masked interrupt, so a byte that arrives between the check and WFI still ends the sleep. */
+    mask_interrupts();
+    if (input.taken == input.written)
+        __asm__ volatile("wfi" ::: "memory");
+    unmask_interrupts();
+}
+
+uint32_t hal_microseconds(void)
+{
+    return time_microseconds();
+}
+
+size_t hal_receive(unsigned line, uint8_t *bytes, size_t room, uint32_t *arrived_at)
+{
+    (void)line;
+    size_t taken = 0;
+    while (taken < room && input.taken != input.written) {
+        size_t place = input.taken % INPUT_ROOM;
+        bytes[taken] = input.bytes[place];
+        *arrived_at = input.arrived_at[place];
+        input.taken++;
+        if (bytes[taken++] == 0) {
+            frame_arrived_at = *arrived_at;
+            break;
+        }
+    }
+    return taken;
+}
+
+void hal_send(unsigned line, const uint8_t *bytes, size_t length)
+{
+    (void)line;
+    mask_interrupts();
+    if (length <= OUTPUT_ROOM - (output.written - output.taken)) {
+        for (size_t i = 0; i < length; i++)
+            output.bytes[(output.written + i) % OUTPUT_ROOM] = bytes[i];
+        output.written += length;
+    }
+    uart_transmit();
+    unmask_interrupts();
+}

@@ -1,0 +1,11 @@
+/* The clock of the board: systick.c, or another timer where an emulator needs one. */
+
+#ifndef FIRMWARE_TIME_H
+#define FIRMWARE_TIME_H
+
+#include <stdint.h>
+
+/* us since power-up. The interrupt of the line calls it too. */
+uint32_t time_microseconds(void);
+
+#endif

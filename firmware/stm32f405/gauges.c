@@ -1,0 +1,90 @@
+/* The gauges, through an AD7606-4 or the first four channels of an AD7606 (Analog Devices). The rising edge of CONVST
+   samples all channels. BUSY rises within 45 ns and falls after at most 4.2 us. Then the 16-bit results of channels 1 to
+   4 follow each other on DOUTA. The figures are those of the data sheet; the code has never run with the part. */
+
+#include "../cortex_m/time.h"
+#include "parts.h"
+#include "pins.h"
+#include "registers.h"
+#include <string.h>
+
+/* us, of a clock that counts whole ones. */
+enum { BUSY_MOST = 2, CONVERSION_MOST = 8, WORD_MOST = 5 };
+
+/* Conversions in a row that may fail: 6 ms at 500 Hz. */
+enum { FAILURES_MOST = 2 };
+
+static uint16_t latest[MOTORS];
+static unsigned failures;
+
+void gauges_start(void)
+{
+    RCC->APB1ENR |= RCC_APB1ENR_SPI2;
+    (void)RCC->APB1ENR;
+    /* 42 MHz / 4. SCLK idles high. The converter shifts on the rising edge, so each bit is read on the falling edge
+       before it: CPOL = 1, CPHA = 0. */
+    SPI2->CR1 = SPI_CR1_DFF_16 | SPI_CR1_SSM | SPI_CR1_SSI | SPI_CR1_BR_DIV4 | SPI_CR1_MSTR | SPI_CR1_CPOL;
+    SPI2->CR1 |= SPI_CR1_SPE;
+    /* The converter requires a reset of 50 ns or more after power-up. */
+    GPIOB->BSRR = 1u << PIN_GAUGE_RESET;
+    for (uint32_t begin = time_microseconds(); time_microseconds() - begin < 2;)
+        ;
+    GPIOB->BSRR = 1u << (PIN_GAUGE_RESET + 16);
+}
+
+void gauges_convert(void)
+{
+    GPIOB->BSRR = 1u << PIN_GAUGE_CONVERT;
+}
+
+/* Waits until the bits of a register have a value, or for `most` us at least. Returns whether they have it. */
+static bool becomes(const volatile uint32_t *address, uint32_t mask, uint32_t wanted, uint32_t most)
+{
+    for (uint32_t begin = time_microseconds();;) {
+        bool late = time_microseconds() - begin > most;
+        if ((*address & mask) == wanted)
+            return true;
+        if (late)
+            return false;
+    }
+}
+
+/* Returns false if the converter does not answer. */
+static bool fetch(uint16_t raw[MOTORS])
+{
+    const uint32_t busy = 1u << PIN_GAUGE_BUSY;
+    /* A converter that is absent or has no power does not become busy. */
+    if (!becomes(&GPIOB->IDR, busy, busy, BUSY_MOST) || !becomes(&GPIOB->IDR, busy, 0, CONVERSION_MOST))
+        return false;
+    bool whole = true;
+    GPIOB->BSRR = 1u << (PIN_GAUGE_SELECT + 16);
+    for (unsigned channel = 0; channel < MOTORS && whole; channel++) {
+        SPI2->DR = 0;
+        whole = becomes(&SPI2->SR, SPI_SR_RXNE, SPI_SR_RXNE, WORD_MOST);
+        raw[channel] = (uint16_t)SPI2->DR;
+    }
+    GPIOB->BSRR = 1u << PIN_GAUGE_SELECT;
+    return whole;
+}
+
+void gauges_read(uint16_t counts[MOTORS])
+{
+    uint16_t raw[MOTORS];
+    bool good = fetch(raw);
+    GPIOB->BSRR = 1u << (PIN_GAUGE_CONVERT + 16);
+    for (unsigned channel = 0; channel < MOTORS && good; channel++) {
+        /* The ends of the range mean an open bridge, an amplifier without power, or an overload. */
+        good = raw[channel] != 0x7FFF && raw[channel] != 0x8000;
+    }
+    if (good)
+        for (unsigned channel = 0; channel < MOTORS; channel++)
+            /* From two's complement to 0 to 65535. */
+            latest[channel] = raw[channel] ^ 0x8000u;
+    failures = good ? 0 : failures + 1;
+    memcpy(counts, latest, sizeof latest);
+}
+
+bool gauges_failed(void)
+{
+    return failures > FAILURES_MOST;
+}

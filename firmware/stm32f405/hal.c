@@ -1,0 +1,71 @@
+/* The finger's part of the hardware layer. The line's part is in ../cortex_m/line.c. */
+
+#include "../core/protocol.h"
+#include "parts.h"
+#include "pins.h"
+#include "registers.h"
+
+/* How old the last sample may become before sensors_poll takes another one, us. */
+enum { REFRESH = 10000 };
+
+static uint32_t sampled_at;
+static bool crystal;
+
+void faults_start(bool crystal_runs)
+{
+    crystal = crystal_runs;
+}
+
+void hal_sample(unsigned finger, struct sensors *sensors)
+{
+    (void)finger;
+    sampled_at = hal_microseconds();
+    gauges_convert();
+    encoders_read(sensors->encoders);
+    gauges_read(sensors->gauges);
+}
+
+void sensors_poll(void)
+{
+    struct sensors ignored;
+    if (hal_microseconds() - sampled_at > REFRESH)
+        hal_sample(0, &ignored);
+}
+
+/* The board has no tactile elements. */
+bool hal_touch(unsigned finger, unsigned element, uint16_t *count)
+{
+    (void)finger;
+    (void)element;
+    *count = 0;
+    return false;
+}
+
+void hal_set_currents(unsigned finger, const int32_t microamperes[MOTORS])
+{
+    (void)finger;
+    drivers_set(microamperes);
+}
+
+uint16_t hal_faults(unsigned finger)
+{
+    (void)finger;
+    unsigned faults = 0;
+    /* The stop may have ended before this look at its pin. */
+    if (GPIOA->IDR & 1u << PIN_STOP || drivers_were_stopped())
+        faults |= STATUS_EMERGENCY_STOP;
+    if (!(GPIOC->IDR & 1u << PIN_SUPPLY_GOOD))
+        faults |= STATUS_SUPPLY_FAULT;
+    if (!(GPIOC->IDR & 1u << PIN_DRIVER_FAULT))
+        faults |= STATUS_DRIVER_FAULT;
+    /* Without the crystal the watchdog times and the clock of the samples are not accurate enough. */
+    if (gauges_failed() || !crystal)
+        faults |= STATUS_SENSOR_FAULT;
+    return (uint16_t)faults;
+}
+
+void hal_set_toggle(unsigned finger, bool high)
+{
+    (void)finger;
+    GPIOC->BSRR = high ? 1u << PIN_TOGGLE : 1u << (PIN_TOGGLE + 16);
+}

@@ -1,0 +1,49 @@
+/* The parts of the board: pins, drivers, encoders, gauges, inputs and the independent watchdog. */
+
+#ifndef FIRMWARE_PARTS_H
+#define FIRMWARE_PARTS_H
+
+#include "../hal.h"
+
+/* Gives every pin its function. Outputs are low, except the converter's CS, before they become outputs. */
+void pins_start(void);
+
+/* Starts the PWM with all outputs off. */
+void drivers_start(void);
+
+/* Removes the torque. A fault handler may call it at any time. */
+void drivers_off(void);
+
+/* Sets the currents, uA; all zeros turn the drivers off. */
+void drivers_set(const int32_t microamperes[MOTORS]);
+
+/* Returns true once after the emergency stop has turned the PWM off in hardware, however short it was. */
+bool drivers_were_stopped(void);
+
+void encoders_start(void);
+
+/* Reads the counters. Call it at least every 20 ms: two of them have only 16 bits. */
+void encoders_read(int32_t counts[MOTORS]);
+
+void gauges_start(void);
+
+/* Starts a conversion of all four gauges, which samples them at this instant. */
+void gauges_convert(void);
+
+/* Waits for the conversion and reads it, 11 us in all. */
+void gauges_read(uint16_t counts[MOTORS]);
+
+/* Whether a gauge could not be read in the last three conversions. */
+bool gauges_failed(void);
+
+/* `crystal_runs` is false if the clock is not accurate. The board then reports a sensor fault. */
+void faults_start(bool crystal_runs);
+
+/* Samples the sensors if no host has done so for a while. This keeps the encoders' extension and the faults current. */
+void sensors_poll(void);
+
+/* Starts the watchdog that resets the processor. It cannot be stopped. */
+void watchdog_start(void);
+void watchdog_feed(void);
+
+#endif

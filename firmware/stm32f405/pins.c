@@ -1,0 +1,34 @@
+#include "pins.h"
+#include "parts.h"
+#include "registers.h"
+
+struct pin {
+    struct gpio *port;
+    uint8_t number, mode, alternate, pull;
+};
+
+#define PIN_ENTRY(port, number, mode, alternate, pull, name, signal, connection)                                       \
+    {GPIO##port, number, mode, alternate, pull},
+
+static const struct pin pins[] = {PINS(PIN_ENTRY)};
+
+/* Replaces the bits of one pin in a register with `width` bits for each pin. */
+static void set_field(volatile uint32_t *address, unsigned pin, unsigned width, uint32_t value)
+{
+    uint32_t mask = ((1u << width) - 1) << width * pin;
+    *address = (*address & ~mask) | value << width * pin;
+}
+
+void pins_start(void)
+{
+    RCC->AHB1ENR |= RCC_AHB1ENR_GPIOA | RCC_AHB1ENR_GPIOB | RCC_AHB1ENR_GPIOC;
+    /* The enable clock needs two cycles before the first access (7.3.10, and the errata of the processor). */
+    (void)RCC->AHB1ENR;
+    GPIOB->BSRR = 1u << PIN_GAUGE_SELECT;
+    for (unsigned i = 0; i < sizeof pins / sizeof pins[0]; i++) {
+        const struct pin *pin = &pins[i];
+        set_field(&pin->port->AFR[pin->number / 8], pin->number % 8, 4, pin->alternate);
+        set_field(&pin->port->PUPDR, pin->number, 2, pin->pull);
+        set_field(&pin->port->MODER, pin->number, 2, pin->mode);
+    }
+}
