@@ -1,5 +1,100 @@
-//! `sun2xp jog`: moves a hand by keys.
-
-#![allow(dead_code, reason = "the commands come before their users")]
+//! `sun2xp jog`: opens a hand, and moves it by keys.
 
 pub mod commands;
+mod keys;
+pub mod panel;
+mod worker;
+
+use crate::failure::Failure;
+use crate::monitor::show;
+use crate::monitor::source::{Source, Wanted};
+use crate::monitor::terminal::Screen;
+use crate::monitor::view::View;
+use panel::JogPanel;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::sync::Arc;
+use sun2xp::model::configuration::Configuration;
+use sun2xp::{Hand, hand};
+use worker::Worker;
+
+/// Opens a hand and moves it by keys: joints or fingertips, stiffness, and pushes on the simulated hand, which gives.
+/// Shows the hand as `sun2xp monitor` does.
+///
+/// Without --config the hand is simulated. Before a real hand moves, the command asks, and its steps are limited. The
+/// space bar stops all fingers. ? shows all keys.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The configuration of the hand. Without it the hand is simulated.
+    #[arg(long, visible_alias = "configuration", value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// Do not ask before a real hand moves.
+    #[arg(long)]
+    yes: bool,
+    /// Folder for snapshots.
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    snapshots: PathBuf,
+}
+
+/// Opens the hand, and closes it after the last key.
+///
+/// # Errors
+/// Returns an error if there is no terminal, if the configuration cannot be used, if the person does not confirm, or
+/// if the hand cannot be opened.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if !Screen::available() {
+        return Err("jog needs a terminal: run it in one".into());
+    }
+    let mut configuration = match &arguments.config {
+        Some(file) => hand::read_configuration(file)?,
+        None => {
+            println!("The hand is simulated, because no configuration file was named (--config FILE).");
+            Configuration::default()
+        }
+    };
+    // The picture comes from the hand's telemetry.
+    configuration.telemetry.enabled = true;
+    let real = configuration.fingers.iter().any(|finger| !finger.simulated());
+    if real && !arguments.yes {
+        confirm(&configuration)?;
+    }
+    println!("opening the hand ...");
+    let hand = Arc::new(Hand::open(configuration.clone())?);
+    let source = Source::start(Wanted::Process(std::process::id()))?;
+    let worker = Worker::start(hand.clone(), configuration.clone())?;
+    let mut view = View::new("the hand is open, and its first cycles are on their way".into());
+    view.jog = Some(JogPanel::new(real));
+    show::show(
+        &mut view,
+        &source,
+        &arguments.snapshots,
+        |view, key| keys::press(view, &worker, &configuration, key),
+        |view| {
+            if let (Some(panel), Some(result)) = (&mut view.jog, worker.result()) {
+                panel.result = Some(result);
+            }
+        },
+    )
+}
+
+/// Asks whether the real hand may move.
+fn confirm(configuration: &Configuration) -> Result<(), Failure> {
+    let mut output = io::stdout().lock();
+    writeln!(output, "This moves a real hand:")?;
+    for (number, finger) in (1..).zip(&configuration.fingers) {
+        writeln!(
+            output,
+            "    finger {number}: {}",
+            if finger.simulated() { "simulated" } else { finger.port.as_str() }
+        )?;
+    }
+    writeln!(output, "The tendons are tightened now. Steps are at most 3 degrees or 0.3 cm. Space stops all fingers.")?;
+    write!(output, "Keep hands and cables clear. Type yes to continue: ")?;
+    output.flush()?;
+    let mut answer = String::new();
+    io::stdin().read_line(&mut answer)?;
+    match answer.trim() {
+        "yes" => Ok(()),
+        _ => Err("not confirmed, and nothing has moved".into()),
+    }
+}

@@ -10,11 +10,13 @@ mod doctor;
 mod failure;
 mod jog;
 mod model;
+mod monitor;
 mod print;
 #[allow(dead_code, unused_imports, reason = "the commands that read recordings follow")]
 mod recording;
 mod replay;
 mod schedule;
+mod status;
 mod virtual_machine;
 
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -37,9 +39,12 @@ enum Tool {
     Calibrate(calibrate::Arguments),
     Completions(completions::Arguments),
     Doctor(doctor::Arguments),
+    Jog(jog::Arguments),
     Model(model::Arguments),
+    Monitor(monitor::Arguments),
     Replay(replay::Arguments),
     Schedule(schedule::Arguments),
+    Status(status::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -51,9 +56,12 @@ fn main() -> ExitCode {
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Completions(arguments) => completions::run(&arguments, command()).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
+        Tool::Jog(arguments) => jog::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Model(arguments) => model::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Monitor(arguments) => monitor::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Replay(arguments) => replay::run(&arguments),
         Tool::Schedule(arguments) => schedule::run(&arguments),
+        Tool::Status(arguments) => status::run(&arguments),
     };
     result.unwrap_or_else(|error| failure::report(&error))
 }

@@ -1,0 +1,46 @@
+//! `sun2xp monitor`: an open hand in the terminal.
+
+pub mod draw;
+pub mod finger_state;
+mod picture;
+pub mod show;
+pub mod snapshot;
+pub mod source;
+pub mod state;
+pub mod terminal;
+pub mod view;
+pub mod wake_ups;
+pub mod words;
+
+use crate::failure::Failure;
+use source::{Source, Wanted};
+use std::path::PathBuf;
+use terminal::Screen;
+use view::View;
+
+/// Shows an open hand in the terminal, as it runs: joints, tensions, stiffness, forces, faults with their remedies,
+/// events and timing. It only reads, and costs the servos nothing.
+///
+/// Keys: q quit, space freeze, 1 2 3 or tab a finger in detail, s snapshot, ? help.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Name of the hand (`telemetry.name` of its configuration). Not necessary if only one hand is open.
+    #[arg(value_name = "NAME")]
+    name: Option<String>,
+    /// Folder for snapshots.
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    snapshots: PathBuf,
+}
+
+/// Shows the hand until a key ends it. Waits for a hand if there is none.
+///
+/// # Errors
+/// Returns an error if there is no terminal, or if the terminal fails.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if !Screen::available() {
+        return Err("the monitor needs a terminal: use `sun2xp status` for a file, a pipe or a script".into());
+    }
+    let source = Source::start(Wanted::Named(arguments.name.clone()))?;
+    let mut view = View::new("looking for the hand".into());
+    show::show(&mut view, &source, &arguments.snapshots, show::monitor_key, |_| {})
+}

@@ -1,0 +1,56 @@
+//! Faults and warnings with causes and remedies, in full.
+
+use super::palette::Palette;
+use crate::monitor::state::HandState;
+use crate::monitor::words::wrap;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::Line;
+use ratatui::widgets::Paragraph;
+
+/// Returns the lines of all faults and warnings, below a title. Without any, there is no line. Fingers with the same
+/// text share it.
+pub fn lines(palette: &Palette, hand: &HandState, width: usize) -> Vec<Line<'static>> {
+    let mut texts: Vec<(String, String, Style)> = Vec::new();
+    let mut add = |finger: i32, kind: &str, number: u8, text: &str, style: Style| {
+        let text = format!("{kind} {number}: {text}.");
+        match texts.iter_mut().find(|(_, known, _)| *known == text) {
+            Some((fingers, _, _)) => *fingers = format!("{fingers}, {finger}").replacen("finger ", "fingers ", 1),
+            None => texts.push((format!("finger {finger}"), text, style)),
+        }
+    };
+    for state in &hand.fingers {
+        if let Some(fault) = &state.fault {
+            add(state.finger, "fault", fault.number, &fault.text, palette.bad);
+        }
+    }
+    for state in &hand.fingers {
+        if let Some(warning) = &state.warning {
+            add(state.finger, "warning", warning.number, &warning.text, palette.warning);
+        }
+    }
+    let mut lines = Vec::new();
+    for (fingers, text, style) in texts {
+        for (index, line) in wrap(&format!("{fingers}, {text}"), width.saturating_sub(3)).into_iter().enumerate() {
+            // The first line has the fault, the others cause and remedy, which are read and not only noticed.
+            let sign = if index == 0 { "! " } else { "  " };
+            lines.push(Line::styled(format!(" {sign}{line}"), if index == 0 { style } else { Style::new() }));
+        }
+    }
+    lines
+}
+
+/// Draws the lines. If there is no room for all of them, the keys up and down scroll them, and the last line says so.
+pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, mut lines: Vec<Line<'static>>, scroll: usize) {
+    let room = usize::from(area.height);
+    if lines.len() > room && room > 0 {
+        let hidden = lines.len() - (room - 1);
+        let scroll = scroll.min(hidden);
+        lines.drain(..scroll);
+        lines.truncate(room - 1);
+        let text = format!("   {} more lines above, {} below: up and down keys", scroll, hidden - scroll);
+        lines.push(Line::styled(text, palette.warning));
+    }
+    frame.render_widget(Paragraph::new(lines), area);
+}

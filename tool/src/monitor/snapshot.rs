@@ -1,0 +1,50 @@
+//! Snapshots: the state as JSON, and the screen as text and as a picture.
+
+use super::picture::svg;
+use super::state::HandState;
+use super::words::utc;
+use ratatui::buffer::Buffer;
+use std::fs::OpenOptions;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Largest number of snapshots in one second.
+const MOST: u32 = 100;
+
+/// Writes the state to `sun2xp-NAME-TIME.json`, and the screen to the same name with `.txt` and `.svg`, in `folder`.
+/// Returns the paths. Existing files are not replaced.
+///
+/// # Errors
+/// Returns an error if a file cannot be written.
+pub fn write(folder: &Path, hand: &HandState, screen: &Buffer) -> io::Result<[PathBuf; 3]> {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
+    let time = utc(seconds).replace([':', '-'], "");
+    let contents = [serde_json::to_vec_pretty(hand)?, text(screen).into_bytes(), svg(screen).into_bytes()];
+    for number in 0..MOST {
+        let suffix = if number == 0 { String::new() } else { format!("-{number}") };
+        let name = format!("sun2xp-{}-{time}{suffix}", hand.name);
+        let paths = ["json", "txt", "svg"].map(|extension| folder.join(format!("{name}.{extension}")));
+        let taken = |path: &PathBuf| path.symlink_metadata().is_ok();
+        if paths.iter().any(taken) {
+            continue;
+        }
+        for (path, content) in paths.iter().zip(&contents) {
+            OpenOptions::new().write(true).create_new(true).open(path)?.write_all(content)?;
+        }
+        return Ok(paths);
+    }
+    Err(io::Error::other(format!("there are already {MOST} snapshots of this second")))
+}
+
+/// Returns the characters of a screen, one line each, without spaces at the ends of the lines.
+pub fn text(buffer: &Buffer) -> String {
+    let width = usize::from(buffer.area.width).max(1);
+    let mut text = String::new();
+    for line in buffer.content.chunks(width) {
+        let line: String = line.iter().map(|cell| cell.symbol()).collect();
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}

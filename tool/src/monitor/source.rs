@@ -1,0 +1,126 @@
+//! The thread that reads the messages of a hand, so that the keys never wait for them.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::{self, JoinHandle, sleep};
+use std::time::Duration;
+use sun2xp::model::configuration::FINGERS;
+use sun2xp::telemetry::{self, AttachError, Description, Message, Reader};
+
+/// Time for which a read waits for messages.
+const READ_TIME: Duration = Duration::from_millis(200);
+
+/// Interval at which a missing hand is looked for.
+const SEARCH_INTERVAL: Duration = Duration::from_millis(300);
+
+/// The hand to read.
+#[derive(Clone, Debug)]
+pub enum Wanted {
+    /// The hand with this name, or the only hand.
+    Named(Option<String>),
+    /// The hand of a process.
+    Process(u32),
+}
+
+/// What happens at the hand.
+pub enum News {
+    /// There is no hand. The text names the cause and the remedy.
+    Missing(String),
+    /// The reader is attached to a hand.
+    Attached(Box<Description>),
+    /// Messages, and the number of cycles of each finger that are missing before them.
+    Messages(Vec<Message>, [u64; FINGERS]),
+    /// The hand has ended.
+    Ended(String),
+}
+
+/// The thread. Dropping it ends the thread.
+pub struct Source {
+    /// The news in their order.
+    pub news: Receiver<News>,
+    ended: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Source {
+    /// Starts to read a hand. When the hand ends, waits for the next one.
+    ///
+    /// # Errors
+    /// Returns an error if the system cannot start a thread.
+    pub fn start(wanted: Wanted) -> io::Result<Self> {
+        let (sender, news) = channel();
+        let ended = Arc::new(AtomicBool::new(false));
+        let thread = {
+            let ended = ended.clone();
+            thread::Builder::new().name("telemetry".into()).spawn(move || {
+                // The receiver is gone only when the program ends.
+                let _ = run(&wanted, &sender, &ended);
+            })?
+        };
+        Ok(Self { news, ended, thread: Some(thread) })
+    }
+}
+
+impl Drop for Source {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Wanted {
+    fn attach(&self) -> Result<Reader, AttachError> {
+        let process = match self {
+            Self::Named(name) => return Reader::attach(name.as_deref()),
+            Self::Process(process) => *process,
+        };
+        let listed = |source| AttachError::System { doing: "read the names of the open hands", source };
+        for name in telemetry::hands().map_err(listed)? {
+            if let Ok(reader) = Reader::attach(Some(&name))
+                && reader.description().process == process
+            {
+                return Ok(reader);
+            }
+        }
+        Err(AttachError::NoHand)
+    }
+}
+
+/// Returns an error if nobody receives the news.
+fn run(wanted: &Wanted, news: &Sender<News>, ended: &AtomicBool) -> Result<(), ()> {
+    let send = |piece| news.send(piece).map_err(|_| ());
+    let mut missing = String::new();
+    while !ended.load(Ordering::Relaxed) {
+        let mut reader = match wanted.attach() {
+            Ok(reader) => reader,
+            Err(error) => {
+                let text = error.to_string();
+                if text != missing {
+                    send(News::Missing(text.clone()))?;
+                    missing = text;
+                }
+                sleep(SEARCH_INTERVAL);
+                continue;
+            }
+        };
+        missing.clear();
+        send(News::Attached(Box::new(reader.description().clone())))?;
+        while !ended.load(Ordering::Relaxed) {
+            let mut messages = Vec::new();
+            match reader.read(READ_TIME, &mut messages) {
+                Ok(received) if messages.is_empty() && received.lost == [0; FINGERS] => {}
+                Ok(received) => send(News::Messages(messages, received.lost))?,
+                Err(end) => {
+                    send(News::Messages(messages, [0; FINGERS]))?;
+                    send(News::Ended(end.to_string()))?;
+                    break;
+                }
+            }
+        }
+    }
+    Ok(())
+}
