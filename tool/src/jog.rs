@@ -6,11 +6,12 @@ pub mod panel;
 mod worker;
 
 use crate::failure::Failure;
-use crate::monitor::show;
+use crate::monitor::show::{self, Controls};
 use crate::monitor::source::{Source, Wanted};
 use crate::monitor::terminal::Screen;
 use crate::monitor::view::View;
 use panel::JogPanel;
+use ratatui::crossterm::event::Event;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -64,17 +65,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let worker = Worker::start(hand.clone(), configuration.clone())?;
     let mut view = View::new("the hand is open, and its first cycles are on their way".into());
     view.jog = Some(JogPanel::new(real));
-    show::show(
-        &mut view,
-        &source,
-        &arguments.snapshots,
-        |view, key| keys::press(view, &worker, &configuration, key),
-        |view| {
+    let stopper = worker.stopper().clone();
+    let controls = Controls {
+        keys: |view: &mut View, key| keys::press(view, &worker, &configuration, key),
+        tick: |view: &mut View| {
             if let (Some(panel), Some(result)) = (&mut view.jog, worker.result()) {
                 panel.result = Some(result);
             }
         },
-    )
+        urgent: move |event: &Event| keys::stop(&stopper, event),
+    };
+    show::show(&mut view, &source, &arguments.snapshots, controls)
 }
 
 /// Asks whether the real hand may move.

@@ -13,6 +13,8 @@ pub mod wake_ups;
 pub mod words;
 
 use crate::failure::Failure;
+use ratatui::crossterm::event::Event;
+use show::Controls;
 use source::{Source, Wanted};
 use std::path::PathBuf;
 use terminal::Screen;
@@ -42,5 +44,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let source = Source::start(Wanted::Named(arguments.name.clone()))?;
     let mut view = View::new("looking for the hand".into());
-    show::show(&mut view, &source, &arguments.snapshots, show::monitor_key, |_| {})
+    let controls = Controls { keys: show::monitor_key, tick: |_: &mut View| {}, urgent: |_: &Event| {} };
+    show::show(&mut view, &source, &arguments.snapshots, controls)
 }

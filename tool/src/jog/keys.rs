@@ -2,10 +2,10 @@
 
 use super::commands::Command;
 use super::panel::{JOINT_STEPS, JogPanel, Mode, PUSH_STEPS, TIP_STEPS};
-use super::worker::Worker;
+use super::worker::{Stopper, Worker};
 use crate::monitor::show::Pressed;
 use crate::monitor::view::View;
-use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use ratatui::crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
 use sun2xp::FingerNumber;
 use sun2xp::model::configuration::Configuration;
 use sun2xp::nalgebra::Vector3;
@@ -13,12 +13,20 @@ use sun2xp::nalgebra::Vector3;
 /// Factor by which a key makes a finger stiffer.
 const STIFFER: f64 = 1.25;
 
+/// Stops all fingers if the key is the space bar. The thread that reads the keys calls this, so that a stop does not
+/// wait for the screen.
+pub fn stop(stopper: &Stopper, event: &Event) {
+    if let Event::Key(KeyEvent { code: KeyCode::Char(' '), .. }) = event {
+        stopper.stop();
+    }
+}
+
 /// Handles a key.
 pub fn press(view: &mut View, worker: &Worker, configuration: &Configuration, key: KeyEvent) -> Pressed {
     let Some(mut panel) = view.jog.clone() else { return Pressed::Handled };
     match key.code {
         KeyCode::Char(' ') => {
-            worker.stop();
+            worker.stopper().stop();
             panel.result = Some(("EMERGENCY STOP: all fingers are stopped. r recovers the chosen finger".into(), true));
         }
         KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => return Pressed::Quit,
@@ -36,8 +44,10 @@ pub fn press(view: &mut View, worker: &Worker, configuration: &Configuration, ke
         KeyCode::Char('[') => panel.change_step(false),
         KeyCode::Char(']') => panel.change_step(true),
         code => {
-            if let Some(command) = command(&mut panel, configuration, code) {
-                worker.send(command);
+            if let Some(command) = command(&mut panel, configuration, code)
+                && !worker.send(command)
+            {
+                panel.result = Some(("the hand still carries out earlier commands: wait for it".into(), true));
             }
         }
     }

@@ -3,19 +3,42 @@
 use super::commands::Command;
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 use sun2xp::Hand;
 use sun2xp::model::configuration::Configuration;
 
+/// Largest number of commands that wait.
+const MOST_WAITING: usize = 4;
+
 /// The end of the keys.
 pub struct Worker {
     commands: Option<Sender<(u64, Command)>>,
     results: Receiver<(String, bool)>,
+    stopper: Stopper,
+    /// Number of commands that are not carried out yet.
+    waiting: Arc<AtomicUsize>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Stops all fingers, from any thread.
+#[derive(Clone, Default)]
+pub struct Stopper {
     /// Number of emergency stops. Commands that were sent before the last stop are not carried out.
     stops: Arc<AtomicU64>,
-    thread: Option<JoinHandle<()>>,
+}
+
+impl Stopper {
+    /// Stops all fingers at once, and drops the commands that are still waiting.
+    pub fn stop(&self) {
+        sun2xp::stop_all();
+        self.stops.fetch_add(1, Ordering::SeqCst);
+    }
+
+    fn stops(&self) -> u64 {
+        self.stops.load(Ordering::SeqCst)
+    }
 }
 
 impl Worker {
@@ -26,37 +49,39 @@ impl Worker {
     pub fn start(hand: Arc<Hand>, configuration: Configuration) -> io::Result<Self> {
         let (commands, to_do) = channel::<(u64, Command)>();
         let (done, results) = channel();
-        let stops = Arc::new(AtomicU64::new(0));
-        let stops_seen = stops.clone();
+        let (stopper, waiting) = (Stopper::default(), Arc::new(AtomicUsize::new(0)));
+        let (stopped, left) = (stopper.clone(), waiting.clone());
         let thread = thread::Builder::new().name("commands".into()).spawn(move || {
             for (stop, command) in to_do {
-                if stops_seen.load(Ordering::SeqCst) != stop {
-                    continue;
+                if stopped.stops() == stop {
+                    let result = match command.execute(&hand, &configuration) {
+                        Ok(text) => (text, false),
+                        Err(refused) => (refused.to_string(), true),
+                    };
+                    // The receiver is gone only when the program ends.
+                    let _ = done.send(result);
                 }
-                let result = match command.execute(&hand, &configuration) {
-                    Ok(text) => (text, false),
-                    Err(refused) => (refused.to_string(), true),
-                };
-                if done.send(result).is_err() {
-                    return;
-                }
+                left.fetch_sub(1, Ordering::SeqCst);
             }
         })?;
-        Ok(Self { commands: Some(commands), results, stops, thread: Some(thread) })
+        Ok(Self { commands: Some(commands), results, stopper, waiting, thread: Some(thread) })
     }
 
-    /// Sends a command.
-    pub fn send(&self, command: Command) {
-        if let Some(commands) = &self.commands {
-            // The thread ends only after this value.
-            let _ = commands.send((self.stops.load(Ordering::SeqCst), command));
-        }
+    /// Sends a command. Returns false, and does not send it, if several commands are still waiting. A key that repeats
+    /// while a finger recovers would otherwise move the finger much later.
+    #[must_use]
+    pub fn send(&self, command: Command) -> bool {
+        let Some(commands) = self.commands.as_ref().filter(|_| self.waiting.load(Ordering::SeqCst) < MOST_WAITING)
+        else {
+            return false;
+        };
+        self.waiting.fetch_add(1, Ordering::SeqCst);
+        commands.send((self.stopper.stops(), command)).is_ok()
     }
 
-    /// Stops all fingers at once, and drops the commands that are still waiting.
-    pub fn stop(&self) {
-        sun2xp::stop_all();
-        self.stops.fetch_add(1, Ordering::SeqCst);
+    /// Returns the emergency stop.
+    pub fn stopper(&self) -> &Stopper {
+        &self.stopper
     }
 
     /// Returns the newest result since the last call: its text, and whether the command was refused.

@@ -26,8 +26,17 @@ pub enum Pressed {
     Quit,
 }
 
-/// Shows the hands of `source` until a key or a signal ends it. `keys` handles the keys. `tick` is called before each
-/// picture.
+/// How a command differs from `sun2xp monitor`.
+pub struct Controls<Keys, Tick, Urgent> {
+    /// Handles a key.
+    pub keys: Keys,
+    /// Is called before each picture.
+    pub tick: Tick,
+    /// Gets each key first, in another thread, see [`Screen::open`].
+    pub urgent: Urgent,
+}
+
+/// Shows the hands of `source` until a key or a signal ends it. Snapshots are written into `folder`.
 ///
 /// # Errors
 /// Returns an error if the terminal or a thread fails.
@@ -35,15 +44,15 @@ pub fn show(
     view: &mut View,
     source: &Source,
     folder: &Path,
-    keys: impl Fn(&mut View, KeyEvent) -> Pressed,
-    tick: impl Fn(&mut View),
+    controls: Controls<impl Fn(&mut View, KeyEvent) -> Pressed, impl Fn(&mut View), impl Fn(&Event) + Send + 'static>,
 ) -> Result<(), Failure> {
+    let Controls { keys, tick, urgent } = controls;
     let palette = if std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty()) {
         Palette::plain()
     } else {
         Palette::coloured()
     };
-    let mut screen = Screen::open().map_err(|error| format!("cannot use the terminal: {error}"))?;
+    let mut screen = Screen::open(urgent).map_err(|error| format!("cannot use the terminal: {error}"))?;
     while !screen.ended() {
         view.now = now();
         take_news(view, source);

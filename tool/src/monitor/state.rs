@@ -70,8 +70,10 @@ pub struct EventState {
     pub count: u32,
     #[serde(skip)]
     kind: (EventKind, Part),
-    /// Whether the event is a fault or a warning.
-    pub bad: bool,
+    /// Whether the event is a fault.
+    pub fault: bool,
+    /// Whether the event is a warning.
+    pub warning: bool,
 }
 
 impl HandState {
@@ -189,7 +191,8 @@ impl Tracker {
             text: String::new(),
             count: 1,
             kind,
-            bad: matches!(event.kind, EventKind::Fault | EventKind::Warning),
+            fault: event.kind == EventKind::Fault,
+            warning: event.kind == EventKind::Warning,
         };
         state.note(event, self.clock_offset);
         events.push_front(state);

@@ -23,11 +23,12 @@ impl Screen {
         io::stdin().is_terminal() && io::stdout().is_terminal()
     }
 
-    /// Takes the terminal.
+    /// Takes the terminal. `urgent` gets each key and change of size first, in the thread that reads them, so that it
+    /// does not wait for a slow terminal.
     ///
     /// # Errors
     /// Returns an error if the terminal does not permit raw mode.
-    pub fn open() -> io::Result<Self> {
+    pub fn open(urgent: impl Fn(&Event) + Send + 'static) -> io::Result<Self> {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
         let ended = Arc::new(AtomicBool::new(false));
         for signal in [SIGHUP, SIGINT, SIGQUIT, SIGTERM] {
@@ -41,7 +42,7 @@ impl Screen {
         let reading = thread::Builder::new().name("keys".into()).spawn(move || {
             loop {
                 let event = event::read();
-                let failed = event.is_err();
+                let failed = event.as_ref().map(&urgent).is_err();
                 if sender.send(event).is_err() || failed {
                     return;
                 }

@@ -127,6 +127,36 @@ fn jog_moves_and_pushes_the_simulated_hand() {
     terminal.until(&["status 0"]);
 }
 
+/// A board at a pseudo-terminal is a real hand for jog.
+#[test]
+fn jog_asks_before_a_real_hand_moves_and_limits_its_steps() {
+    if !tools::available("tmux", "jog with a real hand") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let [link, file] = ["board", "hand.toml"].map(|name| folder.path().join(name));
+    let text = format!("[hand]\nrate = 500\n[finger]\nport = \"{}\"\nthread = 1\nbaud = 2_000_000\n", link.display());
+    fs::write(&file, text).expect("written");
+    let command = format!("{TOOL} jog --config {}", file.display());
+    let terminal = Terminal::start("asks", (100, 30), &command);
+    terminal.until(&["This moves a real hand", "finger 3: /", "Type yes"]);
+    terminal.run("no");
+    terminal.until(&["not confirmed, and nothing has moved", "status 1"]);
+    drop(terminal);
+
+    let _board = screen::Board::start(TOOL, &link);
+    let terminal = Terminal::start("moves", (100, 30), &command);
+    terminal.until(&["Type yes"]);
+    terminal.run("yes");
+    terminal.until(&["real fingers", "finger 3 running", "a real hand: steps are limited"]);
+    terminal.keys(&["]", "]", "]", "]", "Right"]);
+    terminal.until(&["[j joints 3°]", "finger 1: joints to 3.0, 30.0, 60.0 degrees"]);
+    terminal.keys(&["f", "Right"]);
+    terminal.until_words("finger 1 has a real port: only a simulated finger");
+    terminal.keys(&["q"]);
+    terminal.until(&["status 0"]);
+}
+
 #[test]
 fn status_describes_the_hand_and_its_faults() {
     let hand = open("status-test");

@@ -1,7 +1,8 @@
 //! A terminal of tmux, with a server of its own.
 
-use std::path::PathBuf;
-use std::process::Command;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 use sun2xp::{Fault, Hand};
@@ -93,6 +94,27 @@ impl Drop for Terminal {
         let mut tmux = Command::new("tmux");
         // The server may have ended with its last window.
         let _ = tmux.arg("-S").arg(self.file("socket")).arg("kill-server").output();
+    }
+}
+
+/// A board with three fingers at a pseudo-terminal.
+pub struct Board(Child);
+
+impl Board {
+    pub fn start(tool: &str, link: &Path) -> Self {
+        let mut board = Command::new(tool);
+        board.args(["board", "--patient", "500", "--priority", "20", "--link"]).arg(link);
+        let mut board = board.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().expect("the board runs");
+        let mut port = String::new();
+        BufReader::new(board.stdout.take().expect("a pipe")).read_line(&mut port).expect("its port");
+        Self(board)
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
     }
 }
 

@@ -24,7 +24,11 @@ pub fn draw(frame: &mut Frame, area: Rect, palette: &Palette, hand: &HandState, 
     newest.sort_by_key(|event| age(event) as u64);
     for event in newest.into_iter().take(inner.height.into()) {
         let age = span(age(event));
-        let style = if event.bad { palette.bad } else { palette.title };
+        let style = match (event.fault, event.warning) {
+            (true, _) => palette.bad,
+            (_, true) => palette.warning,
+            _ => palette.title,
+        };
         let (name, rest) = event.text.split_once(", ").unwrap_or((&event.text, ""));
         lines.push(Line::from(vec![
             Span::styled(format!("{age:>8} ago "), palette.dim),

@@ -29,7 +29,8 @@ impl Palette {
     pub fn coloured() -> Self {
         let bold = Style::new().add_modifier(Modifier::BOLD);
         Self {
-            title: bold,
+            // The titles of a frame would otherwise get the colour of the frame.
+            title: bold.fg(Color::Reset),
             dim: Style::new().fg(Color::DarkGray),
             measured: Style::new().fg(Color::Cyan),
             wanted: bold.fg(Color::Magenta),

@@ -6,6 +6,7 @@ use crate::monitor::snapshot;
 use crate::monitor::state::Tracker;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
+use ratatui::style::Color;
 use std::time::{Duration, Instant};
 use sun2xp::telemetry::{Ended, Message, Reader};
 use sun2xp::{Configuration, Fingers, Hand};
@@ -120,12 +121,24 @@ fn a_running_hand_is_shown_in_every_size() {
 }
 
 #[test]
+fn without_colours_the_picture_has_the_same_characters() {
+    let mut attached = Attached::open("draw-plain", false);
+    attached.until("cycles", |hand| hand.fingers.iter().all(|finger| finger.sample.is_some()));
+    attached.hand().stop(1).expect("there");
+    attached.until("finger 1 is faulted", HandState::faulted);
+    let mut terminal = Terminal::new(TestBackend::new(120, 40)).expect("a terminal");
+    let plain = terminal.draw(|frame| draw(frame, &attached.view, &Palette::plain())).expect("drawn").buffer.clone();
+    assert!(plain.content.iter().all(|cell| cell.fg == Color::Reset && cell.bg == Color::Reset));
+    assert_eq!(snapshot::text(&plain), picture(&attached.view, (120, 40)));
+}
+
+#[test]
 fn a_fault_is_shown_with_its_whole_remedy() {
     let mut attached = Attached::open("draw-faulted", false);
     // A new reader gets the events from its first cycle on.
     attached.until("cycles", |hand| hand.fingers.iter().all(|finger| finger.sample.is_some()));
     attached.hand().stop(2).expect("there");
-    attached.until("finger 2 is faulted", |hand| hand.faulted() && hand.events.iter().any(|event| event.bad));
+    attached.until("finger 2 is faulted", |hand| hand.faulted() && hand.events.iter().any(|event| event.fault));
     let fault = attached.hand().fault(2).expect("there").stopped.expect("stopped");
     for size in &SIZES[..5] {
         let picture = picture(&attached.view, *size);
