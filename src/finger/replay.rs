@@ -90,11 +90,20 @@ impl Recording {
     /// have recorded, if a controller is missing, or if a controller computes a torque that is not finite. The error
     /// names the first wrong number, and nothing is computed from this number.
     pub fn replay(&self) -> Result<Replayed, NotReplayable> {
+        self.replay_with(|_| {})
+    }
+
+    /// Like [`Recording::replay`]. Calls `progress` with the index of each cycle before it is computed.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Recording::replay`].
+    pub fn replay_with(&self, mut progress: impl FnMut(usize)) -> Result<Replayed, NotReplayable> {
         self.check()?;
         let mut controllers = Controllers { recording: self, made: HashMap::new() };
         let mut state = self.origin.state;
         let mut replayed = Replayed { cycles: 0, different: 0, first: None };
         for (index, record) in self.cycles.iter().enumerate() {
+            progress(index);
             let Some(recorded) = record.control else { continue };
             controllers.make(record.cycle, recorded.controller)?;
             controllers.make(record.cycle, recorded.previous)?;

@@ -1,52 +1,71 @@
-//! The contents of a recording and the result of its replay, for people and for other programs.
+//! The result of a replay, for people and for other programs.
 
+use super::tally::Tally;
 use crate::print::{Cell, Look, Screen, Table};
 use serde::Serialize;
-use std::collections::BTreeMap;
-use sun2xp::control::Activity;
-use sun2xp::finger::{CycleRecord, Difference, Recording, Replayed};
-use sun2xp::model::Shown;
+use std::ops::Range;
+use sun2xp::finger::ControlRecord;
+
+/// Most gaps that are listed. Further ones are counted.
+const MOST_GAPS: usize = 20;
 
 /// The output of `--json`.
 #[derive(Debug, Serialize)]
 pub struct Report {
     /// Whether every computed value equals the recorded one.
     pub pass: bool,
-    finger: i32,
-    /// Hz.
-    rate: f64,
     /// Version of the library that made the recording.
     library: String,
-    /// Number of cycles.
-    cycles: usize,
-    first_cycle: Option<u64>,
-    last_cycle: Option<u64>,
-    /// Time from the first cycle to the last one, s.
-    seconds: f64,
-    /// Number of cycles in each stage.
-    stages: BTreeMap<String, u32>,
-    lost_replies: usize,
-    most_lost_in_a_row: usize,
-    set_points: usize,
-    adjustments: usize,
-    restarts: usize,
-    skipped_periods: u64,
-    /// Largest motor torque, N cm.
-    largest_motor_torque: f64,
-    /// Number of cycles that were computed again.
-    replayed: usize,
-    different: usize,
-    first_difference: Option<FirstDifference>,
+    /// Whether the file has no end, because its recorder was killed.
+    truncated: bool,
+    fingers: Vec<FingerReport>,
 }
 
-/// The first cycle that differs.
+/// The result for a finger.
 #[derive(Debug, Serialize)]
-struct FirstDifference {
+pub struct FingerReport {
+    /// 1 to 3.
+    finger: i32,
+    /// Hz.
+    pub rate: f64,
+    /// What the file contains.
+    #[serde(flatten)]
+    pub contents: Tally,
+    /// Number of cycles that were computed again.
+    pub replayed: u64,
+    /// Number of cycles that were not computed again, because no recorded state was before them.
+    pub without_state: u64,
+    /// Number of cycles that differ from the recorded ones.
+    pub different: u64,
+    /// Number of recorded states.
+    pub states: u64,
+    /// Number of recorded states that differ from the computed ones.
+    pub different_states: u64,
+    /// Number of places where cycles are missing.
+    gaps: u64,
+    /// Number of cycles that are missing.
+    missing_cycles: u64,
+    first_gaps: Vec<Gap>,
+    pub first_difference: Option<FirstDifference>,
+}
+
+/// Cycles that are missing: the numbers of the first and the last one.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Gap {
+    first: u64,
+    last: u64,
+}
+
+/// The first difference: a cycle, or the recorded state before it.
+#[derive(Debug, Serialize)]
+pub struct FirstDifference {
     cycle: u64,
-    /// Line of the file, from 1.
-    line: usize,
+    /// Line of a black box, from 1.
+    line: Option<usize>,
+    /// Whether the recorded state before the cycle differs, and not what the cycle computed.
+    state: bool,
     motors: Vec<Motor>,
-    /// The whole reports as text, if they differ.
+    /// The whole reports as text, if they differ: recorded, computed.
     reports: Option<[String; 2]>,
 }
 
@@ -59,70 +78,105 @@ struct Motor {
 }
 
 impl Report {
-    pub fn new(recording: &Recording, replayed: &Replayed) -> Self {
-        let (origin, cycles) = (&recording.origin, &recording.cycles);
-        let mut stages = BTreeMap::new();
-        for cycle in cycles {
-            *stages.entry(Shown(cycle.stage.as_str()).to_string()).or_insert(0) += 1;
+    /// Puts the results of the fingers together.
+    pub fn new(library: String, truncated: bool, fingers: Vec<FingerReport>) -> Self {
+        Self { pass: fingers.iter().all(FingerReport::pass), library, truncated, fingers }
+    }
+
+    /// Returns the report as text.
+    pub fn text(&self, screen: &Screen) -> String {
+        let mut texts: Vec<String> = self.fingers.iter().map(|finger| finger.text(self, screen)).collect();
+        if self.truncated {
+            texts.push("The file has no end, because its recorder was killed. What it contains was replayed.\n".into());
         }
-        let lost = |cycle: &&CycleRecord<String>| cycle.feedback.is_none();
-        let controls = || cycles.iter().filter_map(|cycle| cycle.control.as_ref());
-        let mut set_points: Vec<_> = controls()
-            .filter_map(|control| match control.input.activity {
-                Activity::Follow(set_point) => Some(set_point),
-                _ => None,
-            })
-            .collect();
-        set_points.dedup();
-        let [first, last] = [cycles.first(), cycles.last()];
-        let began = |cycle: Option<&CycleRecord<String>>| cycle.map_or(0, |cycle| cycle.began);
+        texts.join("\n")
+    }
+}
+
+impl FingerReport {
+    /// The report of a finger of which no cycle is known yet.
+    pub fn new(finger: i32, rate: f64) -> Self {
         Self {
-            pass: replayed.first.is_none(),
-            finger: origin.finger,
-            rate: origin.hand.rate,
-            library: recording.library.clone(),
-            cycles: cycles.len(),
-            first_cycle: first.map(|cycle| cycle.cycle),
-            last_cycle: last.map(|cycle| cycle.cycle),
-            seconds: began(last).saturating_sub(began(first)) as f64 * 1e-9,
-            stages,
-            lost_replies: cycles.iter().filter(lost).count(),
-            most_lost_in_a_row: cycles.split(|one| one.feedback.is_some()).map(<[_]>::len).max().unwrap_or(0),
-            set_points: set_points.len(),
-            adjustments: controls().filter(|control| control.previous != control.controller).count(),
-            restarts: controls().filter(|control| control.input.anew_from.is_some()).count(),
-            skipped_periods: controls().map(|control| control.input.skipped).sum(),
-            largest_motor_torque: controls().map(|control| control.command.motor_torques.amax()).fold(0.0, f64::max),
-            replayed: replayed.cycles,
-            different: replayed.different,
-            first_difference: replayed.first.as_ref().map(|first| FirstDifference::new(first, recording)),
+            finger,
+            rate,
+            contents: Tally::default(),
+            replayed: 0,
+            without_state: 0,
+            different: 0,
+            states: 0,
+            different_states: 0,
+            gaps: 0,
+            missing_cycles: 0,
+            first_gaps: Vec::new(),
+            first_difference: None,
         }
     }
 
-    pub fn text(&self, screen: &Screen) -> String {
+    /// Counts cycles that are missing.
+    pub fn add_gap(&mut self, missing: Range<u64>) {
+        self.gaps += 1;
+        self.missing_cycles += missing.end - missing.start;
+        if self.first_gaps.len() < MOST_GAPS {
+            self.first_gaps.push(Gap { first: missing.start, last: missing.end - 1 });
+        }
+    }
+
+    fn pass(&self) -> bool {
+        self.different == 0 && self.different_states == 0
+    }
+
+    fn text(&self, report: &Report, screen: &Screen) -> String {
         let mut table = Table::without_header();
         let mut row = |name: &str, text: String| table.row([Cell::new(Look::Dim, name), text.into()]);
-        row("finger", format!("{}, at {} Hz, recorded by library {}", self.finger, self.rate, self.library));
+        row("finger", format!("{}, at {} Hz, recorded by library {}", self.finger, self.rate, report.library));
+        let contents = &self.contents;
         row(
             "cycles",
-            match (self.first_cycle, self.last_cycle) {
-                (Some(first), Some(last)) => format!("{}, {first} to {last}, {:.3} s", self.cycles, self.seconds),
+            match (contents.first_cycle, contents.last_cycle) {
+                (Some(first), Some(last)) => {
+                    format!("{}, {first} to {last}, {:.3} s", contents.cycles, contents.seconds)
+                }
                 _ => "none".into(),
             },
         );
-        for (stage, count) in &self.stages {
+        for (stage, count) in &contents.stages {
             row("stage", format!("{count} {stage}"));
         }
-        row("lost", format!("{} replies, at most {} in a row", self.lost_replies, self.most_lost_in_a_row));
+        row("lost", format!("{} replies, at most {} in a row", contents.lost_replies, contents.most_lost_in_a_row));
+        let Tally { set_points, adjustments, restarts, skipped_periods, .. } = contents;
         row(
             "events",
             format!(
-                "{} set points, {} adjustments, {} restarts, {} periods skipped",
-                self.set_points, self.adjustments, self.restarts, self.skipped_periods
+                "{set_points} set points, {adjustments} adjustments, {restarts} restarts, {skipped_periods} periods \
+                 skipped"
             ),
         );
-        row("motors", format!("at most {:.3} N cm", self.largest_motor_torque));
-        let result = match self.pass {
+        row("motors", format!("at most {:.3} N cm", contents.largest_motor_torque));
+        self.add_gaps_to(&mut table);
+        self.add_result_to(&mut table);
+        table.text(screen)
+    }
+
+    fn add_gaps_to(&self, table: &mut Table) {
+        let mut row = |text: String| table.row([Cell::new(Look::Dim, "gap"), Cell::new(Look::Warning, text)]);
+        for Gap { first, last } in &self.first_gaps {
+            row(match last - first {
+                0 => format!("cycle {first} is missing"),
+                more => format!("{} cycles are missing: {first} to {last}", more + 1),
+            });
+        }
+        let more = self.gaps - self.first_gaps.len() as u64;
+        if more > 0 {
+            row(format!("{more} more gaps, {} missing cycles in all", self.missing_cycles));
+        }
+        if self.without_state > 0 {
+            let text = format!("{} cycles, because no recorded state is before them", self.without_state);
+            table.row([Cell::new(Look::Dim, "not replayed"), text.into()]);
+        }
+    }
+
+    fn add_result_to(&self, table: &mut Table) {
+        let result = match self.pass() {
             true => {
                 let text = format!("{} cycles, every motor command the same to the last bit", self.replayed);
                 Cell::new(Look::Good, text)
@@ -130,23 +184,26 @@ impl Report {
             false => Cell::new(Look::Bad, format!("{} of {} cycles differ", self.different, self.replayed)),
         };
         table.row([Cell::new(Look::Dim, "replay"), result]);
-        if let Some(first) = &self.first_difference {
-            first.add_to(&mut table);
+        if self.different_states > 0 {
+            let text = format!("{} of {} recorded states differ", self.different_states, self.states);
+            table.row([Cell::new(Look::Dim, "states"), Cell::new(Look::Bad, text)]);
         }
-        table.text(screen)
+        if let Some(first) = &self.first_difference {
+            first.add_to(table);
+        }
     }
 }
 
 impl FirstDifference {
-    fn new(first: &Difference, recording: &Recording) -> Self {
-        let (recorded, replayed) = (&first.recorded, &first.replayed);
+    /// A cycle that differs.
+    pub fn in_cycle(cycle: u64, recorded: &ControlRecord, replayed: &ControlRecord) -> Self {
         let (was, is) = (recorded.command.motor_torques, replayed.command.motor_torques);
         let differs = |&motor: &usize| was[motor].to_bits() != is[motor].to_bits();
         let differs_in_report = recorded.report != replayed.report;
         Self {
-            cycle: recording.cycles[first.index].cycle,
-            // The first line of the file is the header, so the cycle with index 0 is in line 2.
-            line: first.index + 2,
+            cycle,
+            line: None,
+            state: false,
             motors: (0..4)
                 .filter(differs)
                 .map(|motor| Motor { motor: motor + 1, recorded: was[motor], replayed: is[motor] })
@@ -155,9 +212,21 @@ impl FirstDifference {
         }
     }
 
+    /// Adds the line of the file, from 1.
+    pub fn in_line(self, line: usize) -> Self {
+        Self { line: Some(line), ..self }
+    }
+
+    /// A recorded state that differs.
+    pub fn in_state(cycle: u64) -> Self {
+        Self { cycle, line: None, state: true, motors: Vec::new(), reports: None }
+    }
+
     fn add_to(&self, table: &mut Table) {
         let mut row = |name: String, text: String| table.row([Cell::new(Look::Dim, name), text.into()]);
-        row("first".into(), format!("cycle {}, line {}", self.cycle, self.line));
+        let place = if self.state { "the recorded state before cycle" } else { "cycle" };
+        let line = self.line.map_or(String::new(), |line| format!(", line {line}"));
+        row("first".into(), format!("{place} {}{line}", self.cycle));
         for Motor { motor, recorded, replayed } in &self.motors {
             row(format!("motor {motor}"), format!("recorded {recorded:e}, replayed {replayed:e} N cm"));
         }

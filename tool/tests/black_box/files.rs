@@ -42,11 +42,12 @@ fn one_bit_of_feedback_is_found_where_it_was_changed() {
     assert!(told.contains(&format!("cycle {}, line {}", recording.cycles[place].cycle, place + 2)), "{told}");
     let (status, told) = replayed_with(&file, &["--json"]);
     let told: Value = serde_json::from_str(&told).unwrap_or_else(|error| panic!("{error}: {told}"));
-    assert_eq!((status, &told["pass"], &told["finger"]), (Some(1), &json!(false), &json!(2)));
-    let first = &told["first_difference"];
+    let finger = &told["fingers"][0];
+    assert_eq!((status, &told["pass"], &finger["finger"]), (Some(1), &json!(false), &json!(2)));
+    let first = &finger["first_difference"];
     assert_eq!((&first["cycle"], &first["line"]), (&json!(recording.cycles[place].cycle), &json!(place + 2)));
-    assert!(told["different"].as_u64().is_some_and(|different| different > 0), "{told:#}");
-    assert_eq!(told["replayed"], json!(recording.cycles.iter().filter(|one| one.control.is_some()).count()));
+    assert!(finger["different"].as_u64().is_some_and(|different| different > 0), "{told:#}");
+    assert_eq!(finger["replayed"], json!(recording.cycles.iter().filter(|one| one.control.is_some()).count()));
 }
 
 #[test]

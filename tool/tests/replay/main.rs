@@ -1,0 +1,137 @@
+//! `sun2xp replay` of recordings: every cycle is recomputed to the last bit, across changes, faults and gaps.
+
+#[allow(dead_code)]
+#[path = "../../../tests/common/pauses.rs"]
+mod pauses;
+mod recorded;
+#[allow(dead_code)]
+#[path = "../black_box/rig.rs"]
+mod rig;
+
+use recorded::{Recorded, damaged, recorded};
+use rig::replayed_with;
+use serde_json::Value;
+use sun2xp::model::FingerNumber;
+use sun2xp::telemetry::Message;
+
+/// Replays messages through the tool. Returns the exit status and the JSON.
+fn replay(recording: &Recorded, messages: &[Message]) -> (Option<i32>, Value) {
+    let file = recording.write(messages);
+    let (status, told) = replayed_with(file.path(), &["--json"]);
+    (status, serde_json::from_str(&told).unwrap_or_else(|error| panic!("{error}: {told}")))
+}
+
+fn is_cycle(message: &Message, finger: FingerNumber) -> Option<u64> {
+    match message {
+        Message::Cycle { finger: of, record } if *of == finger => Some(record.cycle),
+        _ => None,
+    }
+}
+
+fn number(value: &Value) -> u64 {
+    value.as_u64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[test]
+fn a_run_with_changes_a_fault_and_a_recovery_is_the_same_to_the_last_bit() {
+    let recording = recorded();
+    let (status, told) = replay(recording, &recording.messages);
+    assert_eq!((status, &told["pass"]), (Some(0), &Value::Bool(true)), "{told:#}");
+    let fingers = told["fingers"].as_array().expect("fingers");
+    assert_eq!(fingers.len(), 3);
+    for (finger, number_of) in fingers.iter().zip(FingerNumber::ALL) {
+        let recorded = recording.messages.iter().filter(|message| is_cycle(message, number_of).is_some()).count();
+        assert_eq!(number(&finger["cycles"]), recorded as u64);
+        assert!(number(&finger["without_state"]) < 100, "{finger:#}");
+        assert!(number(&finger["replayed"]) > 800 && number(&finger["states"]) > 10, "{finger:#}");
+        assert_eq!((number(&finger["gaps"]), number(&finger["different_states"])), (0, 0), "{finger:#}");
+    }
+    let eventful = &fingers[1];
+    assert!(number(&eventful["adjustments"]) == 3 && number(&eventful["set_points"]) > 6, "{eventful:#}");
+    assert!(number(&eventful["lost_replies"]) > 10 && number(&eventful["restarts"]) >= 1, "{eventful:#}");
+    let stages: Vec<&String> = eventful["stages"].as_object().expect("stages").keys().collect();
+    assert!(stages.iter().any(|stage| stage.starts_with("faulted")), "{stages:?}");
+    assert!(stages.iter().any(|stage| *stage == "opening"), "recovered: {stages:?}");
+}
+
+#[test]
+fn the_text_names_every_finger() {
+    let recording = recorded();
+    let file = recording.write(&recording.messages);
+    let (status, told) = replayed_with(file.path(), &[]);
+    assert_eq!(status, Some(0), "{told}");
+    for finger in FingerNumber::ALL {
+        assert!(told.contains(&format!("  {finger}, at 500 Hz")), "{told}");
+    }
+    assert_eq!(told.matches("every motor command the same to the last bit").count(), 3, "{told}");
+}
+
+#[test]
+fn one_bit_is_found_in_its_cycle() {
+    let recording = recorded();
+    let mut messages = recording.messages.clone();
+    let middle = messages.len() / 2;
+    let altered = messages[middle..].iter_mut().find_map(|message| match message {
+        Message::Cycle { finger, record } if *finger == FingerNumber::THREE && record.control.is_some() => {
+            record.feedback.as_mut().map(|feedback| {
+                feedback.gauge_counts[1] ^= 1;
+                record.cycle
+            })
+        }
+        _ => None,
+    });
+    let (status, told) = replay(recording, &messages);
+    assert_eq!((status, &told["pass"]), (Some(1), &Value::Bool(false)), "{told:#}");
+    let [one, two, three] = [0, 1, 2].map(|finger| &told["fingers"][finger]);
+    assert_eq!(Some(number(&three["first_difference"]["cycle"])), altered, "{three:#}");
+    // The next recorded state ends the difference.
+    assert!((1..=65).contains(&number(&three["different"])), "{three:#}");
+    for same in [one, two] {
+        assert_eq!(number(&same["different"]), 0);
+    }
+
+    let file = recording.write(&messages);
+    let (status, told) = replayed_with(file.path(), &[]);
+    let cycle = altered.expect("a cycle");
+    assert!(status == Some(1) && told.contains(&format!("  cycle {cycle}\n")), "{told}");
+}
+
+#[test]
+fn a_gap_is_reported_and_the_replay_continues_after_it() {
+    let recording = recorded();
+    let begin = recording.messages.iter().filter_map(|message| is_cycle(message, FingerNumber::ONE)).nth(300);
+    let begin = begin.expect("long enough");
+    let lost = begin..begin + 20;
+    let whole = recording.messages.iter();
+    let rest: Vec<Message> = whole
+        .filter(|message| !is_cycle(message, FingerNumber::ONE).is_some_and(|cycle| lost.contains(&cycle)))
+        .cloned()
+        .collect();
+    let (status, told) = replay(recording, &rest);
+    assert_eq!(status, Some(0), "{told:#}");
+    let finger = &told["fingers"][0];
+    assert_eq!((number(&finger["gaps"]), number(&finger["missing_cycles"])), (1, 20));
+    assert_eq!(number(&finger["first_gaps"][0]["first"]), begin);
+    assert!(number(&finger["replayed"]) > 600 && number(&finger["without_state"]) < 200, "{finger:#}");
+}
+
+#[test]
+fn a_recording_without_an_end_is_replayed_and_a_damaged_one_is_refused() {
+    let recording = recorded();
+    let file = recording.write(&recording.messages);
+    let whole = std::fs::read(file.path()).expect("read");
+    let part = &whole[..whole.len() * 2 / 3];
+    std::fs::write(file.path(), part).expect("written");
+    let (status, told) = replayed_with(file.path(), &[]);
+    assert!(status == Some(0) && told.contains("has no end"), "{told}");
+
+    // The check of the chunk finds one bit, and the last good cycle is named.
+    std::fs::write(file.path(), damaged(&whole)).expect("written");
+    let (status, told) = replayed_with(file.path(), &[]);
+    assert!(status == Some(1) && told.contains("after cycle ") && told.lines().count() == 1, "{told}");
+    let (status, told) = replayed_with(recording.write(&[]).path(), &[]);
+    assert!(status == Some(1) && told.contains("no cycles"), "{told}");
+    std::fs::write(file.path(), &whole[..8]).expect("written");
+    let (status, told) = replayed_with(file.path(), &[]);
+    assert!(status == Some(1) && told.contains("is not a recording"), "{told}");
+}
