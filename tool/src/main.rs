@@ -8,11 +8,13 @@ mod calibrate;
 mod completions;
 mod doctor;
 mod failure;
+mod interrupt;
 mod jog;
 mod model;
 mod monitor;
 mod print;
-#[allow(dead_code, unused_imports, reason = "the commands that read recordings follow")]
+mod record;
+#[allow(dead_code, unused_imports, reason = "more commands that read recordings follow")]
 mod recording;
 mod replay;
 mod schedule;
@@ -42,6 +44,7 @@ enum Tool {
     Jog(jog::Arguments),
     Model(model::Arguments),
     Monitor(monitor::Arguments),
+    Record(record::Arguments),
     Replay(replay::Arguments),
     Schedule(schedule::Arguments),
     Status(status::Arguments),
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
         Tool::Jog(arguments) => jog::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Model(arguments) => model::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Monitor(arguments) => monitor::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Record(arguments) => record::run(&arguments),
         Tool::Replay(arguments) => replay::run(&arguments),
         Tool::Schedule(arguments) => schedule::run(&arguments),
         Tool::Status(arguments) => status::run(&arguments),

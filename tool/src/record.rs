@@ -1,0 +1,147 @@
+//! `sun2xp record`: records what an open hand does.
+
+mod counts;
+mod display;
+mod files;
+
+use crate::failure::{Failure, wrong_usage};
+use crate::interrupt::Interrupt;
+use crate::recording::{Item, Recording};
+use counts::Counts;
+use display::Display;
+use files::{Files, Limits};
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+use sun2xp::model::FingerNumber;
+use sun2xp::telemetry::{Description, Ended, Message, Reader};
+
+/// Longest time for which the recorder waits for messages before it looks at its other limits.
+const WAIT: Duration = Duration::from_millis(100);
+
+/// Records every cycle of an open hand, with its events and status, into MCAP files, until Ctrl-C or until the hand is
+/// closed. docs/recordings.md describes the files. `sun2xp export`, `sun2xp plot` and `sun2xp replay` read them.
+///
+/// Exit status: 0 if every cycle is recorded, 1 if cycles are lost or the recording failed, 2 for wrong usage.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The hand, if several are open.
+    #[arg(long, value_name = "NAME")]
+    hand: Option<String>,
+    /// The file. Further files get numbers. Without this option the name consists of the hand's name, date and time.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Record for this time, s.
+    #[arg(long, value_name = "S", value_parser = crate::record::positive)]
+    seconds: Option<f64>,
+    /// Begin a new file when a file has this size, MB.
+    #[arg(long, value_name = "MB", value_parser = crate::record::positive)]
+    max_size: Option<f64>,
+    /// Begin a new file when a file has this age, s.
+    #[arg(long, value_name = "S", value_parser = crate::record::positive)]
+    max_age: Option<f64>,
+    /// Delete the oldest files of this recording, so that at most this number is left.
+    #[arg(long, value_name = "FILES", value_parser = clap::value_parser!(u32).range(1..))]
+    keep: Option<u32>,
+    /// Convert this black box to a recording, instead of recording an open hand.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["hand", "seconds", "max_size", "max_age", "keep"])]
+    from_black_box: Option<PathBuf>,
+}
+
+/// Parses a positive number.
+fn positive(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "it is not a number".to_owned())?;
+    if number.is_finite() && number > 0.0 { Ok(number) } else { Err("it must be above 0".into()) }
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let limits = Limits {
+        bytes: arguments.max_size.map(|megabytes| (megabytes * 1e6) as u64),
+        age: arguments.max_age.map(Duration::try_from_secs_f64).transpose()?,
+        keep: arguments.keep,
+    };
+    if limits.keep.is_some() && limits.bytes.is_none() && limits.age.is_none() {
+        return Err(wrong_usage("--keep needs --max-size or --max-age: otherwise there is only one file"));
+    }
+    match &arguments.from_black_box {
+        Some(black_box) => convert(black_box, arguments, limits),
+        None => record(arguments, limits),
+    }
+}
+
+fn record(arguments: &Arguments, limits: Limits) -> Result<ExitCode, Failure> {
+    let interrupt = Interrupt::watch()?;
+    let mut reader = Reader::attach(arguments.hand.as_deref())?;
+    let mut files = Files::begin(arguments.output.clone(), reader.description(), limits)?;
+    let duration = arguments.seconds.map(Duration::try_from_secs_f64).transpose()?;
+    let mut display = Display::new(files.path(), duration);
+    let (began, mut counts, mut messages) = (Instant::now(), Counts::default(), Vec::new());
+    let reason = loop {
+        if interrupt.requested() {
+            break None;
+        }
+        if duration.is_some_and(|duration| began.elapsed() >= duration) {
+            break None;
+        }
+        messages.clear();
+        match reader.read(WAIT, &mut messages) {
+            Ok(received) => note_losses(received.lost, &mut files, &mut counts, &display)?,
+            Err(Ended::Closed) => break Some("the hand was closed"),
+            Err(error) => {
+                // What has arrived before is kept.
+                files.finish()?;
+                return Err(error.into());
+            }
+        }
+        for message in &messages {
+            counts.add(message);
+            files.write(message)?;
+        }
+        if files.turn()? {
+            display.begin_file(files.path());
+        }
+        display.show(began.elapsed(), &counts, files.bytes());
+    };
+    drop(display);
+    let path = files.finish()?;
+    report(&path, began.elapsed(), &counts, reason)
+}
+
+fn note_losses(lost: [u64; 3], files: &mut Files, counts: &mut Counts, display: &Display) -> Result<(), Failure> {
+    for (finger, lost) in FingerNumber::ALL.into_iter().zip(lost).filter(|(_, lost)| *lost > 0) {
+        counts.lost += lost;
+        files.write_lost(finger, lost)?;
+        display.line(&format!("{lost} cycles of finger {finger} are lost, and marked in /lost"));
+    }
+    Ok(())
+}
+
+fn report(path: &files::Written, took: Duration, counts: &Counts, reason: Option<&str>) -> Result<ExitCode, Failure> {
+    let reason = reason.map(|reason| format!(" ({reason})")).unwrap_or_default();
+    writeln!(io::stdout(), "{path}: {:.1} s, {counts}{reason}", took.as_secs_f64())?;
+    Ok(if counts.lost == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Converts a black box.
+fn convert(black_box: &PathBuf, arguments: &Arguments, limits: Limits) -> Result<ExitCode, Failure> {
+    let recording = Recording::open(black_box)?;
+    let description: Description = recording.description().clone();
+    let output = arguments.output.clone().unwrap_or_else(|| black_box.with_extension("mcap"));
+    let mut files = Files::begin(Some(output), &description, limits)?;
+    let mut counts = Counts::default();
+    let (mut first, mut last) = (None, 0);
+    for entry in recording {
+        let entry = entry?;
+        // A black box has no gaps.
+        let Item::Message(message) = &entry.item else { continue };
+        if matches!(message, Message::Cycle { .. }) {
+            first.get_or_insert(entry.time);
+            last = entry.time;
+        }
+        counts.add(message);
+        files.write(message)?;
+    }
+    let path = files.finish()?;
+    report(&path, Duration::from_nanos(last.saturating_sub(first.unwrap_or(last))), &counts, None)
+}

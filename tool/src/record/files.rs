@@ -1,0 +1,238 @@
+//! The files of a recording. Each can be read by itself: a new file begins with the description and the controllers.
+
+use crate::failure::Failure;
+use crate::recording::RecordingWriter;
+use std::collections::{BTreeMap, VecDeque};
+use std::fmt::{self, Display, Formatter};
+use std::fs::{self, File, OpenOptions};
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use sun2xp::model::{FingerNumber, ShownPath};
+use sun2xp::telemetry::{Description, Message};
+
+/// Largest number of controllers of a finger that a new file begins with. A cycle names its controller and the one
+/// before it.
+const MOST_CONTROLLERS: usize = 4;
+
+/// When a new file begins, and how many are kept.
+#[derive(Clone, Copy, Default)]
+pub struct Limits {
+    /// Largest size of a file, bytes.
+    pub bytes: Option<u64>,
+    /// Largest age of a file.
+    pub age: Option<Duration>,
+    /// Largest number of files.
+    pub keep: Option<u32>,
+}
+
+/// Writes messages into one file after the other.
+pub struct Files {
+    first: PathBuf,
+    limits: Limits,
+    description: Description,
+    controllers: BTreeMap<FingerNumber, VecDeque<Message>>,
+    file: OpenFile,
+    /// The files that exist, the present one last.
+    paths: VecDeque<PathBuf>,
+    /// Number of files that have been begun.
+    begun: u32,
+    /// Bytes of the finished files.
+    finished: u64,
+}
+
+/// The present file.
+struct OpenFile {
+    path: PathBuf,
+    writer: RecordingWriter<BufWriter<File>>,
+    since: Instant,
+}
+
+/// The files that were written, for a message.
+pub struct Written {
+    last: PathBuf,
+    count: u32,
+    bytes: u64,
+}
+
+impl Files {
+    /// Begins the first file. Without `output` it gets a name in the working directory.
+    ///
+    /// # Errors
+    /// Returns an error if the file exists or cannot be written.
+    pub fn begin(output: Option<PathBuf>, description: &Description, limits: Limits) -> Result<Self, Failure> {
+        let first = output.unwrap_or_else(|| PathBuf::from(format!("{}-{}.mcap", description.name, date_and_time())));
+        let file = OpenFile::create(first.clone(), description)?;
+        Ok(Self {
+            paths: [first.clone()].into(),
+            first,
+            limits,
+            description: description.clone(),
+            controllers: BTreeMap::new(),
+            file,
+            begun: 1,
+            finished: 0,
+        })
+    }
+
+    /// The present file.
+    pub fn path(&self) -> &Path {
+        &self.file.path
+    }
+
+    /// The size of all files that have been written, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.finished + self.file.bytes()
+    }
+
+    /// Writes a message.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be written.
+    pub fn write(&mut self, message: &Message) -> Result<(), Failure> {
+        if let Message::Controller { finger, .. } = message {
+            let known = self.controllers.entry(*finger).or_default();
+            known.push_back(message.clone());
+            if known.len() > MOST_CONTROLLERS {
+                known.pop_front();
+            }
+        }
+        self.file.explain(|writer| writer.write(message))
+    }
+
+    /// Marks lost cycles.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be written.
+    pub fn write_lost(&mut self, finger: FingerNumber, cycles: u64) -> Result<(), Failure> {
+        self.file.explain(|writer| writer.write_lost(finger, cycles))
+    }
+
+    /// Ends a batch of messages: writes what has been waiting for long enough, and begins a new file if the present one
+    /// has reached a limit. Returns whether a new file has begun.
+    ///
+    /// # Errors
+    /// Returns an error if a file cannot be written.
+    pub fn turn(&mut self) -> Result<bool, Failure> {
+        self.file.explain(RecordingWriter::flush_if_due)?;
+        let full = self.limits.bytes.is_some_and(|most| self.file.bytes() >= most);
+        let old = self.limits.age.is_some_and(|most| self.file.since.elapsed() >= most);
+        if !full && !old {
+            return Ok(false);
+        }
+        self.begun += 1;
+        let next = OpenFile::create(numbered(&self.first, self.begun), &self.description)?;
+        let last = std::mem::replace(&mut self.file, next);
+        self.finished += last.finish()?;
+        self.paths.push_back(self.file.path.clone());
+        for message in self.controllers.values().flatten() {
+            self.file.explain(|writer| writer.write(message))?;
+        }
+        if let Some(path) = self.paths.pop_front_if(|_| self.limits.keep.is_some_and(|keep| self.begun > keep)) {
+            fs::remove_file(&path).map_err(|error| format!("cannot delete {}: {error}", ShownPath(&path)))?;
+        }
+        Ok(true)
+    }
+
+    /// Ends the last file.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be written.
+    pub fn finish(self) -> Result<Written, Failure> {
+        let last = self.file.path.clone();
+        let bytes = self.finished + self.file.finish()?;
+        Ok(Written { last, count: self.begun, bytes })
+    }
+}
+
+impl OpenFile {
+    fn create(path: PathBuf, description: &Description) -> Result<Self, Failure> {
+        let created = OpenOptions::new().write(true).create_new(true).open(&path);
+        let file = created.map_err(|error| format!("cannot create {}: {error}", ShownPath(&path)))?;
+        let writer = RecordingWriter::new(BufWriter::new(file), description)?;
+        Ok(Self { path, writer, since: Instant::now() })
+    }
+
+    /// Writes, and names the file in an error.
+    fn explain(
+        &mut self,
+        write: impl FnOnce(&mut RecordingWriter<BufWriter<File>>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let path = &self.path;
+        write(&mut self.writer).map_err(|error| format!("cannot write {}: {error}", ShownPath(path)).into())
+    }
+
+    /// The size of the file now. It does not include the last half second.
+    fn bytes(&self) -> u64 {
+        fs::metadata(&self.path).map_or(0, |metadata| metadata.len())
+    }
+
+    /// Ends the file, and returns its size.
+    fn finish(self) -> Result<u64, Failure> {
+        let Self { path, writer, .. } = self;
+        let unwritable = |error: &dyn Display| format!("cannot write {}: {error}", ShownPath(&path));
+        let file = writer.finish().map_err(|error| unwritable(&error))?;
+        let file = file.into_inner().map_err(|error| unwritable(&error))?;
+        Ok(file.metadata().map_err(|error| unwritable(&error))?.len())
+    }
+}
+
+impl Display for Written {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}", ShownPath(&self.last))?;
+        if self.count > 1 {
+            write!(formatter, ", the last of {} files", self.count)?;
+        }
+        write!(formatter, ", {:.1} MB", self.bytes as f64 * 1e-6)
+    }
+}
+
+/// Returns the name of a further file: `hand.mcap` becomes `hand-2.mcap`.
+fn numbered(first: &Path, number: u32) -> PathBuf {
+    let stem = first.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = first.extension().map(|extension| format!(".{}", extension.to_string_lossy()));
+    first.with_file_name(format!("{stem}-{number}{}", extension.unwrap_or_default()))
+}
+
+/// Returns date and time for a name, in universal time: 20261122-154900.
+fn date_and_time() -> String {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let (year, month, day) = date(seconds / 86_400);
+    let of_day = seconds % 86_400;
+    format!("{year:04}{month:02}{day:02}-{:02}{:02}{:02}", of_day / 3600, of_day / 60 % 60, of_day % 60)
+}
+
+/// Returns the date of a day since 1970 in the Gregorian calendar.
+fn date(days: u64) -> (u64, u64, u64) {
+    // Years are counted from March, so that the leap day is the last day of a year. The calendar repeats after 400
+    // years, which have 146 097 days. 719 468 days are from 0000-03-01 to 1970-01-01.
+    let days = days + 719_468;
+    let (era, day) = (days / 146_097, days % 146_097);
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let of_month = day - (153 * month + 2) / 5 + 1;
+    let (month, next) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
+    (400 * era + year + next, month, of_month)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_numbered_before_their_ending() {
+        assert_eq!(numbered(Path::new("a/hand.mcap"), 2), Path::new("a/hand-2.mcap"));
+        assert_eq!(numbered(Path::new("hand"), 11), Path::new("hand-11"));
+    }
+
+    #[test]
+    fn days_have_their_dates() {
+        assert_eq!(date(0), (1970, 1, 1));
+        assert_eq!(date(11_016), (2000, 2, 29));
+        assert_eq!(date(11_017), (2000, 3, 1));
+        assert_eq!(date(20_453), (2025, 12, 31));
+        assert_eq!(date(47_540), (2100, 2, 28));
+        assert_eq!(date(47_541), (2100, 3, 1));
+    }
+}
