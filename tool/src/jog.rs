@@ -1,4 +1,4 @@
-//! `sun2xp jog`: opens a hand, and moves it by keys.
+//! `sun2xp jog`: opens a hand, and moves it by keys or on a web page.
 
 pub mod commands;
 mod keys;
@@ -10,6 +10,7 @@ use crate::monitor::show::{self, Controls};
 use crate::monitor::source::{Source, Wanted};
 use crate::monitor::terminal::Screen;
 use crate::monitor::view::View;
+use crate::web;
 use panel::JogPanel;
 use ratatui::crossterm::event::Event;
 use std::io::{self, Write};
@@ -35,16 +36,24 @@ pub struct Arguments {
     /// Folder for snapshots.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     snapshots: PathBuf,
+    /// Show the hand on a web page instead, and print the address of the page.
+    #[arg(long)]
+    web: bool,
+    /// Let the page move the hand. Whoever has the printed address may then move it.
+    #[arg(long, requires = "web")]
+    control: bool,
+    #[command(flatten)]
+    address: web::Address,
 }
 
-/// Opens the hand, and closes it after the last key.
+/// Opens the hand, and closes it after the last key. With a page, closes it at SIGINT or SIGTERM.
 ///
 /// # Errors
 /// Returns an error if there is no terminal, if the configuration cannot be used, if the person does not confirm, or
 /// if the hand cannot be opened.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if !Screen::available() {
-        return Err("jog needs a terminal: run it in one".into());
+    if !arguments.web && !Screen::available() {
+        return Err("jog needs a terminal: run it in one, or with --web".into());
     }
     let mut configuration = match &arguments.config {
         Some(file) => hand::read_configuration(file)?,
@@ -61,6 +70,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     println!("opening the hand ...");
     let hand = Arc::new(Hand::open(configuration.clone())?);
+    if arguments.web {
+        let control = if arguments.control { Some(web::Control::start(&hand, configuration.clone())?) } else { None };
+        return web::serve(&arguments.address, web::Source::Own, control);
+    }
     let source = Source::start(Wanted::Process(std::process::id()))?;
     let worker = Worker::start(hand.clone(), configuration.clone())?;
     let mut view = View::new("the hand is open, and its first cycles are on their way".into());

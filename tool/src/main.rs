@@ -20,6 +20,7 @@ mod replay;
 mod schedule;
 mod status;
 mod virtual_machine;
+mod web;
 
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;

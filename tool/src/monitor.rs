@@ -1,4 +1,4 @@
-//! `sun2xp monitor`: an open hand in the terminal.
+//! `sun2xp monitor`: an open hand in the terminal or in a browser.
 
 pub mod draw;
 pub mod finger_state;
@@ -13,6 +13,7 @@ pub mod wake_ups;
 pub mod words;
 
 use crate::failure::Failure;
+use crate::web;
 use ratatui::crossterm::event::Event;
 use show::Controls;
 use source::{Source, Wanted};
@@ -20,8 +21,8 @@ use std::path::PathBuf;
 use terminal::Screen;
 use view::View;
 
-/// Shows an open hand in the terminal, as it runs: joints, tensions, stiffness, forces, faults with their remedies,
-/// events and timing. It only reads, and costs the servos nothing.
+/// Shows an open hand in the terminal or on a web page, as it runs: joints, tensions, stiffness, forces, faults with
+/// their remedies, events and timing. It only reads, and costs the servos nothing.
 ///
 /// Keys: q quit, space freeze, 1 2 3 or tab a finger in detail, s snapshot, ? help.
 #[derive(clap::Args)]
@@ -32,13 +33,21 @@ pub struct Arguments {
     /// Folder for snapshots.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     snapshots: PathBuf,
+    /// Show the hand on a web page, with the hand in 3-D, and print the address of the page.
+    #[arg(long)]
+    web: bool,
+    #[command(flatten)]
+    address: web::Address,
 }
 
 /// Shows the hand until a key ends it. Waits for a hand if there is none.
 ///
 /// # Errors
-/// Returns an error if there is no terminal, or if the terminal fails.
+/// Returns an error if there is no terminal, if the terminal fails, or if the page cannot be served.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.web {
+        return web::serve(&arguments.address, web::Source::Named(arguments.name.clone()), None);
+    }
     if !Screen::available() {
         return Err("the monitor needs a terminal: use `sun2xp status` for a file, a pipe or a script".into());
     }

@@ -1,0 +1,41 @@
+// The connection to `sun2xp`: a WebSocket that is opened again when it ends. Messages are JSON (docs/monitor-web.md).
+
+const RETRY_MS = 500;
+
+/// The token of a page that needs one is in the fragment of the address, which browsers send to no server.
+export function token() {
+  return new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
+}
+
+export class Stream {
+  /// `receivers` has a function for each type of message, and `link(connected, reason)`.
+  constructor(receivers) {
+    this.receivers = receivers;
+    this.connect();
+  }
+
+  connect() {
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    const query = token() ? `?token=${encodeURIComponent(token())}` : "";
+    this.socket = new WebSocket(`${scheme}://${location.host}/stream${query}`);
+    this.socket.onmessage = (message) => this.receive(JSON.parse(message.data));
+    this.socket.onopen = () => this.receivers.link(true, "");
+    this.socket.onclose = () => {
+      this.receivers.link(
+        false,
+        "sun2xp does not answer. Is the command still running, and is this the whole address that it printed?",
+      );
+      setTimeout(() => this.connect(), RETRY_MS);
+    };
+  }
+
+  receive(message) {
+    // The server sends at most a second of batches that are not acknowledged, so that a slow page never shows old ones.
+    if (message.type === "batch") this.send({ received: message.number });
+    this.receivers[message.type]?.(message);
+  }
+
+  send(message) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+}

@@ -1,0 +1,84 @@
+//! The web page of `sun2xp monitor --web` and `sun2xp jog --web`: a server for browsers on this machine, or with a
+//! token for browsers on others.
+//!
+//! A thread reads the hand and publishes messages to the pages. It does not wait for them.
+
+mod access;
+mod control;
+mod feed;
+mod files;
+mod hub;
+mod listener;
+mod message;
+mod server;
+mod session;
+mod translation;
+
+pub use control::Control;
+pub use feed::Source;
+
+use crate::failure::Failure;
+use access::Access;
+use hub::Hub;
+use server::Server;
+use std::io::{self, Write};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
+use std::sync::Arc;
+use std::thread;
+
+/// An address that is reserved for documentation, so that it is nobody's.
+const DISTANT: (Ipv4Addr, u16) = (Ipv4Addr::new(192, 0, 2, 1), 9);
+
+/// Where the page is served.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Address {
+    /// Port of the page. By default the system chooses a free one.
+    #[arg(long, value_name = "PORT", default_value_t = 0, requires = "web")]
+    port: u16,
+    /// Serve the page at this address of the machine, or at 0.0.0.0 for all of them. The printed address of the page
+    /// then contains a token, without which nobody gets data. The connection is not encrypted.
+    #[arg(long, value_name = "ADDRESS", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), requires = "web")]
+    bind: IpAddr,
+}
+
+/// Serves the page until SIGINT or SIGTERM. Prints its address. With a `control`, pages may move the hand, and they need
+/// the token on loopback too.
+///
+/// # Errors
+/// Returns an error if the address cannot be used.
+pub fn serve(address: &Address, source: Source, control: Option<Control>) -> Result<(), Failure> {
+    let at = SocketAddr::new(address.bind, address.port);
+    let listener = TcpListener::bind(at)
+        .map_err(|error| io::Error::new(error.kind(), format!("cannot serve at {at}: {error}")))?;
+    let bound = listener.local_addr()?;
+    let secret = control.is_some() || !bound.ip().is_loopback();
+    let token = if secret { Some(access::new_token().map_err(io::Error::other)?) } else { None };
+    writeln!(io::stdout(), "{}", url(bound, token.as_deref()))?;
+    let hub = Arc::new(Hub::new());
+    let (its_hub, may_control) = (Arc::clone(&hub), control.is_some());
+    thread::Builder::new()
+        .name("sun2xp feed".into())
+        .spawn(move || -> () { feed::run(&source, may_control, &its_hub) })?;
+    let access = Arc::new(Access { address: bound, token, machine: access::machine() });
+    let server = Server { access, hub, control: control.map(Arc::new) };
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    Ok(runtime.block_on(server.run(listener))?)
+}
+
+/// Returns the address of the page. Browsers send what follows # to no server, so the token is in no log.
+fn url(bound: SocketAddr, token: Option<&str>) -> String {
+    let host = match bound.ip() {
+        ip if ip.is_unspecified() => own_address().or_else(access::machine).unwrap_or_else(|| "localhost".into()),
+        IpAddr::V4(ip) => ip.to_string(),
+        IpAddr::V6(ip) => format!("[{ip}]"),
+    };
+    let token = token.map(|token| format!("#token={token}")).unwrap_or_default();
+    format!("http://{host}:{}/{token}", bound.port())
+}
+
+/// Returns the address that this machine has for others. It is that of a datagram to a distant network; none is sent.
+fn own_address() -> Option<String> {
+    let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
+    socket.connect(DISTANT).ok()?;
+    Some(socket.local_addr().ok()?.ip().to_string())
+}

@@ -1,0 +1,75 @@
+//! The thread that reads the hand and publishes what it reads. It attaches again when the hand returns.
+
+use super::hub::{Hub, Kind};
+use super::message::ToPage;
+use super::translation::Translation;
+use std::sync::Arc;
+use std::thread::sleep;
+use std::time::Duration;
+use sun2xp::telemetry::{Reader, hands};
+
+/// Interval of the attempts to attach.
+const RETRY: Duration = Duration::from_millis(300);
+
+/// Longest wait for the next batch of the hand.
+const WAIT: Duration = Duration::from_millis(200);
+
+/// Which hand is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// The hand with this name, or the only one.
+    Named(Option<String>),
+    /// The hand that this process has opened.
+    Own,
+}
+
+/// Reads the hand until the process ends.
+pub fn run(source: &Source, control: bool, hub: &Arc<Hub>) -> ! {
+    let mut reported = None;
+    loop {
+        match attach(source) {
+            Ok(reader) => {
+                reported = None;
+                let reason = follow(reader, control, hub);
+                publish(hub, Kind::Gone, &ToPage::Gone { reason: &reason });
+            }
+            Err(reason) if reported.as_ref() != Some(&reason) => {
+                publish(hub, Kind::Gone, &ToPage::Gone { reason: &reason });
+                reported = Some(reason);
+            }
+            Err(_) => {}
+        }
+        sleep(RETRY);
+    }
+}
+
+/// Publishes a message.
+pub fn publish(hub: &Hub, kind: Kind, message: &ToPage) {
+    // All keys of these messages are texts, and JSON has null for numbers that are not finite.
+    if let Ok(text) = serde_json::to_string(message) {
+        hub.publish(kind, text);
+    }
+}
+
+fn attach(source: &Source) -> Result<Reader, String> {
+    let Source::Named(name) = source else {
+        let own = |reader: &Reader| reader.description().process == std::process::id();
+        let names = hands().map_err(|error| error.to_string())?;
+        let found = names.iter().filter_map(|name| Reader::attach(Some(name)).ok()).find(own);
+        return found.ok_or_else(|| "the hand of this program is not open".into());
+    };
+    Reader::attach(name.as_deref()).map_err(|error| error.to_string())
+}
+
+/// Publishes what a hand does. Returns why it ended.
+fn follow(mut reader: Reader, control: bool, hub: &Hub) -> String {
+    let mut translation = Translation::new(reader.description(), control, hub);
+    let mut messages = Vec::new();
+    loop {
+        messages.clear();
+        if let Err(ended) = reader.read(WAIT, &mut messages) {
+            return ended.to_string();
+        }
+        translation.take(&messages, reader.lost().iter().sum());
+    }
+}

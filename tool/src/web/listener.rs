@@ -1,0 +1,99 @@
+//! The listening socket: a limited number of connections, and none that stays silent.
+
+use axum::serve::Listener;
+use std::future::Future;
+use std::io::{self, ErrorKind};
+use std::net::SocketAddr;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{Context, Poll};
+use std::time::Duration;
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::{Instant, Sleep, sleep};
+
+/// Largest number of connections. A browser opens up to six for a page, and keeps one of them.
+const CONNECTIONS: usize = 64;
+
+/// A connection that sends nothing for this time is closed. Browsers answer the pings of a WebSocket, which come more
+/// often.
+pub const SILENCE: Duration = Duration::from_secs(30);
+
+/// Time after which the listener tries again if the system has no more files.
+const RETRY: Duration = Duration::from_millis(100);
+
+/// A listener whose connections are counted. Further ones wait until another is closed.
+pub struct Limited {
+    listener: TcpListener,
+    free: Arc<Semaphore>,
+}
+
+/// A connection.
+pub struct Connection {
+    stream: TcpStream,
+    silence: Pin<Box<Sleep>>,
+    _permit: OwnedSemaphorePermit,
+}
+
+impl Limited {
+    /// Limits the connections of a listener.
+    pub fn new(listener: TcpListener) -> Self {
+        Self { listener, free: Arc::new(Semaphore::new(CONNECTIONS)) }
+    }
+
+    async fn next(&self) -> io::Result<(Connection, SocketAddr)> {
+        let permit = Arc::clone(&self.free).acquire_owned().await.map_err(io::Error::other)?;
+        let (stream, peer) = self.listener.accept().await?;
+        // Batches are small, and they must not wait for more bytes.
+        stream.set_nodelay(true)?;
+        Ok((Connection { stream, silence: Box::pin(sleep(SILENCE)), _permit: permit }, peer))
+    }
+}
+
+impl Listener for Limited {
+    type Io = Connection;
+    type Addr = SocketAddr;
+
+    async fn accept(&mut self) -> (Connection, SocketAddr) {
+        loop {
+            match self.next().await {
+                Ok(accepted) => return accepted,
+                Err(_) => sleep(RETRY).await,
+            }
+        }
+    }
+
+    fn local_addr(&self) -> io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+}
+
+impl AsyncRead for Connection {
+    fn poll_read(mut self: Pin<&mut Self>, context: &mut Context, buffer: &mut ReadBuf) -> Poll<io::Result<()>> {
+        match Pin::new(&mut self.stream).poll_read(context, buffer) {
+            Poll::Pending if self.silence.as_mut().poll(context).is_ready() => {
+                Poll::Ready(Err(ErrorKind::TimedOut.into()))
+            }
+            Poll::Ready(result) => {
+                self.silence.as_mut().reset(Instant::now() + SILENCE);
+                Poll::Ready(result)
+            }
+            Poll::Pending => Poll::Pending,
+        }
+    }
+}
+
+impl AsyncWrite for Connection {
+    fn poll_write(mut self: Pin<&mut Self>, context: &mut Context, bytes: &[u8]) -> Poll<io::Result<usize>> {
+        Pin::new(&mut self.stream).poll_write(context, bytes)
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_flush(context)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_shutdown(context)
+    }
+}

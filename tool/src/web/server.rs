@@ -1,0 +1,127 @@
+//! The server: one thread, files for anybody of this address, and data for those who may have it.
+
+use super::access::{Access, Refusal};
+use super::control::Control;
+use super::files::{self, POLICY};
+use super::hub::Hub;
+use super::listener::Limited;
+use super::session::{LARGEST_MESSAGE, Session};
+use axum::Router;
+use axum::body::Body;
+use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::{Query, Request, State};
+use axum::http::{HeaderMap, HeaderValue, Response, StatusCode, Uri, header};
+use axum::middleware::{self, Next};
+use axum::routing::get;
+use serde::Deserialize;
+use std::io;
+use std::sync::Arc;
+use tokio::net::TcpListener;
+use tokio::signal::ctrl_c;
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::sync::Semaphore;
+
+/// Largest number of pages.
+const PAGES: usize = 16;
+
+/// What the server serves.
+#[derive(Clone)]
+pub struct Server {
+    /// Who may read.
+    pub access: Arc<Access>,
+    /// The messages.
+    pub hub: Arc<Hub>,
+    /// The hand that pages may move; none without `--control`.
+    pub control: Option<Arc<Control>>,
+}
+
+#[derive(Clone)]
+struct Shared {
+    server: Server,
+    pages: Arc<Semaphore>,
+}
+
+#[derive(Deserialize)]
+struct Credentials {
+    token: Option<String>,
+}
+
+impl Server {
+    /// Serves until SIGINT or SIGTERM.
+    ///
+    /// # Errors
+    /// Returns an error if the listener fails.
+    pub async fn run(self, listener: std::net::TcpListener) -> io::Result<()> {
+        listener.set_nonblocking(true)?;
+        let limited = Limited::new(TcpListener::from_std(listener)?);
+        let access = Arc::clone(&self.access);
+        let shared = Shared { server: self, pages: Arc::new(Semaphore::new(PAGES)) };
+        let router = Router::new()
+            .route("/stream", get(stream))
+            .fallback(get(file))
+            .layer(middleware::from_fn_with_state(access, guard))
+            .with_state(shared);
+        tokio::select! {
+            result = axum::serve(limited, router) => result,
+            result = ended() => result,
+        }
+    }
+}
+
+/// Waits for SIGINT or SIGTERM.
+async fn ended() -> io::Result<()> {
+    let mut terminate = signal(SignalKind::terminate())?;
+    tokio::select! {
+        result = ctrl_c() => result,
+        _ = terminate.recv() => Ok(()),
+    }
+}
+
+/// Checks every request, and adds the headers that every response has.
+async fn guard(State(access): State<Arc<Access>>, request: Request, next: Next) -> Response<Body> {
+    let mut response = match access.check(request.headers()) {
+        Ok(()) => next.run(request).await,
+        Err(refusal) => refused(refusal),
+    };
+    let headers = response.headers_mut();
+    for (name, value) in [
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
+        (header::HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+    ] {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    response
+}
+
+async fn file(uri: Uri, headers: HeaderMap) -> Response<Body> {
+    files::response(uri.path(), &headers)
+}
+
+async fn stream(
+    State(shared): State<Shared>,
+    Query(credentials): Query<Credentials>,
+    upgrade: WebSocketUpgrade,
+) -> Response<Body> {
+    if let Err(refusal) = shared.server.access.check_token(credentials.token.as_deref()) {
+        return refused(refusal);
+    }
+    let Ok(permit) = shared.pages.try_acquire_owned() else {
+        return files::status(StatusCode::SERVICE_UNAVAILABLE, "Too many pages are open.\n");
+    };
+    let Server { hub, control, .. } = shared.server;
+    upgrade.max_message_size(LARGEST_MESSAGE).max_frame_size(LARGEST_MESSAGE).on_upgrade(async move |socket| {
+        Session::new(socket, hub, control).run().await;
+        drop(permit);
+    })
+}
+
+fn refused(refusal: Refusal) -> Response<Body> {
+    let code = match refusal {
+        Refusal::Host => StatusCode::MISDIRECTED_REQUEST,
+        Refusal::Origin | Refusal::Token => StatusCode::FORBIDDEN,
+    };
+    files::status(code, refusal.text())
+}

@@ -1,0 +1,114 @@
+//! A headless Chromium, driven over the WebDriver protocol of chromedriver.
+
+use super::http::{WAIT, request};
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader};
+use std::net::SocketAddr;
+use std::process::{Child, Command, Stdio};
+use std::time::Instant;
+use tempfile::TempDir;
+
+/// A browser with one page. It ends with this value.
+pub struct Browser {
+    driver: Child,
+    address: SocketAddr,
+    session: String,
+    _profile: TempDir,
+}
+
+impl Browser {
+    /// Starts a browser with a window of this size, pixels.
+    pub fn start(width: u32, height: u32) -> Self {
+        let mut driver = Command::new("chromedriver")
+            .arg("--port=0")
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("chromedriver starts");
+        let lines = BufReader::new(driver.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
+        let port = lines
+            .filter_map(|line| line.strip_suffix('.')?.rsplit_once("on port ")?.1.parse().ok())
+            .next()
+            .expect("chromedriver prints its port");
+        let profile = tempfile::tempdir().expect("a folder");
+        let mut browser = Self {
+            driver,
+            address: SocketAddr::from(([127, 0, 0, 1], port)),
+            session: String::new(),
+            _profile: profile,
+        };
+        let folder = format!("--user-data-dir={}", browser._profile.path().display());
+        let size = format!("--window-size={width},{height}");
+        let arguments = [
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--enable-unsafe-swiftshader",
+            "--disable-quic",
+            "--no-first-run",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+            &folder,
+            &size,
+        ];
+        let capabilities = json!({ "capabilities": { "alwaysMatch": {
+            "goog:chromeOptions": { "args": arguments },
+            "goog:loggingPrefs": { "browser": "ALL", "performance": "ALL" },
+        } } });
+        let session = browser.call("POST", "/session", &capabilities);
+        browser.session = format!("/session/{}", session["sessionId"].as_str().expect("a session"));
+        browser
+    }
+
+    /// Opens a page.
+    pub fn open(&self, url: &str) {
+        self.call("POST", &format!("{}/url", self.session), &json!({ "url": url }));
+    }
+
+    /// Runs the body of a function in the page, and returns its result. `await` works in it.
+    pub fn run(&self, body: &str) -> Value {
+        let script = format!("const done = arguments[0]; (async () => {{ {body} }})().then(done)");
+        self.call("POST", &format!("{}/execute/async", self.session), &json!({ "script": script, "args": [] }))
+    }
+
+    /// Runs a function body until it returns something true.
+    pub fn wait_for(&self, body: &str) -> Value {
+        let end = Instant::now() + WAIT;
+        while Instant::now() < end {
+            let found = self.run(&format!("return (() => {{ {body} }})() || null"));
+            if !found.is_null() {
+                return found;
+            }
+            // One picture, so that the page has something else to do.
+            self.run("await new Promise(requestAnimationFrame)");
+        }
+        panic!("the page never does this: {body}")
+    }
+
+    /// Returns the entries of a log since the last call: `browser` is the console, `performance` the network.
+    pub fn log(&self, kind: &str) -> Vec<Value> {
+        let entries = self.call("POST", &format!("{}/se/log", self.session), &json!({ "type": kind }));
+        entries.as_array().expect("entries").clone()
+    }
+
+    fn call(&self, method: &str, path: &str, body: &Value) -> Value {
+        let host = self.address.to_string();
+        let headers = [("Host", host.as_str()), ("Content-Type", "application/json"), ("Connection", "close")];
+        let response = request(self.address, method, path, &headers, &body.to_string());
+        let mut answer: Value = serde_json::from_slice(&response.body).expect("JSON");
+        assert_eq!(response.status, 200, "{path}: {answer}");
+        answer["value"].take()
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        if !self.session.is_empty() && !std::thread::panicking() {
+            self.call("DELETE", &self.session, &json!({}));
+        }
+        // Chromium ends with its driver.
+        let _ = self.driver.kill();
+        let _ = self.driver.wait();
+    }
+}

@@ -1,0 +1,13 @@
+//! `sun2xp monitor --web`: who may read the page, and what a browser shows of it.
+
+mod browser;
+mod chrome;
+mod http;
+mod program;
+mod refusals;
+mod slow_pages;
+mod socket;
+
+#[allow(dead_code)]
+#[path = "../../../tests/common/tools.rs"]
+mod tools;

@@ -1,0 +1,71 @@
+//! A page that does not keep up loses batches. Other pages get all.
+
+use super::program::{Program, hand};
+use super::socket::{Frame, Socket};
+use serde_json::Value;
+
+/// Number of batches that a page may have received without an acknowledgement.
+const AHEAD: usize = 20;
+
+fn message(socket: &mut Socket) -> Value {
+    match socket.next() {
+        Frame::Text(text) => serde_json::from_str(&text).expect("JSON"),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Returns the next batch. With `answer`, acknowledges it.
+fn batch(socket: &mut Socket, answer: bool) -> Value {
+    loop {
+        let message = message(socket);
+        if message["type"] == "batch" {
+            if answer {
+                socket.send(&format!(r#"{{"received":{}}}"#, message["number"]));
+            }
+            return message;
+        }
+    }
+}
+
+#[test]
+fn a_page_that_does_not_acknowledge_gets_a_second_and_then_waits() {
+    let (hand, name) = hand(|_| {});
+    let program = Program::monitor(&name);
+    let open = || Socket::open(program.address(), "/stream", &[]).expect("a socket");
+    let (mut slow, mut quick) = (open(), open());
+    let first = (0..AHEAD).map(|_| batch(&mut slow, false)).last().expect("a batch");
+    // More batches than the hub keeps.
+    let mut numbers = Vec::new();
+    while numbers.len() < 100 {
+        numbers.push(batch(&mut quick, true)["number"].as_u64().expect("a number"));
+    }
+    assert!(numbers.windows(2).all(|pair| pair[1] == pair[0] + 1), "the quick page gets every batch: {numbers:?}");
+    slow.send(r#"{"received":1}"#);
+    let next = batch(&mut slow, false);
+    let number = |batch: &Value| batch["number"].as_u64().expect("a number");
+    assert!(number(&next) > number(&first) + 50, "batches are left out: {first} {next}");
+    let cycles = |batch: &Value, place: usize| batch["cycles"][place].as_u64().expect("a count");
+    let skipped = cycles(&next, 1) - cycles(&next, 0) - cycles(&first, 1);
+    assert!(skipped > 3000, "the page can count the cycles that it has not got: {skipped}");
+    hand.close();
+    while message(&mut quick)["type"] != "gone" {}
+}
+
+#[test]
+fn a_page_that_opens_later_gets_the_hand_its_state_and_its_events() {
+    let (_hand, name) = hand(|_| {});
+    let program = Program::monitor(&name);
+    let mut first = Socket::open(program.address(), "/stream", &[]).expect("a socket");
+    for _ in 0..3 {
+        batch(&mut first, true);
+    }
+    let mut second = Socket::open(program.address(), "/stream", &[]).expect("a socket");
+    let hand = message(&mut second);
+    assert_eq!((&hand["type"], &hand["name"]), (&"hand".into(), &name.into()));
+    assert_eq!(hand["geometry"]["fingers"].as_array().map(Vec::len), Some(3));
+    let columns = hand["columns"].as_array().expect("columns").len();
+    let state = message(&mut second);
+    assert_eq!((&state["type"], &state["finger"]), (&"state".into(), &1.into()));
+    let rows = batch(&mut second, true)["fingers"][0]["rows"].clone();
+    assert_eq!(rows[0].as_array().map(Vec::len), Some(columns));
+}
