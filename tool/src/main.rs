@@ -7,11 +7,13 @@ mod bound;
 mod calibrate;
 mod completions;
 mod doctor;
+mod export;
 mod failure;
 mod interrupt;
 mod jog;
 mod model;
 mod monitor;
+mod plot;
 mod print;
 mod record;
 #[allow(dead_code, unused_imports, reason = "more commands that read recordings follow")]
@@ -19,6 +21,7 @@ mod recording;
 mod replay;
 mod schedule;
 mod status;
+mod trace;
 mod virtual_machine;
 mod web;
 
@@ -42,9 +45,11 @@ enum Tool {
     Calibrate(calibrate::Arguments),
     Completions(completions::Arguments),
     Doctor(doctor::Arguments),
+    Export(export::Arguments),
     Jog(jog::Arguments),
     Model(model::Arguments),
     Monitor(monitor::Arguments),
+    Plot(plot::Arguments),
     Record(record::Arguments),
     Replay(replay::Arguments),
     Schedule(schedule::Arguments),
@@ -60,9 +65,11 @@ fn main() -> ExitCode {
         Tool::Calibrate(arguments) => calibrate::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Completions(arguments) => completions::run(&arguments, command()).map(|()| ExitCode::SUCCESS),
         Tool::Doctor(arguments) => doctor::run(&arguments),
+        Tool::Export(arguments) => export::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Jog(arguments) => jog::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Model(arguments) => model::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Monitor(arguments) => monitor::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Tool::Plot(arguments) => plot::run(&arguments).map(|()| ExitCode::SUCCESS),
         Tool::Record(arguments) => record::run(&arguments),
         Tool::Replay(arguments) => replay::run(&arguments),
         Tool::Schedule(arguments) => schedule::run(&arguments),

@@ -1,0 +1,179 @@
+//! `sun2xp export`: a recording as CSV files, which spreadsheets and programs for data read.
+
+mod columns;
+
+use crate::failure::{Failure, wrong_usage};
+use crate::print::Progress;
+use crate::trace::{self, Finger, Item, Mark, Row};
+use clap::ValueEnum;
+use columns::{Value, columns};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use sun2xp::model::ShownPath;
+
+/// Writes a recording as CSV: one file for each finger, and one for the events.
+///
+/// The first line of a file names the columns and their units. Numbers have as many digits as are needed to read the
+/// recorded bits again. A value that a cycle does not have is an empty field.
+///
+/// Exit status: 0 if everything was written, 1 if not, 2 for wrong usage.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// A recording of sun2xp record, or a black box.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// The folder of the CSV files. The default is the folder of FILE. With `-`, standard output receives all of it in
+    /// the long format.
+    #[arg(long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// One row for each cycle, or one row for each value.
+    #[arg(long, value_enum, default_value_t = Format::Wide)]
+    format: Format,
+    /// Only this finger. May be repeated.
+    #[arg(long = "finger", value_name = "N", value_parser = clap::value_parser!(i32).range(1..=3))]
+    fingers: Vec<i32>,
+    /// Replace files that exist.
+    #[arg(long)]
+    force: bool,
+}
+
+/// The arrangement of the values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// A row has all values of a cycle, each in its column.
+    Wide,
+    /// A row has one value: time, finger, cycle, name, unit, value.
+    Long,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let standard_output = arguments.output.as_deref() == Some(Path::new("-"));
+    let mut files = Files { arguments, standard_output, start: None, open: BTreeMap::new(), paths: Vec::new() };
+    trace::read(&arguments.file, &Progress::new("export", 0), &mut |item| files.take(item))?;
+    files.finish()
+}
+
+/// The CSV files of a recording.
+struct Files<'a> {
+    arguments: &'a Arguments,
+    standard_output: bool,
+    /// Beginning of the first cycle, ns.
+    start: Option<u64>,
+    /// The file of every finger, and of the events under the number 0.
+    open: BTreeMap<i32, Box<dyn Write>>,
+    paths: Vec<PathBuf>,
+}
+
+/// The key of the file of events.
+const EVENTS: i32 = 0;
+
+const EVENT_COLUMNS: &str = "time_s,time_ns,finger,cycle,kind,text";
+const LONG_COLUMNS: &str = "time_s,finger,cycle,name,unit,value";
+
+impl Files<'_> {
+    fn take(&mut self, item: Item) -> Result<(), Failure> {
+        let wanted = |finger: i32| self.arguments.fingers.is_empty() || self.arguments.fingers.contains(&finger);
+        match item {
+            Item::Finger(Finger { .. }) => Ok(()),
+            Item::Cycle(row) if !wanted(row.sample.finger) => Ok(()),
+            Item::Mark(Mark { finger: Some(finger), .. }) if !wanted(finger) => Ok(()),
+            Item::Cycle(row) => self.cycle(&row),
+            Item::Mark(mark) => self.mark(&mark),
+        }
+    }
+
+    /// Time since the first cycle, s. An event may be a little older.
+    fn seconds(&mut self, time: u64) -> f64 {
+        let start = *self.start.get_or_insert(time);
+        time.wrapping_sub(start).cast_signed() as f64 * 1e-9
+    }
+
+    fn cycle(&mut self, row: &Row) -> Result<(), Failure> {
+        let (finger, cycle) = (row.sample.finger, row.sample.cycle);
+        let seconds = self.seconds(row.sample.began);
+        let columns = columns(row);
+        if self.arguments.format == Format::Wide && !self.standard_output {
+            let names = columns.iter().map(|column| column.full_name()).collect::<Vec<_>>().join(",");
+            let file = self.file(finger, &format!("time_s,{names}"))?;
+            write!(file, "{seconds}")?;
+            columns.iter().try_for_each(|column| write!(file, ",{}", column.value))?;
+            writeln!(file)?;
+            return Ok(());
+        }
+        let file = self.file(finger, LONG_COLUMNS)?;
+        for column in columns.iter().filter(|column| column.value != Value::None && column.name != "cycle") {
+            writeln!(file, "{seconds},{finger},{cycle},{},{},{}", column.name, column.unit, column.value)?;
+        }
+        Ok(())
+    }
+
+    fn mark(&mut self, mark: &Mark) -> Result<(), Failure> {
+        let seconds = self.seconds(mark.time);
+        let number = |number: Option<String>| number.unwrap_or_default();
+        let (finger, cycle) = (number(mark.finger.map(|n| n.to_string())), number(mark.cycle.map(|n| n.to_string())));
+        let (kind, text) = (mark.kind.name(), quoted(&mark.text));
+        if self.standard_output {
+            writeln!(self.file(EVENTS, LONG_COLUMNS)?, "{seconds},{finger},{cycle},{kind},,{text}")?;
+        } else {
+            let time = mark.time;
+            writeln!(self.file(EVENTS, EVENT_COLUMNS)?, "{seconds},{time},{finger},{cycle},{kind},{text}")?;
+        }
+        Ok(())
+    }
+
+    /// Returns the file of a finger or of the events. A new file begins with its header.
+    fn file(&mut self, key: i32, header: &str) -> Result<&mut Box<dyn Write>, Failure> {
+        let key = if self.standard_output { EVENTS } else { key };
+        if !self.open.contains_key(&key) {
+            let mut file: Box<dyn Write> = match self.standard_output {
+                true => Box::new(BufWriter::new(io::stdout())),
+                false => Box::new(BufWriter::new(self.create(key)?)),
+            };
+            writeln!(file, "{header}")?;
+            self.open.insert(key, file);
+        }
+        self.open.get_mut(&key).ok_or_else(|| "no file was opened".into())
+    }
+
+    fn create(&mut self, key: i32) -> Result<File, Failure> {
+        let (recording, name) = (&self.arguments.file, |part: &str| self.name(part));
+        let name = if key == EVENTS { name("events")? } else { name(&format!("finger{key}"))? };
+        let folder = self.arguments.output.clone().or_else(|| recording.parent().map(Path::to_path_buf));
+        let path = folder.unwrap_or_default().join(name);
+        let mut options = File::options();
+        options.write(true).create(true).truncate(true).create_new(!self.arguments.force);
+        let file = options.open(&path).map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => {
+                wrong_usage(format!("{} exists: replace it with --force", ShownPath(&path)))
+            }
+            _ => format!("cannot write {}: {error}", ShownPath(&path)).into(),
+        })?;
+        self.paths.push(path);
+        Ok(file)
+    }
+
+    /// The name of a CSV file: the name of the recording without its extension, and the part.
+    fn name(&self, part: &str) -> Result<String, Failure> {
+        let recording = self.arguments.file.file_stem().ok_or_else(|| wrong_usage("FILE has no name"))?;
+        Ok(format!("{}-{part}.csv", recording.to_string_lossy()))
+    }
+
+    fn finish(mut self) -> Result<(), Failure> {
+        for file in self.open.values_mut() {
+            file.flush()?;
+        }
+        self.paths.sort();
+        for path in &self.paths {
+            writeln!(io::stdout(), "{}", path.display())?;
+        }
+        Ok(())
+    }
+}
+
+/// A field of a CSV file (RFC 4180).
+fn quoted(text: &str) -> String {
+    let special = text.contains([',', '"', '\n', '\r']);
+    if special { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}

@@ -1,0 +1,108 @@
+//! CSV files: every number has the recorded bits.
+
+use crate::recorded::{done, recorded, tool};
+use std::collections::BTreeMap;
+use std::fs;
+
+/// A CSV file without line feeds in its fields: its header, and its rows by the names of their columns.
+fn table(text: &str) -> (Vec<&str>, Vec<BTreeMap<&str, String>>) {
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let rows = lines.map(|line| {
+        let fields = fields(line);
+        assert_eq!(fields.len(), header.len(), "{line}");
+        header.iter().copied().zip(fields).collect()
+    });
+    let rows = rows.collect();
+    (header, rows)
+}
+
+/// The fields of a line, of which some are quoted.
+fn fields(line: &str) -> Vec<String> {
+    let (mut fields, mut quoted) = (vec![String::new()], false);
+    for letter in line.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(String::new()),
+            letter => fields.last_mut().expect("a field").push(letter),
+        }
+    }
+    fields
+}
+
+#[test]
+fn every_number_of_a_csv_file_has_the_recorded_bits() {
+    let recorded = recorded();
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = folder.path().to_str().expect("a name");
+    let told = done(folder.path(), &["export", recorded.file().to_str().expect("a name"), "--output", output]);
+    assert_eq!(told.lines().count(), 2, "{told}");
+    let text = fs::read_to_string(folder.path().join("finger-2-finger2.csv")).expect("a file");
+    let (header, rows) = table(&text);
+    assert!(
+        header[0] == "time_s" && header.contains(&"tension_4_N") && header.contains(&"kx_xz_N_per_cm"),
+        "{header:?}"
+    );
+    let cycles = &recorded.recording.cycles;
+    assert_eq!(rows.len(), cycles.len());
+    let bits = |row: &BTreeMap<&str, String>, name: &str| row[name].parse::<f64>().map(f64::to_bits).ok();
+    for (row, cycle) in rows.iter().zip(cycles) {
+        assert_eq!((&row["cycle"], &row["began_ns"]), (&cycle.cycle.to_string(), &cycle.began.to_string()));
+        assert_eq!((&row["stage"], row["reply"] == "1"), (&cycle.stage, cycle.feedback.is_some()));
+        let count = cycle.feedback.map_or(String::new(), |feedback| feedback.gauge_counts[2].to_string());
+        assert_eq!(row["gauge_3_count"], count);
+        let Some(control) = &cycle.control else { continue };
+        for part in 0..4 {
+            let number = part + 1;
+            assert_eq!(bits(row, &format!("tension_{number}_N")), Some(control.report.tensions[part].to_bits()));
+            let wanted = control.report.desired_tensions[part].to_bits();
+            assert_eq!(bits(row, &format!("tension_desired_{number}_N")), Some(wanted));
+        }
+        for joint in 0..3 {
+            assert_eq!(bits(row, &format!("joint_{joint}_rad")), Some(control.report.joints[joint].to_bits()));
+            let rate = control.report.joint_rates[joint].to_bits();
+            assert_eq!(bits(row, &format!("joint_rate_{joint}_rad_per_s")), Some(rate));
+        }
+        assert_eq!(bits(row, "stiffness_scale"), Some(control.report.stiffness_scale.to_bits()));
+    }
+
+    let events = fs::read_to_string(folder.path().join("finger-2-events.csv")).expect("a file");
+    let (_, events) = table(&events);
+    let faults: Vec<_> = events.iter().filter(|event| event["kind"] == "fault").collect();
+    assert!(faults.len() == 1 && faults[0]["text"].starts_with("faulted: "), "{events:?}");
+    assert_eq!(faults[0]["finger"], "2");
+}
+
+#[test]
+fn the_long_format_has_one_value_in_a_row() {
+    let recorded = recorded();
+    let file = recorded.file();
+    let long = done(recorded.folder.path(), &["export", file.to_str().expect("a name"), "--output", "-"]);
+    let (header, rows) = table(&long);
+    assert_eq!(header, ["time_s", "finger", "cycle", "name", "unit", "value"]);
+    let cycle = &recorded.recording.cycles[100];
+    let of_cycle = |name: &str| {
+        let mut rows = rows.iter().filter(|row| row["cycle"] == cycle.cycle.to_string());
+        rows.find(|row| row["name"] == name).unwrap_or_else(|| panic!("no {name}"))
+    };
+    let tension = of_cycle("tension_1");
+    let recorded = cycle.control.expect("computed").report.tensions[0];
+    assert_eq!((tension["unit"].as_str(), tension["finger"].as_str()), ("N", "2"));
+    assert_eq!(tension["value"].parse::<f64>().map(f64::to_bits), Ok(recorded.to_bits()));
+}
+
+#[test]
+fn no_file_is_replaced_without_force_and_other_fingers_are_left_out() {
+    let recorded = recorded();
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, output) = (recorded.file(), folder.path().to_str().expect("a name"));
+    let file = file.to_str().expect("a name");
+    let export = |more: &[&str]| tool(folder.path(), &[&["export", file, "--output", output], more].concat());
+    assert!(export(&["--finger", "1"]).status.success());
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "the recording has finger 2 only");
+    assert!(export(&[]).status.success());
+    let refused = export(&[]);
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("--force"), "{refused:?}");
+    assert!(export(&["--force"]).status.success());
+}
