@@ -77,7 +77,7 @@ impl Files<'_> {
         let wanted = |finger: i32| self.arguments.fingers.is_empty() || self.arguments.fingers.contains(&finger);
         match item {
             Item::Finger(Finger { .. }) => Ok(()),
-            Item::Cycle(row) if !wanted(row.sample.finger) => Ok(()),
+            Item::Cycle(row) if !wanted(row.sample.finger.get()) => Ok(()),
             Item::Mark(Mark { finger: Some(finger), .. }) if !wanted(finger) => Ok(()),
             Item::Cycle(row) => self.cycle(&row),
             Item::Mark(mark) => self.mark(&mark),
@@ -91,7 +91,7 @@ impl Files<'_> {
     }
 
     fn cycle(&mut self, row: &Row) -> Result<(), Failure> {
-        let (finger, cycle) = (row.sample.finger, row.sample.cycle);
+        let (finger, cycle) = (row.sample.finger.get(), row.sample.cycle);
         let seconds = self.seconds(row.sample.began);
         let columns = columns(row);
         if self.arguments.format == Format::Wide && !self.standard_output {

@@ -137,7 +137,7 @@ fn collect(file: &Path, selection: &mut Selection, one_finger: bool, plot: &mut 
                 }
                 (None, Some(finger.number))
             }
-            Item::Cycle(row) => (Some(row.sample.began), Some(row.sample.finger)),
+            Item::Cycle(row) => (Some(row.sample.began), Some(row.sample.finger.get())),
             Item::Mark(mark) => (Some(mark.time), mark.finger),
         };
         let seconds = time.map_or(0.0, |time| {

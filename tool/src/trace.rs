@@ -1,14 +1,12 @@
 //! Recordings as a sequence of rows, whatever their format.
 
 mod black_box;
-mod sample;
-
-pub use sample::Sample;
 
 use crate::failure::Failure;
 use crate::print::Progress;
 use std::path::Path;
 use sun2xp::control::Feedback;
+use sun2xp::telemetry::Sample;
 
 /// What a recording contains, in the order of time for each finger.
 #[derive(Clone, Debug)]
@@ -98,7 +96,7 @@ impl Changes {
     /// Returns the marks before this cycle.
     pub fn before(&mut self, row: &Row) -> Vec<Mark> {
         let Row { sample: Sample { finger, cycle, began, .. }, stage, .. } = row;
-        let mark = |kind, text| Mark { time: *began, finger: Some(*finger), cycle: Some(*cycle), kind, text };
+        let mark = |kind, text| Mark { time: *began, finger: Some(finger.get()), cycle: Some(*cycle), kind, text };
         let mut marks = Vec::new();
         if let Some((last, _)) = &self.last
             && *cycle > last + 1

@@ -55,11 +55,9 @@ impl Plot for Faults {
         match item {
             Item::Finger(finger) => self.rate = finger.rate,
             Item::Cycle(row) => {
-                let number = usize::try_from(row.sample.finger).unwrap_or_default();
+                let index = row.sample.finger.index();
                 let period = 1.0 / self.rate;
-                if let Some(lane) = number.checked_sub(1).and_then(|index| self.lanes.get_mut(index)) {
-                    lane.take(row, seconds, period);
-                }
+                self.lanes[index].take(row, seconds, period);
             }
             Item::Mark(mark) => self.happened.push((seconds, mark.clone())),
         }

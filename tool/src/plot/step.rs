@@ -46,7 +46,8 @@ impl Plot for Step {
             Item::Cycle(row) => {
                 let sample = &row.sample;
                 let none = [f64::NAN; 3];
-                let (set_point, tip) = (sample.joint_set_point.unwrap_or(none), sample.tip_set_point.unwrap_or(none));
+                let given = |value: Option<[f64; 3]>| value.filter(|_| sample.computed).unwrap_or(none);
+                let (set_point, tip) = (given(sample.joint_set_point), given(sample.tip_set_point));
                 let shown = |value: f64| if sample.computed { value } else { f64::NAN };
                 let joint = |axis: usize| [shown(sample.joints[axis]), set_point[axis]].map(f64::to_degrees);
                 let axis = |axis: usize| [shown(sample.tip[axis]), tip[axis]];

@@ -38,11 +38,9 @@ impl Plot for Timing {
         match item {
             Item::Finger(finger) => self.rate = finger.rate,
             Item::Cycle(row) => {
-                let number = usize::try_from(row.sample.finger).unwrap_or_default();
+                let index = row.sample.finger.index();
                 let time = |time: Option<f64>| time.map_or(f32::NAN, |time| time as f32);
-                if let Some(times) = number.checked_sub(1).and_then(|index| self.fingers.get_mut(index)) {
-                    times.0.push((seconds, time(row.sample.wake_up), time(row.sample.whole)));
-                }
+                self.fingers[index].0.push((seconds, time(row.sample.wake_up), time(row.sample.whole)));
             }
             Item::Mark(_) => {}
         }
