@@ -3,7 +3,6 @@
 mod columns;
 
 use crate::failure::{Failure, wrong_usage};
-use crate::print::Progress;
 use crate::trace::{self, Finger, Item, Mark, Row};
 use clap::ValueEnum;
 use columns::{Value, columns};
@@ -51,7 +50,7 @@ enum Format {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let standard_output = arguments.output.as_deref() == Some(Path::new("-"));
     let mut files = Files { arguments, standard_output, start: None, open: BTreeMap::new(), paths: Vec::new() };
-    trace::read(&arguments.file, &Progress::new("export", 0), &mut |item| files.take(item))?;
+    trace::read(&arguments.file, "export", &mut |item| files.take(item))?;
     files.finish()
 }
 

@@ -13,7 +13,6 @@ mod tensions;
 mod timing;
 
 use crate::failure::{Failure, wrong_usage};
-use crate::print::Progress;
 use crate::trace::{self, Item};
 use clap::ValueEnum;
 use figure::Figure;
@@ -47,7 +46,12 @@ pub struct Arguments {
     #[arg(long, value_name = "S", value_parser = seconds)]
     to: Option<f64>,
     /// Width of the picture, pixels.
-    #[arg(long, value_name = "PIXELS", default_value_t = 1200, value_parser = clap::value_parser!(u32).range(300..=8000))]
+    #[arg(
+        long,
+        value_name = "PIXELS",
+        default_value_t = 1200,
+        value_parser = clap::value_parser!(u32).range(300..=8000)
+    )]
     width: u32,
 }
 
@@ -127,9 +131,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Passes the selected part of a recording to a plot. With `one_finger`, the first finger is selected unless another
 /// one is.
 fn collect(file: &Path, selection: &mut Selection, one_finger: bool, plot: &mut dyn Plot) -> Result<(), Failure> {
-    let progress = Progress::new("plot", 0);
     let mut start = None;
-    trace::read(file, &progress, &mut |item| {
+    trace::read(file, "plot", &mut |item| {
         let (time, finger) = match &item {
             Item::Finger(finger) => {
                 if one_finger {

@@ -1,12 +1,21 @@
-//! Recordings as a sequence of rows, whatever their format.
+//! Recordings and black boxes as a sequence of rows and marks.
 
-mod black_box;
+#[cfg(test)]
+mod tests;
 
 use crate::failure::Failure;
 use crate::print::Progress;
+use crate::recording::{self, Entry, Recording};
 use std::path::Path;
 use sun2xp::control::Feedback;
-use sun2xp::telemetry::Sample;
+use sun2xp::finger::events::{Event, EventKind};
+use sun2xp::finger::{Fault, FaultKind, Stage};
+use sun2xp::model::configuration::FINGERS;
+use sun2xp::model::{Part, ShownPath};
+use sun2xp::telemetry::{Message, Sample, View};
+
+/// Steps of the progress.
+const THOUSANDTHS: u64 = 1000;
 
 /// What a recording contains, in the order of time for each finger.
 #[derive(Clone, Debug)]
@@ -29,8 +38,6 @@ pub struct Finger {
 #[derive(Clone, Debug)]
 pub struct Row {
     pub sample: Sample,
-    /// The stage, with the text of a fault.
-    pub stage: String,
     /// The counts of the reply. `None` if it was lost.
     pub feedback: Option<Feedback>,
     /// The status bits of the newest reply.
@@ -78,37 +85,107 @@ impl MarkKind {
 /// Receives the items of a recording.
 pub type Visit<'a> = &'a mut dyn FnMut(Item) -> Result<(), Failure>;
 
-/// Reads a recording, and passes its items on. `progress` shows the part that is read.
+/// Reads a recording or a black box, and passes its items on. `what` names the work for the progress.
 ///
 /// # Errors
 /// Returns an error if the file is not a recording, or if `visit` does.
-pub fn read(file: &Path, _progress: &Progress, visit: Visit) -> Result<(), Failure> {
-    black_box::read(file, visit)
+pub fn read(file: &Path, what: &str, visit: Visit) -> Result<(), Failure> {
+    let mut recording = Recording::open(file)?;
+    let description = recording.description().clone();
+    for finger in &description.fingers {
+        visit(Item::Finger(Finger { number: finger.get(), rate: description.configuration.hand.rate }))?;
+    }
+    let mut view = View::new(&description.configuration);
+    let mut changes: [Changes; FINGERS] = Default::default();
+    let progress = Progress::new(what, THOUSANDTHS);
+    while let Some(entry) = recording.next() {
+        let Entry { time, item } = entry?;
+        progress.reach((recording.progress() * THOUSANDTHS as f64) as u64);
+        let message = match item {
+            recording::Item::Message(message) => message,
+            recording::Item::Lost { finger, cycles } => {
+                let time = time.wrapping_sub(description.clock_offset.cast_unsigned());
+                let text = format!("{cycles} cycles are not recorded");
+                let finger = Some(finger.get());
+                visit(Item::Mark(Mark { time, finger, cycle: None, kind: MarkKind::Gap, text }))?;
+                continue;
+            }
+        };
+        if let Message::Event(event) = &message {
+            changes[event.finger.index()].event(event).map_or(Ok(()), |mark| visit(Item::Mark(mark)))?;
+        }
+        let Some(sample) = view.take(&message) else { continue };
+        let Message::Cycle { record, .. } = message else { continue };
+        let change = changes[sample.finger.index()].before(&sample);
+        change.map_or(Ok(()), |mark| visit(Item::Mark(mark)))?;
+        visit(Item::Cycle(Box::new(Row { sample, feedback: record.feedback, status: record.status })))?;
+    }
+    drop(progress);
+    if !recording.is_complete() {
+        eprintln!("sun2xp: {} has no end: its recorder was killed, or still runs", ShownPath(file));
+    }
+    Ok(())
 }
 
-/// Finds changes of the stage and gaps between the cycles of one finger.
+/// Finds the changes of a finger's stage.
 #[derive(Debug, Default)]
-pub struct Changes {
-    last: Option<(u64, String)>,
+struct Changes {
+    stage: Option<Stage>,
+    /// The cycle in which the finger has faulted.
+    faulted: u64,
 }
 
 impl Changes {
-    /// Returns the marks before this cycle.
-    pub fn before(&mut self, row: &Row) -> Vec<Mark> {
-        let Row { sample: Sample { finger, cycle, began, .. }, stage, .. } = row;
-        let mark = |kind, text| Mark { time: *began, finger: Some(finger.get()), cycle: Some(*cycle), kind, text };
-        let mut marks = Vec::new();
-        if let Some((last, _)) = &self.last
-            && *cycle > last + 1
-        {
-            let missing = cycle - last - 1;
-            marks.push(mark(MarkKind::Gap, format!("{missing} cycles are not recorded")));
+    /// Returns the mark for another stage than that of the cycle before.
+    fn before(&mut self, sample: &Sample) -> Option<Mark> {
+        let before = self.stage.replace(sample.stage);
+        if before == Some(sample.stage) {
+            return None;
         }
-        if self.last.as_ref().is_none_or(|(_, last)| last != stage) {
-            let kind = if stage.starts_with("faulted") { MarkKind::Fault } else { MarkKind::Stage };
-            marks.push(mark(kind, stage.clone()));
+        let fault = sample.fault().is_some();
+        if fault {
+            self.faulted = sample.cycle;
         }
-        self.last = Some((*cycle, stage.clone()));
-        marks
+        Some(Mark {
+            time: sample.began,
+            finger: Some(sample.finger.get()),
+            cycle: Some(sample.cycle),
+            kind: if fault { MarkKind::Fault } else { MarkKind::Stage },
+            text: sample.stage.to_string(),
+        })
     }
+
+    /// Returns the mark for an event. A fault has been marked as a stage if its cycle is recorded.
+    fn event(&self, event: &Event) -> Option<Mark> {
+        let kind = match event.kind {
+            EventKind::Fault if self.faulted != 0 && event.cycle.abs_diff(self.faulted) <= 1 => return None,
+            EventKind::Fault => MarkKind::Fault,
+            EventKind::Warning => MarkKind::Warning,
+            _ => MarkKind::Event,
+        };
+        let (finger, cycle, text) = (Some(event.finger.get()), Some(event.cycle), words(event));
+        Some(Mark { time: event.time, finger, cycle, kind, text })
+    }
+}
+
+/// Returns an event as text: its name, its part, and its values with their meanings.
+fn words(event: &Event) -> String {
+    let Event { kind, part, values, .. } = event;
+    if let (EventKind::Fault | EventKind::Warning, Some(fault)) = (kind, FaultKind::from_number(values[0] as i32)) {
+        let mut fault = Fault::of(fault, values[1]);
+        fault.part = *part;
+        return fault.to_string();
+    }
+    let description = kind.description();
+    let mut text = description.name.to_owned();
+    if *part != Part::Finger {
+        text += &format!(", {part}");
+    }
+    let mut values = values.iter();
+    let meanings = description.values.iter().map(|meaning| {
+        let numbers = values.by_ref().take(meaning.places()).map(|value| format!("{value:.3}")).collect::<Vec<_>>();
+        format!("{}: {}", meaning.words(), numbers.join(", "))
+    });
+    let meanings = meanings.collect::<Vec<_>>().join("; ");
+    if meanings.is_empty() { text } else { format!("{text} ({meanings})") }
 }

@@ -76,7 +76,7 @@ pub fn columns(row: &Row) -> Vec<Column> {
     let mut columns = Columns::default();
     columns.one("began", "ns", Value::Whole(sample.began.cast_signed()));
     columns.one("cycle", "", Value::Whole(sample.cycle.cast_signed()));
-    columns.one("stage", "", Value::Text(row.stage.clone()));
+    columns.one("stage", "", Value::Text(sample.stage.to_string()));
     columns.one("reply", "", Value::Whole(row.feedback.is_some().into()));
     columns.one("computed", "", Value::Whole(sample.computed.into()));
     columns.vector("joint", JOINTS, "rad", computed.map(|sample| sample.joints));

@@ -9,7 +9,7 @@ use super::{Plot, Selection};
 use crate::failure::Failure;
 use crate::trace::{Item, Mark as Happened, MarkKind, Row};
 
-/// Height of the rows of a finger and the space below them, pixels, and the height of one row in the units of the panel.
+/// Height of the rows of a finger and the space below them, pixels. The height of one row is in the units of the panel.
 const FINGER: f64 = 132.0;
 const GAP: f64 = 54.0;
 const ROW: f64 = 0.8;
@@ -117,9 +117,13 @@ impl Lane {
     fn take(&mut self, row: &Row, seconds: f64, period: f64) {
         let sample = &row.sample;
         let limited = sample.computed && sample.torque_scale < 1.0;
-        let stage = if row.stage.starts_with("faulted") { "faulted" } else { &row.stage };
-        let states =
-            [Some(stage), sample.touching.then_some(""), limited.then_some(""), row.feedback.is_none().then_some("")];
+        let stage = sample.stage_name();
+        let states = [
+            Some(stage.as_str()),
+            sample.touching.then_some(""),
+            limited.then_some(""),
+            row.feedback.is_none().then_some(""),
+        ];
         for (index, (spans, state)) in self.rows.iter_mut().zip(states).enumerate() {
             let Some(name) = state else { continue };
             // Periods differ a little from their nominal length.

@@ -130,7 +130,8 @@ impl Panel {
             svg.text([left - 8.0, y + 4.5], &text, Font { anchor: Anchor::End, ..NUMBER });
         }
         let data = format!(
-            "class=\"panel\" data-frame=\"{left:.2} {top:.2} {width:.2} {height:.2}\" data-x=\"{} {}\" data-y=\"{} {}\"",
+            "class=\"panel\" data-frame=\"{left:.2} {top:.2} {width:.2} {height:.2}\" data-x=\"{} {}\" data-y=\"{} \
+             {}\"",
             self.x.low, self.x.high, self.y.low, self.y.high
         );
         svg.within(frame, &data, |svg| {

@@ -22,7 +22,7 @@ const AROUND: (f64, f64) = (-0.2, 1.3);
 /// A step of the set point is at least this large, degrees.
 const SMALLEST: f64 = 0.5;
 
-/// A joint has settled when it stays within this fraction of the step for this time, s. Later disturbances do not count.
+/// A joint has settled when it stays within this fraction of the step for this time, s. Later pushes do not count.
 const SETTLED: f64 = 0.05;
 const STAYS: f64 = 0.2;
 

@@ -136,7 +136,8 @@ impl Svg {
         let bold = if font.bold { " font-weight=\"bold\"" } else { "" };
         let turn = turn.map_or(String::new(), |turn| format!(" transform=\"rotate({turn} {x:.2} {y:.2})\""));
         self.add(format_args!(
-            "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{}\" fill=\"{}\" text-anchor=\"{anchor}\"{bold}{turn}>{}</text>",
+            "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{}\" fill=\"{}\" \
+             text-anchor=\"{anchor}\"{bold}{turn}>{}</text>",
             font.size,
             font.colour,
             escaped(text)

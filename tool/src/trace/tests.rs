@@ -1,0 +1,74 @@
+//! A recording of a simulated hand is passed on whole: every cycle, its gaps, stages and events.
+
+use super::{Item, Mark, MarkKind, Row, read};
+use crate::recording::RecordingWriter;
+use std::fs::File;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use sun2xp::hand::Hand;
+use sun2xp::model::FingerNumber;
+use sun2xp::model::configuration::{Configuration, RealTime};
+use sun2xp::telemetry::{Message, Reader, Sample, View};
+
+/// The messages of a hand whose finger 1 moves until it settles.
+fn messages() -> (Reader, Vec<Message>) {
+    let mut configuration = Configuration::default();
+    configuration.telemetry.name = format!("trace-{}", std::process::id());
+    (configuration.hand.real_time, configuration.hand.rate) = (RealTime::Ignore, 500.0);
+    let name = configuration.telemetry.name.clone();
+    let hand = Hand::open(configuration).unwrap_or_else(|error| panic!("open: {error}"));
+    let mut reader = Reader::attach(Some(&name)).expect("attached");
+    hand.send_position(1, [0.1, 0.5, 0.9]).expect("sent");
+    let (mut messages, begun) = (Vec::new(), Instant::now());
+    while !messages.iter().any(|message| matches!(message, Message::Event(_))) {
+        assert!(begun.elapsed() < Duration::from_secs(20), "the finger neither arrives nor settles");
+        reader.read(Duration::from_millis(100), &mut messages).expect("open");
+    }
+    (reader, messages)
+}
+
+fn items(path: &Path) -> Vec<Item> {
+    let mut items = Vec::new();
+    read(path, "test", &mut |item| {
+        items.push(item);
+        Ok(())
+    })
+    .expect("a recording");
+    items
+}
+
+#[test]
+fn every_cycle_of_a_recording_is_a_row_and_lost_cycles_are_marked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hand.mcap");
+    let (reader, messages) = messages();
+    let mut writer = RecordingWriter::new(File::create(&path).expect("a file"), reader.description()).expect("begun");
+    let half = messages.len() / 2;
+    messages[..half].iter().for_each(|message| writer.write(message).expect("written"));
+    writer.write_lost(FingerNumber::TWO, 12).expect("written");
+    messages[half..].iter().for_each(|message| writer.write(message).expect("written"));
+    writer.finish().expect("finished");
+
+    let items = items(&path);
+    let mut view = View::new(&reader.description().configuration);
+    let samples: Vec<Sample> = messages.iter().filter_map(|message| view.take(message)).collect();
+    let rows: Vec<&Row> =
+        items.iter().filter_map(|item| if let Item::Cycle(row) = item { Some(&**row) } else { None }).collect();
+    assert!(samples.len() > 100);
+    assert_eq!(rows.iter().map(|row| &row.sample).collect::<Vec<_>>(), samples.iter().collect::<Vec<_>>());
+    let fingers = items.iter().filter(|item| matches!(item, Item::Finger(finger) if finger.rate == 500.0));
+    assert_eq!(fingers.count(), 3);
+
+    let marks: Vec<&Mark> =
+        items.iter().filter_map(|item| if let Item::Mark(mark) = item { Some(mark) } else { None }).collect();
+    let of = |kind| marks.iter().filter(move |mark| mark.kind == kind);
+    let gap = of(MarkKind::Gap).next().expect("a gap");
+    assert_eq!((gap.finger, gap.text.as_str()), (Some(2), "12 cycles are not recorded"));
+    // Its time is that of the cycles before it, although the file has the time of day.
+    let nearest = rows.iter().map(|row| row.sample.began.abs_diff(gap.time)).min().expect("a row");
+    assert!(nearest < 1_000_000_000, "{nearest} ns");
+    let events = messages.iter().filter(|message| matches!(message, Message::Event(_))).count();
+    assert_eq!(of(MarkKind::Event).count(), events);
+    assert!(of(MarkKind::Event).any(|mark| mark.text.contains("angles of joints 0, 1, 2, rad: ")), "{marks:?}");
+    assert!(of(MarkKind::Stage).any(|mark| mark.text == "running" && mark.finger == Some(3)), "{marks:?}");
+}
