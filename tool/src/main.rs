@@ -16,7 +16,6 @@ mod monitor;
 mod plot;
 mod print;
 mod record;
-#[allow(dead_code, unused_imports, reason = "more commands that read recordings follow")]
 mod recording;
 mod replay;
 mod schedule;
