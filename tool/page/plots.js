@@ -77,7 +77,7 @@ function boundLines(plot, bounds) {
     ctx.fillText(
       inside ? name : `${name} ${bound} ↑`,
       right,
-      Math.max(y, bbox.top) + (inside ? 0 : 2 * devicePixelRatio),
+      Math.max(y, bbox.top) + (inside ? -2 : 2) * devicePixelRatio,
     );
     if (!inside) continue;
     ctx.beginPath();

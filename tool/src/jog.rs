@@ -46,7 +46,7 @@ pub struct Arguments {
     address: web::Address,
 }
 
-/// Opens the hand, and closes it after the last key. With a page, closes it at SIGINT or SIGTERM.
+/// Opens the hand, and closes it after the last key. With a page, closes it at SIGINT, SIGTERM or SIGHUP.
 ///
 /// # Errors
 /// Returns an error if there is no terminal, if the configuration cannot be used, if the person does not confirm, or

@@ -41,7 +41,7 @@ pub struct Address {
     bind: IpAddr,
 }
 
-/// Serves the page until SIGINT or SIGTERM. Prints its address. With a `control`, pages may move the hand, and they need
+/// Serves the page until SIGINT, SIGTERM or SIGHUP. Prints its address. With a `control`, pages may move the hand, and they need
 /// the token on loopback too.
 ///
 /// # Errors
@@ -56,9 +56,7 @@ pub fn serve(address: &Address, source: Source, control: Option<Control>) -> Res
     writeln!(io::stdout(), "{}", url(bound, token.as_deref()))?;
     let hub = Arc::new(Hub::new());
     let (its_hub, may_control) = (Arc::clone(&hub), control.is_some());
-    thread::Builder::new()
-        .name("sun2xp feed".into())
-        .spawn(move || -> () { feed::run(&source, may_control, &its_hub) })?;
+    thread::Builder::new().name("sun2xp feed".into()).spawn(move || feed::run(&source, may_control, &its_hub))?;
     let access = Arc::new(Access { address: bound, token, machine: access::machine() });
     let server = Server { access, hub, control: control.map(Arc::new) };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;

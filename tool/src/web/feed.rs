@@ -3,7 +3,6 @@
 use super::hub::{Hub, Kind};
 use super::message::ToPage;
 use super::translation::Translation;
-use std::sync::Arc;
 use std::thread::sleep;
 use std::time::Duration;
 use sun2xp::telemetry::{Reader, hands};
@@ -24,7 +23,7 @@ pub enum Source {
 }
 
 /// Reads the hand until the process ends.
-pub fn run(source: &Source, control: bool, hub: &Arc<Hub>) -> ! {
+pub fn run(source: &Source, control: bool, hub: &Hub) {
     let mut reported = None;
     loop {
         match attach(source) {

@@ -47,7 +47,7 @@ struct Credentials {
 }
 
 impl Server {
-    /// Serves until SIGINT or SIGTERM.
+    /// Serves until SIGINT, SIGTERM or SIGHUP.
     ///
     /// # Errors
     /// Returns an error if the listener fails.
@@ -68,12 +68,14 @@ impl Server {
     }
 }
 
-/// Waits for SIGINT or SIGTERM.
+/// Waits for SIGINT, SIGTERM or SIGHUP.
 async fn ended() -> io::Result<()> {
     let mut terminate = signal(SignalKind::terminate())?;
+    let mut hangup = signal(SignalKind::hangup())?;
     tokio::select! {
         result = ctrl_c() => result,
         _ = terminate.recv() => Ok(()),
+        _ = hangup.recv() => Ok(()),
     }
 }
 

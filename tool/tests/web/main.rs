@@ -2,7 +2,9 @@
 
 mod browser;
 mod chrome;
+mod control;
 mod http;
+mod messages;
 mod program;
 mod refusals;
 mod slow_pages;

@@ -1,31 +1,12 @@
 //! A page that does not keep up loses batches. Other pages get all.
 
+use super::messages::{batch, message};
 use super::program::{Program, hand};
-use super::socket::{Frame, Socket};
+use super::socket::Socket;
 use serde_json::Value;
 
 /// Number of batches that a page may have received without an acknowledgement.
 const AHEAD: usize = 20;
-
-fn message(socket: &mut Socket) -> Value {
-    match socket.next() {
-        Frame::Text(text) => serde_json::from_str(&text).expect("JSON"),
-        other => panic!("{other:?}"),
-    }
-}
-
-/// Returns the next batch. With `answer`, acknowledges it.
-fn batch(socket: &mut Socket, answer: bool) -> Value {
-    loop {
-        let message = message(socket);
-        if message["type"] == "batch" {
-            if answer {
-                socket.send(&format!(r#"{{"received":{}}}"#, message["number"]));
-            }
-            return message;
-        }
-    }
-}
 
 #[test]
 fn a_page_that_does_not_acknowledge_gets_a_second_and_then_waits() {
